@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::output::folder::REPORT;
 use crate::output::numbers::count;
 use crate::output::sweep::words::several;
-use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, exchanged, numbered, table};
+use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, table, warnings};
 use crate::results::sweep::{Plan, Sweep};
 
 /// Columns of the page's table at most; the file has the rest.
@@ -21,7 +21,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &found.case, Some(&head));
     page.put("label", "Many designs");
-    page.warnings = exchanged::warnings(&exchanged::of(&plan, &survey)?);
+    page.warnings = warnings(&plan, &survey)?;
     let kinds: Vec<String> = found
         .statuses
         .iter()

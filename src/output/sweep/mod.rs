@@ -5,6 +5,7 @@
 //! table     sweep.csv: a row a design
 //! arrays    sweep.npz: the same numbers
 //! exchanged modes that change places from one design to the next
+//! warned    warnings of designs, counted
 //! pictures  sweep.svg, map.svg, parallel.svg
 //! words     what is said of it
 //! script    jobs for Slurm and GNU parallel
@@ -20,6 +21,7 @@ pub mod parts;
 pub mod pictures;
 pub mod script;
 pub mod table;
+pub mod warned;
 pub mod words;
 
 use std::fs;
@@ -138,7 +140,7 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
 /// Something cannot be read or written.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) -> Result<Sweep> {
     let told = Sweep {
-        warnings: exchanged::warnings(&exchanged::of(plan, survey)?),
+        warnings: warnings(plan, survey)?,
         ..about(plan, survey)
     };
     table::write(folder, plan, survey, &told.columns)?;
@@ -156,6 +158,16 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) ->
     }
     folder.secure()?;
     Ok(told)
+}
+
+/// What is warned of: modes that change places between designs, and what designs were warned of.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn warnings(plan: &Plan, survey: &Survey) -> Result<Vec<String>> {
+    let mut all = exchanged::warnings(&exchanged::of(plan, survey)?);
+    all.extend(warned::of(survey)?);
+    Ok(all)
 }
 
 /// What a table of these rows is about.

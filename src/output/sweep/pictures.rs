@@ -8,7 +8,7 @@ use crate::output::plot::designs::{self, Drawn, Numbers};
 use crate::results::sweep::Plan;
 use crate::run::summary::Status;
 
-/// Designs drawn at most, the first of them.
+/// Designs drawn at most, spread over all of them.
 const DRAWN: usize = 2000;
 /// Figures drawn at most.
 const FIGURES: usize = 4;
@@ -63,11 +63,13 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
     let (mut named, mut numbers) = (vec![], vec![]);
     let mut figures: BTreeMap<&str, Vec<f64>> = FIRST.iter().map(|name| (*name, vec![])).collect();
+    let all = survey.statuses.get(&Status::Finished).copied().unwrap_or(0);
     let mut of = 0;
     survey.each(|row| {
         let finished = row.found.status == Status::Finished;
+        let drawn = finished && (of * DRAWN) % all.max(1) < DRAWN;
         of += usize::from(finished);
-        if finished && numbers.len() < DRAWN {
+        if drawn {
             numbers.push(row.number);
             for (axis, value) in varied.iter_mut().zip(&row.values) {
                 axis.push(numeric(value));

@@ -115,3 +115,42 @@ fn cells_of_a_map_meet_between_their_values() {
     // 50, 100 and 150 of 300
     assert!((heights[8] / heights[0] - 3.0).abs() < 0.1, "{heights:?}");
 }
+
+/// Goal: what designs are warned of is counted in words, page and `sweep.json`: states that are not to be trusted stood in a curve without a word.
+#[test]
+fn warnings_of_designs_are_counted() {
+    let dir = TempDir::new().expect("a folder");
+    let out = path(&dir, "strong");
+    let pressure = "/network/chains/0/ends/0/pressure_pa/ramp/to=1e3,5e5,1e6";
+    let said = say(&[
+        "sweep",
+        "cases/tour-actuator.json",
+        "--quiet",
+        "--no-mesh-errors",
+        "--command",
+        "equilibrium",
+        "--set",
+        "/mesh/cells_per_segment=1",
+        "--vary",
+        pressure,
+        "--out",
+        &out,
+    ]);
+    well(&said);
+    let counted = "2 of 3 designs, the first of them design 1";
+    assert!(
+        said.out
+            .lines()
+            .any(|line| line.contains("warning: W023") && line.contains(counted)),
+        "{}",
+        said.out
+    );
+    let page = fs::read_to_string(Path::new(&out).join("report.html")).expect("a page");
+    assert!(page.contains("W023") && page.contains(counted));
+    let told = json(&out, "sweep.json");
+    let all = told["warnings"].as_array().expect("warnings");
+    assert!(
+        all.iter()
+            .any(|one| one.as_str().is_some_and(|text| text.starts_with("W023")))
+    );
+}

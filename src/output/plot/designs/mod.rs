@@ -48,7 +48,7 @@ pub struct Drawn {
     pub joined: bool,
     /// Neighbours whose modes are not joined.
     pub apart: Vec<Exchange>,
-    /// Designs that there are; the first of them are drawn.
+    /// Designs that there are; of very many a part is drawn, spread over them.
     pub of: usize,
 }
 
@@ -81,7 +81,11 @@ impl Drawn {
     fn about(&self, what: &str) -> String {
         match self.designs.len() {
             all if all == self.of => what.into(),
-            some => format!("{what}; the first {} of {}", count(some as u64), count(self.of as u64)),
+            some => format!(
+                "{what}; {} of {}, spread over them",
+                count(some as u64),
+                count(self.of as u64)
+            ),
         }
     }
 }
@@ -253,7 +257,7 @@ mod tests {
         for picture in [along(&data), over_two(&data), beside(&data)] {
             let picture = picture.expect("a picture");
             assert!(
-                picture.contains("the first 2 of 5") && !picture.contains("NaN"),
+                picture.contains("2 of 5, spread over them") && !picture.contains("NaN"),
                 "{picture}"
             );
             assert!(
