@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FitArguments, FittedThrough};
-use super::{line, size, sweep};
+use super::{interrupt, line, size, sweep};
 use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::output::fit as files;
@@ -25,6 +25,8 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
     sweep::overridden(&asked.case.sets, &driven, |drive| format!("every row sets {drive}"))?;
     let problem = Problem::new(&case, &table, &wanted)?;
+    let flag = interrupt::flag();
+    let stop = || interrupt::raised(&flag);
     let mut folder = asked.place.claim(&case, Kind::Fit)?;
     let bar = line::line(asked.quiet);
     let tell = |count: usize, squares: f64| {
@@ -35,8 +37,9 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
         bar.tick();
     };
     let name = asked.data.display().to_string();
-    let found = study::fit(&problem, &wanted, (&name, table.crc32), &tell)?;
+    let found = study::fit(&problem, &wanted, (&name, table.crc32), &stop, &tell);
     bar.finish_and_clear();
+    let found = found?;
     files::write(&mut folder, &problem, &found)?;
     report::write(folder.dir(), None)?;
     let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));

@@ -15,7 +15,7 @@ use crate::results;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
 use crate::study::optimize::choice::{Choice, Part};
-use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
+use crate::study::optimize::problem::{Asked, Goal, Limit, Method, Problem};
 use crate::study::optimize::wiring::{Alternative, Crossing, choices};
 use crate::study::span::Span;
 
@@ -67,6 +67,11 @@ fn choice(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Choi
     let parts: Vec<Part> = lists.chain(crossing).collect::<Result<_>>()?;
     if wanted.spans.is_empty() && parts.is_empty() {
         let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or --choose, --crossovers";
+        return Err(Error::Usage(what.into()));
+    }
+    if wanted.spans.is_empty() && wanted.method == Method::CmaEs {
+        let what =
+            "--method cma-es is for numbers that are sought (--vary); alternatives are all computed, or searched among";
         return Err(Error::Usage(what.into()));
     }
     let choice = Choice(parts);
@@ -136,6 +141,7 @@ fn wanted(asked: &OptimizeArguments) -> Result<Asked> {
             .map(|text| Limit::parse(text))
             .collect::<Result<_>>()?,
         starts: asked.starts.map(|starts| starts as usize),
+        method: asked.method.into(),
         jobs: sweep::jobs(asked.jobs)?,
     })
 }

@@ -13,6 +13,7 @@
 //! | [`levenberg`] | nonlinear least squares between bounds |
 //! | [`inverse`] | linear problems whose answer may not be told by their data: what is, and how surely |
 //! | [`sqp`] | least values between bounds under inequalities |
+//! | [`cma`] | the same by values alone, where these are rugged |
 //! | [`exchange`] | the best of many combinations, from one to the next |
 //! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
 //! | [`normal`] | quantiles of the normal distribution |
@@ -20,6 +21,7 @@
 
 pub mod angle;
 pub mod chance;
+pub mod cma;
 pub mod dual;
 pub mod exchange;
 pub mod gauss;

@@ -60,7 +60,7 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
 }
 
 /// Logarithm of the gamma function by Lanczos' series (g = 7, nine terms), relative 1e-15.
-fn log_gamma(x: f64) -> f64 {
+pub fn log_gamma(x: f64) -> f64 {
     const TERMS: [f64; 9] = [
         0.999_999_999_999_809_9,
         676.520_368_121_885_1,

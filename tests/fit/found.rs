@@ -182,7 +182,9 @@ fn held(seeds: u64) -> [u32; 2] {
         let text = format!("f_n,u_mm\n{}", rows.collect::<String>());
         let table = Table::parse("data.csv".as_ref(), &text).expect("a table");
         let problem = Problem::new(&case, &table, &asked).expect("a problem");
-        let found = fit(&problem, &asked, ("data.csv", 0), &|_, _| {}).expect("a fit").fit;
+        let found = fit(&problem, &asked, ("data.csv", 0), &|| false, &|_, _| {})
+            .expect("a fit")
+            .fit;
         for (k, held) in held.iter_mut().enumerate() {
             let [low, high] = found.parameters[k].interval_95.expect("an interval");
             *held += u32::from((low..=high).contains(&truth[k]));

@@ -11,4 +11,6 @@ mod beside;
 mod common;
 mod found;
 mod refused;
+mod runs;
 mod unseen;
+mod volumes;

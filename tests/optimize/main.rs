@@ -8,4 +8,5 @@ mod common;
 mod cycles;
 mod flat;
 mod refused;
+mod rugged;
 mod wirings;

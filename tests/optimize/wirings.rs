@@ -9,7 +9,7 @@ use slcbeam::numerics::chance::Chance;
 use slcbeam::output::optimum;
 use slcbeam::study::optimize::choice::{Choice, Part};
 use slcbeam::study::optimize::explore;
-use slcbeam::study::optimize::problem::{Asked, Goal, Problem};
+use slcbeam::study::optimize::problem::{Asked, Goal, Method, Problem};
 use slcbeam::study::optimize::wiring::{Alternative, Crossing, choices, combinations};
 use slcbeam::study::sweep::What;
 
@@ -199,6 +199,7 @@ fn an_interrupted_search_keeps_the_best_so_far() {
         },
         limits: vec![],
         starts: Some(2),
+        method: Method::Gradient,
         jobs,
     };
     let make = |alternative: &Alternative| {

@@ -83,7 +83,7 @@ fn loads_come_back_out_of_their_pressures() {
     let rows: [&[f64]; 2] = [&[0.3, -0.5], &[-0.2, 1.0]];
     let (text, sizes) = pressures(&[], &loads, &rows, &[1, 4, 7, -2]);
     let path = file(&dir, &text);
-    let found = found(&dir, &[&path, "--noise", "1"]);
+    let found = found(&dir, &[&path, "--noise", "0.001"]);
     for (row, truth) in rows.iter().enumerate() {
         for k in 0..2 {
             let told = &found["rows"][row]["amplitudes"][k];
@@ -143,7 +143,9 @@ fn what_is_wrong_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let one = "pressure_1_pa,pressure_3_pa\n-100,-50\n";
     let clamped = r#"/ends/tip="clamped""#;
-    let cases: [(&str, &[&str], i32, &str); 18] = [
+    // the two of a pair give each other what bending moves
+    let pairs = r#"/network={"chains": [{"bladders": [1, -1], "ends": ["sealed", "sealed"]}]}"#;
+    let cases: [(&str, &[&str], i32, &str); 19] = [
         ("pressure_11_pa\n1\n", &[], 2, "there is no bladder 11"),
         ("pressure_1_mm\n1\n", &[], 2, "is in mm"),
         ("pressure_1_pa\n", &[], 3, "no rows"),
@@ -181,6 +183,12 @@ fn what_is_wrong_is_refused() {
             &["--noise", "1"],
             2,
             "leave out one of the two",
+        ),
+        (
+            "pressure_1_pa,pressure_-1_pa\n-600,-600\n",
+            &["--noise", "5", "--set", pairs],
+            2,
+            "joined with bladders that give up as much volume",
         ),
     ];
     for (text, more, code, words) in cases {

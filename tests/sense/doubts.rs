@@ -32,8 +32,14 @@ fn pressures_that_no_load_explains_are_told() {
     let open = found(&dir, &[&path, "--load", "tip-force"]);
     assert_eq!(open["warnings"], serde_json::json!([]));
     assert!(number(&open["noise"]["sd_pa"]) > 50.0);
-    let right = found(&dir, &[&path, "--load", "point:0.4", "--noise", "5"]);
+    // pressures to a thousandth of a pascal: noise of as much is right, of kilopascals given as pascals it is not, and is told as none of theirs
+    let right = found(&dir, &[&path, "--load", "point:0.4", "--noise", "0.001"]);
     assert_eq!(right["warnings"], serde_json::json!([]));
+    let large = found(&dir, &[&path, "--load", "point:0.4", "--noise", "1"])["warnings"].to_string();
+    assert!(
+        large.contains("W032 the pressures lie") && large.contains("look at its unit"),
+        "{large}"
+    );
     assert_eq!(number(&right["noise"]["widened"]), 1.0);
     // pressures in Pa under headings in kPa: no answer, and that is said before any number
     let text =

@@ -1,8 +1,9 @@
 //! What `optimize` can be asked for.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use super::{CaseArguments, PlaceArguments, Through};
+use crate::study::optimize::problem::Method;
 
 /// `optimize`.
 #[derive(Debug, Args)]
@@ -33,6 +34,9 @@ pub struct OptimizeArguments {
     /// What another figure has to hold, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
     pub subject_to: Vec<String>,
+    /// How numbers are sought: by slopes, or by figures alone, which takes more designs and passes over ripples
+    #[arg(long, value_enum, default_value_t = Seek::Gradient)]
+    pub method: Seek,
     /// What every design goes through
     #[arg(long, value_enum, default_value_t = Through::Run)]
     pub command: Through,
@@ -51,4 +55,22 @@ pub struct OptimizeArguments {
     /// Print optimum.json instead of the words
     #[arg(long)]
     pub json: bool,
+}
+
+/// How numbers are sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Seek {
+    /// Sequential quadratic programming with exact derivatives where there are some
+    Gradient,
+    /// CMA-ES: evolution of designs, without derivatives
+    CmaEs,
+}
+
+impl From<Seek> for Method {
+    fn from(asked: Seek) -> Self {
+        match asked {
+            Seek::Gradient => Self::Gradient,
+            Seek::CmaEs => Self::CmaEs,
+        }
+    }
 }

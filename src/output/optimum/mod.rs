@@ -13,7 +13,7 @@ use crate::study::optimize::Optimised;
 use crate::study::optimize::found::Design;
 use crate::study::optimize::problem::Problem;
 
-pub use words::{place, ranked, searched, words};
+pub use words::{by_values, place, ranked, searched, words};
 
 /// Everything that was found.
 pub const JSON: &str = "optimum.json";

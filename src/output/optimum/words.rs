@@ -4,7 +4,7 @@ use crate::error::visible;
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, duration, percent, significant};
 use crate::output::sweep::words::several;
-use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
+use crate::results::optimum::{Bound, Compared, Derivatives, Held, Method, Optimum, Variable};
 
 /// Alternatives that are told.
 const SHOWN: usize = 12;
@@ -53,13 +53,12 @@ pub fn words(found: &Optimum) -> String {
             0 => String::new(),
             n => format!(", {n} of which failed,"),
         },
-        match found.derivatives {
-            _ if found.variables.is_empty() => "",
-            Derivatives::Exact => " with exact derivatives",
-            Derivatives::Differences => " with derivatives by differences",
-        },
+        how(found),
         duration(found.wall_s)
     );
+    if let Some(told) = by_values(found) {
+        text += &format!("{told}\n");
+    }
     for (reason, n) in &found.failed {
         text += &format!("{n} of {failed} that failed: {reason}\n");
     }
@@ -70,6 +69,25 @@ pub fn words(found: &Optimum) -> String {
         text += &format!("warning: {warning}\n");
     }
     text
+}
+
+/// By what designs were chosen; nothing where no numbers were sought.
+fn how(found: &Optimum) -> &'static str {
+    match (found.method, found.derivatives) {
+        _ if found.variables.is_empty() => "",
+        (Method::CmaEs, Derivatives::Nowhere) => " by CMA-ES, without derivatives",
+        (Method::CmaEs, _) => " by CMA-ES, with exact derivatives at the best alone",
+        (_, Derivatives::Differences) => " with derivatives by differences",
+        (_, Derivatives::Exact | Derivatives::Nowhere) => " with exact derivatives",
+    }
+}
+
+/// Why a search by figures alone ended, and how far that goes; nothing of other searches.
+pub fn by_values(found: &Optimum) -> Option<String> {
+    let ended = found.ended.as_ref().filter(|_| found.method == Method::CmaEs)?;
+    Some(format!(
+        "a search by figures alone, which ended since {ended}: no proof that there is nothing better"
+    ))
 }
 
 /// Alternatives at their best, the best first.
@@ -159,9 +177,10 @@ fn limit(one: &Held) -> [String; 4] {
         _ => "≥",
     };
     let gain = match (one.reached, one.gain) {
+        _ if one.beyond() => "not held".into(),
         (true, Some(gain)) => format!("reached; let go, it brings {} for each unit", significant(gain, 3)),
-        (false, Some(_)) => "not reached".into(),
-        (_, None) => "not held".into(),
+        (true, None) => "reached".into(),
+        (false, _) => "not reached".into(),
     };
     [
         one.limit.figure.clone(),

@@ -24,6 +24,9 @@ pub struct Fit {
     pub drives: Vec<Drive>,
     /// Whether the search ended at a minimum, as far as the data tell.
     pub found: bool,
+    /// Whether somebody ended the search early: estimates are the best so far.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub interrupted: bool,
     /// Estimates.
     pub parameters: Vec<Estimate>,
     /// Covariance of the estimates, in their units; nothing where a number is held at a bound or not determined.

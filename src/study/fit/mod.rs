@@ -57,14 +57,22 @@ pub struct Fitted {
     pub weights: Vec<f64>,
 }
 
-/// Fits. `tell` hears of every simulation: how many there were, and the sum of squares so far.
+/// Fits. `tell` hears of every simulation: how many there were, and the sum of squares so far; where `stop` becomes true, the best so far is
+/// told, and said to be that.
 ///
 /// # Errors
 /// The case cannot be simulated at any start.
-pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(usize, f64) + Sync)) -> Result<Fitted> {
+pub fn fit(
+    problem: &Problem,
+    asked: &Asked,
+    data: (&str, u32),
+    stop: &(dyn Fn() -> bool + Sync),
+    tell: &(dyn Fn(usize, f64) + Sync),
+) -> Result<Fitted> {
     let begin = Instant::now();
-    let search = Search::new(problem, asked, tell);
+    let search = Search::new(problem, asked, stop, tell);
     let reached = search.go()?;
+    let interrupted = stop();
     let (values, count) = (&reached.values, problem.observations.len());
     let case = problem.with(values)?;
     let free = levenberg::free(&reached.minimum.x, &reached.minimum.at);
@@ -98,7 +106,7 @@ pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(u
         freedom: (!known || !plain).then_some(freedom),
     };
     let errors = basis.errors();
-    let (finer, moved) = finer(problem, &reached, asked.jobs, &free);
+    let (finer, moved) = finer(problem, &reached, asked.jobs, &free, stop);
     let estimate = |k: usize| {
         let span: &Span = &problem.spans[k];
         Estimate {
@@ -125,7 +133,8 @@ pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(u
             problem::Abscissa::Time(_) => vec![],
             problem::Abscissa::Drives(drives) => drives.iter().map(|(drive, _): &(Drive, _)| drive.clone()).collect(),
         },
-        found: reached.minimum.ended != Ended::Unfinished,
+        found: reached.minimum.ended != Ended::Unfinished && !interrupted,
+        interrupted,
         parameters,
         covariance: errors.covariance,
         correlation: errors.correlation,
@@ -143,7 +152,7 @@ pub fn fit(problem: &Problem, asked: &Asked, data: (&str, u32), tell: &(dyn Fn(u
         wall_s: 0.0,
     };
     fit.warnings = warnings(&fit, reached.minimum.ended, known && plain);
-    fit.warnings.extend(of_the_model(problem, &case));
+    fit.warnings.extend(of_the_model(problem, &case, stop));
     fit.wall_s = begin.elapsed().as_secs_f64();
     let weights = reached.weights.iter().zip(&reached.sigmas);
     let weights = weights.map(|(weight, sigma)| weight / sigma.powi(2)).collect();
@@ -180,7 +189,13 @@ fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
 }
 
 /// How far estimates would move on a finer mesh with a tenth of the tolerance: Gauss and Newton's step from what the finer simulation leaves.
-fn finer(problem: &Problem, reached: &Reached, jobs: usize, free: &[usize]) -> (Simulator, Option<Vec<f64>>) {
+fn finer(
+    problem: &Problem,
+    reached: &Reached,
+    jobs: usize,
+    free: &[usize],
+    stop: &(dyn Fn() -> bool + Sync),
+) -> (Simulator, Option<Vec<f64>>) {
     let mut other = problem.clone();
     other.case.mesh.cells_per_segment *= 2;
     let mut with = vec![format!("{} cells a segment", other.case.mesh.cells_per_segment)];
@@ -193,7 +208,7 @@ fn finer(problem: &Problem, reached: &Reached, jobs: usize, free: &[usize]) -> (
         with.push(format!("rtol {:.1e}", other.case.solver.rtol));
     }
     let finer = with.join(", ");
-    match simulate::simulate(&other, &reached.values, jobs) {
+    match simulate::simulate(&other, &reached.values, jobs, stop) {
         Err(error) => {
             let unknown = Some(error.to_string());
             (Simulator { finer, unknown }, None)
@@ -217,6 +232,7 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Fit.warning(what));
     match ended {
+        _ if fit.interrupted => say("interrupted; estimates and errors are those of the best so far".into()),
         Ended::Found => {}
         Ended::Unfinished => say("the search ran out of steps; estimates are where it stood".into()),
         Ended::Stuck => say(
@@ -281,13 +297,16 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
 }
 
 /// What the plain command warns of with the estimates.
-fn of_the_model(problem: &Problem, case: &Case) -> Vec<String> {
+fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)) -> Vec<String> {
+    if stop() {
+        return vec![];
+    }
     let ask = Ask {
         what: problem.through().command(),
         accuracy: None,
         meshes: false,
     };
-    let found = compute::found(case, ask, &|| false, &|case| compute::run(case, None, &|| false));
+    let found = compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
     found.map_or(vec![], |found| found.told)
 }
 

@@ -11,7 +11,8 @@ use super::problem::{Asked, Problem};
 use super::robust::Loss;
 use super::simulate::{Simulated, simulate};
 use crate::error::{Error, Result};
-use crate::numerics::levenberg::{Minimum, minimise};
+use crate::numerics::levenberg::{Ended, Minimum, minimise};
+use crate::run::stop::INTERRUPTED;
 use crate::study::span;
 use crate::study::sweep::pool;
 
@@ -28,9 +29,17 @@ const LEAST: f64 = 1e-12;
 pub struct Search<'a> {
     problem: &'a Problem,
     asked: &'a Asked,
+    stop: &'a (dyn Fn() -> bool + Sync),
     tell: &'a (dyn Fn(usize, f64) + Sync),
     simulations: AtomicUsize,
     fault: Mutex<Option<Error>>,
+}
+
+/// A minimum, and what the case gives there.
+#[derive(Clone, Debug)]
+struct Found {
+    minimum: Minimum,
+    simulated: Simulated,
 }
 
 /// Where it ended.
@@ -64,10 +73,16 @@ impl Reached {
 
 impl<'a> Search<'a> {
     /// Of a problem.
-    pub fn new(problem: &'a Problem, asked: &'a Asked, tell: &'a (dyn Fn(usize, f64) + Sync)) -> Self {
+    pub fn new(
+        problem: &'a Problem,
+        asked: &'a Asked,
+        stop: &'a (dyn Fn() -> bool + Sync),
+        tell: &'a (dyn Fn(usize, f64) + Sync),
+    ) -> Self {
         Self {
             problem,
             asked,
+            stop,
             tell,
             simulations: AtomicUsize::new(0),
             fault: Mutex::new(None),
@@ -79,16 +94,16 @@ impl<'a> Search<'a> {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Searches from every start, and on from the best of what they find.
+    /// Searches from every start, and on from the best of what they find; the best so far where somebody wants the end.
     ///
     /// # Errors
-    /// The case cannot be simulated at any of them.
+    /// The case cannot be simulated at any of them, or the end is wanted before it was.
     pub fn go(&self) -> Result<Reached> {
         let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
         let mut weights = vec![1.0; sigmas.len()];
         let numbers: Vec<usize> = (0..places.len()).collect();
-        let mut found: Vec<Option<Minimum>> = vec![None; places.len()];
+        let mut found: Vec<Option<Found>> = vec![None; places.len()];
         let (many, within) = match places.len() {
             1 => (1, self.asked.jobs),
             _ => (self.asked.jobs, 1),
@@ -96,42 +111,46 @@ impl<'a> Search<'a> {
         pool::each(
             &numbers,
             many,
-            &|k| Some((k, self.minimise(&places[k], &scale(&sigmas, &weights), within))),
+            &|k| (!(self.stop)()).then(|| (k, self.minimise(&places[k], &scale(&sigmas, &weights), within))),
             &mut |(k, minimum)| {
                 found[k] = minimum;
                 Ok(())
             },
         )?;
-        let mut steps = found.iter().flatten().map(|minimum| minimum.steps).sum();
-        let start = |(from, found): (&Vec<f64>, &Option<Minimum>)| Start {
+        let mut steps = found.iter().flatten().map(|one| one.minimum.steps).sum();
+        let start = |(from, found): (&Vec<f64>, &Option<Found>)| Start {
             from: self.problem.values(from),
-            to: found.as_ref().map(|minimum| self.problem.values(&minimum.x)),
-            chi_square: found.as_ref().map(|minimum| minimum.at.cost()),
+            to: found.as_ref().map(|one| self.problem.values(&one.minimum.x)),
+            chi_square: found.as_ref().map(|one| one.minimum.at.cost()),
         };
         let starts = places.iter().zip(&found).map(start).collect();
         let best = found
             .into_iter()
             .flatten()
-            .min_by(|a, b| a.at.cost().total_cmp(&b.at.cost()));
-        let Some(mut minimum) = best else {
+            .min_by(|a, b| a.minimum.at.cost().total_cmp(&b.minimum.at.cost()));
+        let Some(mut best) = best else {
+            if (self.stop)() {
+                let what = format!("{INTERRUPTED} before the data were simulated once; nothing is written");
+                return Err(Error::Usage(what));
+            }
             return Err(self.fault(|| "the case cannot be simulated at any start".into()));
         };
         let unknown = given.iter().filter(|given| !**given).count();
         let again = self.asked.loss != Loss::Squares || unknown > 1;
-        let mut simulated = self.simulate_at(&minimum.x, self.asked.jobs)?;
         for round in 0..ROUNDS {
-            let change = self.weigh(&simulated, &given, &mut sigmas, &mut weights);
+            let change = self.weigh(&best.simulated, &given, &mut sigmas, &mut weights);
             let settled = change < SAME || round + 1 == ROUNDS;
-            if !again || settled {
+            if !again || settled || (self.stop)() {
                 break;
             }
-            let Some(next) = self.minimise(&minimum.x, &scale(&sigmas, &weights), self.asked.jobs) else {
-                return Err(self.fault(|| "the case can no longer be simulated".into()));
-            };
-            minimum = next;
-            steps += minimum.steps;
-            simulated = self.simulate_at(&minimum.x, self.asked.jobs)?;
+            match self.minimise(&best.minimum.x, &scale(&sigmas, &weights), self.asked.jobs) {
+                Some(next) => best = next,
+                None if (self.stop)() => break,
+                None => return Err(self.fault(|| "the case can no longer be simulated".into())),
+            }
+            steps += best.minimum.steps;
         }
+        let Found { mut minimum, simulated } = best;
         let values = self.problem.values(&minimum.x);
         minimum.at = evaluation(&simulated, self.problem, &values, &scale(&sigmas, &weights));
         Ok(Reached {
@@ -146,11 +165,17 @@ impl<'a> Search<'a> {
         })
     }
 
-    fn minimise(&self, start: &[f64], scale: &[f64], jobs: usize) -> Option<Minimum> {
+    fn minimise(&self, start: &[f64], scale: &[f64], jobs: usize) -> Option<Found> {
+        // the best so far with what the case gives there
+        let mut best: Option<Found> = None;
         let mut evaluate = |places: &[f64]| {
+            if (self.stop)() {
+                return Err(());
+            }
             let values = self.problem.values(places);
             let simulated = match self.simulate(&values, jobs) {
                 Ok(simulated) => simulated,
+                Err(_) if (self.stop)() => return Err(()),
                 Err(error) => {
                     *self.fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(error);
                     return Ok(None);
@@ -163,19 +188,36 @@ impl<'a> Search<'a> {
                 .iter()
                 .chain(found.jacobian.iter())
                 .all(|x| x.is_finite());
-            Ok::<_, std::convert::Infallible>(finite.then_some(found))
+            let cost = found.cost();
+            if finite && best.as_ref().is_none_or(|best| cost < best.minimum.at.cost()) {
+                let minimum = Minimum {
+                    x: places.to_vec(),
+                    at: found.clone(),
+                    ended: Ended::Unfinished,
+                    steps: 0,
+                    evaluations: 0,
+                };
+                best = Some(Found { minimum, simulated });
+            }
+            Ok(finite.then_some(found))
         };
-        let Ok(found) = minimise(start, STEPS, &mut evaluate);
-        found
+        let found = minimise(start, STEPS, &mut evaluate);
+        match found {
+            Err(()) => best,
+            Ok(minimum) => {
+                let minimum = minimum?;
+                let simulated = match best {
+                    Some(best) if best.minimum.x == minimum.x => best.simulated,
+                    _ => self.simulate(&self.problem.values(&minimum.x), jobs).ok()?,
+                };
+                Some(Found { minimum, simulated })
+            }
+        }
     }
 
     fn simulate(&self, values: &[f64], jobs: usize) -> Result<Simulated> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        simulate(self.problem, values, jobs)
-    }
-
-    fn simulate_at(&self, places: &[f64], jobs: usize) -> Result<Simulated> {
-        self.simulate(&self.problem.values(places), jobs)
+        simulate(self.problem, values, jobs, self.stop)
     }
 
     fn fault(&self, otherwise: impl FnOnce() -> String) -> Error {

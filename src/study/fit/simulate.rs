@@ -11,6 +11,7 @@ use crate::run::dynamics;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
 use crate::run::sensitivity::forward::By;
+use crate::run::stop::INTERRUPTED;
 use crate::study::followed::{Followed, Row};
 use crate::study::slopes;
 use crate::study::sweep::pool;
@@ -27,11 +28,11 @@ pub struct Simulated {
 /// Simulates a problem with values of its numbers.
 ///
 /// # Errors
-/// The case is none with them, or is not simulated to the end of the data.
-pub fn simulate(problem: &Problem, values: &[f64], jobs: usize) -> Result<Simulated> {
+/// The case is none with them, or is not simulated to the end of the data, because `stop` became true too.
+pub fn simulate(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
     let rows = match &problem.abscissa {
-        Abscissa::Time(instants) => run(problem, values, instants)?,
-        Abscissa::Drives(drives) => rest(problem, values, drives, jobs)?,
+        Abscissa::Time(instants) => run(problem, values, instants, stop)?,
+        Abscissa::Drives(drives) => rest(problem, values, drives, jobs, stop)?,
     };
     let all = &problem.observations;
     let value = |one: &super::problem::Observation| rows[one.row].0[one.of];
@@ -41,26 +42,32 @@ pub fn simulate(problem: &Problem, values: &[f64], jobs: usize) -> Result<Simula
     })
 }
 
-fn run(problem: &Problem, values: &[f64], instants: &[f64]) -> Result<Vec<Row>> {
+fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> bool + Sync)) -> Result<Vec<Row>> {
     let case = problem.with(values)?;
     // effects stay those of the case itself: a sum of squares must not jump where another would be chosen
     let system = slopes::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
     let parameters = problem.parameters(values);
     let names: Vec<String> = problem.matched.iter().map(|one| one.name.clone()).collect();
     let by: Vec<&str> = parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
-    let mut recorder = Followed::new(&names, &by, problem.rows(), &|| false);
+    let mut recorder = Followed::new(&names, &by, problem.rows(), stop);
     let outcome = dynamics::run_at(&case, system, By::pointers(&parameters), instants, &mut recorder)?;
     recorder.of(outcome)
 }
 
 /// Every row an equilibrium of its own; as many at once as there are jobs.
-fn rest(problem: &Problem, values: &[f64], drives: &[(Drive, Vec<f64>)], jobs: usize) -> Result<Vec<Row>> {
+fn rest(
+    problem: &Problem,
+    values: &[f64],
+    drives: &[(Drive, Vec<f64>)],
+    jobs: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<Row>> {
     let numbers: Vec<usize> = (0..problem.rows()).collect();
     let mut rows: Vec<Option<Row>> = vec![None; numbers.len()];
     pool::each(
         &numbers,
         jobs,
-        &|row| Some((row, of_row(problem, values, drives, row))),
+        &|row| Some((row, of_row(problem, values, drives, row, stop))),
         &mut |(row, found)| {
             rows[row] = Some(found?);
             Ok(())
@@ -69,7 +76,16 @@ fn rest(problem: &Problem, values: &[f64], drives: &[(Drive, Vec<f64>)], jobs: u
     Ok(rows.into_iter().flatten().collect())
 }
 
-fn of_row(problem: &Problem, values: &[f64], drives: &[(Drive, Vec<f64>)], row: usize) -> Result<Row> {
+fn of_row(
+    problem: &Problem,
+    values: &[f64],
+    drives: &[(Drive, Vec<f64>)],
+    row: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Row> {
+    if stop() {
+        return Err(Error::Usage(INTERRUPTED.into()));
+    }
     let driven = drives
         .iter()
         .map(|(drive, values)| (drive.pointer.as_str(), values[row]));
@@ -79,7 +95,13 @@ fn of_row(problem: &Problem, values: &[f64], drives: &[(Drive, Vec<f64>)], row: 
         points: Some(1),
         ..Options::at(case.time.end_s)
     };
-    let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue)?;
+    let path = equilibrium::follow(&case, &options, &mut |_| match stop() {
+        true => Control::Stop(INTERRUPTED.into()),
+        false => Control::Continue,
+    })?;
+    if stop() {
+        return Err(Error::Usage(INTERRUPTED.into()));
+    }
     if let Some(fault) = path.fault {
         return Err(Error::Solver(Box::new(fault)));
     }

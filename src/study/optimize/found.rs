@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::REACHED;
+pub use super::problem::Method;
 use super::problem::{Goal, Limit};
 use super::search::Reached;
 use super::wiring::Alternative;
@@ -48,7 +49,13 @@ pub struct Optimum {
     /// Second derivatives of the figure by numbers between their bounds; nothing where a limit is reached, or where they were not to be
     /// had.
     pub curvature: Option<Curvature>,
-    /// Where derivatives came from.
+    /// How numbers were sought.
+    #[serde(default)]
+    pub method: Method,
+    /// Why the search that found the best ended, in words; nothing where no numbers were sought.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ended: Option<String>,
+    /// Where derivatives came from: those of the search, or, where that was by figures alone, those at the best.
     pub derivatives: Derivatives,
     /// Searches, the first from the case's own numbers.
     pub starts: Vec<Start>,
@@ -117,6 +124,8 @@ pub enum Derivatives {
     Exact,
     /// Differences of designs, two for each number.
     Differences,
+    /// Nowhere: figures alone were looked at.
+    Nowhere,
 }
 
 /// A number of the case.
@@ -190,7 +199,7 @@ pub struct Start {
     pub value: Option<f64>,
     /// Whether limits are held there.
     pub held: bool,
-    /// Steps it took.
+    /// Steps, or generations, it took.
     pub steps: usize,
 }
 

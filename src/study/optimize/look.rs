@@ -42,30 +42,12 @@ pub fn look(
     stop: &dyn Fn() -> bool,
     tell: &Tell<'_>,
 ) -> std::result::Result<Seen, String> {
-    let begin = Instant::now();
-    let values = span::values(&problem.spans, places);
     let mut known = None;
-    if problem.differences.is_none() && !places.is_empty() && !at_an_end(problem, &values) {
-        let found = exact(problem, &values, stop);
-        let (figures, slopes) = match found {
-            Ok((figures, slopes)) => (Ok(figures), slopes),
-            Err(reason) => (Err(reason), None),
-        };
-        tell(&values, &figures, begin.elapsed().as_secs_f64());
-        let figures = figures?;
-        if let Some(mut slopes) = slopes {
-            for row in &mut slopes {
-                for (k, slope) in row.iter_mut().enumerate() {
-                    *slope *= problem.spans[k].slope(values[k]);
-                }
-            }
-            return Ok(Seen {
-                figures,
-                slopes,
-                from: Derivatives::Exact,
-            });
+    if let Some(found) = exactly(problem, places, stop, tell) {
+        match found? {
+            (_, Some(seen)) => return Ok(seen),
+            (figures, None) => known = Some(figures),
         }
-        known = Some(figures);
     }
     let plain = |places: &[f64]| {
         let begin = Instant::now();
@@ -96,6 +78,46 @@ pub fn look(
             false => Derivatives::Differences,
         },
     })
+}
+
+/// Figures at a place between the bounds, as the plain command tells them.
+///
+/// # Errors
+/// Why there are none, in words.
+pub fn level(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
+    plain(problem, &span::values(&problem.spans, places), stop)
+}
+
+/// Figures of a design, and what is seen of it with exact derivatives where there are any.
+pub type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
+
+/// Looks at a place with exact derivatives; nothing where there cannot be any.
+pub fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Tell<'_>) -> Option<Exactly> {
+    let begin = Instant::now();
+    let values = span::values(&problem.spans, places);
+    if problem.differences.is_some() || places.is_empty() || at_an_end(problem, &values) {
+        return None;
+    }
+    let (figures, slopes) = match exact(problem, &values, stop) {
+        Ok((figures, slopes)) => (Ok(figures), slopes),
+        Err(reason) => (Err(reason), None),
+    };
+    tell(&values, &figures, begin.elapsed().as_secs_f64());
+    Some(figures.map(|figures| {
+        let seen = slopes.map(|mut slopes| {
+            for row in &mut slopes {
+                for (k, slope) in row.iter_mut().enumerate() {
+                    *slope *= problem.spans[k].slope(values[k]);
+                }
+            }
+            Seen {
+                figures: figures.clone(),
+                slopes,
+                from: Derivatives::Exact,
+            }
+        });
+        (figures, seen)
+    }))
 }
 
 /// Whether a number is so near to the end of what its key can be that the steps of its derivatives lie beyond.

@@ -5,6 +5,8 @@
 //! problem    case, numbers that are sought, goal and limits; everything that does not fit is told here
 //! look       one design, with derivatives
 //! search     from starts to the best
+//! evolve     the same by figures alone
+//! exchanged  modes that are others at the best
 //! curvature  how flat it is
 //! wiring     what is chosen from a set
 //! choice     all combinations of several sets
@@ -15,6 +17,8 @@
 
 pub mod choice;
 mod curvature;
+mod evolve;
+mod exchanged;
 mod explore;
 pub mod found;
 mod look;
@@ -192,7 +196,7 @@ fn finish(
     let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
     // where a limit is reached the figure changes along numbers in the first order
     let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0) && !minimum.x.is_empty();
-    let bend = (found && inner && !stop())
+    let bend = (found && inner && reached.sloped && !stop())
         .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
         .flatten();
     let checked = check(problem, &case, stop);
@@ -222,9 +226,12 @@ fn finish(
             .collect(),
         limits: (0..problem.limits.len()).map(|i| held(problem, &reached, i)).collect(),
         curvature: bend.as_ref().map(|bend| bend.told(problem, &reached)),
-        derivatives: match exact {
-            true => Derivatives::Exact,
-            false => Derivatives::Differences,
+        method: search.method(),
+        ended: (!minimum.x.is_empty()).then(|| told::ended(search.method(), minimum.ended, stop()).into()),
+        derivatives: match (reached.sloped, exact) {
+            (false, _) => Derivatives::Nowhere,
+            (true, true) => Derivatives::Exact,
+            (true, false) => Derivatives::Differences,
         },
         starts: reached.starts.clone(),
         evaluations: history.len(),
@@ -233,6 +240,9 @@ fn finish(
         wall_s: 0.0,
     };
     optimum.warnings = warnings(problem, &optimum, minimum.ended, stop());
+    if !stop() {
+        optimum.warnings.extend(exchanged::warnings(problem, &case));
+    }
     // of what holds no limits nothing better can be told by smaller steps
     if !optimum.beyond_limits() {
         let broken = checked.iter().flat_map(|plain| broken(problem, plain));
@@ -240,7 +250,7 @@ fn finish(
     }
     let own = checked.into_iter().flat_map(|plain| plain.told);
     optimum.warnings.extend(own);
-    if minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
+    if reached.sloped && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
             "{} does not change there with any number that was sought",
             problem.goal.figure
@@ -299,7 +309,9 @@ fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>
         _ => None,
     };
     // what the value would fall by, per place between the bounds, is what the figure gains
-    let gain = at_bound.map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
+    let gain = at_bound
+        .filter(|_| reached.sloped)
+        .map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
     Variable {
         pointer: span.pointer.clone(),
         low: span.low,
@@ -319,7 +331,7 @@ fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
         limit: limit.clone(),
         value: reached.figures[i + 1],
         reached: reached.minimum.at.inequalities[i] > -REACHED,
-        gain: (reached.minimum.at.inequalities[i] < REACHED)
+        gain: (reached.sloped && reached.minimum.at.inequalities[i] < REACHED)
             .then(|| reached.minimum.multipliers[i] * reached.sizes[0] / reached.sizes[i + 1]),
     }
 }

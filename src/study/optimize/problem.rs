@@ -27,6 +27,17 @@ impl Goal {
     }
 }
 
+/// How numbers are sought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// By the slopes of figures: quadratic programming.
+    #[default]
+    Gradient,
+    /// By figures alone: evolution with an adapted covariance.
+    CmaEs,
+}
+
 /// On which side of a limit a figure has to stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -106,6 +117,8 @@ pub struct Asked {
     pub limits: Vec<Limit>,
     /// Searches, each from another place; as many as are usual where nobody says.
     pub starts: Option<usize>,
+    /// How numbers are sought.
+    pub method: Method,
     /// Designs at once.
     pub jobs: usize,
 }

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
-use super::problem::{Asked, Problem};
+use super::problem::{Asked, Method, Problem};
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::numerics::exchange::{Worth, order};
 use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
@@ -30,9 +30,9 @@ const EXACT: f64 = 1e-9;
 
 /// A search.
 pub struct Search<'a> {
-    problem: &'a Problem,
+    pub(super) problem: &'a Problem,
     asked: &'a Asked,
-    stop: &'a (dyn Fn() -> bool + Sync),
+    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
     tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
     history: Mutex<Vec<Design>>,
     differences: AtomicBool,
@@ -51,6 +51,8 @@ pub struct Reached {
     pub sizes: Vec<f64>,
     /// Searches.
     pub starts: Vec<Start>,
+    /// Whether slopes are known there.
+    pub sloped: bool,
 }
 
 impl<'a> Search<'a> {
@@ -85,6 +87,14 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// How numbers are sought; without numbers there is one design, and nothing to differ.
+    pub(super) fn method(&self) -> Method {
+        match self.problem.spans.is_empty() {
+            true => Method::Gradient,
+            false => self.asked.method,
+        }
+    }
+
     /// Searches from every start, so many at once; the best is what holds the limits, and of these what is best.
     ///
     /// # Errors
@@ -99,10 +109,15 @@ impl<'a> Search<'a> {
         let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
         let numbers: Vec<usize> = (0..places.len()).collect();
         let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
+        let by_values = self.method() == Method::CmaEs;
+        let one = |k: usize| match by_values {
+            true => self.evolve(k, &places[k], jobs),
+            false => self.minimise(k, &places[k]),
+        };
         pool::each(
             &numbers,
-            jobs,
-            &|k| (!(self.stop)()).then(|| (k, self.minimise(k, &places[k]))),
+            if by_values { 1 } else { jobs },
+            &|k| (!(self.stop)()).then(|| (k, one(k))),
             &mut |(k, minimum)| {
                 found[k] = minimum;
                 Ok(())
@@ -147,13 +162,18 @@ impl<'a> Search<'a> {
                 hint: Some("look at the case alone with the command that designs go through; begin elsewhere (--set, --starts)".into()),
             })));
         };
-        Ok(Reached {
+        let mut reached = Reached {
             values: span::values(&self.problem.spans, &minimum.x),
             figures: self.figures(&minimum, &sizes),
             minimum,
             sizes,
             starts,
-        })
+            sloped: true,
+        };
+        if by_values {
+            self.slopes_there(&mut reached);
+        }
+        Ok(reached)
     }
 
     /// Figures at the end of a search.
@@ -175,10 +195,7 @@ impl<'a> Search<'a> {
         let options = Options {
             steps: STEPS,
             close: CLOSE,
-            noise: match self.problem.what {
-                What::Run | What::Periodic => self.problem.case.solver.rtol.max(EXACT),
-                What::Equilibrium | What::Modes => EXACT,
-            },
+            noise: self.noise(),
         };
         let mut found: Option<Minimum> = None;
         for _ in 0..AGAIN {
@@ -219,6 +236,14 @@ impl<'a> Search<'a> {
         Some((found, sizes?))
     }
 
+    /// Error of figures.
+    pub(super) fn noise(&self) -> f64 {
+        match self.problem.what {
+            What::Run | What::Periodic => self.problem.case.solver.rtol.max(EXACT),
+            What::Equilibrium | What::Modes => EXACT,
+        }
+    }
+
     /// What there is at the end of a search, with sizes of the figures there.
     fn rescaled(&self, found: &Minimum, sizes: &[f64]) -> (Point, Vec<f64>) {
         let figures = self.figures(found, sizes);
@@ -236,7 +261,7 @@ impl<'a> Search<'a> {
     }
 
     /// Sizes of figures: of what is sought at the start, of limits themselves.
-    fn sizes(&self, figures: &[f64]) -> Vec<f64> {
+    pub(super) fn sizes(&self, figures: &[f64]) -> Vec<f64> {
         let size = |x: f64, otherwise: f64| match x.abs() > 0.0 {
             true => x.abs(),
             false if otherwise.abs() > 0.0 => otherwise.abs(),
@@ -262,6 +287,16 @@ impl<'a> Search<'a> {
         }
     }
 
+    /// The same of figures alone, as if it were level there.
+    pub(super) fn level(&self, figures: &[f64], sizes: &[f64]) -> Point {
+        let seen = Seen {
+            figures: figures.to_vec(),
+            slopes: vec![vec![0.0; self.problem.spans.len()]; figures.len()],
+            from: Derivatives::Nowhere,
+        };
+        self.point(&seen, sizes)
+    }
+
     /// Looks at a place and keeps what is computed for it.
     pub fn look(&self, start: usize, places: &[f64]) -> Option<Seen> {
         if (self.stop)() {
@@ -285,7 +320,13 @@ impl<'a> Search<'a> {
         finite.then_some(seen)
     }
 
-    fn keep(&self, start: usize, values: &[f64], figures: &std::result::Result<Vec<f64>, String>, wall_s: f64) {
+    pub(super) fn keep(
+        &self,
+        start: usize,
+        values: &[f64],
+        figures: &std::result::Result<Vec<f64>, String>,
+        wall_s: f64,
+    ) {
         let limits = &self.problem.limits;
         let held = |figures: &Vec<f64>| {
             let each = limits.iter().zip(&figures[1..]);

@@ -2,7 +2,7 @@
 
 use super::REACHED;
 use super::found::{Derivatives, Held, Optimum};
-use super::problem::{Limit, Problem};
+use super::problem::{Limit, Method, Problem};
 use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::numerics::sqp::Ended;
@@ -34,6 +34,20 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
     problem.limits.iter().filter_map(of).collect()
 }
 
+/// Why a search ended.
+pub(super) fn ended(method: Method, ended: Ended, stopped: bool) -> &'static str {
+    match (method, ended) {
+        _ if stopped => "it was interrupted",
+        (Method::CmaEs, Ended::Unfinished) => "its generations ran out",
+        (Method::CmaEs, Ended::Apart) => "its designs no longer differ, beyond a limit",
+        (Method::CmaEs, _) => "its designs no longer differ",
+        (Method::Gradient, Ended::Found) => "slopes lead nowhere better",
+        (Method::Gradient, Ended::Stuck) => "no step is better, though slopes say so",
+        (Method::Gradient, Ended::Apart) => "no step comes nearer to the limits",
+        (Method::Gradient, Ended::Unfinished) => "its steps ran out",
+    }
+}
+
 /// What is to be said of where the search ended.
 pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
     let mut all = vec![];
@@ -55,7 +69,7 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
         Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
         Ended::Stuck => say(
             "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
-             than what is left, or the figure has a kink there; a smaller /solver/rtol may help"
+             than what is left, or the figure has a kink or ripples there; a smaller /solver/rtol may help, or --method cma-es, which asks for no slopes"
                 .into(),
         ),
     }

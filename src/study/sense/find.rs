@@ -52,7 +52,8 @@ impl Asked {
 }
 
 pub(super) fn nothing_told() -> Error {
-    let what = "no bladder that is measured feels any of these loads, since its pressure is that of a port, or it holds no fluid: nothing of them can be told";
+    let what = "no bladder that is measured feels any of these loads, since its pressure is that of a port, it holds no fluid, or it is joined with bladders that \
+                give up as much volume as it takes, as the two of a pair do where the beam bends: nothing of them can be told";
     Error::Usage(what.into())
 }
 

@@ -1,9 +1,12 @@
 //! Whether what loads leave of measured pressures is their noise.
 
 use crate::numerics::normal;
+use crate::numerics::student::log_gamma;
 
-/// Chance of a sum of squares above which the loads do not explain the data.
+/// Chance of a sum of squares above which the loads do not explain the data, and of one below which the noise is none of theirs.
 const UNLIKELY: f64 = 1e-3;
+/// Share of the noise that is left, from which on it is said to be too little.
+const LITTLE: f64 = 0.1;
 
 /// What is left of all values.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +49,18 @@ impl Misfit {
         let limit = f * (1.0 - share - normal::quantile(UNLIKELY) * share.sqrt()).powi(3);
         (sum > limit).then(|| (sum / f).sqrt())
     }
+
+    /// The same where what is left is less than a tenth of the noise, and than chance explains: one time in a thousand.
+    pub fn below_chance(&self) -> Option<f64> {
+        let [sum, f] = self.judged();
+        let share = (sum / f).sqrt();
+        if f < 0.5 || !(share > 0.0 && share < LITTLE) {
+            return None;
+        }
+        // the chance of a sum below x is at most (x/2)^(f/2)/Γ(1 + f/2)
+        let chance = 0.5 * f * (0.5 * sum).ln() - log_gamma(1.0 + 0.5 * f);
+        (chance < UNLIKELY.ln()).then_some(share)
+    }
 }
 
 #[cfg(test)]
@@ -71,5 +86,15 @@ mod tests {
         // by discrepancy the values keep their noise, whatever roughness that takes
         assert!(of(5.0, 40.0, true).beyond_chance().is_none());
         assert!(of(20.8, 0.0, true).beyond_chance().is_some());
+    }
+
+    /// Source: tables of chi-square: 0.1 % lie below 0.0243 on 3 degrees of freedom. Goal: noise in pascals that was given in kilopascals is told,
+    /// half of it and none at all are not.
+    #[test]
+    fn far_less_than_the_noise_is_told() {
+        assert!(of(0.0247, 0.0, false).below_chance().is_none());
+        assert_eq!(of(0.024, 0.0, false).below_chance(), Some((0.024_f64 / 3.0).sqrt()));
+        assert!(of(3e-6, 0.0, false).below_chance().is_some());
+        assert!(of(0.75, 0.0, false).below_chance().is_none() && of(0.0, 0.0, false).below_chance().is_none());
     }
 }

@@ -95,10 +95,8 @@ pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &
     let mut all = vec![];
     let sizes = estimate.found.iter().map(|one| one.mean.amax());
     let times = sizes.fold(0.0, f64::max);
-    if let (NoiseFrom::Given | NoiseFrom::Table, Some(factor)) = (
-        found.noise.as_ref().map_or(NoiseFrom::Estimated, |noise| noise.from),
-        estimate.misfit.beyond_chance(),
-    ) {
+    let from = found.noise.as_ref().map_or(NoiseFrom::Estimated, |noise| noise.from);
+    if let (NoiseFrom::Given | NoiseFrom::Table, Some(factor)) = (from, estimate.misfit.beyond_chance()) {
         let mut sums = vec![(0, 0.0); bladders];
         let mut squares = [0.0; 2];
         for one in left {
@@ -129,6 +127,14 @@ pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &
             three(100.0 * share),
             bladder_label(worst.0, bladders / 2),
             three(worst.1)
+        ));
+    }
+    if let (NoiseFrom::Given | NoiseFrom::Table, Some(share)) = (from, estimate.misfit.below_chance()) {
+        all.push(format!(
+            "the pressures lie {} times as close to {} as the noise that was given: bands are as wide as that noise makes them; look at its unit, which is \
+             the pascal for --noise and that of its heading for a column, or leave it out",
+            three(1.0 / share),
+            names(found)
         ));
     }
     if times > NO_LOAD {

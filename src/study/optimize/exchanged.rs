@@ -1,0 +1,68 @@
+//! A mode that is another at the best than it was to begin with, though its number is the same.
+
+use super::problem::Problem;
+use crate::case::Case;
+use crate::error::Code;
+use crate::run::modes::{Mode, likeness};
+use crate::study::sweep::What;
+use crate::study::sweep::compute::{lowest, swinging};
+
+/// Likeness of shapes from which on two modes are one, and by how much it must be larger than that of the modes of one number.
+const ALIKE: f64 = 0.5;
+const BETTER: f64 = 0.2;
+/// Likeness below which two are not one whatever else there is.
+const APART: f64 = 0.1;
+
+/// What to know of modes that are looked at: by their shapes [E33] those of the case as the search began are others at the best.
+pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
+    let mut numbers: Vec<usize> = problem.figures().into_iter().filter_map(number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    if problem.what != What::Modes || numbers.is_empty() || problem.spans.is_empty() {
+        return vec![];
+    }
+    let of = |case: &Case| {
+        let found = swinging(case).ok()?.0.modes;
+        Some(
+            lowest(&found)
+                .into_iter()
+                .map(|place| found[place].clone())
+                .collect::<Vec<Mode>>(),
+        )
+    };
+    let begin = problem.with(&problem.start).ok().and_then(|case| of(&case));
+    let (Some(begin), Some(end)) = (begin, of(best)) else {
+        return vec![];
+    };
+    let told = numbers.into_iter().filter_map(|number| told(number, &begin, &end));
+    told.map(|what| Code::ModesExchanged.warning(what)).collect()
+}
+
+/// The number of a mode whose figure this is.
+fn number(figure: &str) -> Option<usize> {
+    figure.strip_prefix("mode_")?.split('.').next()?.parse().ok()
+}
+
+fn told(number: usize, begin: &[Mode], end: &[Mode]) -> Option<String> {
+    let (from, to) = (begin.get(number - 1)?, end.get(number - 1)?);
+    let hz = |mode: &Mode| format!("{:.4} Hz", mode.frequency_hz().unwrap_or_default());
+    let like = |mode: &Mode| likeness(&from.shape, &mode.shape);
+    let (own, all) = (like(to), end.iter().enumerate());
+    let (place, most) = all.max_by(|a, b| like(a.1).total_cmp(&like(b.1)))?;
+    let (other, further) = (place + 1, like(most));
+    if other != number && further > ALIKE && further > own + BETTER {
+        return Some(format!(
+            "mode_{number} is another mode at the best than to begin with: by its shape that of {} is mode_{other} there, {}; to stay with one mode hold others \
+             away from it (--subject-to), or narrow the bounds",
+            hz(from),
+            hz(most)
+        ));
+    }
+    (own < APART).then(|| {
+        format!(
+            "mode_{number} is another mode at the best than to begin with: its shape there, at {}, is unlike that at {}, and so are those of the others",
+            hz(to),
+            hz(from)
+        )
+    })
+}
