@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use super::arguments::SenseArguments;
 use super::{interrupt, line, size};
 use crate::error::{Error, Result};
+use crate::output::folder::CASE;
 use crate::output::kind::Kind;
 use crate::output::{report, sense as files};
 use crate::results;
@@ -14,6 +15,7 @@ use crate::study::sense::estimate::Smoothing;
 use crate::study::sense::find::{Asked, Dynamic, find};
 use crate::study::sense::pressures::Measured;
 use crate::study::sense::rest::probed;
+use crate::study::sweep::plan::quoted;
 
 /// Reads the measurements, looks for the loads, writes the folder, prints the table.
 pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
@@ -36,6 +38,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let found = find(case, measured.as_ref(), &question, &|| interrupt::raised(&flag));
     bar.finish_and_clear();
     let mut found = found?;
+    found.command = again(asked);
     found.data = asked.pressures.as_ref().map(|path| path.display().to_string());
     if let Some(measured) = &measured {
         found.left_alone.clone_from(&measured.left_alone);
@@ -49,6 +52,30 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
         || files::words(&found),
     )?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// What does the same within the folder of the result.
+fn again(asked: &SenseArguments) -> String {
+    let data = asked.pressures.as_ref().map(|path| {
+        let whole = std::fs::canonicalize(path).unwrap_or_else(|_| path.clone());
+        whole.display().to_string()
+    });
+    let option = |name: &str, value: Option<String>| value.map(|value| format!("--{name}={value}"));
+    let words = [CASE.to_owned()].into_iter().chain(data);
+    let words = words.chain(asked.loads.iter().filter_map(|load| option("load", Some(load.clone()))));
+    let words = words.chain(
+        [
+            option("noise", asked.noise.map(|noise| noise.to_string())),
+            option("smoothing", asked.smoothing.clone()),
+            asked.dynamic.then(|| "--dynamic".into()),
+            option("knots", asked.knots.map(|knots| knots.to_string())),
+            option("at", asked.at.map(|at| at.to_string())),
+            option("choose", asked.choose.clone()),
+        ]
+        .into_iter()
+        .flatten(),
+    );
+    words.fold("slcbeam sense".into(), |text, word| text + " " + &quoted(&word))
 }
 
 fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {

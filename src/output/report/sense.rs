@@ -4,7 +4,6 @@ use serde_json::json;
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
-use crate::output::folder::CASE;
 use crate::output::numbers::{count, significant};
 use crate::output::sense as files;
 use crate::results::sense::Sensed;
@@ -64,9 +63,6 @@ pub fn data(place: &Place) -> Result<Page> {
             }),
         );
     }
-    let loads: String = found.loads.iter().map(|load| format!(" --load {load}")).collect();
-    let data = found.data.as_ref().map_or(String::new(), |data| format!(" {data}"));
-    let dynamic = if found.over_time.is_some() { " --dynamic" } else { "" };
-    page.put("command", format!("slcbeam sense {CASE}{data}{loads}{dynamic}"));
+    page.put("command", &*found.command);
     Ok(page)
 }

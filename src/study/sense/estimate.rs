@@ -36,10 +36,28 @@ pub struct Problem<'a> {
     pub data: Vec<Option<f64>>,
     /// Deviation of the noise of each value, where that is known; else in proportion to it.
     pub deviation: Vec<f64>,
+    /// Line of the measurements, where it is one.
+    pub line: Option<usize>,
     /// Amplitudes to begin with.
     pub start: DVector<f64>,
     /// Values there, and derivatives.
     pub first: (DVector<f64>, DMatrix<f64>),
+}
+
+impl Problem<'_> {
+    /// An error with the line of the measurements that leads to it.
+    fn named(&self, error: Error) -> Error {
+        match (error, self.line) {
+            (Error::Solver(mut fault), Some(line)) => {
+                fault.what = format!("line {line} of the measurements: {}", fault.what);
+                fault
+                    .hint
+                    .get_or_insert_with(|| format!("look at the numbers of line {line}, or leave it out"));
+                Error::Solver(fault)
+            }
+            (error, _) => error,
+        }
+    }
 }
 
 /// How much is made of what is known before: that loads change little from one place, or instant, to the next.
@@ -162,7 +180,8 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
                 Smoothing::Fixed(_) => weight * noise,
                 _ => weight,
             };
-            posteriors.push(state.descend(problem, &before(own))?);
+            let found = state.descend(problem, &before(own));
+            posteriors.push(found.map_err(|error| problem.named(error))?);
         }
         let sums = Sums::of(&posteriors, rank, &states);
         if !ask.noise_known {

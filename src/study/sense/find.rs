@@ -110,6 +110,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
                     deviation[*place] = *own;
                 }
                 Problem {
+                    line: measured.lines.get(row).copied(),
                     forward: Box::new(model.clone()),
                     data: whole[row].clone(),
                     deviation,

@@ -78,6 +78,7 @@ pub(super) fn find(
     });
     let warnings = known::lasting(case, &model.system(&model.loaded(&zeros))?);
     let mut problems = [Problem {
+        line: None,
         forward: Box::new(model),
         data: measured.rows.iter().flatten().copied().collect(),
         deviation: deviation.collect(),

@@ -10,6 +10,9 @@ use super::estimate::Smoothing;
 pub struct Sensed {
     /// Name of the case.
     pub case: String,
+    /// What does it again, within the folder of the result.
+    #[serde(default)]
+    pub command: String,
     /// The file with the measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<String>,

@@ -12,6 +12,8 @@ use crate::error::Code;
 
 /// Part of the pressures, root mean square, that no answer leaves.
 const NO_ANSWER: f64 = 0.25;
+/// The same above which noise that is estimated may be no noise.
+const MUCH: f64 = 0.1;
 /// Times a size that bends the beam by about its length: no such load is meant.
 const NO_LOAD: f64 = 30.0;
 
@@ -89,44 +91,50 @@ pub(super) fn left<'a>(
     })
 }
 
+/// What is said where loads explain too little.
+const NO_NUMBERS: &str =
+    "; the numbers are no answer: other loads act, the units or signs of the pressures are others, or the case is";
+
 /// What is to be known before any number: pressures that are further from the model than their noise, which is known, explains, with the bladder
-/// that is worst, and loads that no beam bears.
+/// that is worst, or that leave so much that it may be no noise, and loads that no beam bears.
 pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &Estimate) -> Vec<String> {
     let mut all = vec![];
     let sizes = estimate.found.iter().map(|one| one.mean.amax());
     let times = sizes.fold(0.0, f64::max);
     let from = found.noise.as_ref().map_or(NoiseFrom::Estimated, |noise| noise.from);
+    let square = |of: &dyn Fn(&Left) -> f64| left.iter().map(|one| of(one).powi(2)).sum::<f64>();
+    let measured = square(&|one| one.measured).max(f64::MIN_POSITIVE);
+    let share = (square(&|one| one.over_noise) / measured).sqrt();
     if let (NoiseFrom::Given | NoiseFrom::Table, Some(factor)) = (from, estimate.misfit.beyond_chance()) {
         let mut sums = vec![(0, 0.0); bladders];
-        let mut squares = [0.0; 2];
         for one in left {
             let (count, sum) = &mut sums[one.bladder];
             *count += 1;
             *sum += one.over_noise.powi(2);
-            squares[0] += one.over_noise.powi(2);
-            squares[1] += one.measured.powi(2);
         }
-        let share = (squares[0] / squares[1].max(f64::MIN_POSITIVE)).sqrt();
         let means = sums
             .iter()
             .map(|(count, sum)| (sum / f64::from((*count).max(1))).sqrt());
         let worst = means.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
-        let answer = match share > NO_ANSWER {
-            true => {
-                "; the numbers are no answer: other loads act, the units or signs of the pressures are others, or the case is"
-            }
-            false => "",
-        };
         all.push(format!(
             "the pressures do not fit {}: what is left of them is {} times their noise, root mean square over {:.0} {}, {} % of what was measured; \
-             furthest off is bladder {}, by {} times its noise; bands are widened by as much{answer}",
+             furthest off is bladder {}, by {} times its noise; bands are widened by as much{}",
             names(found),
             three(factor),
             estimate.misfit.judged()[1],
             if estimate.misfit.by_discrepancy { "pressures" } else { "degrees of freedom" },
             three(100.0 * share),
             bladder_label(worst.0, bladders / 2),
-            three(worst.1)
+            three(worst.1),
+            if share > NO_ANSWER { NO_NUMBERS } else { "" }
+        ));
+    }
+    if from == NoiseFrom::Estimated && share > MUCH {
+        all.push(format!(
+            "{} % of the pressures are not explained by {}, and taken for noise since --noise is not given: bands hold only if so much of them is noise{}",
+            three(100.0 * share),
+            names(found),
+            if share > NO_ANSWER { NO_NUMBERS } else { "" }
         ));
     }
     if let (NoiseFrom::Given | NoiseFrom::Table, Some(share)) = (from, estimate.misfit.below_chance()) {
