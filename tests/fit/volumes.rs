@@ -73,7 +73,7 @@ fn syringe() -> (Problem, Asked) {
         drives: vec![Drive::parse("volume_ml=/network/chains/0/ends/0/volume_m3").expect("a drive")],
         noise: vec![],
         loss: Loss::Squares,
-        starts: 1,
+        starts: 2,
         jobs: 1,
     };
     let table = Table::read(Path::new("cases/actuator-pv.csv")).expect("a table");
@@ -100,6 +100,7 @@ fn a_fit_that_is_ended_keeps_the_best_so_far() {
         "{early:?}"
     );
     assert!(early.parameters[0].standard_error.is_some());
+    assert_eq!(early.starts.len(), 1);
     let whole = after(usize::MAX).expect("a fit").fit;
     assert!(!whole.interrupted && whole.found && early.columns[0].left.rms >= whole.columns[0].left.rms);
     let nothing = after(0).expect_err("nothing").to_string();

@@ -123,7 +123,9 @@ impl<'a> Search<'a> {
             to: found.as_ref().map(|one| self.problem.values(&one.minimum.x)),
             chi_square: found.as_ref().map(|one| one.minimum.at.cost()),
         };
-        let starts = places.iter().zip(&found).map(start).collect();
+        // searches that had not begun when the end was wanted are none
+        let begun = |(_, found): &(&Vec<f64>, &Option<Found>)| found.is_some() || !(self.stop)();
+        let starts = places.iter().zip(&found).filter(begun).map(start).collect();
         let best = found
             .into_iter()
             .flatten()

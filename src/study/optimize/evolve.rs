@@ -20,6 +20,8 @@ const NOTHING: Worth = [f64::MAX, f64::INFINITY];
 /// Doublings of the population at most.
 const DOUBLED: usize = 6;
 
+/// What a design gives, or why nothing, and its wall time [s].
+type Computed = (std::result::Result<Vec<f64>, String>, f64);
 /// Figures of a generation, nothing of designs that fail.
 type Figures = Vec<Option<Vec<f64>>>;
 
@@ -91,7 +93,7 @@ impl Search<'_> {
         })
         .ok()?;
         let whole = all.iter().all(Option::is_some);
-        let kept = |(place, found): (&Vec<f64>, Option<(std::result::Result<Vec<f64>, String>, f64)>)| {
+        let kept = |(place, found): (&Vec<f64>, Option<Computed>)| {
             let (figures, wall_s) = found?;
             self.keep(start, &span::values(&self.problem.spans, place), &figures, wall_s);
             figures.ok().filter(|figures| figures.iter().all(|x| x.is_finite()))
