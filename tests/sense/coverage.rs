@@ -79,6 +79,7 @@ fn of_equilibria(other: Basis, trials: usize) -> Vec<Vec<f64>> {
         let mut chance = Chance::new(20, stream as u64);
         shares(trials, &mut |_| {
             let problem = Problem {
+                line: None,
                 forward: Box::new(model.clone()),
                 data: noisy(&first.0, sensors, &mut chance),
                 deviation: vec![NOISE; first.0.len()],
@@ -155,6 +156,7 @@ fn bands_hold_the_loads_where_the_noise_is_estimated() {
 
 pub fn linear<'a>(jacobian: &DMatrix<f64>, data: Vec<Option<f64>>, deviation: f64) -> Problem<'a> {
     Problem {
+        line: None,
         forward: Box::new(Linear(jacobian.clone())),
         deviation: vec![deviation; data.len()],
         data,

@@ -32,18 +32,45 @@ fn pressures_that_no_load_explains_are_told() {
     let open = found(&dir, &[&path, "--load", "tip-force"]);
     let taken = open["warnings"][0].as_str().unwrap();
     assert!(
-        taken.starts_with("W032 ") && taken.contains("% of the pressures are not explained by tip-force, and taken for noise"),
+        taken.starts_with("W032 ")
+            && taken.contains("% of the pressures are not explained by tip-force, and taken for noise"),
         "{taken}"
     );
     assert!(number(&open["noise"]["sd_pa"]) > 50.0);
     let own = found(&dir, &[&path, "--load", "point:0.4"]);
     assert_eq!(own["warnings"], serde_json::json!([]));
-    let again = format!("slcbeam sense case.json {} --load=tip-force --noise=5", std::fs::canonicalize(&path).unwrap().display());
-    assert_eq!(found(&dir, &[&path, "--load", "tip-force", "--noise", "5"])["command"], again.as_str());
+    let again = format!(
+        "slcbeam sense case.json {} --load=tip-force --noise=5",
+        std::fs::canonicalize(&path).unwrap().display()
+    );
+    assert_eq!(
+        found(&dir, &[&path, "--load", "tip-force", "--noise", "5"])["command"],
+        again.as_str()
+    );
     // a line with pressures that no beam has is named
-    let wild = text.lines().next().unwrap().split(',').map(|_| "-7e9").collect::<Vec<_>>().join(",");
-    let said = sense(&dir, &[&file(&dir, &format!("{text}{wild}\n")), "--load", "tip-force", "--noise", "5"]);
-    assert!(said.code == 4 && said.err.contains("line 3 of the measurements"), "{}", said.err);
+    let wild = text
+        .lines()
+        .next()
+        .unwrap()
+        .split(',')
+        .map(|_| "-7e9")
+        .collect::<Vec<_>>()
+        .join(",");
+    let said = sense(
+        &dir,
+        &[
+            &file(&dir, &format!("{text}{wild}\n")),
+            "--load",
+            "tip-force",
+            "--noise",
+            "5",
+        ],
+    );
+    assert!(
+        said.code == 4 && said.err.contains("line 3 of the measurements"),
+        "{}",
+        said.err
+    );
     // pressures to a thousandth of a pascal: noise of as much is right, of kilopascals given as pascals it is not, and is told as none of theirs
     let right = found(&dir, &[&path, "--load", "point:0.4", "--noise", "0.001"]);
     assert_eq!(right["warnings"], serde_json::json!([]));
