@@ -83,6 +83,22 @@ def test_a_sweep_is_a_table(tmp_path):
     assert "kind" in modes and modes["kind"].dtype.kind == "U"
 
 
+def test_bands_stand_beside_figures(tmp_path):
+    case = slcbeam.load("bend-wet", set=COARSE)
+    modulus = {"/beam/young_modulus_pa": "normal:2e6:1e5"}
+    found = slcbeam.equilibrium(case, uncertain=modulus, samples=16, out=tmp_path / "out")
+    tip = found.bands["tip_u1_m"]
+    assert tip["low"] < tip["value"] == found["quantities"]["tip_u1_m"] < tip["high"] and tip["numerical_error"] > 0
+    assert slcbeam.read(tmp_path / "out").bands == found.bands
+    modes = slcbeam.modes(case, count=4, uncertain=modulus, samples=16)
+    swinging = [mode for mode in modes["modes"] if mode["frequency_hz"] is not None]
+    lowest = min(swinging, key=lambda mode: mode["frequency_hz"])
+    assert modes.bands["mode_1.frequency_hz"] == lowest["bands"]["frequency_hz"]
+    assert slcbeam.equilibrium(case).bands == {}
+    with pytest.raises(KeyError, match="tip_u1_m"):
+        found.bands["tip_u1"]
+
+
 def test_measured_data_are_columns(tmp_path):
     case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.05, "/time/output_interval_s": 0.001})
     run = slcbeam.run(case)

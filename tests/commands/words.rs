@@ -98,6 +98,7 @@ fn summary(status: Status) -> Summary {
         sensitivities: Default::default(),
         probes: Default::default(),
         step_response: Default::default(),
+        bands: Default::default(),
         warnings: Vec::new(),
     }
 }
