@@ -59,14 +59,17 @@ pub fn between(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<Strin
     if band.sd == 0.0 {
         return None;
     }
-    let size = band.low.abs().max(band.high.abs());
-    let wanted = 2.0 + (size / (band.high - band.low)).log10().floor();
-    let digits = if wanted.is_finite() {
-        wanted.clamp(DIGITS.0, DIGITS.1)
-    } else {
-        DIGITS.1
-    } as usize;
+    let digits = digits(band.low, band.high);
     Some(format!("{} … {}", told(band.low, digits), told(band.high, digits)))
+}
+
+/// Digits that tell the ends of a band apart.
+pub fn digits(low: f64, high: f64) -> usize {
+    let wanted = 2.0 + (low.abs().max(high.abs()) / (high - low)).log10().floor();
+    match wanted.is_finite() {
+        true => wanted.clamp(DIGITS.0, DIGITS.1) as usize,
+        false => DIGITS.1 as usize,
+    }
 }
 
 /// The numerical error, where it is known.

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::bands;
 use super::columns::aligned;
 use super::folder::ResultFolder;
 use super::numbers::{count, percent, significant};
@@ -19,6 +20,9 @@ pub const UNCERTAINTY: &str = "uncertainty.json";
 pub fn write(folder: &ResultFolder, found: &Uncertainty) -> Result<()> {
     folder.write(UNCERTAINTY, results::text(found).as_bytes()).map(|_| ())
 }
+
+/// Digits of the ends of a band at most, in a table.
+const MOST_DIGITS: usize = 6;
 
 /// What is told of each figure.
 const HEADINGS: [&str; 7] = [
@@ -98,6 +102,10 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
         0.0 => significant(x, 2),
         _ => percent(x / size),
     };
+    let digits = match one.sd > 0.0 {
+        true => bands::digits(one.low, one.high).clamp(4, MOST_DIGITS),
+        false => 4,
+    };
     let plus = |x: Option<f64>| x.map_or("–".into(), |x| format!("± {}", relative(x)));
     [
         name.into(),
@@ -105,7 +113,7 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
         plus(one.numerical_error),
         plus(one.first_order.as_ref().map(|first| first.sd)),
         plus(Some(one.sd)),
-        format!("{} … {}", significant(one.low, 4), significant(one.high, 4)),
+        format!("{} … {}", significant(one.low, digits), significant(one.high, digits)),
         mostly(one, inputs).unwrap_or_default(),
     ]
 }

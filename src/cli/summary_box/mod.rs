@@ -142,7 +142,9 @@ fn uncertain(summary: &Summary) -> Option<String> {
         let value = get(summary, one)?.largest()?;
         let figures = ["extreme", "max_abs", "window_max_abs"];
         let band = bands::of(&summary.bands, one.name(), &figures, value)?;
-        Some(hold(format!("{word} {}", bands::short(band, one.unit())?)))
+        let text = hold(format!("{word} {}", bands::short(band, one.unit())?));
+        // a narrow box breaks between the ends
+        Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))
     };
     let shown: Vec<String> = shown.into_iter().filter_map(of).collect();
     (!shown.is_empty()).then(|| format!("95 % of largest (± numerical): {}", shown.join(BETWEEN)))

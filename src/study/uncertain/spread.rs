@@ -110,16 +110,24 @@ fn of(found: &Found, name: &str) -> Option<f64> {
 
 /// Estimated error of a figure, absolute: its own, or that of its quantity, which is relative to the largest figure of that.
 fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
+    let largest = |quantity: &str| {
+        let of_it = own.figures.iter().filter(|(other, _)| {
+            is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity)
+        });
+        of_it.map(|(_, x)| x.abs()).fold(0.0, f64::max)
+    };
+    let (quantity, figure) = name.rsplit_once('.').unzip();
     if let Some(error) = own.figure(&format!("{name}.error")) {
-        return Some(error * value.abs());
+        // that of a figure over a cycle counts beside the largest of its quantity
+        return Some(
+            match quantity.filter(|_| figure.is_some_and(|own| own.starts_with("window"))) {
+                Some(quantity) => error * largest(quantity),
+                None => error * value.abs(),
+            },
+        );
     }
-    let quantity = name.rsplit_once('.')?.0;
-    let error = own.figure(&format!("{quantity}.error"))?;
-    let of_it = own
-        .figures
-        .iter()
-        .filter(|(other, _)| is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity));
-    Some(error * of_it.map(|(_, x)| x.abs()).fold(0.0, f64::max))
+    let error = own.figure(&format!("{}.error", quantity?))?;
+    Some(error * largest(quantity?))
 }
 
 fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
@@ -202,7 +210,10 @@ fn warnings(
     for (k, input) in inputs.iter().enumerate() {
         let mut shares = figures.values().filter_map(|one| one.first_order.as_ref()).peekable();
         if shares.peek().is_some() && shares.all(|first| first.shares[k] == 0.0) {
-            all.push(format!("no figure that has derivatives depends on {}, to first order", input.pointer));
+            all.push(format!(
+                "no figure that has derivatives depends on {}, to first order",
+                input.pointer
+            ));
         }
     }
     let mut named = |which: &dyn Fn(&Spread) -> bool, what: &str| {
@@ -282,6 +293,27 @@ mod tests {
             "{indices:?}"
         );
         assert!(told.figures.len() == 1);
+    }
+
+    /// Goal: an error that is relative to the largest figure of a quantity, as those of cycles are, is no smaller for a smaller one.
+    #[test]
+    fn errors_are_of_what_they_are_relative_to() {
+        let own = Found {
+            figures: [
+                ("q_m.window_max_abs", 2.0),
+                ("q_m.window_rms", 1.0),
+                ("q_m.window_rms.error", 0.01),
+                ("mode_1.frequency_hz", 9.0),
+                ("mode_1.damping_ratio", 0.1),
+                ("mode_1.damping_ratio.error", 0.01),
+            ]
+            .map(|(name, x)| (name.to_owned(), x))
+            .into(),
+            ..found(0.0)
+        };
+        assert_eq!(numerical_error(&own, "q_m.window_rms", 1.0), Some(0.02));
+        assert_eq!(numerical_error(&own, "mode_1.damping_ratio", 0.1), Some(0.001));
+        assert_eq!(numerical_error(&own, "mode_1.frequency_hz", 9.0), None);
     }
 
     #[test]
