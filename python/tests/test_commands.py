@@ -124,6 +124,8 @@ def test_faults_are_exceptions():
         slcbeam.modes("wiring-2", count=0)
     with pytest.raises(slcbeam.UsageError, match="--cuont"):
         slcbeam.modes("wiring-2", cuont=3)
+    with pytest.raises(slcbeam.UsageError, match="optimum-case.json --uncertain"):
+        slcbeam.optimize("wiring-2", {"/beam/length_m": (0.1, 0.2)}, maximize="tip_u1_m", uncertain={"/beam/width_m": "normal:0.05:0.001"})
     with pytest.raises(slcbeam.CaseError) as told:
         slcbeam.sweep("wiring-2", {"/beam/colour": [1, 2]})
     assert told.value.faults[0].pointer == "/beam/colour"

@@ -39,10 +39,10 @@ pub fn beside(band: &Band, value: f64, told: &dyn Fn(f64, usize) -> String) -> S
     }
 }
 
-/// The same in short, with a unit: `−21.6 nm … −18.2 nm (± 2.1 nm)`; nothing where the figure does not spread.
+/// The same in short, with a unit: `−21.6 nm … −18.2 nm (± 2.1 nm numerically)`; nothing where the figure does not spread.
 pub fn short(band: &Band, unit: &str) -> Option<String> {
     let told = |x: f64, digits: usize| quantity(x, unit, digits);
-    let error = error(band, &told).map_or(String::new(), |error| format!(" ({error})"));
+    let error = error(band, &told).map_or(String::new(), |error| format!(" ({error} numerically)"));
     Some(between(band, &told)? + &error)
 }
 

@@ -147,7 +147,7 @@ fn uncertain(summary: &Summary) -> Option<String> {
         Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))
     };
     let shown: Vec<String> = shown.into_iter().filter_map(of).collect();
-    (!shown.is_empty()).then(|| format!("95 % of largest (± numerical): {}", shown.join(BETWEEN)))
+    (!shown.is_empty()).then(|| format!("largest, 95 %: {}", shown.join(BETWEEN)))
 }
 
 /// What one per cent more of each number does to the largest deflections and the largest pressure.

@@ -14,6 +14,9 @@ use crate::run::floquet::shape::Part;
 use crate::study::refine::numbers;
 use crate::study::stability::Member;
 
+/// The figure that tells how fast a disturbance grows.
+const GROWTH: &str = "growth_per_s";
+
 /// Rows of a table, and what stands over it.
 fn multipliers(found: &Cycle) -> Value {
     let told = !found.bands.is_empty();
@@ -23,8 +26,8 @@ fn multipliers(found: &Cycle) -> Value {
         .collect();
     // of a cycle's run the rate of the largest is known alone
     let band = |k: usize| {
-        let own = found.bands.get(&format!("{}.growth_per_s", names[k]));
-        let band = own.or_else(|| found.bands.get("growth_per_s").filter(|_| k == 0))?;
+        let own = found.bands.get(&format!("{}.{GROWTH}", names[k]));
+        let band = own.or_else(|| found.bands.get(GROWTH).filter(|_| k == 0))?;
         bands::between(band, &significant)
     };
     let row = |(k, m): (usize, &Multiplier)| {

@@ -1,4 +1,5 @@
-//! What a cycle's multipliers tell, by the part of the motion that each is mostly of, whose place among the others may change.
+//! What a cycle's multipliers tell, with what meshes and steps make of them: by the part of the motion that each is mostly of, whose place
+//! among the others may change.
 
 use super::compute::Ask;
 use super::row::Found;
@@ -37,9 +38,13 @@ pub fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
                 };
                 let share = by_mesh.quantities.get(&key).filter(|share| share.known());
                 // a share is of the size that counts, an error of the figure itself
+                let by_steps = match figure {
+                    "modulus" => multiplier.numerical_damping_per_s.abs() * all.period_s,
+                    _ => multiplier.numerical_damping_per_s.abs() / value.abs(),
+                };
                 let error = share.zip(here.get(&key)).map(|(share, number)| {
                     let counts = number.size.max(value.abs());
-                    share.total() * counts / value.abs()
+                    share.total() * counts / value.abs() + by_steps
                 });
                 found.put(format!("{name}.{figure}.error"), error);
                 if k == 0 && figure == "growth_per_s" {
