@@ -29,6 +29,7 @@ pub struct Recorded {
     case: slcbeam::case::Case,
     header: Header,
     began: bool,
+    interrupted: bool,
     summary: Summary,
     fault: Option<SolverError>,
 }
@@ -62,12 +63,14 @@ pub fn run<'py>(
             None => once(case, &sensitivities, &watch),
             Some(accuracy) => reach(case, accuracy, &watch),
         };
-        (ended, watch.end())
+        (ended, (watch.stopped(), watch.end()))
     });
-    stopped?;
+    let (interrupted, raised_there) = stopped;
+    raised_there?;
     let ended = ended.map_err(|error| raised(py, &error))?;
     let recorded = Recorded {
         began: ended.header.is_some(),
+        interrupted,
         header: ended.header.unwrap_or_default(),
         case: ended.case,
         summary: ended.outcome.summary,
@@ -79,7 +82,7 @@ pub fn run<'py>(
 
 /// A run that was told by another process: its case, its summary, and the names of its tables.
 #[pyfunction]
-#[pyo3(signature = (case, summary, envelope, sensitivities, began))]
+#[pyo3(signature = (case, summary, envelope, sensitivities, began, interrupted))]
 pub fn again(
     py: Python<'_>,
     case: &Case,
@@ -87,6 +90,7 @@ pub fn again(
     envelope: Vec<String>,
     sensitivities: Vec<String>,
     began: bool,
+    interrupted: bool,
 ) -> PyResult<Recorded> {
     let case = case.0.clone();
     let system = System::new(&case).map_err(|error| raised(py, &error))?;
@@ -99,6 +103,7 @@ pub fn again(
     Ok(Recorded {
         header: if began { header } else { Header::default() },
         began,
+        interrupted,
         case,
         summary,
         fault: None,
@@ -234,6 +239,12 @@ impl Recorded {
     /// The case that was run: on the mesh that an accuracy led to, where one was asked for.
     fn case(&self) -> Case {
         Case(self.case.clone())
+    }
+
+    /// Whether Ctrl-C came before it had ended.
+    #[getter]
+    fn interrupted(&self) -> bool {
+        self.interrupted
     }
 
     /// Whether the run began.

@@ -68,6 +68,11 @@ impl Watch {
         self.stopped.get()
     }
 
+    /// Whether something asked to stop.
+    pub fn stopped(&self) -> bool {
+        self.stopped.get()
+    }
+
     /// What the caller's function raised, if anything.
     pub fn end(self) -> PyResult<()> {
         self.raised.into_inner().map_or(Ok(()), Err)

@@ -83,6 +83,22 @@ def test_a_sweep_is_a_table(tmp_path):
     assert "kind" in modes and modes["kind"].dtype.kind == "U"
 
 
+def test_bands_stand_beside_figures(tmp_path):
+    case = slcbeam.load("bend-wet", set=COARSE)
+    modulus = {"/beam/young_modulus_pa": "normal:2e6:1e5"}
+    found = slcbeam.equilibrium(case, uncertain=modulus, samples=16, out=tmp_path / "out")
+    tip = found.bands["tip_u1_m"]
+    assert tip["low"] < tip["value"] == found["quantities"]["tip_u1_m"] < tip["high"] and tip["numerical_error"] > 0
+    assert slcbeam.read(tmp_path / "out").bands == found.bands
+    modes = slcbeam.modes(case, count=30, uncertain=modulus, samples=16)
+    swinging = [mode for mode in modes["modes"] if mode["frequency_hz"] is not None]
+    lowest = min(swinging, key=lambda mode: mode["frequency_hz"])
+    assert modes.bands["mode_1.frequency_hz"] == lowest["bands"]["frequency_hz"]
+    assert slcbeam.equilibrium(case).bands == {}
+    with pytest.raises(KeyError, match="tip_u1_m"):
+        found.bands["tip_u1"]
+
+
 def test_measured_data_are_columns(tmp_path):
     case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.05, "/time/output_interval_s": 0.001})
     run = slcbeam.run(case)
@@ -108,6 +124,8 @@ def test_faults_are_exceptions():
         slcbeam.modes("wiring-2", count=0)
     with pytest.raises(slcbeam.UsageError, match="--cuont"):
         slcbeam.modes("wiring-2", cuont=3)
+    with pytest.raises(slcbeam.UsageError, match="optimum-case.json --uncertain"):
+        slcbeam.optimize("wiring-2", {"/beam/length_m": (0.1, 0.2)}, maximize="tip_u1_m", uncertain={"/beam/width_m": "normal:0.05:0.001"})
     with pytest.raises(slcbeam.CaseError) as told:
         slcbeam.sweep("wiring-2", {"/beam/colour": [1, 2]})
     assert told.value.faults[0].pointer == "/beam/colour"
@@ -184,7 +202,11 @@ def test_tables_are_frames_of_polars_too():
     polars = pytest.importorskip("polars")
     designs = polars.DataFrame({"/loads/0/force_x_n_m/signal/sigmoid/amplitude": [10.0, 20.0]})
     case = slcbeam.load("bend-wet", set=COARSE | {"/time/end_s": 0.01})
-    table = slcbeam.sweep(case, designs=designs, lean=True).tables["sweep"]
+    lean = slcbeam.sweep(case, designs=designs, lean=True)
+    table = lean.tables["sweep"]
+    assert table.units["tip_u1_m.final"] == "m"
+    with pytest.raises(slcbeam.UsageError, match="without lean"):
+        lean.report()
     assert len(table["status"]) == 2
 
 

@@ -140,11 +140,12 @@ def test_folders_of_others_are_left_alone(quick, tmp_path):
 
 def test_ctrl_c_stops_with_what_there_is(endless, tmp_path):
     result = slcbeam.run(endless, progress=lambda *_: os.kill(os.getpid(), signal.SIGINT))
-    assert result.status == "stopped" and "interrupted" in result.summary["reason"]
+    assert result.status == "stopped" and "interrupted" in result.summary["reason"] and result.interrupted
+    assert pickle.loads(pickle.dumps(result)).interrupted
     assert 0.0 < result.summary["time_s"] < 1e4 and len(result.history["t"]) >= 1
     # an accuracy is stopped, too
     stopped = slcbeam.run(endless, accuracy=0.05, progress=lambda *_: os.kill(os.getpid(), signal.SIGINT))
-    assert stopped.status == "stopped"
+    assert stopped.status == "stopped" and stopped.interrupted
     result.save(tmp_path / "part")
     assert told(tmp_path / "part")["status"] == "stopped"
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 use clap::Parser as _;
 
 use super::act;
-use super::arguments::Arguments;
+use super::arguments::{Arguments, uncertain};
 use crate::error::{Error, Result, SolverError};
 use crate::integrate::halt::{self, Halt};
 
@@ -41,10 +41,11 @@ pub struct Answer {
 ///
 /// Those of the command; [`Error::Usage`] where there is none like it.
 pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>) -> Result<Answer> {
-    let all = std::iter::once("slcbeam".into()).chain(words);
-    let arguments = Arguments::try_parse_from(all).map_err(|error| {
+    let all: Vec<OsString> = std::iter::once("slcbeam".into()).chain(words).collect();
+    let arguments = Arguments::try_parse_from(&all).map_err(|error| {
         let words = error.render().to_string();
-        Error::Usage(words.trim().trim_start_matches("error: ").to_owned())
+        let own = || Error::Usage(words.trim().trim_start_matches("error: ").to_owned());
+        uncertain::elsewhere(&all, &error).unwrap_or_else(own)
     })?;
     let asked = Asked {
         stop: Arc::clone(stop),

@@ -13,6 +13,7 @@ use crate::output::equilibrium as files;
 use crate::output::kind::Kind;
 use crate::output::report;
 use crate::output::uncertainty as spread;
+use crate::results::run::Bands;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
 use crate::run::{known, slow};
@@ -34,7 +35,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
             };
     if !(usual && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
         let what = "--uncertain is about the equilibrium under the loads at the end: it does not go with --at, --via, --load-factor, \
-                    --keep-branch or --accuracy";
+                    --keep-branch or --accuracy; loads of another instant are those of --set /time/end_s=SECONDS";
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Equilibrium, asked.quiet)?;
@@ -77,7 +78,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         _ => vec![],
     };
     let stages = options.resolved(case)?;
-    let found = files::Found {
+    let mut found = files::Found {
         case,
         options: &stages,
         path: &path,
@@ -87,12 +88,17 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         sensitivities: &sensitivities,
         accuracy,
         meshes: meshes.as_ref(),
+        bands: Bands::new(),
     };
     let mut uncertainty = None;
     if !path.states.is_empty() {
         files::write(&mut folder, &found)?;
         if path.fault.is_none() {
             uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+            found.bands = uncertain::bands(uncertainty.as_ref());
+        }
+        if uncertainty.is_some() {
+            folder.write(files::JSON, files::json(&found).as_bytes())?;
         }
         report::complete(&folder, case)?;
     }

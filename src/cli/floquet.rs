@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
+use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
@@ -12,12 +13,14 @@ use crate::output::kind::Kind;
 use crate::output::report;
 use crate::results;
 use crate::results::cycles::Cycle;
+use crate::results::run::Bands;
 use crate::run::floquet;
 use crate::run::known;
 use crate::run::periodic::scene::{self, fault};
 use crate::run::periodic::{Scene, shoot};
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
+use crate::study::sweep::What;
 
 /// Points of a map at most.
 const MOST_POINTS: usize = 100_000;
@@ -28,6 +31,9 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     let case = &size::load(&asked.case)?;
     scene::system(case)?;
     match &asked.map.map {
+        Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
+            "--uncertain goes with one cycle, not with a --map; at a point of it: slcbeam floquet CASE --set .. --uncertain ..".into(),
+        )),
         Some(parameters) => map(asked, case, parameters),
         None => one(asked, case),
     }
@@ -38,6 +44,11 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         return Err(Error::Usage("--count 0: at least one multiplier".into()));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    if (accuracy.is_some() || asked.period.is_some()) && !asked.uncertain.uncertain.is_empty() {
+        let what = "--uncertain goes with neither --accuracy nor --period; the mesh and tolerance that an accuracy led to stand in floquet.json";
+        return Err(Error::Usage(what.into()));
+    }
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Floquet, asked.quiet)?;
     let mut folder = asked.place.claim(case, Kind::Floquet)?;
     let stop = interrupt::stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
@@ -65,19 +76,26 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     warnings.extend(scene.trapped.clone());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.as_ref().and_then(refine::warning));
-    let found = Cycle {
+    let mut found = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
         periods: None,
         floquet: found,
+        bands: Bands::new(),
         warnings,
         refined: None,
         accuracy,
         meshes,
     };
     files::write(&mut folder, &found)?;
+    let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+    if uncertainty.is_some() {
+        found.bands = uncertain::bands(uncertainty.as_ref());
+        folder.write(Kind::Floquet.sign(), results::text(&found).as_bytes())?;
+    }
     report::complete(&folder, case)?;
-    let (text, words) = (|| results::text(&found), || files::words(&found));
+    let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
+    let text = || results::text(&found);
     super::tell(asked.json, folder.dir(), text, words)?;
     Ok(ExitCode::SUCCESS)
 }

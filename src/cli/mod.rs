@@ -57,6 +57,13 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
+        Err(answer) if let Some(error) = arguments::uncertain::elsewhere(&words, &answer) => {
+            terminal::report(&error);
+            if words.iter().any(|word| word == "--json") {
+                let _ = print(&format!("{:#}\n", terminal::json(&error)));
+            }
+            return ExitCode::from(error.exit_code());
+        }
         Err(answer) => {
             // Help and version are answers, everything else is a usage error; clap prints both.
             terminal::answer(&answer);

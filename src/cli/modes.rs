@@ -13,6 +13,7 @@ use crate::output::kind::Kind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::results::modes::About;
+use crate::results::run::Bands;
 use crate::run::equilibrium;
 use crate::run::known;
 use crate::run::modes::{self, Plan, Sort, sort};
@@ -24,7 +25,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if asked.map.map.is_some() {
         if !asked.uncertain.uncertain.is_empty() {
             return Err(Error::Usage(
-                "--uncertain is about single modes, not about a --map".into(),
+                "--uncertain is about single modes, not about a --map; at a point of it: slcbeam floquet CASE --set .. --uncertain ..".into(),
             ));
         }
         return super::floquet::floquet(&FloquetArguments {
@@ -33,6 +34,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
             period: None,
             accuracy: None,
             map: asked.map.clone(),
+            uncertain: asked.uncertain.clone(),
             place: asked.place.clone(),
             quiet: asked.quiet,
             json: asked.json,
@@ -84,9 +86,15 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         sensitivities: &sensitivities,
         accuracy: refined.as_ref().map(|(_, accuracy)| accuracy),
         known: &known,
+        bands: &Bands::new(),
     };
     files::write(&mut folder, &report)?;
     let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+    let bands = &uncertain::bands(uncertainty.as_ref());
+    let report = Report { bands, ..report };
+    if uncertainty.is_some() {
+        folder.write(files::JSON, files::json(&report).as_bytes())?;
+    }
     report::complete(&folder, case)?;
     let words = || {
         let spread = uncertain::below(uncertainty.as_ref());

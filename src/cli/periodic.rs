@@ -14,8 +14,10 @@ use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
+use crate::output::summary;
 use crate::results;
 use crate::results::cycles::Cycle;
+use crate::results::run::Bands;
 use crate::run::floquet;
 use crate::run::periodic::{Scene, Settled, record, scene, sensitivity, settle, subharmonic};
 use crate::run::record::Control;
@@ -34,7 +36,8 @@ pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     halt::everywhere();
     match &asked.sweep {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
-            "--uncertain goes with one cycle, not with --sweep; `slcbeam sweep` draws samples".into(),
+            "--uncertain goes with one cycle, not with --sweep; samples of it: slcbeam sweep CASE --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64"
+                .into(),
         )),
         Some(_) if asked.periods != 1 => Err(Error::Usage("--periods goes with one cycle, not with --sweep".into())),
         Some(text) => sweep(asked, text),
@@ -110,22 +113,30 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
     let finished = recorder.finish(&outcome.summary)?;
-    let told = Cycle {
+    let mut told = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
         periods,
         floquet: found,
+        bands: Bands::new(),
         warnings: outcome.summary.warnings.clone(),
         refined,
         accuracy: outcome.summary.accuracy.clone(),
         meshes,
     };
-    let text = results::text(&told);
+    let mut text = results::text(&told);
     finished.folder().write(files::CYCLE, text.as_bytes())?;
     let uncertainty = match ended {
         true => uncertain::into(uncertain.as_ref(), finished.folder())?,
         false => None,
     };
+    if uncertainty.is_some() {
+        told.bands = uncertain::bands(uncertainty.as_ref());
+        outcome.summary.bands.clone_from(&told.bands);
+        summary::write(finished.folder(), &outcome.summary)?;
+        text = results::text(&told);
+        finished.folder().write(files::CYCLE, text.as_bytes())?;
+    }
     report::write(&out, None)?;
     finished.close()?;
     let words = || {

@@ -83,7 +83,12 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     let mut uncertainty = None;
     if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {
         uncertainty = uncertain::into(Some(asked), finished.folder())?;
+        summary.bands = uncertain::bands(uncertainty.as_ref());
         summary.wall_s.samples = laps.lap();
+        // the page is made of what the folder holds
+        if uncertainty.is_some() {
+            summary::write(finished.folder(), &summary)?;
+        }
     }
     let page = match asked.lean {
         true => Ok(()),

@@ -13,6 +13,7 @@ use crate::case::{self, Case};
 use crate::error::{Error, Result};
 use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
+use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::Status;
 use crate::study::sweep::designs::pairs;
@@ -151,9 +152,9 @@ impl Uncertain {
             .iter()
             .map(|one| resolved.pointer(&one.pointer)?.as_f64())
             .collect();
-        let names = [self.own.name.as_str(), self.what.word()];
         Ok(Some(uncertain::judge(
-            names,
+            (&self.own.name, self.own.beam.length_m),
+            self.what.word(),
             &self.plan,
             &own,
             &own_values,
@@ -207,6 +208,11 @@ pub fn into(asked: Option<&Uncertain>, folder: &ResultFolder) -> Result<Option<U
         None => terminal::tell("slcbeam: interrupted; there is no uncertainty"),
     }
     Ok(found)
+}
+
+/// What of it stands in the result of the command itself.
+pub fn bands(found: Option<&Uncertainty>) -> Bands {
+    found.map_or_else(Bands::new, Uncertainty::bands)
 }
 
 /// What is told of it below the words of a command.

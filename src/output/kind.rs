@@ -98,7 +98,7 @@ impl Kind {
             Self::Modes => &["modes.csv", "modes.npz", "modes.svg", UNCERTAINTY],
             Self::Study => &["study.csv", "study.svg"],
             Self::Effects => &["effects.csv", "effects.svg"],
-            Self::Floquet => &["floquet.csv", "floquet.svg"],
+            Self::Floquet => &["floquet.csv", "floquet.svg", UNCERTAINTY],
             Self::Map => &["map.csv", "map.svg"],
             Self::Sweep => &["sweep.csv", "sweep.svg"],
             Self::Sense => &["sense.csv", "sensors.csv", "sense.svg"],

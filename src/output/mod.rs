@@ -26,6 +26,7 @@
 //! study     study.csv, study.json, study.svg, table and sentence
 //! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their words
 //! uncertainty  uncertainty.json, its words and its table
+//! bands     figures beside what uncertain numbers leave open of them, in words
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! report    report.html: a result folder as one page
 //! pictures  from recorded files to the data of each picture
@@ -38,6 +39,7 @@
 
 pub mod accuracy;
 pub mod arrays;
+pub mod bands;
 pub mod behind;
 pub mod checkpoint;
 pub mod columns;

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::bands;
 use super::columns::aligned;
 use super::folder::ResultFolder;
 use super::numbers::{count, percent, significant};
@@ -20,6 +21,9 @@ pub fn write(folder: &ResultFolder, found: &Uncertainty) -> Result<()> {
     folder.write(UNCERTAINTY, results::text(found).as_bytes()).map(|_| ())
 }
 
+/// Digits of the ends of a band at most, in a table.
+const MOST_DIGITS: usize = 6;
+
 /// What is told of each figure.
 const HEADINGS: [&str; 7] = [
     "figure",
@@ -36,17 +40,27 @@ const TOLD: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
 
 /// A table of one figure of each quantity that spreads, and what to know of them.
 pub fn words(found: &Uncertainty) -> String {
+    // of a multiplier its growth decides, whose frequency the drive may hold
+    let foremost: &[&str] = if found.command == "floquet" {
+        &["growth_per_s"]
+    } else {
+        &TOLD
+    };
     let mut lines = vec![HEADINGS.map(String::from).to_vec()];
     let told = found.figures.iter().filter(|(name, one)| {
         let first = name.rsplit_once('.').is_none_or(|(quantity, own)| {
             let there = |figure: &&&str| found.figures.contains_key(&format!("{quantity}.{figure}"));
-            TOLD.iter().find(there).is_none_or(|first| *first == own)
+            foremost.iter().find(there).is_none_or(|first| *first == own)
         });
         first && one.sd > 0.0
     });
     lines.extend(told.map(|(name, one)| row(name, one, &found.inputs).to_vec()));
     let others = 1 + found.figures.len() - lines.len();
-    let mut text = format!("{}\n{}", about(found), aligned(&lines, &[0, 6]));
+    let table = match lines.len() {
+        1 => "no figure depends on what is uncertain\n".into(),
+        _ => aligned(&lines, &[0, 6]),
+    };
+    let mut text = format!("{}\n{table}", about(found));
     if others > 0 {
         let figures = if others == 1 { "figure" } else { "figures" };
         text += &format!("{others} more {figures} in {UNCERTAINTY}\n");
@@ -88,6 +102,10 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
         0.0 => significant(x, 2),
         _ => percent(x / size),
     };
+    let digits = match one.sd > 0.0 {
+        true => bands::digits(one.low, one.high).clamp(4, MOST_DIGITS),
+        false => 4,
+    };
     let plus = |x: Option<f64>| x.map_or("–".into(), |x| format!("± {}", relative(x)));
     [
         name.into(),
@@ -95,7 +113,7 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
         plus(one.numerical_error),
         plus(one.first_order.as_ref().map(|first| first.sd)),
         plus(Some(one.sd)),
-        format!("{} … {}", significant(one.low, 4), significant(one.high, 4)),
+        format!("{} … {}", significant(one.low, digits), significant(one.high, digits)),
         mostly(one, inputs).unwrap_or_default(),
     ]
 }
@@ -166,6 +184,23 @@ pub fn section(found: &Uncertainty) -> Value {
 mod tests {
     use super::*;
     use crate::results::uncertainty::FirstOrder;
+
+    #[test]
+    fn nothing_that_spreads_is_said() {
+        let found = Uncertainty {
+            case: "case".into(),
+            command: "run".into(),
+            inputs: vec![],
+            samples: 16,
+            finished: 16,
+            unfinished: Default::default(),
+            seed: 1,
+            figures: Default::default(),
+            no_first_order: None,
+            warnings: vec![],
+        };
+        assert!(words(&found).contains("no figure depends on what is uncertain"));
+    }
 
     #[test]
     fn a_figure_is_told_beside_its_errors() {

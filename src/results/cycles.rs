@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Integrator, Kept};
+use crate::run::band::Bands;
 pub use crate::run::floquet::{Floquet, Stability};
 pub use crate::run::periodic::Search;
 use crate::run::periodic::scene::METHOD;
@@ -24,6 +25,9 @@ pub struct Cycle {
     pub periods: Option<Periods>,
     /// Its multipliers.
     pub floquet: Floquet,
+    /// What uncertain numbers leave open of figures, by the names of `uncertainty.json`.
+    #[serde(default, skip_serializing_if = "Bands::is_empty")]
+    pub bands: Bands,
     /// What to know of case and cycle.
     pub warnings: Vec<String>,
     /// Why the tolerance of the cycle is not the case's own.
@@ -44,7 +48,7 @@ impl Cycle {
             Some(accuracy) => accuracy.quantities.get(name)?.total,
             None => {
                 let share = self.meshes.as_ref()?.quantities.get(name)?;
-                (share.beam.is_some() || share.bladders.is_some()).then(|| share.total())
+                share.known().then(|| share.total())
             }
         }
     }

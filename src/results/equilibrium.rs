@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Kept;
 use super::ordered::Ordered;
-use super::run::{Accuracy, Status};
+use super::run::{Accuracy, Bands, Status};
 use crate::run::null;
 use crate::study::refine::meshes::Meshes;
 
@@ -34,6 +34,9 @@ pub struct Equilibrium {
     pub states: usize,
     /// What is read off the last state.
     pub quantities: Option<Numbers>,
+    /// What uncertain numbers leave open of them.
+    #[serde(default, skip_serializing_if = "Bands::is_empty")]
+    pub bands: Bands,
     /// Whether the last state holds, where that is known.
     pub stability: Option<Stability>,
     /// What happens on the way.

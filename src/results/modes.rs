@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Kept;
 use super::ordered::Ordered;
-use super::run::Accuracy;
+use super::run::{Accuracy, Bands};
 pub use crate::run::modes::{Kind, Limit, Sort};
 
 /// State about which a case moves.
@@ -94,6 +94,9 @@ pub struct Mode {
     pub mesh_error: Option<f64>,
     /// Error of the growth rate by the mesh, relative.
     pub rate_mesh_error: Option<f64>,
+    /// What uncertain numbers leave open of frequency, damping ratio and growth rate, by these keys.
+    #[serde(default, skip_serializing_if = "Bands::is_empty")]
+    pub bands: Bands,
 }
 
 /// Whether the coupling can give more than it takes.

@@ -1,6 +1,7 @@
 //! `summary.json`: a run in time.
 
 use super::{Integrator, Kept};
+pub use crate::run::band::{Band, Bands};
 pub use crate::run::summary::{Accuracy, Balances, Chosen, Quantity, Status, Summary};
 
 impl Kept for Summary {

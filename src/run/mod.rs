@@ -1,5 +1,6 @@
 //! Runs: what drives the solver over a model. Emits what happens, prints nothing.
 
+pub mod band;
 pub mod checkpoint;
 pub mod cubic;
 pub mod drive;

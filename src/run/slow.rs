@@ -1,5 +1,6 @@
 //! Fluid that comes to rest later than the run lasts.
 
+use crate::case::controls;
 use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::error::Code;
@@ -24,7 +25,9 @@ pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
         None => (-until / slowest.time).exp(),
         Some(_) => 0.0,
     };
-    model.each_signal(|signal| share = share.max(lag(signal, slowest.time, until)));
+    for (_, _, signal) in controls(case) {
+        share = share.max(lag(signal, slowest.time, until));
+    }
     let [from, to] = &slowest.between;
     (share > LEFT).then(|| {
         Code::LateRest.warning(format!(

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::band::Bands;
 use super::estimate::Estimated;
 use super::growth::Growing;
 use super::null;
@@ -239,6 +240,9 @@ pub struct Summary {
     /// Step responses of tip and probes, by name and unit, where they are asked for.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub step_response: BTreeMap<String, StepResponse>,
+    /// What uncertain numbers leave open of figures, by the names of `uncertainty.json`.
+    #[serde(default, skip_serializing_if = "Bands::is_empty")]
+    pub bands: Bands,
     /// Balances.
     pub balances: Balances,
     /// Integrator.

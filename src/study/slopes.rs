@@ -42,6 +42,7 @@ pub fn slopes(
         What::Equilibrium => at_rest(case, parameters, stop),
         What::Modes => small(case, parameters),
         What::Periodic => cycle(case, parameters, stop),
+        What::Floquet => Err(no_multipliers()),
     }
 }
 
@@ -52,8 +53,13 @@ pub fn slopes(
 pub fn check(case: &Case, what: What, parameters: &[Parameter]) -> Result<()> {
     match what {
         What::Periodic => allowed(case, &Scene::new(case, None)?, parameters),
+        What::Floquet => Err(no_multipliers()),
         _ => Ok(()),
     }
+}
+
+fn no_multipliers() -> Error {
+    Error::Usage("multipliers of a cycle have no derivatives by numbers of the case".into())
 }
 
 /// Asks after every step whether to stop.

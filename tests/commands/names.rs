@@ -17,7 +17,19 @@ fn names_in_results_are_explained() {
     let jobs: [(&str, &[&str]); 3] = [
         ("run", &[&["cases/wiring-2.json"], &short[..]].concat()),
         ("equilibrium", &["cases/syringe-finger.json", "--at", "1"]),
-        ("modes", &["cases/few-cells.json", "--count", "3"]),
+        (
+            "modes",
+            &[
+                "cases/few-cells.json",
+                "--count",
+                "3",
+                "--uncertain",
+                "/beam/young_modulus_pa=normal:2e6:1e5",
+                "--samples",
+                "16",
+                "--indices",
+            ],
+        ),
     ];
     let mut names = BTreeSet::new();
     for (command, words) in jobs {

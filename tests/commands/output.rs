@@ -173,6 +173,7 @@ fn summary_of(status: Status) -> Summary {
         sensitivities: Default::default(),
         probes: Default::default(),
         step_response: Default::default(),
+        bands: Default::default(),
         warnings: Vec::new(),
     }
 }

@@ -21,6 +21,12 @@ fn told(out: &str) -> Value {
     serde_json::from_str(&text).expect("JSON")
 }
 
+/// What a file of a result holds.
+fn held(out: &str, name: &str) -> Value {
+    let text = fs::read_to_string(format!("{out}/{name}")).expect("a file");
+    serde_json::from_str(&text).expect("JSON")
+}
+
 fn number(value: &Value, pointer: &str) -> f64 {
     value
         .pointer(pointer)
@@ -90,12 +96,35 @@ fn every_command_with_figures_tells_its_spread() {
     let dir = TempDir::new().expect("a folder");
     let harvester = "cases/harvester-parallel-uniform.json";
     let coarse = ["--set", "/mesh/cells_per_segment=1"];
+    let shaken = [
+        "--set",
+        "/mesh/cells_per_segment=1",
+        "--set",
+        "/mesh/cells_per_bladder=1",
+        "--set",
+        "/solver/rtol=1e-3",
+    ];
     let valve = "/network/permeability_factor=uniform:0.9:1.1";
-    for (command, case, sets, input, figure) in [
-        ("run", CASE, &SHORT[..], MODULUS, "tip_u1_m.max_abs"),
-        ("equilibrium", CASE, &SHORT[..], MODULUS, "tip_u3_m"),
-        ("modes", CASE, &SHORT[..], MODULUS, "mode_1.frequency_hz"),
-        ("periodic", harvester, &coarse[..], valve, "harvested_power_w.mean"),
+    for (command, case, sets, input, figure, place) in [
+        ("run", CASE, &SHORT[..], MODULUS, "tip_u1_m.max_abs", "summary.json"),
+        ("equilibrium", CASE, &SHORT[..], MODULUS, "tip_u3_m", "equilibrium.json"),
+        ("modes", CASE, &SHORT[..], MODULUS, "mode_1.frequency_hz", "modes.json"),
+        (
+            "periodic",
+            harvester,
+            &coarse[..],
+            valve,
+            "harvested_power_w.mean",
+            "cycle.json",
+        ),
+        (
+            "floquet",
+            "cases/valves-open.json",
+            &shaken[..],
+            valve,
+            "mode_1.growth_per_s",
+            "floquet.json",
+        ),
     ] {
         let at_once = if command == "run" { &["1", "2"][..] } else { &["2"] };
         let texts: Vec<String> = at_once
@@ -125,11 +154,34 @@ fn every_command_with_figures_tells_its_spread() {
                 assert!(command != "periodic" || number(one, "/numerical_error") > 0.0, "{one}");
                 let (sd, error) = (number(one, "/first_order/sd"), number(one, "/sd_error"));
                 assert!((number(one, "/sd") - sd).abs() < 4.0 * error, "{command}: {one}");
+                let own = held(&out, place);
+                let band = match command {
+                    "modes" => &own["modes"][0]["bands"]["frequency_hz"],
+                    _ => &own["bands"][figure],
+                };
+                for key in ["value", "numerical_error", "sd", "low", "high", "samples"] {
+                    assert_eq!(band[key], one[key], "{command}: {key}");
+                }
+                let page = fs::read_to_string(format!("{out}/report.html")).expect("a page");
+                let shown = match command {
+                    "modes" => "95 % of samples: frequency [Hz]",
+                    "floquet" => "95 % of samples: growth [1/s]",
+                    _ => "\"band\":\"95 % of samples: ",
+                };
+                assert!(page.contains(shown), "{command}: {shown}");
                 fs::read_to_string(format!("{out}/uncertainty.json")).expect("a file")
             })
             .collect();
         assert!(texts.iter().all(|text| *text == texts[0]), "{command}");
     }
+    // a cycle's run has them too
+    let (cycle, run) = (path(&dir, "periodic-2"), path(&dir, "run-2"));
+    assert_eq!(
+        held(&cycle, "summary.json")["bands"],
+        held(&cycle, "cycle.json")["bands"]
+    );
+    let said = say(&["report", &run]);
+    assert_eq!(said.code, 0, "{}", said.err);
     // a later result in the same folder does not keep what was told of another
     let out = path(&dir, "run-1");
     assert_eq!(
@@ -137,6 +189,7 @@ fn every_command_with_figures_tells_its_spread() {
         0
     );
     assert!(!dir.path().join("run-1/uncertainty.json").exists());
+    assert_eq!(held(&out, "summary.json")["bands"], Value::Null);
 }
 
 /// Goal: what makes no sense is refused before anything is computed or written.
@@ -194,6 +247,28 @@ fn what_makes_no_sense_is_refused() {
             "loads at the end",
         ),
         (vec!["modes", CASE, "--uncertain", MODULUS, "--near", "10"], 2, "--near"),
+        // where it does not belong, what to do instead is told
+        (
+            vec!["floquet", CASE, "--uncertain", MODULUS, "--map", "frequency,amplitude"],
+            2,
+            "slcbeam floquet CASE --set",
+        ),
+        (
+            vec!["optimize", CASE, "--uncertain", MODULUS],
+            2,
+            "optimum-case.json --uncertain",
+        ),
+        (
+            vec!["fit", CASE, "--uncertain", MODULUS],
+            2,
+            "fitted-case.json --uncertain",
+        ),
+        (vec!["sweep", CASE, "--uncertain=/a=normal:1:1"], 2, "--design sobol:64"),
+        (
+            vec!["compare", CASE, "--uncertain", MODULUS],
+            2,
+            "periodic and floquet, not with compare",
+        ),
         (
             vec![
                 "periodic",

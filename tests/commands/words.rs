@@ -6,6 +6,7 @@ use serde_json::Value;
 use slcbeam::cli::summary_box::render;
 use slcbeam::output::columns::aligned;
 use slcbeam::output::numbers::{count, duration, quantity, shortest, trimmed};
+use slcbeam::run::band::Band;
 use slcbeam::run::summary::{Balances, Counters, Quantity, Status, Summary, WallTimes};
 
 #[test]
@@ -98,6 +99,7 @@ fn summary(status: Status) -> Summary {
         sensitivities: Default::default(),
         probes: Default::default(),
         step_response: Default::default(),
+        bands: Default::default(),
         warnings: Vec::new(),
     }
 }
@@ -159,6 +161,42 @@ fn a_failure_says_why_and_warnings_come_first() {
     assert!(is_a_box(&text, 60));
     let painted = render(&failed, Path::new("out/wiring-2"), true, true, 60);
     assert!(painted.contains("\u{1b}[1;31mFAILED"));
+}
+
+/// Goal: bands stand beside the numerical errors of what is told, in a box of any width; what does not spread has none.
+#[test]
+fn bands_are_told() {
+    let mut known = summary(Status::Finished);
+    let band = |value: f64, share: f64| Band {
+        value,
+        numerical_error: Some(0.002 * value),
+        sd: 0.5 * share * value,
+        low: (1.0 - share) * value,
+        high: (1.0 + share) * value,
+        samples: 64,
+        drawn: 64,
+    };
+    known.bands = [
+        ("tip_u1_m.max_abs", band(1.23e-4, 0.1)),
+        ("tip_u3_m.max_abs", band(1.25e-3, 0.0)),
+        ("max_pressure_pa.max_abs", band(9010.0, 0.002)),
+        ("max_pressure_pa.final", band(9010.0, 0.5)),
+    ]
+    .map(|(name, band)| (name.to_owned(), band))
+    .into();
+    let text = |width| render(&known, Path::new("out/wiring-2"), true, false, width);
+    for part in [
+        "u₁ 111 µm … 135 µm (± 246 nm numerically)",
+        "p 8.992 kPa … 9.028 kPa (± 18 Pa numerically)",
+    ] {
+        let words = text(100).replace('│', " ");
+        let words: Vec<&str> = words.split_whitespace().collect();
+        assert!(words.join(" ").contains(part), "{}", text(100));
+    }
+    assert!(!text(100).contains("u₃ 1.25 mm …"), "{}", text(100));
+    for width in [50, 64, 100] {
+        assert!(is_a_box(&text(width), width), "{}", text(width));
+    }
 }
 
 /// Goal: powers stand in watts beside the energies of the run.

@@ -47,6 +47,7 @@ fn finished(last: f64) -> Summary {
         sensitivities: Default::default(),
         probes: Default::default(),
         step_response: Default::default(),
+        bands: Default::default(),
         warnings: Vec::new(),
     }
 }

@@ -106,13 +106,39 @@ class Answer(Mapping[str, Any]):
         return warnings
 
     @property
+    def bands(self) -> dict[str, dict[str, Any]]:
+        """What uncertain numbers leave open of each figure, in its unit: ``value``, ``numerical_error`` where it is known, ``sd``, ``low``,
+        ``high``, of so many ``samples`` of those ``drawn``; empty where none were said to be uncertain. Figures of modes are ``mode_1.frequency_hz``, the lowest that
+        swings; each mode has its own, too: ``answer["modes"][0]["bands"]``.
+
+        >>> import slcbeam
+        >>> coarse = slcbeam.load("bend-dry", set={"/mesh/cells_per_segment": 1})
+        >>> modulus = {"/beam/young_modulus_pa": "normal:2e6:1e5"}
+        >>> tip = slcbeam.equilibrium(coarse, uncertain=modulus, samples=16).bands["tip_u1_m"]
+        >>> tip["low"] < tip["value"] < tip["high"], tip["numerical_error"] < tip["sd"]
+        (True, True)
+        """
+        told = self._told.get("bands")
+        path = None if self.folder is None else self.folder / "uncertainty.json"
+        if told is None and path is not None and path.is_file():
+            kept = ("value", "numerical_error", "sd", "low", "high", "samples")
+            found = json.loads(path.read_text(encoding="utf-8"))
+            drawn = {"drawn": found["samples"]}
+            told = {name: {key: one[key] for key in kept if key in one} | drawn for name, one in found["figures"].items()}
+        return Named(told or {})
+
+    @property
     def tables(self) -> dict[str, Columns]:
         """Tables of the folder by the names of their files: ``answer.tables["path"]`` of ``path.csv``; read anew at every call."""
         found: dict[str, Columns] = Named()
         for path in sorted(self._folder().glob("*.csv")):
             with path.open(newline="", encoding="utf-8") as file:
                 headings, *rows = csv.reader(file)
-            found[path.stem] = Columns(headings, rows)
+            table = found[path.stem] = Columns(headings, rows)
+            about = path.with_suffix(".json")
+            if path.stem == "sweep" and about.is_file():
+                # names of figures stand in that table without units
+                table.units |= {one["name"]: one["unit"] for one in json.loads(about.read_text(encoding="utf-8"))["columns"]}
         return found
 
     @property

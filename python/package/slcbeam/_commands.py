@@ -166,7 +166,8 @@ def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **opt
 def floquet(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
     """The steady cycle and whether it is stable, or a map of where shaking is stable (``slcbeam floquet``).
 
-    :param options: ``count``, ``period``, ``map="frequency,amplitude"``, ``range``, ``points``, ``permeability``, ``accuracy``.
+    :param options: ``count``, ``period``, ``map="frequency,amplitude"``, ``range``, ``points``, ``permeability``, ``accuracy``,
+        ``uncertain={..}``, ..
     :returns: ``floquet.json`` or ``map.json``; ``tables``.
     """
     return _do("floquet", [case], out=out, progress=progress, options=options)

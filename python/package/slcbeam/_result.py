@@ -166,6 +166,8 @@ class Result:
         self._asked, self._recorded, self._arrays = case, recorded, arrays
         #: ``summary.json`` as a dict.
         self.summary: dict[str, Any] = json.loads(recorded.summary())
+        #: Whether Ctrl-C came before the end. With an accuracy the result is then the last candidate that finished.
+        self.interrupted: bool = recorded.interrupted
         names, units, about = ([*column] for column in zip(*recorded.columns())) if recorded.columns() else ([], [], [])
         #: One row an output time: ``result.history["tip_u1"]``.
         self.history = Table(names, units, arrays["history"], about)
@@ -241,7 +243,8 @@ class Result:
 
     def __reduce__(self) -> tuple[Any, ...]:
         recorded = self._recorded
-        told = (recorded.case().json(), recorded.summary(), recorded.envelope(), recorded.sensitivities(), recorded.began)
+        flags = (recorded.began, recorded.interrupted)
+        told = (recorded.case().json(), recorded.summary(), recorded.envelope(), recorded.sensitivities(), *flags)
         return (_again, (self._asked, told, self._arrays))
 
 

@@ -37,7 +37,8 @@ def run(
     :param sensitivity: JSON pointers of numbers by which figures and history are differentiated.
     :param progress: ``True`` for a bar on standard error, or a function ``f(t, end, steps)``; what it raises ends the run.
     :param out: a folder for the result, written when the run has ended; one that holds something else is refused before it begins.
-    :returns: the result; its ``status`` is ``stopped`` after a KeyboardInterrupt.
+    :returns: the result; after a KeyboardInterrupt it is ``interrupted`` and its ``status`` ``stopped``, or, with an accuracy, that of the
+        last candidate that finished, if one has.
     :raises SolverError: the run could not go on; its ``result`` holds what there is.
     :raises FileError: ``out`` could not be written; where the run had ended, its ``result`` is that of the run.
 
@@ -56,9 +57,11 @@ def run(
         _slcbeam.claimable(Path(out))
     told = _bar if progress is True else (progress or None)
     recorded, arrays = _slcbeam.run(asked._own, accuracy, sensitivity, told)
-    if progress is True:
-        sys.stderr.write("\n")
     result = Result(asked, recorded, arrays)
+    if progress is True:
+        if result.status == "finished":
+            _bar(result.summary["time_s"], result.summary["time_s"], result.summary["solver"]["steps"])
+        sys.stderr.write("\n")
     if out is not None:
         try:
             result.save(out)

@@ -8,7 +8,7 @@ mod periodic;
 mod run;
 mod sense;
 mod sweep;
-mod uncertain;
+pub mod uncertain;
 
 use std::path::PathBuf;
 
@@ -243,6 +243,9 @@ pub struct FloquetArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "map", value_parser = crate::cli::line::ratio)]
     pub accuracy: Option<f64>,
+    /// Uncertain numbers.
+    #[command(flatten)]
+    pub uncertain: UncertainArguments,
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,

@@ -1,6 +1,11 @@
 //! What of a case may be uncertain.
 
+use std::ffi::OsString;
+
 use clap::Args;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+use crate::error::Error;
 
 /// Numbers of the case that are uncertain.
 #[derive(Clone, Debug, Args)]
@@ -21,4 +26,47 @@ pub struct UncertainArguments {
     /// Samples at once [default: one a core]
     #[arg(long, value_name = "COUNT", requires = "uncertain", value_parser = crate::cli::line::count)]
     pub jobs: Option<usize>,
+}
+
+/// What to do instead, by commands that do not take it.
+const INSTEAD: [(&str, &str); 6] = [
+    (
+        "optimize",
+        "at the best, whose case the result holds: `slcbeam run DIR/optimum-case.json --uncertain ..`, or the command that --command names",
+    ),
+    (
+        "fit",
+        "with the fitted numbers and their standard errors: `slcbeam run DIR/fitted-case.json --uncertain POINTER=normal:VALUE:STANDARD_ERROR`",
+    ),
+    (
+        "sense",
+        "bands of loads by the noise of pressures are in its result; for numbers of the case, sense with --set at either end of what is uncertain",
+    ),
+    (
+        "sweep",
+        "--vary POINTER=normal:MEAN:SD --design sobol:64 draws designs; of one design: `slcbeam run CASE --set .. --uncertain ..`",
+    ),
+    (
+        "study",
+        "`slcbeam run CASE --uncertain ..`, with the mesh and tolerance that the study leads to",
+    ),
+    (
+        "effects",
+        "`slcbeam run CASE --uncertain ..`, with the effects that are left out set to \"off\"",
+    ),
+];
+
+/// The fault of a command line whose reader found `--uncertain` where it does not belong, with what to do instead.
+pub fn elsewhere(words: &[OsString], answer: &clap::Error) -> Option<Error> {
+    let unknown = matches!(answer.get(ContextKind::InvalidArg), Some(ContextValue::String(text)) if text.starts_with("--uncertain"));
+    if answer.kind() != ErrorKind::UnknownArgument || !unknown {
+        return None;
+    }
+    let command = words.get(1)?.to_string_lossy();
+    let goes = "--uncertain goes with run, equilibrium, modes, periodic and floquet";
+    let instead = INSTEAD.iter().find(|(own, _)| *own == command);
+    Some(Error::Usage(match instead {
+        Some((_, instead)) => format!("{goes}, not with {command}; {instead}"),
+        None => format!("{goes}, not with {command}"),
+    }))
 }

@@ -8,6 +8,7 @@ use textwrap::{Options, WordSplitter};
 
 use crate::discrete::quantities::Interest;
 use crate::error::visible;
+use crate::output::bands;
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
@@ -101,6 +102,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("pressure", pressure(summary), Tone::Plain);
     add("step", step(summary), Tone::Plain);
     add("energy", energy(summary), Tone::Plain);
+    add("uncertain", uncertain(summary), Tone::Plain);
     add("sensitivity", sensitivities(summary), Tone::Plain);
     add("accuracy", accuracy(summary), Tone::Plain);
     add("balances", Some(balances(summary)), Tone::Plain);
@@ -127,6 +129,25 @@ fn step(summary: &Summary) -> Option<String> {
     ];
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     Some(parts.join(BETWEEN))
+}
+
+/// Between which values uncertain numbers leave the largest figures, beside their numerical errors.
+fn uncertain(summary: &Summary) -> Option<String> {
+    let shown = [
+        (Interest::TipU1, "u₁"),
+        (Interest::TipU3, "u₃"),
+        (Interest::MaxPressure, "p"),
+    ];
+    let of = |(one, word): (Interest, &str)| {
+        let value = get(summary, one)?.largest()?;
+        let figures = ["extreme", "max_abs", "window_max_abs"];
+        let band = bands::of(&summary.bands, one.name(), &figures, value)?;
+        let text = hold(format!("{word} {}", bands::short(band, one.unit())?));
+        // a narrow box breaks between the ends
+        Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))
+    };
+    let shown: Vec<String> = shown.into_iter().filter_map(of).collect();
+    (!shown.is_empty()).then(|| format!("largest, 95 %: {}", shown.join(BETWEEN)))
 }
 
 /// What one per cent more of each number does to the largest deflections and the largest pressure.

@@ -14,7 +14,7 @@ use crate::discrete::quantities::{Observable, Role};
 use crate::error::Result;
 use crate::results;
 use crate::results::equilibrium::{self as kept, Equilibrium, Numbers};
-use crate::results::run::Status;
+use crate::results::run::{Bands, Status};
 use crate::run::equilibrium::{Event, Kind, Options, Path, Sensitivity, Stability, State};
 use crate::run::record::Column;
 use crate::run::summary::Accuracy;
@@ -54,6 +54,8 @@ pub struct Found<'a> {
     pub accuracy: Option<&'a Accuracy>,
     /// What meshes do to the last state, where none was.
     pub meshes: Option<&'a Meshes>,
+    /// What uncertain numbers leave open of the last state.
+    pub bands: Bands,
 }
 
 /// The text of `equilibrium.json`.
@@ -89,6 +91,7 @@ pub fn json(found: &Found) -> String {
         load_factor: last.map(State::load_factor),
         states: path.states.len(),
         quantities: last.map(|s| keyed(&s.row)),
+        bands: found.bands.clone(),
         stability: last.and_then(|s| s.stability.as_ref()).map(stability),
         events: path.events.iter().map(event).collect(),
         sensitivities: found.sensitivities.iter().map(derivatives).collect(),

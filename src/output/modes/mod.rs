@@ -17,6 +17,7 @@ use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
 use crate::results::modes::{self as kept, About};
+use crate::results::run::Bands;
 use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, Sort};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
@@ -31,6 +32,9 @@ pub const JSON: &str = "modes.json";
 pub const ARRAYS: &str = "modes.npz";
 /// Shapes with pressures.
 pub const PICTURE: &str = "modes.svg";
+
+/// Difference of two modes that are the same, over their angular frequency.
+const ALIKE: f64 = 1e-6;
 
 /// Modes with the case they are of.
 pub struct Report<'a> {
@@ -50,6 +54,8 @@ pub struct Report<'a> {
     pub accuracy: Option<&'a Accuracy>,
     /// What is known of the case without them.
     pub known: &'a [String],
+    /// What uncertain numbers leave open, of the modes that swing by the rank of their frequencies.
+    pub bands: &'a Bands,
 }
 
 impl Report<'_> {
@@ -186,7 +192,7 @@ pub fn json(report: &Report) -> String {
         finite_eigenvalues: found.finite,
         stable: !found.modes.iter().any(|m| m.kind.grows()),
         verdict: report.verdict(),
-        modes: found.modes.iter().map(mode).collect(),
+        modes: with_bands(found.modes.iter().map(mode).collect(), report.bands),
         coupling: report.passivity().map(coupling),
         sensitivities: report.sensitivities.iter().map(derivatives).collect(),
         solver: kept::Work {
@@ -217,7 +223,33 @@ fn mode(mode: &Mode) -> kept::Mode {
         extrapolated_growth_per_s: mode.extrapolated().map(|s| s.re),
         mesh_error: mode.mesh_error(),
         rate_mesh_error: mode.rate_error(),
+        bands: Bands::new(),
     }
+}
+
+/// Modes with the bands of their own figures. A rank is that among all modes that swing, of which some may not be here, and equal ones
+/// may stand in another order: a mode is known by its values.
+fn with_bands(mut modes: Vec<kept::Mode>, bands: &Bands) -> Vec<kept::Mode> {
+    for rank in 1.. {
+        let of = |figure: &str| bands.get(&format!("mode_{rank}.{figure}"));
+        let Some(frequency) = of("frequency_hz") else {
+            return modes;
+        };
+        let alike = |mode: &&mut kept::Mode| {
+            let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * mode.angular_frequency_per_s;
+            mode.bands.is_empty()
+                && mode.frequency_hz.is_some_and(|hz| near(hz, frequency.value))
+                && of("growth_per_s").is_none_or(|growth| near(mode.growth_per_s, growth.value))
+        };
+        if let Some(mode) = modes.iter_mut().find(alike) {
+            let own = ["frequency_hz", "damping_ratio", "growth_per_s"];
+            mode.bands = own
+                .into_iter()
+                .filter_map(|figure| Some((figure.to_owned(), *of(figure)?)))
+                .collect();
+        }
+    }
+    modes
 }
 
 /// Writes the files into a folder; others in it stay.

@@ -4,30 +4,61 @@ use serde_json::{Value, json};
 
 use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
+use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
 use crate::results::cycles::{Along, Cycle, Map, Stability};
 use crate::run::floquet::Multiplier;
 use crate::run::floquet::shape::Part;
+use crate::study::refine::numbers;
 use crate::study::stability::Member;
+
+/// The figure that tells how fast a disturbance grows.
+const GROWTH: &str = "growth_per_s";
 
 /// Rows of a table, and what stands over it.
 fn multipliers(found: &Cycle) -> Value {
-    let row = |m: &Multiplier| {
+    let told = !found.bands.is_empty();
+    let names: Vec<String> = numbers::named(&found.floquet)
+        .into_iter()
+        .map(|(name, _)| name)
+        .collect();
+    // of a cycle's run the rate of the largest is known alone
+    let band = |k: usize| {
+        let own = found.bands.get(&format!("{}.{GROWTH}", names[k]));
+        let band = own.or_else(|| found.bands.get(GROWTH).filter(|_| k == 0))?;
+        bands::between(band, &significant)
+    };
+    let row = |(k, m): (usize, &Multiplier)| {
         let part = match m.part {
             Part::Bending(mode) => format!("bending mode {mode}"),
             Part::Along => "motion along".into(),
             Part::Fluid => "fluid".into(),
         };
-        json!([m.re, m.im, m.modulus, m.growth_per_s, m.frequency_hz, part, m.share])
+        let before = [m.re, m.im, m.modulus, m.growth_per_s].map(Value::from);
+        let behind = [json!(m.frequency_hz), json!(part), json!(m.share)];
+        let band = told.then(|| json!(band(k)));
+        before.into_iter().chain(band).chain(behind).collect::<Vec<_>>()
     };
+    let mut headings = vec![
+        "real part",
+        "imaginary part",
+        "modulus",
+        "growth [1/s]",
+        "frequency [Hz]",
+        "mostly",
+        "share of energy",
+    ];
+    if told {
+        headings.insert(4, "95 % of samples: growth [1/s]");
+    }
     json!({
         "title": "Multipliers",
         "about": "A small disturbance of the cycle is multiplied by these numbers in every period. It dies away where the modulus is \
                   below 1 and grows where it is above.",
-        "headings": ["real part", "imaginary part", "modulus", "growth [1/s]", "frequency [Hz]", "mostly", "share of energy"],
-        "rows": found.floquet.multipliers.iter().map(row).collect::<Vec<_>>(), "file": null,
+        "headings": headings,
+        "rows": found.floquet.multipliers.iter().enumerate().map(row).collect::<Vec<_>>(), "file": null,
     })
 }
 

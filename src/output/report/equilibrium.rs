@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::{Found, Kind, Page, Place, pack, sheet};
 use crate::error::Result;
+use crate::output::bands;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
 use crate::output::folder::CASE;
 use crate::output::numbers::{count, duration, quantity, significant, trimmed};
@@ -59,11 +60,13 @@ pub fn data(place: &Place) -> Result<Page> {
             format!("found in {}", duration(found.wall_s.total)),
         ],
     );
-    let tile = |label: &str, value: Option<f64>, unit: &str, note: &str| {
+    let tile = |label: &str, (name, value): (&str, Option<f64>), unit: &str, note: &str| {
         let value = value?;
         let least = if unit == "Pa" { 1e-9 } else { 1e-15 };
         let value = if value.abs() < least { 0.0 } else { value };
-        Some(json!({"label": label, "value": quantity(value, unit, 3), "note": note}))
+        let told = |x: f64, digits: usize| quantity(x, unit, digits);
+        let band = found.bands.get(name).map(|band| bands::beside(band, value, &told));
+        Some(json!({"label": label, "value": quantity(value, unit, 3), "note": note, "band": band}))
     };
     let last = |name: &str| {
         found
@@ -75,10 +78,10 @@ pub fn data(place: &Place) -> Result<Page> {
         0 => ["Share of the loads", "at the end of the path"],
         _ => ["Load factor", "at the end of the path; every stage before counts 1"],
     };
-    let first = tile(label, found.load_factor, "1", note);
+    let first = tile(label, ("", found.load_factor), "1", note);
     let others = TILES
         .iter()
-        .map(|(label, name, unit, note)| tile(label, last(name), unit, note));
+        .map(|(label, name, unit, note)| tile(label, (name, last(name)), unit, note));
     page.put("tiles", [first].into_iter().chain(others).flatten().collect::<Vec<_>>());
     page.put("events", json!(found.events));
     page.put("derivatives", json!(found.sensitivities));

@@ -7,10 +7,11 @@ use serde_json::{Map, Value, json};
 
 use super::{Found, Kind, Page, Place, capital, pack, sheet};
 use crate::error::Result;
+use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
 use crate::output::npz::Npz;
-use crate::output::numbers::count;
+use crate::output::numbers::{count, significant};
 use crate::results::modes::{About, Modes};
 
 /// Columns of the table that a reader needs; the file has the rest.
@@ -54,7 +55,8 @@ pub fn data(place: &Place) -> Result<Page> {
             format!("{} finite eigenvalues", count(found.finite_eigenvalues as u64)),
         ],
     );
-    page.put("table", sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name)));
+    let table = sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name));
+    page.put("table", with_bands(table, &found));
     page.put("modes", json!(found.modes));
     page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
@@ -83,6 +85,33 @@ pub fn data(place: &Place) -> Result<Page> {
         format!("slcbeam modes {CASE}{at} --count {moving}{near}{kind}"),
     );
     Ok(page)
+}
+
+/// The table with the bands of frequencies and rates behind them, where something is uncertain.
+fn with_bands(mut table: Value, found: &Modes) -> Value {
+    if found.modes.iter().all(|mode| mode.bands.is_empty()) {
+        return table;
+    }
+    for (heading, key) in [
+        ("frequency [Hz]", "frequency_hz"),
+        ("growth rate [1/s]", "growth_per_s"),
+    ] {
+        let headings = table["headings"].as_array_mut();
+        let Some((headings, place)) = headings.and_then(|all| {
+            let place = all.iter().position(|own| own == heading)?;
+            Some((all, place + 1))
+        }) else {
+            continue;
+        };
+        headings.insert(place, json!(format!("95 % of samples: {heading}")));
+        for (row, mode) in table["rows"].as_array_mut().into_iter().flatten().zip(&found.modes) {
+            let text = mode.bands.get(key).and_then(|band| bands::between(band, &significant));
+            if let Some(row) = row.as_array_mut().filter(|row| row.len() >= place) {
+                row.insert(place, json!(text));
+            }
+        }
+    }
+    table
 }
 
 /// Amplitudes and phases, mode after mode; of many modes on a fine mesh the first ones.

@@ -9,6 +9,7 @@ use super::{Kind, Page, Place, cycles, energy_balance, facts, frames, inputs, pe
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::characteristic;
+use crate::output::bands;
 use crate::output::folder::{CASE, FIELDS, SUMMARY};
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
@@ -156,14 +157,54 @@ fn answer(summary: &Summary) -> Option<String> {
     ))
 }
 
+/// What a tile shows.
+struct Shown {
+    text: String,
+    band: Option<String>,
+}
+
+impl Shown {
+    /// In words alone.
+    fn words(text: String) -> Self {
+        Self { text, band: None }
+    }
+
+    /// A figure of a quantity as it is told; the figures are those that it may be.
+    fn figure(
+        summary: &Summary,
+        (name, figures): (&str, &[&str]),
+        value: f64,
+        told: impl Fn(f64, usize) -> String,
+    ) -> Self {
+        let band = bands::of(&summary.bands, name, figures, value);
+        Self {
+            text: told(value, 3),
+            band: band.map(|band| bands::beside(band, value, &told)),
+        }
+    }
+}
+
+/// Figures of a quantity that are its largest value, and those of an energy at the end; of a cycle over its period.
+const LARGEST: [&str; 3] = ["extreme", "max_abs", "window_max_abs"];
+const AT_THE_END: [&str; 2] = ["final", "window"];
+
 fn tiles(summary: &Summary) -> Vec<Value> {
     let largest = |name: &str| summary.quantity(name)?.largest();
-    let last = |name: &str| summary.quantity(name).and_then(|q| q.last);
     let mut all = vec![];
-    let mut tile = |label: &str, value: Option<String>, note: &str| {
-        if let Some(value) = value {
-            all.push(json!({"label": label, "value": value, "note": note}));
+    let mut tile = |label: &str, shown: Option<Shown>, note: &str| {
+        if let Some(Shown { text, band }) = shown {
+            all.push(json!({"label": label, "value": text, "note": note, "band": band}));
         }
+    };
+    let last = |name: &str, unit: &str| {
+        let value = summary.quantity(name)?.last?;
+        let told = |x: f64, digits| quantity(x, unit, digits);
+        Some(Shown::figure(summary, (name, &AT_THE_END), value, told))
+    };
+    let most = |name: &str, unit: &str| {
+        let value = settled(largest(name)?);
+        let told = |x: f64, digits| quantity(x, unit, digits);
+        Some(Shown::figure(summary, (name, &LARGEST), value, told))
     };
     let tip = [
         (Interest::TipU1, "Tip, across", "largest deflection u₁"),
@@ -171,7 +212,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         (Interest::TipAngle, "Turn of the tip", "largest slope angle"),
     ];
     for (one, label, words) in tip {
-        let value = largest(one.name()).map(|x| quantity(settled(x), one.unit(), 3));
+        let value = most(one.name(), one.unit());
         tile(label, value, &format!("{words}{}", when_and_end(summary, one)));
     }
     if let Some(step) = summary.step_response.get(Interest::TipU1.name()) {
@@ -180,7 +221,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             .map_or(String::new(), |t| format!("; within 5 % after {}", quantity(t, "s", 3)));
         tile(
             "Rise time",
-            step.rise_time_s.map(|t| quantity(t, "s", 3)),
+            step.rise_time_s.map(|t| Shown::words(quantity(t, "s", 3))),
             &format!("of u₁ at the tip, from 10 to 90 % of its way{settles}"),
         );
     }
@@ -188,33 +229,28 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     let window = window.map_or("gauge, in any bladder".into(), |p| {
         format!("in any bladder; {} in the last part", quantity(p, "Pa", 3))
     });
-    tile(
-        "Largest pressure",
-        largest("max_pressure_pa").map(|p| quantity(p, "Pa", 3)),
-        &window,
-    );
+    tile("Largest pressure", most("max_pressure_pa", "Pa"), &window);
     tile(
         "Energy put in",
-        last("input_energy_j").map(|e| quantity(e, "J", 3)),
+        last("input_energy_j", "J"),
         "by loads, driven ends and ports",
     );
-    tile(
-        "Harvested",
-        last("harvested_energy_j").map(|e| quantity(e, "J", 3)),
-        "by the turbines",
-    );
-    let power = |name: &str| {
-        summary
-            .quantity(name)
-            .and_then(|q| q.window_power_w)
-            .map(|p| quantity(p, "W", 3))
-    };
+    tile("Harvested", last("harvested_energy_j", "J"), "by the turbines");
+    let power = |name: &str| summary.quantity(name)?.window_power_w;
+    let in_watt = |p: f64, digits| quantity(p, "W", digits);
+    let harvested = power("harvested_energy_j").map(|p| {
+        let mean = Shown::figure(summary, ("harvested_power_w", &["mean"]), p, in_watt);
+        match mean.band {
+            None => Shown::figure(summary, ("harvested_energy_j", &["window_power_w"]), p, in_watt),
+            Some(_) => mean,
+        }
+    });
     tile(
         "Power harvested",
-        power("harvested_energy_j"),
+        harvested,
         &format!(
             "mean over the last part; put in: {}",
-            power("input_energy_j").unwrap_or_else(|| "unknown".into())
+            power("input_energy_j").map_or_else(|| "unknown".into(), |p| in_watt(p, 3))
         ),
     );
     let efficiency = summary.quantity("efficiency");
@@ -223,11 +259,18 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         .map_or("harvested over put in".into(), |e| {
             format!("harvested over put in; {} in the last part", percent(e))
         });
-    tile("Efficiency", last("efficiency").map(percent), &window);
+    let share = efficiency.and_then(|q| q.last).map(|e| {
+        let told = |e: f64, digits| match digits {
+            3 => percent(e),
+            _ => format!("{} %", significant(100.0 * e, digits)),
+        };
+        Shown::figure(summary, ("efficiency", &AT_THE_END), e, told)
+    });
+    tile("Efficiency", share, &window);
     let open = summary.balances.energy_residual_relative;
     tile(
         "Unaccounted energy",
-        open.is_finite().then(|| percent(open)),
+        open.is_finite().then(|| Shown::words(percent(open))),
         "of the largest energy: the error of the integration",
     );
     all

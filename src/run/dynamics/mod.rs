@@ -158,6 +158,7 @@ impl<'a> Run<'a> {
                 quantities: Default::default(),
                 probes: Default::default(),
                 step_response: Default::default(),
+                bands: Default::default(),
                 balances: Default::default(),
                 solver: Counters::default(),
                 wall_s: WallTimes::default(),

@@ -47,6 +47,7 @@ pub fn names(case: &Case, what: What) -> Result<Vec<String>> {
                 of(&mut all, &figures, &format!("mode_{k}"));
             }
         }
+        What::Floquet => all.push("growth_per_s".into()),
         What::Run | What::Periodic => {
             let system = System::new(case)?;
             let network = system.model.wet.as_ref().map(|wet| &wet.network);

@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
             return Err(Error::Solver(Box::new(SolverError {
                 code: match self.problem.what {
                     What::Run => Code::Integrator,
-                    What::Periodic => Code::NoCycle,
+                    What::Periodic | What::Floquet => Code::NoCycle,
                     What::Equilibrium => Code::NoEquilibrium,
                     What::Modes => Code::NoModes,
                 },
@@ -239,7 +239,7 @@ impl<'a> Search<'a> {
     /// Error of figures.
     pub(super) fn noise(&self) -> f64 {
         match self.problem.what {
-            What::Run | What::Periodic => self.problem.case.solver.rtol.max(EXACT),
+            What::Run | What::Periodic | What::Floquet => self.problem.case.solver.rtol.max(EXACT),
             What::Equilibrium | What::Modes => EXACT,
         }
     }

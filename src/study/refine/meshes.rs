@@ -31,6 +31,11 @@ impl Share {
     pub fn total(&self) -> f64 {
         self.beam.unwrap_or(0.0) + self.bladders.unwrap_or(0.0)
     }
+
+    /// Whether one of them is.
+    pub fn known(&self) -> bool {
+        self.beam.is_some() || self.bladders.is_some()
+    }
 }
 
 /// What meshes do to numbers.

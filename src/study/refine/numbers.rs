@@ -7,7 +7,7 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::run::equilibrium::{self, Options, Path};
-use crate::run::floquet::{self, Floquet};
+use crate::run::floquet::{self, Floquet, Multiplier};
 use crate::run::modes::{self, Kind, Mode, Plan};
 use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Cycle, Scene, record, shoot, subharmonic};
@@ -21,7 +21,7 @@ const NOTHING: f64 = 1e-6;
 /// Strain that is round-off beside moving as a whole.
 const STRAIN: f64 = 1e-9;
 /// Multipliers below this are of what is gone after a period.
-const GONE: f64 = 0.01;
+pub const GONE: f64 = 0.01;
 /// A rate of growth counts beside this part of the mode's own frequency.
 const DAMPING: f64 = 0.01;
 
@@ -200,14 +200,20 @@ pub fn of_stability(found: &Floquet) -> Numbers {
 
 /// Multipliers that were found.
 fn of_floquet(found: &Floquet) -> Numbers {
+    let all = named(found).into_iter();
+    all.map(|(name, m)| (format!("{name}.modulus"), Number::new(m.modulus, 1.0)))
+        .collect()
+}
+
+/// Multipliers by the part of the motion that each is mostly of, `mode_1`; of one part the largest first.
+pub fn named(found: &Floquet) -> Vec<(String, &Multiplier)> {
     let mut counts = BTreeMap::new();
-    let mut all = Numbers::new();
-    for m in &found.multipliers {
+    let name = |m: &Multiplier| {
         let part = m.part.to_string().replace(' ', "_");
         let count = counts.entry(part.clone()).or_insert(0);
         *count += 1;
-        let name = if *count == 1 { part } else { format!("{part}_{count}") };
-        all.insert(format!("{name}.modulus"), Number::new(m.modulus, 1.0));
-    }
-    all
+        if *count == 1 { part } else { format!("{part}_{count}") }
+    };
+    let names: Vec<String> = found.multipliers.iter().map(name).collect();
+    names.into_iter().zip(&found.multipliers).collect()
 }

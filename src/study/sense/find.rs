@@ -165,7 +165,9 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         found.doubts = doubts(&found, &left, all.len(), &all_found);
         warnings.extend(found.doubts.clone());
         if let Some(largest) = largest(&all_found) {
-            warnings.extend(aside(&model, largest)?);
+            let row = all_found.found.iter().position(|one| std::ptr::eq(one, largest));
+            let line = row.and_then(|row| measured.lines.get(row)).copied().unwrap_or(0);
+            warnings.extend(aside(&model, largest, line)?);
             about.clone_from(&largest.jacobian);
         }
     }
@@ -218,9 +220,18 @@ fn largest(estimate: &Estimate) -> Option<&Found> {
     estimate.found.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
 }
 
-/// What is said where the state of the largest loads is not that to which they lead from rest.
-fn aside(model: &AtRest, largest: &Found) -> Result<Vec<String>> {
-    let (followed, mut warnings) = model.followed(largest.mean.as_slice())?;
+/// What is said where the state of the largest loads, those of a line, is not that to which they lead from rest.
+fn aside(model: &AtRest, largest: &Found, line: usize) -> Result<Vec<String>> {
+    let (followed, mut warnings) = match model.followed(largest.mean.as_slice()) {
+        Ok(followed) => followed,
+        Err(Error::Solver(fault)) => {
+            return Ok(vec![Code::StateAside.warning(format!(
+                "line {line} of the measurements: the loads found there lead along their path from rest to no state: {}; look at the numbers of that line",
+                fault.what
+            ))]);
+        }
+        Err(other) => return Err(other),
+    };
     if (&followed - &largest.predicted).norm() > SAME * followed.norm() {
         warnings.push(Code::StateAside.warning(
             "the loads found lead along their path from rest to other pressures than those that were fitted: the state of the fit is another one",

@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use super::multipliers::multipliers;
 use super::plan::What;
 use super::power::{self, POWERS};
 use super::row::Found;
@@ -52,7 +53,7 @@ pub fn check(case: &Case, what: What) -> Result<()> {
     match what {
         What::Run | What::Modes => System::new(case).map(|_| ()),
         What::Equilibrium => equilibrium::system(case, case.time.end_s).map(|_| ()),
-        What::Periodic => Scene::new(case, None)?.held(&case.name),
+        What::Periodic | What::Floquet => Scene::new(case, None)?.held(&case.name),
     }
 }
 
@@ -61,6 +62,7 @@ pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: &dyn Fn(&Case)
     let found = match ask.what {
         What::Run => run(case).map(|outcome| of_run(&outcome.summary)),
         What::Periodic => cycle(case, ask),
+        What::Floquet => multipliers(case, ask),
         What::Equilibrium => at_rest(case, ask, stop),
         What::Modes => small(case, ask),
     };
@@ -231,8 +233,8 @@ fn short(found: &mut Found, accuracy: &Accuracy) {
 /// Errors that meshes make.
 fn off(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
     for (own, share) in &by_mesh.quantities {
-        let known = share.beam.is_some() || share.bladders.is_some();
-        found.put(format!("{}.error", name(own)), known.then(|| share.total()));
+        let total = share.known().then(|| share.total());
+        found.put(format!("{}.error", name(own)), total);
     }
     found.warn(by_mesh.warning().as_slice());
 }

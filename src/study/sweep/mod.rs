@@ -6,7 +6,9 @@
 //! designs  which values design number k has, and its case
 //! plan     everything that decides what the rows are
 //! row      what came out of a design
+//! unit     units of figures, by their names
 //! compute  the row of a case, by each command
+//! multipliers  what a cycle's multipliers tell
 //! power    what a cycle puts in and harvests
 //! exchanged modes that change places from one design to the next
 //! pool     designs on all cores
@@ -18,11 +20,13 @@
 pub mod compute;
 pub mod designs;
 pub mod exchanged;
+pub mod multipliers;
 pub mod plan;
 pub mod pool;
 pub mod power;
 pub mod row;
 pub mod table;
+pub mod unit;
 pub mod vary;
 
 pub use compute::Ask;

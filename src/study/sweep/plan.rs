@@ -18,6 +18,8 @@ pub enum What {
     Equilibrium,
     /// `modes`.
     Modes,
+    /// `floquet`.
+    Floquet,
 }
 
 impl What {
@@ -28,6 +30,7 @@ impl What {
             Self::Periodic => "periodic",
             Self::Equilibrium => "equilibrium",
             Self::Modes => "modes",
+            Self::Floquet => "floquet",
         }
     }
 }

@@ -11,7 +11,8 @@ use crate::study::sweep::plan::What;
 /// Derivatives by figure, each by the numbers in their order; or why there are none.
 pub type Slopes = Result<slopes::Slopes, String>;
 
-/// Derivatives of the figures of a case by each of its numbers: exact, but by differences of cycles where a number moves their period.
+/// Derivatives of the figures of a case by each of its numbers: exact, but by differences of cycles where a number moves their period, and of
+/// multipliers.
 /// `difference` is told which number, and gives differences of figures over a step of it.
 pub fn slopes(
     case: &Case,
@@ -22,7 +23,7 @@ pub fn slopes(
 ) -> Slopes {
     let exact = || {
         let parameters = Parameter::all(case, pointers)?;
-        if what == What::Periodic && slopes::check(case, what, &parameters).is_err() {
+        if matches!(what, What::Periodic | What::Floquet) && slopes::check(case, what, &parameters).is_err() {
             return Ok(by_differences(pointers.len(), difference));
         }
         let (found, slopes) = slopes::slopes(case, what, &parameters, None, stop)?;

@@ -26,6 +26,8 @@ pub use indices::Index;
 pub use samples::Plan;
 pub use spread::judge;
 
+use crate::run::band::{Band, Bands};
+
 /// What uncertain numbers leave open of the figures of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
@@ -50,6 +52,23 @@ pub struct Uncertainty {
     pub no_first_order: Option<String>,
     /// What to know before trusting them.
     pub warnings: Vec<String>,
+}
+
+impl Uncertainty {
+    /// Every figure with its band, as a result has it.
+    pub fn bands(&self) -> Bands {
+        let band = |one: &Spread| Band {
+            value: one.value,
+            numerical_error: one.numerical_error,
+            sd: one.sd,
+            low: one.low,
+            high: one.high,
+            samples: one.samples,
+            drawn: self.samples,
+        };
+        let all = self.figures.iter();
+        all.map(|(name, one)| (name.clone(), band(one))).collect()
+    }
 }
 
 /// An uncertain number.

@@ -5,42 +5,26 @@ use std::f64::consts::TAU;
 
 use super::{FirstOrder, Spread};
 use crate::study::sweep::row::Found;
+use crate::study::sweep::unit::unit;
 
 /// Beside others of its unit a figure of this part is round-off.
 const NOTHING: f64 = 1e-9;
-/// Ends of names that are units, the longer ones first.
-const UNITS: [&str; 14] = [
-    "_m3_s",
-    "_per_m",
-    "_per_s",
-    "_n_m",
-    "_m_s",
-    "_m3",
-    "_rad",
-    "_pa",
-    "_hz",
-    "_m",
-    "_n",
-    "_j",
-    "_w",
-    "damping_ratio",
-];
 
-/// The unit of a figure by the end of its name; what has none is beside its likes alone.
-fn unit(name: &str) -> &str {
-    let quantity = name.split('.').next().unwrap_or(name);
-    let own = name.rsplit('.').next().unwrap_or(name);
-    let end = |name: &'static str| {
-        [quantity, own]
-            .into_iter()
-            .any(|one| one.ends_with(name))
-            .then_some(name)
-    };
-    UNITS.iter().find_map(|unit| end(unit)).unwrap_or(own)
+/// What a figure is beside others: its unit, or its own name where it has none.
+fn kind(name: &str) -> &str {
+    match unit(name) {
+        "1" => name.rsplit('.').next().unwrap_or(name),
+        unit => unit,
+    }
 }
 
-/// Figures with nothing in place of what is round-off beside others of their unit, growth beside what swings, and damping that is none.
-pub(super) fn without_round_off(mut figures: BTreeMap<String, Spread>, own: &Found) -> BTreeMap<String, Spread> {
+/// Figures with nothing in place of what is round-off beside others of their unit. Growth is beside what swings, damping beside one; an
+/// angle beside displacements over a length [m] of the beam, forces and couples beside the work that they would do over it.
+pub(super) fn without_round_off(
+    mut figures: BTreeMap<String, Spread>,
+    own: &Found,
+    length: f64,
+) -> BTreeMap<String, Spread> {
     let size = |one: &Spread| {
         [one.value, one.mean, one.low, one.high]
             .iter()
@@ -48,16 +32,23 @@ pub(super) fn without_round_off(mut figures: BTreeMap<String, Spread>, own: &Fou
     };
     let mut largest: BTreeMap<String, f64> = BTreeMap::new();
     for (name, one) in &figures {
-        let entry = largest.entry(unit(name).to_owned()).or_default();
+        let entry = largest.entry(kind(name).to_owned()).or_default();
         *entry = entry.max(size(one));
     }
     let swings = own.figures.iter().filter(|(name, _)| name.ends_with("frequency_hz"));
     let swings = swings.fold(0.0_f64, |s, (_, hz)| s.max(TAU * hz.abs()));
+    let most = |kind: &str| largest.get(kind).copied().unwrap_or(0.0);
+    let displacement = most("m").max(length * most("rad"));
+    let work = most("J").max(length * most("N")).max(most("N m"));
     for (name, one) in &mut figures {
-        let beside = match unit(name) {
+        let beside = match kind(name) {
             "damping_ratio" => 1.0,
-            "_per_s" => largest["_per_s"].max(swings),
-            unit => largest[unit],
+            "1/s" => most("1/s").max(swings),
+            "m" => displacement,
+            "rad" => displacement / length,
+            "N" => work / length,
+            "N m" => work,
+            kind => most(kind),
         };
         if size(one) <= NOTHING * beside {
             *one = Spread {
@@ -78,4 +69,55 @@ pub(super) fn without_round_off(mut figures: BTreeMap<String, Spread>, own: &Fou
         }
     }
     figures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(x: f64) -> Spread {
+        Spread {
+            value: x,
+            numerical_error: None,
+            first_order: None,
+            samples: 16,
+            mean: x,
+            sd: 0.1 * x.abs(),
+            sd_error: 0.0,
+            low: x,
+            high: x,
+            indices: None,
+        }
+    }
+
+    /// Goal: what stands alone with its unit is held beside what it makes or does, not beside itself: a beam that is pressed along its
+    /// axis neither turns nor pulls at its root, however its round-off spreads.
+    #[test]
+    fn round_off_that_is_alone_with_its_unit_is_nothing() {
+        let all = [
+            ("tip_u3_m", 2e-6),
+            ("tip_u1_m", -3e-52),
+            ("tip_angle_rad", 4.5e-51),
+            ("bladder_energy_j", 2e-6),
+            ("reaction_root_x_N", 2.6e-50),
+            ("reaction_root_z_N", 3.5e-18),
+            ("reaction_root_couple_N m", 4e-51),
+        ];
+        let figures = all.map(|(name, x)| (name.to_owned(), of(x))).into();
+        let own = Found {
+            status: crate::run::summary::Status::Finished,
+            reason: None,
+            steps: None,
+            figures: vec![],
+            warnings: vec![],
+            told: vec![],
+        };
+        let left = without_round_off(figures, &own, 0.1);
+        let told: Vec<&str> = left
+            .iter()
+            .filter(|(_, one)| one.sd > 0.0)
+            .map(|(name, _)| name.as_str())
+            .collect();
+        assert_eq!(told, ["bladder_energy_j", "tip_u3_m"]);
+    }
 }

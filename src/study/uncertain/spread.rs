@@ -9,7 +9,15 @@ use crate::run::summary::Status;
 use crate::study::sweep::row::{Found, word};
 
 /// Endings of what is told of figures and is none of them.
-const NO_FIGURES: [&str; 6] = ["error", "_at_s", "residual_relative", "_bound", "_bound_hz", "modes"];
+const NO_FIGURES: [&str; 7] = [
+    "error",
+    "_at_s",
+    "residual_relative",
+    "_bound",
+    "_bound_hz",
+    "modes",
+    "strongly_damped",
+];
 /// The same, whole names.
 const NO_FIGURE: [&str; 3] = ["stable", "period_s", "load_factor"];
 /// Standard errors by which first order and samples may differ.
@@ -29,9 +37,10 @@ pub fn is_figure(name: &str) -> bool {
 }
 
 /// Judges the samples of a case, whose own figures are `own`; of each uncertain number `own_values` has the case's own value, where it
-/// has one. `found` is in the order of the plan.
+/// has one. `found` is in the order of the plan; a case comes with its name and the length [m] of its beam.
 pub fn judge(
-    [case, what]: [&str; 2],
+    (case, length): (&str, f64),
+    what: &str,
     plan: &Plan,
     own: &Found,
     own_values: &[Option<f64>],
@@ -79,7 +88,7 @@ pub fn judge(
             Some((name.clone(), spread))
         })
         .collect();
-    let figures = without_round_off(figures, own);
+    let figures = without_round_off(figures, own, length);
     Uncertainty {
         case: case.into(),
         command: what.into(),
@@ -101,16 +110,24 @@ fn of(found: &Found, name: &str) -> Option<f64> {
 
 /// Estimated error of a figure, absolute: its own, or that of its quantity, which is relative to the largest figure of that.
 fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
+    let largest = |quantity: &str| {
+        let of_it = own.figures.iter().filter(|(other, _)| {
+            is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity)
+        });
+        of_it.map(|(_, x)| x.abs()).fold(0.0, f64::max)
+    };
+    let (quantity, figure) = name.rsplit_once('.').unzip();
     if let Some(error) = own.figure(&format!("{name}.error")) {
-        return Some(error * value.abs());
+        // that of a figure over a cycle counts beside the largest of its quantity
+        return Some(
+            match quantity.filter(|_| figure.is_some_and(|own| own.starts_with("window"))) {
+                Some(quantity) => error * largest(quantity),
+                None => error * value.abs(),
+            },
+        );
     }
-    let quantity = name.rsplit_once('.')?.0;
-    let error = own.figure(&format!("{quantity}.error"))?;
-    let of_it = own
-        .figures
-        .iter()
-        .filter(|(other, _)| is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity));
-    Some(error * of_it.map(|(_, x)| x.abs()).fold(0.0, f64::max))
+    let error = own.figure(&format!("{}.error", quantity?))?;
+    Some(error * largest(quantity?))
 }
 
 fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
@@ -190,6 +207,15 @@ fn warnings(
             ));
         }
     }
+    for (k, input) in inputs.iter().enumerate() {
+        let mut shares = figures.values().filter_map(|one| one.first_order.as_ref()).peekable();
+        if shares.peek().is_some() && shares.all(|first| first.shares[k] == 0.0) {
+            all.push(format!(
+                "no figure that has derivatives depends on {}, to first order",
+                input.pointer
+            ));
+        }
+    }
     let mut named = |which: &dyn Fn(&Spread) -> bool, what: &str| {
         let names: Vec<&str> = figures
             .iter()
@@ -252,7 +278,7 @@ mod tests {
         let all: Vec<Found> = (0..plan.count()).map(|k| found(q(&plan.values(k)))).collect();
         let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![3.0, 0.1])]));
         let own = found(q(&[2.0, 3.0]));
-        let told = judge(["case", "run"], &plan, &own, &[Some(2.0), None], &all, slopes);
+        let told = judge(("case", 0.1), "run", &plan, &own, &[Some(2.0), None], &all, slopes);
         assert_eq!(told.warnings, Vec::<String>::new());
         assert_eq!((told.samples, told.finished), (512, 512));
         let spread = &told.figures["q.final"];
@@ -269,6 +295,27 @@ mod tests {
         assert!(told.figures.len() == 1);
     }
 
+    /// Goal: an error that is relative to the largest figure of a quantity, as those of cycles are, is no smaller for a smaller one.
+    #[test]
+    fn errors_are_of_what_they_are_relative_to() {
+        let own = Found {
+            figures: [
+                ("q_m.window_max_abs", 2.0),
+                ("q_m.window_rms", 1.0),
+                ("q_m.window_rms.error", 0.01),
+                ("mode_1.frequency_hz", 9.0),
+                ("mode_1.damping_ratio", 0.1),
+                ("mode_1.damping_ratio.error", 0.01),
+            ]
+            .map(|(name, x)| (name.to_owned(), x))
+            .into(),
+            ..found(0.0)
+        };
+        assert_eq!(numerical_error(&own, "q_m.window_rms", 1.0), Some(0.02));
+        assert_eq!(numerical_error(&own, "mode_1.damping_ratio", 0.1), Some(0.001));
+        assert_eq!(numerical_error(&own, "mode_1.frequency_hz", 9.0), None);
+    }
+
     #[test]
     fn what_is_no_line_what_is_lost_and_what_is_elsewhere_is_told() {
         let plan = plan();
@@ -282,7 +329,8 @@ mod tests {
         };
         let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![0.0, 0.0])]));
         let told = judge(
-            ["case", "run"],
+            ("case", 0.1),
+            "run",
             &plan,
             &found(0.0),
             &[Some(2.1), Some(3.0)],
@@ -294,6 +342,7 @@ mod tests {
             "1 of 512 samples did not finish",
             "/a is 2.1 in the case and 2.0 in the mean",
             "no straight line",
+            "no figure that has derivatives depends on /b, to first order",
         ] {
             assert!(words.contains(part), "{words}");
         }

@@ -76,13 +76,13 @@ function showWarnings(main) {
 
 /** A text whose numbers do not part from their units where lines break. */
 function held(text) {
-  return text.replace(/(\d) (?=(?:[fpnµmkMG]?(?:m|s|Pa|J|W|N|Hz|rad|l)\b|%))/g, "$1\u00a0");
+  return text.replace(/± /g, "±\u00a0").replace(/(\d) (?=(?:[fpnµmkMG]?(?:m|s|Pa|J|W|N|Hz|rad|l)\b|%))/g, "$1\u00a0");
 }
 
 function showTiles(main) {
   if (!data.tiles?.length) return;
   main.append(el("div", { class: { 6: "tiles three" }[data.tiles.length] || (data.tiles.length > 6 ? "tiles four" : "tiles"), id: "tiles" }, data.tiles.map((t) =>
-    el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: held(t.value) }), el("div", { class: "note", text: held(t.note) })))));
+    el("div", { class: "tile" }, el("div", { class: "label", text: t.label }), el("div", { class: "value", text: held(t.value) }), el("div", { class: "note", text: held(t.note) }), t.band ? el("div", { class: "note band" }, t.band.split("; ").map((text) => el("div", { text: held(text) }))) : null))));
 }
 
 function showRemarks(main) {

@@ -1,0 +1,150 @@
+//! Figures beside what uncertain numbers leave open of them, in words.
+
+use super::numbers::{count, quantity, significant};
+use crate::results::run::{Band, Bands};
+
+/// Digits of the ends of a band at least, and at most.
+const DIGITS: (f64, f64) = (3.0, 8.0);
+/// Relative difference of a figure that is shown and one that has a band, below which they are the same.
+const SAME: f64 = 1e-9;
+/// Part of a figure below which its numerical error is round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// The band of a value that is shown of a quantity: that of the first of its figures that has this value, by magnitude. An extreme whose
+/// band goes through zero changes sides from sample to sample, so that its magnitude says more.
+pub fn of<'a>(bands: &'a Bands, name: &str, figures: &[&str], value: f64) -> Option<&'a Band> {
+    let all = figures.iter().filter_map(|figure| {
+        let band = bands.get(&format!("{name}.{figure}"))?;
+        let sided = *figure != "extreme" || band.low * band.high >= 0.0;
+        (sided && same(band.value.abs(), value.abs())).then_some(band)
+    });
+    all.min_by_key(|band| band.value.is_sign_negative() != value.is_sign_negative())
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.max(b)
+}
+
+/// A band in words beside a value, told with its unit: `95 % of samples: 21.4 mm … 23.9 mm; numerical error ± 0.1 mm`.
+pub fn beside(band: &Band, value: f64, told: &dyn Fn(f64, usize) -> String) -> String {
+    let magnitude = if band.value * value < 0.0 { " in magnitude" } else { "" };
+    let error = error(band, told).map_or(String::new(), |error| format!("; numerical error {error}"));
+    let outside = match (band.low..=band.high).contains(&band.value) {
+        true => "",
+        false => ", the case itself outside",
+    };
+    match between(band, told) {
+        Some(ends) => format!("95 % of {}: {ends}{magnitude}{outside}{error}", samples(band)),
+        None => format!("it does not depend on what is uncertain{error}"),
+    }
+}
+
+/// The same in short, with a unit: `−21.6 nm … −18.2 nm (± 2.1 nm numerically)`; nothing where the figure does not spread.
+pub fn short(band: &Band, unit: &str) -> Option<String> {
+    let told = |x: f64, digits: usize| quantity(x, unit, digits);
+    let error = error(band, &told).map_or(String::new(), |error| format!(" ({error} numerically)"));
+    Some(between(band, &told)? + &error)
+}
+
+/// Whose band it is.
+fn samples(band: &Band) -> String {
+    match band.samples < band.drawn {
+        true => format!("{} of {} samples", count(band.samples as u64), count(band.drawn as u64)),
+        false => "samples".into(),
+    }
+}
+
+/// Both ends, with as many digits as tell them apart.
+pub fn between(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
+    if band.sd == 0.0 {
+        return None;
+    }
+    let digits = digits(band.low, band.high);
+    Some(format!("{} … {}", told(band.low, digits), told(band.high, digits)))
+}
+
+/// Digits that tell the ends of a band apart.
+pub fn digits(low: f64, high: f64) -> usize {
+    let wanted = 2.0 + (low.abs().max(high.abs()) / (high - low)).log10().floor();
+    match wanted.is_finite() {
+        true => wanted.clamp(DIGITS.0, DIGITS.1) as usize,
+        false => DIGITS.1 as usize,
+    }
+}
+
+/// The numerical error, where it is known.
+fn error(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
+    let error = band.numerical_error?;
+    Some(match error <= ROUND_OFF * band.value.abs() {
+        true => format!("below {} of it", significant(ROUND_OFF, 1)),
+        false => format!("± {}", told(error, 2)),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn band(value: f64, low: f64, high: f64) -> Band {
+        Band {
+            value,
+            numerical_error: Some(1e-4),
+            sd: 0.25 * (high - low),
+            low,
+            high,
+            samples: 64,
+            drawn: 64,
+        }
+    }
+
+    fn metres(x: f64, digits: usize) -> String {
+        quantity(x, "m", digits)
+    }
+
+    /// Goal: the ends of a band can be told apart, an error that is none is no row of digits, and a magnitude is called so.
+    #[test]
+    fn a_band_is_told_beside_its_error() {
+        let told = |band: &Band, value: f64| beside(band, value, &metres);
+        assert_eq!(
+            told(&band(0.02, 0.019, 0.0212), 0.02),
+            "95 % of samples: 19.0 mm … 21.2 mm; numerical error ± 100 µm"
+        );
+        assert_eq!(
+            told(&band(0.02, 0.019999, 0.020001), -0.02),
+            "95 % of samples: 19.9990 mm … 20.0010 mm in magnitude; numerical error ± 100 µm"
+        );
+        let lost = Band {
+            samples: 60,
+            ..band(0.03, 0.019, 0.0212)
+        };
+        assert_eq!(
+            told(&lost, 0.03),
+            "95 % of 60 of 64 samples: 19.0 mm … 21.2 mm, the case itself outside; numerical error ± 100 µm"
+        );
+        let exact = Band {
+            numerical_error: Some(1e-20),
+            ..band(0.02, 0.02, 0.02)
+        };
+        assert_eq!(
+            told(&exact, 0.02),
+            "it does not depend on what is uncertain; numerical error below 1·10⁻⁹ of it"
+        );
+        assert_eq!(short(&exact, "m"), None);
+    }
+
+    /// Goal: a tile has the band of what it shows, and none of another figure of the quantity.
+    #[test]
+    fn a_value_has_the_band_of_its_own_figure() {
+        let all: Bands = [
+            ("tip_u1_m.extreme", band(-0.02, -0.021, 0.02)),
+            ("tip_u1_m.max_abs", band(0.02, 0.019, 0.021)),
+            ("tip_u1_m.final", band(0.01, 0.009, 0.011)),
+        ]
+        .map(|(name, band)| (name.to_owned(), band))
+        .into();
+        let found = of(&all, "tip_u1_m", &["extreme", "max_abs"], -0.02).expect("a band");
+        assert!(found.low > 0.0, "{found:?}");
+        assert_eq!(of(&all, "tip_u1_m", &["extreme", "max_abs"], 0.01), None);
+        assert_eq!(of(&all, "tip_u3_m", &["final"], 0.01), None);
+    }
+}

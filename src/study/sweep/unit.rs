@@ -1,0 +1,72 @@
+//! Units of figures, by their names.
+
+/// Ends of names, the longer ones first, and the units that they are.
+const ENDS: [(&str, &str); 21] = [
+    ("_frequency_hz", "Hz"),
+    ("_bound_hz", "Hz"),
+    ("_per_s", "1/s"),
+    ("_m^3/s", "m^3/s"),
+    ("_m3_s", "m^3/s"),
+    ("_m3_per_s", "m^3/s"),
+    ("_m_per_s", "m/s"),
+    ("_m3", "m^3"),
+    ("_per_m", "1/m"),
+    ("_n_m", "N m"),
+    ("_N m", "N m"),
+    ("_rad", "rad"),
+    ("_pa", "Pa"),
+    ("_hz", "Hz"),
+    ("_kg", "kg"),
+    ("_j", "J"),
+    ("_w", "W"),
+    ("_n", "N"),
+    ("_N", "N"),
+    ("_m", "m"),
+    ("_s", "s"),
+];
+
+/// The unit that the name of a figure ends with, its quantity's before its own; `1` where there is none.
+pub fn unit(name: &str) -> &'static str {
+    let (quantity, figure) = name.split_once('.').unwrap_or((name, ""));
+    if figure.ends_with("error") || name.ends_with("_relative") {
+        return "1";
+    }
+    if figure.ends_with("_at_s") {
+        return "s";
+    }
+    if figure.ends_with("_power_w") {
+        return "W";
+    }
+    let of = |text: &str| ENDS.iter().find(|(end, _)| text.ends_with(end)).map(|(_, unit)| *unit);
+    let whole = format!("_{figure}");
+    of(quantity).or_else(|| of(&whole)).unwrap_or("1")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit;
+
+    #[test]
+    fn names_end_with_their_units() {
+        for (name, of) in [
+            ("tip_u1_m.final", "m"),
+            ("tip_u1_m.max_abs_at_s", "s"),
+            ("tip_u1_m.error", "1"),
+            ("harvested_power_w.mean", "W"),
+            ("input_energy_j.window_power_w", "W"),
+            ("mode_1.frequency_hz", "Hz"),
+            ("mode_1.damping_ratio", "1"),
+            ("mode_1.growth_per_s", "1/s"),
+            ("max_pressure_pa.window_rms", "Pa"),
+            ("middle_curvature_per_m.max_abs", "1/m"),
+            ("middle_moment_n_m.final", "N m"),
+            ("reaction_root_x_N", "N"),
+            ("reaction_root_couple_N m", "N m"),
+            ("energy_residual_relative", "1"),
+            ("period_s", "s"),
+            ("stable", "1"),
+        ] {
+            assert_eq!(unit(name), of, "{name}");
+        }
+    }
+}
