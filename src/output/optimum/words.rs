@@ -1,5 +1,7 @@
 //! A best in words.
 
+use std::collections::BTreeMap;
+
 use crate::error::visible;
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, duration, percent, significant};
@@ -59,7 +61,7 @@ pub fn words(found: &Optimum) -> String {
     if let Some(told) = by_values(found) {
         text += &format!("{told}\n");
     }
-    for (reason, n) in &found.failed {
+    for (reason, n) in alike(&found.failed) {
         text += &format!("{n} of {failed} that failed: {reason}\n");
     }
     if found.starts.len() > 1 {
@@ -69,6 +71,24 @@ pub fn words(found: &Optimum) -> String {
         text += &format!("warning: {warning}\n");
     }
     text
+}
+
+/// Reasons of failures with how many there are of each; of those that differ in their numbers alone the first.
+fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
+    let mut kinds = BTreeMap::<String, (&str, usize, bool)>::new();
+    for (reason, n) in failed {
+        let kind = reason
+            .chars()
+            .filter(|c| !c.is_ascii_digit() && !"+-−.".contains(*c))
+            .collect();
+        let kind = kinds.entry(kind).and_modify(|kind| kind.2 = true);
+        kind.or_insert((reason, 0, false)).1 += n;
+    }
+    let told = kinds.into_values().map(|(reason, count, more)| {
+        let like = if more { ", and others with other numbers" } else { "" };
+        (format!("{reason}{like}"), count)
+    });
+    told.collect()
 }
 
 /// By what designs were chosen; nothing where no numbers were sought.
@@ -225,4 +245,26 @@ fn starts(found: &Optimum) -> String {
         text += &format!("; {nothing} had nothing to begin with");
     }
     text + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: fifty designs that fail for one reason, each at its own instant, are one line.
+    #[test]
+    fn reasons_that_differ_in_numbers_are_one() {
+        let all = [
+            "outgrown at t = 0.25 s",
+            "outgrown at t = 0.31 s",
+            "it ran out of steps",
+        ];
+        let failed = all.map(|reason| (reason.to_owned(), 2)).into_iter().collect();
+        let told = alike(&failed);
+        assert_eq!(told.len(), 2, "{told:?}");
+        assert!(
+            told.contains(&("outgrown at t = 0.25 s, and others with other numbers".into(), 4)),
+            "{told:?}"
+        );
+    }
 }

@@ -67,6 +67,12 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
         }
         Ended::Found | Ended::Apart => {}
         Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
+        Ended::Stuck if !found.failed.is_empty() => say(format!(
+            "the search ended where no step makes the figure better, though its derivatives say so, and {} of {} designs could not be computed: the best \
+             lies at the edge of what can, or the figure has a kink or ripples there; bounds that leave out what fails, or --method cma-es, tell which",
+            found.failed.values().sum::<usize>(),
+            found.evaluations
+        )),
         Ended::Stuck => say(
             "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
              than what is left, or the figure has a kink or ripples there; a smaller /solver/rtol may help, or --method cma-es, which asks for no slopes"
