@@ -19,7 +19,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let Found { result: plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
     let survey = Survey::of(&place.path(JOURNAL), &plan)?;
     let found = about(&plan, &survey);
-    let mut page = place.page(Kind::Designs, &found.case, Some(&head));
+    let mut page = place.page(Kind::Designs, &plan.title(), Some(&head));
     page.put("label", "Many designs");
     page.warnings = warnings(&plan, &survey)?;
     let kinds: Vec<String> = found

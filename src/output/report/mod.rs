@@ -54,7 +54,7 @@ use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 pub use compared::{compared, over_data};
 
@@ -160,15 +160,16 @@ impl<'a> Place<'a> {
         super::folder::result(&self.path(name))
     }
 
-    /// A picture of the folder as data of an image.
-    fn picture(&self, name: &str) -> Option<String> {
+    /// A picture of the folder as data of an image; of one that is too large its file and size.
+    fn picture(&self, name: &str) -> Option<Value> {
         let mut bytes = vec![];
         let file = open(&self.path(name)).ok()?;
         file.take(LARGEST_TEXT as u64).read_to_end(&mut bytes).ok()?;
         if bytes.len() == LARGEST_TEXT {
-            return None;
+            let size = fs::metadata(self.path(name)).ok()?.len();
+            return Some(json!({"file": name, "bytes": size}));
         }
-        Some(pack::image("image/svg+xml", &bytes))
+        Some(pack::image("image/svg+xml", &bytes).into())
     }
 
     /// Files beside the page, in order of their names, hidden ones and folders left out.

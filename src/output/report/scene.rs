@@ -114,9 +114,9 @@ fn wiring(case: &Case) -> Option<Value> {
             AccumulatorKind::Elastic { compliance_m3_pa, .. } => {
                 format!("accumulator, {} m³/Pa", significant(compliance_m3_pa, 3))
             }
-            AccumulatorKind::Tank { volume_m3 } => format!("tank, {} ml", significant(volume_m3 * 1e6, 3)),
+            AccumulatorKind::Tank { volume_m3 } => format!("tank, {}", litres(volume_m3)),
             AccumulatorKind::Gas { volume_m3, .. } => {
-                format!("accumulator, {} ml of gas", significant(volume_m3 * 1e6, 3))
+                format!("accumulator, {} of gas", litres(volume_m3))
             }
         };
         json!({"name": one.name, "at": point(at), "kind": "accumulator", "words": words})
@@ -148,19 +148,31 @@ fn pressure(signal: &Signal) -> String {
     format!("p = {}", words(signal, "Pa"))
 }
 
-/// Flow through a port, in microlitres.
-fn flow(signal: &Signal, end_s: f64) -> String {
-    let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
-    match signal {
-        Signal::Constant(x) => format!("{} µl/s", significant(x * 1e9, 3)),
-        _ => format!("flow up to {} µl/s", significant(peak(&scaled, end_s).abs(), 3)),
+/// A volume in microlitres, from 10 ml on in millilitres: as the scripts of the page write it beside axes.
+fn litres(volume_m3: f64) -> String {
+    match volume_m3.abs() < 1e-5 {
+        true => format!("{} µl", significant(volume_m3 * 1e9, 3)),
+        false => format!("{} ml", significant(volume_m3 * 1e6, 3)),
     }
 }
 
-/// Volume let in through a port, in microlitres.
+/// Flow through a port.
+fn flow(signal: &Signal, end_s: f64) -> String {
+    match signal {
+        Signal::Constant(x) => format!("{}/s", litres(*x)),
+        _ => format!("flow up to {}/s", litres(largest(signal, end_s))),
+    }
+}
+
+/// Volume let in through a port.
 fn volume(signal: &Signal, end_s: f64) -> String {
+    format!("syringe, up to {}", litres(largest(signal, end_s)))
+}
+
+/// The largest magnitude of a volume or flow, found in microlitres.
+fn largest(signal: &Signal, end_s: f64) -> f64 {
     let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
-    format!("syringe, up to {} µl", significant(peak(&scaled, end_s).abs(), 3))
+    peak(&scaled, end_s).abs() * 1e-9
 }
 
 /// An end: its form, what is held, what drives it, what loads it.

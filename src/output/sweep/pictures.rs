@@ -121,7 +121,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     });
     let figures = chosen.take(FIGURES).collect();
     Ok(Drawn {
-        case: plan.case.clone(),
+        case: plan.title(),
         varied: numbered
             .iter()
             .map(|&k| Numbers {

@@ -36,7 +36,7 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
     let mut text = format!(
         "{} of {}{shard} by {}: {kinds}\n",
         several(rows),
-        plan.case,
+        plan.title(),
         plan.command.word()
     );
     let pointers = plan.pointers();

@@ -117,6 +117,15 @@ pub struct Plan {
 }
 
 impl Plan {
+    /// The case that is varied; of two cases both, of more the first and how many others.
+    pub fn title(&self) -> String {
+        match &self.cases[..] {
+            [one, other] => format!("{} and {}", one.name, other.name),
+            [one, _, others @ ..] => format!("{} and {} other cases", one.name, others.len() + 1),
+            _ => self.case.clone(),
+        }
+    }
+
     /// Whether a design is computed here.
     pub fn has(&self, number: usize) -> bool {
         self.shard.is_none_or(|shard| shard.has(number))

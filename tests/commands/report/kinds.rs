@@ -1,7 +1,7 @@
 //! The pages of all other commands.
 
 use super::browser::Browser;
-use super::common::{made, sound};
+use super::common::{made, report, sound};
 
 /// The first column of the page's table, after a click on its first heading and after another.
 fn sorted_both_ways(browser: &mut Browser) {
@@ -248,6 +248,34 @@ fn designs_stand_in_a_table() {
     let link = browser.text("document.querySelector('#design-1 a').getAttribute('href')");
     assert_eq!(link, "cases/00001.json");
     sorted_both_ways(&mut browser);
+    // a picture that is too large is named where it would stand
+    let folder = folder.path().join("kept");
+    let file = folder.join("sweep.svg");
+    let drawn = std::fs::read_to_string(&file).expect("the picture");
+    std::fs::write(&file, drawn + &" ".repeat(800_000)).expect("a larger picture");
+    browser.open(&report(&folder));
+    let said = browser.text("document.querySelector('#answer .caption').textContent");
+    assert!(
+        said.starts_with("The picture has 0.8") && said.ends_with("left out of the page: sweep.svg."),
+        "{said}"
+    );
+    assert_eq!(browser.problems(), Vec::<String>::new());
+}
+
+/// Goal: a page of two cases is named after both.
+#[test]
+fn designs_of_two_cases_have_both_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases = [
+        "sweep",
+        "cases/two-bladders.json",
+        "cases/dry-cantilever.json",
+        "--command",
+        "modes",
+    ];
+    let page = made(folder.path(), &cases);
+    let text = std::fs::read_to_string(page).expect("the page");
+    assert!(text.contains("<title>two-bladders and dry-cantilever</title>"));
 }
 
 /// Goal: loads from pressures have their bands in a picture and a table; without measurements these are of the best bladders.

@@ -216,6 +216,9 @@ fn inputs_stand_beside_outputs() {
     let largest = browser
         .number("Math.max(...floats(data.history.columns.find(c => c.label.startsWith('flow into')).values)) * 1e9");
     assert!((largest - 40.0).abs() < 1e-3, "{largest}");
+    // axes write flows and volumes in the units of the drawing
+    let units = browser.text("['m^3/s', 'm^3'].map(u => scaledUnit(4e-8, u)[1]).join(', ')");
+    assert_eq!(units, "µl/s, µl");
     let tiles = browser.text("document.getElementById('tiles').textContent");
     assert!(
         tiles.contains("Turn of the tip") && tiles.contains("largest slope angle, 2.34°, at"),

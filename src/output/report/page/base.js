@@ -72,6 +72,8 @@ function prettyUnit(unit) {
 /** Factor and unit in which a magnitude reads as 1 to 1000. */
 function scaledUnit(magnitude, unit) {
   const size = Math.abs(magnitude);
+  // as the words of the drawing write volumes and flows
+  if (unit === "m^3" || unit === "m^3/s") return size < 1e-5 || !(size < Infinity) ? [1e-9, unit.replace("m^3", "µl")] : [1e-6, unit.replace("m^3", "ml")];
   let power = size > 0 && size < Infinity ? Math.floor(Math.log10(size) / 3 + 1e-12) : 0;
   if (PREFIXED.has(unit)) {
     power = Math.min(Math.max(power, -4), unit === "s" || unit === "rad" ? 0 : 3);

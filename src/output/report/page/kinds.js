@@ -171,7 +171,7 @@ function showMany() {
     document.getElementById("answer").append(card);
   }
   if (data.overlay) showOverlay(data.overlay);
-  if (data.table) section("table", data.table.title, null).append(tableCard({ ...data.table, title: null }));
-  (data.tables || []).forEach((table, k) => section(`table-${k + 1}`, table.title, null).append(tableCard({ ...table, title: null })));
+  if (data.table) section("table", data.table.title, null).append(tableCard({ ...data.table, title: null, name: data.table.title }));
+  (data.tables || []).forEach((table, k) => section(`table-${k + 1}`, table.title, null).append(tableCard({ ...table, title: null, name: table.title })));
   if (data.scene) showScene();
 }

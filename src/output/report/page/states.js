@@ -63,7 +63,7 @@ function showPath() {
     paint();
   }
   showEvents();
-  if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, about: "The first column is the load factor; the last counts the ways in which the state gives way (0: stable)." }));
+  if (path) section("table", "Every state", null).append(tableCard({ ...path, title: null, name: "Every state", about: "The first column is the load factor; the last counts the ways in which the state gives way (0: stable)." }));
   if (scene) showScene();
 }
 
@@ -195,7 +195,7 @@ function showModes() {
     if (playing) requestAnimationFrame(frame);
   }
   if (data.passivity) showPassivity(data.passivity);
-  if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
+  if (data.table) section("table", "Every mode", null).append(tableCard({ ...data.table, title: null, name: data.table.title, about: "Undrained: the same shape with every bladder sealed. Drained: with one pressure in each network. The growth rate is negative where the motion dies away." }));
   if (data.picture) section("picture", "All shapes at once", null).append(pictureCard({ picture: data.picture, title: null, about: "Displacement along the beam of every mode, with the pressures of the bladders." }));
   if (data.scene) showScene();
 }

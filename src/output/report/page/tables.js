@@ -1,5 +1,8 @@
 // Tables that sort by a click or a key on a heading.
 
+/** A row of more columns is no block that is read in one go. */
+const MOST_OF_A_BLOCK = 14;
+
 /** `headings`: texts; `rows`: arrays of numbers, texts or nulls. Numbers are shown with their significant digits. */
 function sortable(headings, rows, options = {}) {
   // A column of round numbers is shown as they are, another with four figures throughout.
@@ -8,13 +11,22 @@ function sortable(headings, rows, options = {}) {
   const shown = (x, k) => (typeof x === "number" ? text(x, k) : x === null || x === undefined || x === "" ? "–" : String(x));
   const numeric = headings.map((_, k) => rows.some((r) => typeof r[k] === "number") && rows.every((r) => typeof r[k] === "number" || r[k] === null || r[k] === ""));
   const wordy = headings.map((_, k) => rows.some((r) => String(r[k] ?? "").length > 40));
-  const body = el("tbody");
+  // On a narrow screen a table with words is a block a row; one of numbers, or of very many columns, scrolls sideways.
+  const blocks = headings.length <= MOST_OF_A_BLOCK && headings.some((_, k) => k > 0 && !numeric[k] && rows.some((r) => typeof r[k] === "string" && r[k] !== ""));
+  const long = headings.map((h, k) => !numeric[k] && rows.some((r) => String(r[k] ?? "").length > 16));
+  const role = (name) => (blocks ? name : null);
+  const told = (heading) => (heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "));
+  const body = el("tbody", { role: role("rowgroup") });
+  const cell = (x, k) => {
+    const of = { role: role(k === 0 ? "rowheader" : "cell"), "data-of": blocks && (k > 0 || numeric[0]) ? told(headings[k]) : null, class: [numeric[k] ? "n" : wordy[k] ? "why" : null, long[k] ? "long" : null, shown(x, k) === "–" ? "none" : null].filter(Boolean).join(" ") || null };
+    if (k === 0 && options.leads) return el("td", { ...of, class: "n" }, lead(shown(x, k), options.leads[x]));
+    return kinds.has(x) ? el("td", of, el("span", { class: `pill ${x}`, text: x })) : el("td", { ...of, text: shown(x, k) });
+  };
   const kinds = new Set(["needed", "on", "off"]);
-  const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { class: options.dim?.(r) ? "off" : null, id: options.leads ? `design-${r[0]}` : null }, r.map((x, k) =>
-    k === 0 && options.leads ? el("td", { class: "n" }, lead(shown(x, k), options.leads[x])) : kinds.has(x) ? el("td", {}, el("span", { class: `pill ${x}`, text: x })) : el("td", { class: numeric[k] ? "n" : wordy[k] ? "why" : null, text: shown(x, k) })))));
+  const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { role: role("row"), class: options.dim?.(r) ? "off" : null, id: options.leads ? `design-${r[0]}` : null }, r.map(cell))));
   const cells = headings.map((heading, k) => {
-    const cell = el("th", { scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
-    cell.append(el("button", { type: "button", text: heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "), on: { click: () => sort(k) } }));
+    const cell = el("th", { role: role("columnheader"), scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
+    cell.append(el("button", { type: "button", text: told(heading), on: { click: () => sort(k) } }));
     return cell;
   });
   const sort = (k) => {
@@ -31,7 +43,15 @@ function sortable(headings, rows, options = {}) {
     fill([...rows].sort(rank));
   };
   fill(rows);
-  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, el("table", {}, el("thead", {}, el("tr", {}, cells)), body));
+  const table = el("table", { role: role("table") }, el("thead", { role: role("rowgroup") }, el("tr", { role: role("row") }, cells)), body);
+  return sideways(el("div", { class: blocks ? "scroll blocks" : "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, table), "More columns stand to the right: scroll the table sideways.");
+}
+
+/** What scrolls sideways, below words that say so while there is more of it than is seen. */
+function sideways(scroller, words) {
+  const hint = el("p", { class: "hint", text: words, hidden: true });
+  new ResizeObserver(() => (hint.hidden = scroller.scrollWidth <= scroller.clientWidth + 1)).observe(scroller);
+  return [hint, scroller];
 }
 
 /** The number of a design with what it leads to. */
@@ -55,7 +75,7 @@ function shortest(x) {
 /** A table of the data with title, sentence and the file that has all of it. */
 function tableCard(table) {
   const file = table.file ? el("p", { class: "caption" }, "All of it: ", fileLink(table.file)) : null;
-  return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title, leads: table.leads }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
+  return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title || table.name, leads: table.leads }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
 }
 
 const DRAWN = new Set(["svg", "g", "a", "title", "rect", "polyline", "polygon", "text"]);
@@ -71,15 +91,22 @@ function drawing(source, title) {
   svg.setAttribute("role", svg.querySelector("a") ? "group" : "img");
   svg.setAttribute("aria-label", title);
   svg.setAttribute("class", "drawing");
+  // the width at which its smallest words can be read
+  const sizes = [...svg.querySelectorAll("[font-size]")].map((e) => parseFloat(e.getAttribute("font-size")));
+  svg.style.setProperty("--least", `${Math.ceil((11 * (svg.viewBox.baseVal.width || 860)) / Math.min(...sizes, 11))}px`);
   return document.importNode(svg, true);
 }
 
 /** A picture made by the program, on white. */
 function pictureCard(part) {
   if (!part.picture) return null;
-  const plate = el("div", { class: "plate" }, drawing(part.picture, part.title || part.about || "Picture"));
-  // On a narrow screen the whole picture is seen first, its words when it is asked for.
-  const enlarge = el("button", { type: "button", class: "enlarge", text: "Enlarge", "aria-pressed": "false" });
-  enlarge.addEventListener("click", () => enlarge.setAttribute("aria-pressed", String(plate.classList.toggle("large"))));
-  return figure(part.title, part.about, plate, enlarge);
+  if (part.picture.file) {
+    return figure(part.title, null, el("p", { class: "caption" }, `The picture has ${quantity(part.picture.bytes / 1e6, "MB", 2)} and is left out of the page: `, fileLink(part.picture.file), "."));
+  }
+  const name = part.title || part.about || "Picture";
+  const plate = el("div", { class: "plate", tabindex: "0", role: "region", "aria-label": `${name}, may scroll sideways`, "data-keys": "" }, drawing(part.picture, name));
+  // On a narrow screen its words can be read and it scrolls; the whole picture is seen when it is asked for.
+  const whole = el("button", { type: "button", class: "whole", text: "Whole picture", "aria-pressed": "false" });
+  whole.addEventListener("click", () => whole.setAttribute("aria-pressed", String(plate.classList.toggle("fit"))));
+  return figure(part.title, part.about, sideways(plate, "The picture is wider than the screen: scroll it sideways."), whole);
 }
