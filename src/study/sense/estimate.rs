@@ -46,17 +46,11 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// An error with the line of the measurements that leads to it.
-    fn named(&self, error: Error) -> Error {
-        match (error, self.line) {
-            (Error::Solver(mut fault), Some(line)) => {
-                fault.what = format!("line {line} of the measurements: {}", fault.what);
-                fault
-                    .hint
-                    .get_or_insert_with(|| format!("look at the numbers of line {line}, or leave it out"));
-                Error::Solver(fault)
-            }
-            (error, _) => error,
+    fn named(&self, mut error: Error) -> Error {
+        if let (Error::Solver(fault), Some(line)) = (&mut error, self.line) {
+            fault.what = format!("line {line} of the measurements: {}", fault.what);
         }
+        error
     }
 }
 
