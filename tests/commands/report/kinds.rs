@@ -275,7 +275,7 @@ fn designs_of_two_cases_have_both_names() {
     ];
     let page = made(folder.path(), &cases);
     let text = std::fs::read_to_string(page).expect("the page");
-    assert!(text.contains("<title>two-bladders and dry-cantilever</title>"));
+    assert!(text.contains("<title>two-bladders and dry-cantilever · slcbeam</title>"));
 }
 
 /// Goal: loads from pressures have their bands in a picture and a table; without measurements these are of the best bladders.
