@@ -39,7 +39,8 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let name = asked.data.display().to_string();
     let found = study::fit(&problem, &wanted, (&name, table.crc32), &stop, &tell);
     bar.finish_and_clear();
-    let found = found?;
+    let mut found = found?;
+    found.fit.left_alone = study::left_alone(&table, &wanted);
     files::write(&mut folder, &problem, &found)?;
     report::write(folder.dir(), None)?;
     let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));

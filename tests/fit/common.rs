@@ -9,6 +9,9 @@ use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::normal;
 use slcbeam::run::equilibrium::{self, Options};
 use slcbeam::run::record::{Control, Memory};
+use slcbeam::study::data::Table;
+use slcbeam::study::fit::fit;
+use slcbeam::study::fit::problem::{Asked, Problem};
 use tempfile::TempDir;
 
 pub use crate::program::say;
@@ -81,4 +84,17 @@ pub fn number(value: &Value) -> f64 {
 pub fn off(fit: &Value, number_of: usize, truth: f64) -> f64 {
     let one = &fit["parameters"][number_of];
     (number(&one["value"]) - truth).abs() / number(&one["standard_error"])
+}
+
+/// Fits two numbers to data, and counts which intervals of 95 % hold the truth.
+pub fn count_held(case: &Case, asked: &Asked, data: &str, truth: [f64; 2], held: &mut [u32; 2]) {
+    let table = Table::parse("data.csv".as_ref(), data).expect("a table");
+    let problem = Problem::new(case, &table, asked).expect("a problem");
+    let found = fit(&problem, asked, ("data.csv", 0), &|| false, &|_, _| {})
+        .expect("a fit")
+        .fit;
+    for (k, held) in held.iter_mut().enumerate() {
+        let [low, high] = found.parameters[k].interval_95.expect("an interval");
+        *held += u32::from((low..=high).contains(&truth[k]));
+    }
 }

@@ -2,9 +2,8 @@
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::data::{Match, Table};
-use slcbeam::study::fit::fit;
-use slcbeam::study::fit::problem::{Asked, Drive, Problem};
+use slcbeam::study::data::Match;
+use slcbeam::study::fit::problem::{Asked, Drive};
 use slcbeam::study::fit::robust::Loss;
 use slcbeam::study::span::Span;
 
@@ -180,15 +179,7 @@ fn held(seeds: u64) -> [u32; 2] {
         let rows = forces.iter().zip(&exact);
         let rows = rows.map(|(force, u)| format!("{force},{}\n", 1e3 * u + 0.02 * noise()));
         let text = format!("f_n,u_mm\n{}", rows.collect::<String>());
-        let table = Table::parse("data.csv".as_ref(), &text).expect("a table");
-        let problem = Problem::new(&case, &table, &asked).expect("a problem");
-        let found = fit(&problem, &asked, ("data.csv", 0), &|| false, &|_, _| {})
-            .expect("a fit")
-            .fit;
-        for (k, held) in held.iter_mut().enumerate() {
-            let [low, high] = found.parameters[k].interval_95.expect("an interval");
-            *held += u32::from((low..=high).contains(&truth[k]));
-        }
+        count_held(&case, &asked, &text, truth, &mut held);
     }
     println!("held {held:?} of {seeds}");
     held

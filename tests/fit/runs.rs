@@ -1,8 +1,7 @@
 //! How often intervals of fits of runs hold the truth.
 
-use slcbeam::study::data::{Match, Table};
-use slcbeam::study::fit::fit;
-use slcbeam::study::fit::problem::{Asked, Problem};
+use slcbeam::study::data::Match;
+use slcbeam::study::fit::problem::Asked;
 use slcbeam::study::fit::robust::Loss;
 use slcbeam::study::span::Span;
 
@@ -55,15 +54,7 @@ fn held(seeds: u64) -> [u32; 2] {
                 lower[k] + 5.0 * noise()
             );
         }
-        let table = Table::parse("data.csv".as_ref(), &text).expect("a table");
-        let problem = Problem::new(&case, &table, &asked).expect("a problem");
-        let found = fit(&problem, &asked, ("data.csv", 0), &|| false, &|_, _| {})
-            .expect("a fit")
-            .fit;
-        for (k, held) in held.iter_mut().enumerate() {
-            let [low, high] = found.parameters[k].interval_95.expect("an interval");
-            *held += u32::from((low..=high).contains(&truth[k]));
-        }
+        count_held(&case, &asked, &text, truth, &mut held);
     }
     println!("held {held:?} of {seeds}");
     held

@@ -56,10 +56,11 @@ fn pressures_that_no_load_explains_are_told() {
         .map(|_| "-7e9")
         .collect::<Vec<_>>()
         .join(",");
+    let other = tempfile::tempdir().unwrap();
     let said = sense(
-        &dir,
+        &other,
         &[
-            &file(&dir, &format!("{text}{wild}\n")),
+            &file(&other, &format!("{text}{wild}\n")),
             "--load",
             "tip-force",
             "--noise",

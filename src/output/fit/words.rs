@@ -65,6 +65,10 @@ pub fn words(fit: &Fit) -> String {
     if let Some(worst) = worst(fit) {
         text += &format!("{worst}\n");
     }
+    if !fit.left_alone.is_empty() {
+        let names: Vec<String> = fit.left_alone.iter().map(|name| visible(name).into_owned()).collect();
+        text += &format!("columns left alone: {}\n", names.join(", "));
+    }
     for warning in &fit.warnings {
         text += &format!("warning: {warning}\n");
     }

@@ -35,6 +35,9 @@ pub struct Fit {
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Columns of the data.
     pub columns: Vec<Column>,
+    /// Headings of those that say nothing here.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_alone: Vec<String>,
     /// Measured values.
     pub observations: usize,
     /// Sum of the squares of residuals in their standard deviations, weighted.

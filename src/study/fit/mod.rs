@@ -27,6 +27,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::case::Case;
 use crate::error::{Code, Result};
 use crate::numerics::levenberg::{self, Ended, Evaluation};
+use crate::study::data::Table;
 use crate::study::span::Span;
 use crate::study::sweep::{Ask, compute};
 use found::{Bound, Column, Estimate, Fit, Left, Simulator};
@@ -55,6 +56,26 @@ pub struct Fitted {
     pub model: Vec<f64>,
     /// Weight of each observation: the inverse of its variance, times what its loss leaves.
     pub weights: Vec<f64>,
+}
+
+/// Headings of a table that are neither matched, nor time, nor set by rows, nor the noise of what is matched.
+pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
+    let matched = asked.matches.iter().filter_map(|one| table.find(&one.column));
+    let noise = matched.clone().flat_map(|k| {
+        let own = &table.columns[k];
+        [&own.heading, &own.name].map(|name| table.find(&format!("{name}_sd")))
+    });
+    let driven = asked.drives.iter().filter_map(|drive| table.find(&drive.column));
+    let time = asked
+        .drives
+        .is_empty()
+        .then(|| table.time(asked.time.as_deref()).ok())
+        .flatten();
+    let used: Vec<usize> = matched.chain(noise.flatten()).chain(driven).chain(time).collect();
+    let all = table.columns.iter().enumerate();
+    all.filter(|(k, _)| !used.contains(k))
+        .map(|(_, one)| one.heading.clone())
+        .collect()
 }
 
 /// Fits. `tell` hears of every simulation: how many there were, and the sum of squares so far; where `stop` becomes true, the best so far is
@@ -146,6 +167,7 @@ pub fn fit(
         unseen: blind.into_iter().map(|one| one.words).collect(),
         warnings: vec![],
         simulator: finer,
+        left_alone: vec![],
         starts: reached.starts.clone(),
         steps: reached.steps,
         simulations: search.simulations(),

@@ -134,18 +134,6 @@ fn put(found: &mut Found, name: &str, quantity: &Quantity) {
     found.put(format!("{name}.window_error"), quantity.window_error);
 }
 
-/// Nothing yet.
-fn empty() -> Found {
-    Found {
-        status: Status::Finished,
-        reason: None,
-        steps: None,
-        figures: vec![],
-        warnings: vec![],
-        told: vec![],
-    }
-}
-
 /// The steady cycle.
 fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     let mut of = |case: &Case| numbers::of_cycle(case, 1, &Stop::default());
@@ -183,7 +171,7 @@ pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&F
         steps: Some(steps),
         status: summary.status,
         reason: summary.reason.clone(),
-        ..empty()
+        ..Found::finished()
     };
     found.put("period_s", period);
     if let Some(all) = stability {
@@ -284,7 +272,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
 pub fn of_path(columns: &[Column], path: &Path) -> Found {
     let mut found = Found {
         steps: Some(path.work.iterations),
-        ..empty()
+        ..Found::finished()
     };
     if let Some(fault) = &path.fault {
         found.status = Status::Failed;
@@ -364,7 +352,7 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
 
 /// What modes tell: the lowest that swing.
 pub fn of_modes(all: &modes::Modes) -> Found {
-    let mut found = empty();
+    let mut found = Found::finished();
     let stable = !all.modes.iter().any(|mode| mode.kind.grows());
     found.put("stable", f64::from(u8::from(stable)));
     for (k, mode) in lowest(&all.modes)

@@ -7,7 +7,6 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::run::floquet::{self, Floquet, Stability};
 use crate::run::stop::Stop;
-use crate::run::summary::Status;
 use crate::study::refine::{meshes, numbers};
 
 /// Multipliers told, those largest.
@@ -67,14 +66,7 @@ pub fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
 
 /// Moduli, rates and frequencies by part, and the rate of the largest.
 pub fn of_multipliers(all: &Floquet) -> Found {
-    let mut found = Found {
-        status: Status::Finished,
-        reason: None,
-        steps: None,
-        figures: vec![],
-        warnings: vec![],
-        told: vec![],
-    };
+    let mut found = Found::finished();
     let stable = all.verdict.stability != Stability::Unstable;
     found.put("period_s", all.period_s);
     found.put("stable", f64::from(u8::from(stable)));

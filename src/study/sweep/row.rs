@@ -45,6 +45,18 @@ pub struct Found {
 }
 
 impl Found {
+    /// Of what finished, to be filled.
+    pub fn finished() -> Self {
+        Self {
+            status: Status::Finished,
+            reason: None,
+            steps: None,
+            figures: vec![],
+            warnings: vec![],
+            told: vec![],
+        }
+    }
+
     /// That nothing was found.
     pub fn failed(error: &Error) -> Self {
         let told = match error {
@@ -58,10 +70,7 @@ impl Found {
         Self {
             status: Status::Failed,
             reason: Some(format!("{} {}", error.code().id(), visible(&told))),
-            steps: None,
-            figures: vec![],
-            warnings: vec![],
-            told: vec![],
+            ..Self::finished()
         }
     }
 

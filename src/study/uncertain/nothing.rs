@@ -104,14 +104,7 @@ mod tests {
             ("reaction_root_couple_N m", 4e-51),
         ];
         let figures = all.map(|(name, x)| (name.to_owned(), of(x))).into();
-        let own = Found {
-            status: crate::run::summary::Status::Finished,
-            reason: None,
-            steps: None,
-            figures: vec![],
-            warnings: vec![],
-            told: vec![],
-        };
+        let own = Found::finished();
         let left = without_round_off(figures, &own, 0.1);
         let told: Vec<&str> = left
             .iter()
