@@ -10,8 +10,11 @@ use crate::model::slowest::Slowest;
 /// How far the slowest decay may lag behind what acts.
 const LEFT: f64 = 0.05;
 
-/// Instants at which a signal is looked at: a lag is told to a thousandth or so.
+/// Instants at which a signal is looked at: a lag is told to a hundredth or so.
 const LOOKS: u16 = 2000;
+
+/// Time constants after which a change is followed.
+const FORGOTTEN: f64 = 20.0;
 
 /// What is said of a state at rest under the loads of an instant [s] where fluid needs longer than the run has until then, with valves as they stand at
 /// it: how far the slowest decay of a network lags behind.
@@ -49,17 +52,27 @@ fn lag(signal: &Signal, time_constant: f64, until: f64) -> f64 {
     if signal.is_constant() {
         return 0.0;
     }
-    let step = until / f64::from(LOOKS);
+    let first = signal.value(0.0);
+    let mut reach = [first; 2];
+    let mut look = |t: f64| {
+        let value = signal.value(t);
+        reach = [reach[0].min(value), reach[1].max(value)];
+        value
+    };
+    (1..=LOOKS).for_each(|k| {
+        look(until * f64::from(k) / f64::from(LOOKS));
+    });
+    // what was before is forgotten
+    let begin = (until - FORGOTTEN * time_constant).max(0.0);
+    let step = (until - begin) / f64::from(LOOKS);
     let kept = (-step / time_constant).exp();
     // of s on a straight line between two instants
     let mean = (1.0 - kept) * time_constant / step;
-    let first = signal.value(0.0);
-    let (mut lag, mut last, mut reach) = (0.0, first, [first; 2]);
+    let (mut lag, mut last) = (0.0, look(begin));
     for k in 1..=LOOKS {
-        let value = signal.value(f64::from(k) * step);
+        let value = look(begin + f64::from(k) * step);
         lag = kept * lag + mean * (value - last);
         last = value;
-        reach = [reach[0].min(value), reach[1].max(value)];
     }
     let reach = reach[1] - reach[0];
     if reach > 0.0 { (lag / reach).abs() } else { 0.0 }
@@ -112,6 +125,18 @@ mod tests {
         let expected = 0.5 * turns / (1.0 + turns * turns);
         assert!((lag(&sine, 0.01, 3.0) - expected).abs() < 1e-2 * expected);
         assert!(lag(&Signal::Constant(5.0), 1.0, 1.0) == 0.0);
+        // a jump half a time constant before the end, however long the run
+        for end in [1.0, 100.0, 1e4] {
+            let late = Signal::Ramp(Ramp {
+                from: 0.0,
+                to: -1.0,
+                start_s: end - 1e-3,
+                duration_s: 1e-6,
+                shape: RampShape::Linear,
+            });
+            let told = lag(&late, 2e-3, end);
+            assert!((told - (-0.5_f64).exp()).abs() < 0.01, "{end}: {told}");
+        }
     }
 
     #[test]

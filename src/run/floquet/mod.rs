@@ -43,7 +43,7 @@ pub struct Multiplier {
     pub part: Part,
     /// Its share of the energy.
     pub share: f64,
-    /// Rate at which the integrator's steps would damp that frequency [1/s]: to be far below the growth rate.
+    /// Rate by which the integrator's steps damp that motion more than it decays by itself [1/s]: to be far below the growth rate.
     pub numerical_damping_per_s: f64,
     /// `|M v - μ v|` of its vector of norm one.
     pub residual: f64,
@@ -96,15 +96,16 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
             let dry = modes.frequency(&scene.system, part, &eigen.vector);
             let own = turns(scene, cycle, &modes, part, &eigen.vector, dry).unwrap_or(dry);
             let frequency = nearest(eigen.value.arg(), period, own);
+            let growth = eigen.value.norm().ln() / period;
             Multiplier {
                 re: eigen.value.re,
                 im: eigen.value.im,
                 modulus: eigen.value.norm(),
-                growth_per_s: eigen.value.norm().ln() / period,
+                growth_per_s: growth,
                 frequency_hz: frequency / TAU,
                 part,
                 share,
-                numerical_damping_per_s: numerical_damping(scene, cycle.march.times(), frequency),
+                numerical_damping_per_s: numerical_damping(scene, cycle.march.times(), [growth, frequency]),
                 residual: eigen.residual,
             }
         })
@@ -159,14 +160,15 @@ fn nearest(angle: f64, period: f64, own: f64) -> f64 {
     if (a - own).abs() <= (b - own).abs() { a } else { b }
 }
 
-/// Rate [1/s] at which the steps damp an undamped oscillation of angular frequency `w` [1/s].
-fn numerical_damping(scene: &Scene, times: &[f64], w: f64) -> f64 {
+/// Rate [1/s] by which the steps damp what grows at a rate and turns at an angular frequency [1/s] more than it decays by itself.
+fn numerical_damping(scene: &Scene, times: &[f64], [growth, w]: [f64; 2]) -> f64 {
     let tableau = scene.method.tableau();
     let lost: f64 = times
         .windows(2)
         .map(|t| {
-            let (re, im) = tableau.stability((0.0, w * (t[1] - t[0])));
-            -re.hypot(im).ln()
+            let h = t[1] - t[0];
+            let (re, im) = tableau.stability((growth * h, w * h));
+            growth * h - re.hypot(im).ln()
         })
         .sum();
     lost / scene.drive.period

@@ -13,6 +13,9 @@ use crate::numerics::sqp::{Ended, HELD, Minimum};
 use crate::study::span;
 use crate::study::sweep::pool;
 
+/// Share of the slope at a best that limits may leave unexplained for what they cost to be told.
+const UNEXPLAINED: f64 = 0.05;
+
 /// Deviations between the bounds that count as none.
 const CLOSE: f64 = 1e-4;
 /// What cannot be computed is worth least.
@@ -146,6 +149,13 @@ impl Search<'_> {
         }
         let lambda = DVector::from_column_slice(&minimum.multipliers);
         let slope = &minimum.at.slope + minimum.at.slopes.tr_mul(&lambda);
+        let steep = |of: &DVector<f64>| free.iter().map(|k| of[*k].abs()).fold(0.0, f64::max);
+        if !self.problem.limits.is_empty() && steep(&slope) > UNEXPLAINED * steep(&minimum.at.slope) {
+            // the best lies a little beside a limit that holds it, so that which ones do is not known, nor what they cost
+            reached.sloped = false;
+            minimum.multipliers.fill(0.0);
+            return;
+        }
         for k in (0..x.len()).filter(|k| at_bound(*k)) {
             minimum.at_bounds[k] = -slope[k];
         }

@@ -57,6 +57,9 @@ pub(super) fn nothing_told() -> Error {
     Error::Usage(what.into())
 }
 
+/// Loads over their sizes that are none: they lead nowhere.
+const UNLOADED: f64 = 1e-12;
+
 /// Share by which pressures may differ from those along the path from rest.
 const SAME: f64 = 1e-6;
 
@@ -222,6 +225,9 @@ fn largest(estimate: &Estimate) -> Option<&Found> {
 
 /// What is said where the state of the largest loads, those of a line, is not that to which they lead from rest.
 fn aside(model: &AtRest, largest: &Found, line: usize) -> Result<Vec<String>> {
+    if largest.mean.amax() < UNLOADED {
+        return Ok(vec![]);
+    }
     let (followed, mut warnings) = match model.followed(largest.mean.as_slice()) {
         Ok(followed) => followed,
         Err(Error::Solver(fault)) => {

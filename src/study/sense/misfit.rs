@@ -5,6 +5,8 @@ use crate::numerics::student::log_gamma;
 
 /// Chance of a sum of squares above which the loads do not explain the data, and of one below which the noise is none of theirs.
 const UNLIKELY: f64 = 1e-3;
+/// The same below which pressures are those of the model itself, computed or all 0.
+const EXACT: f64 = 1e-12;
 /// Share of the noise that is left, from which on it is said to be too little.
 const LITTLE: f64 = 0.1;
 
@@ -54,7 +56,7 @@ impl Misfit {
     pub fn below_chance(&self) -> Option<f64> {
         let [sum, f] = self.judged();
         let share = (sum / f).sqrt();
-        if f < 0.5 || !(share > 0.0 && share < LITTLE) {
+        if f < 0.5 || !(share > EXACT && share < LITTLE) {
             return None;
         }
         // the chance of a sum below x is at most (x/2)^(f/2)/Γ(1 + f/2)

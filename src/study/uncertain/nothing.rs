@@ -50,6 +50,16 @@ pub(super) fn without_round_off(
             "N m" => work,
             kind => most(kind),
         };
+        let first = one.first_order.as_ref().map_or(0.0, |first| first.sd);
+        if one.sd.max(first) <= NOTHING * size(one) {
+            // what stays as it is but for round-off: the pressure of a port, a reaction by statics alone
+            (one.sd, one.sd_error, one.low, one.high) = (0.0, 0.0, one.value, one.value);
+            one.indices = None;
+            if let Some(first) = &mut one.first_order {
+                first.sd = 0.0;
+                first.shares.fill(0.0);
+            }
+        }
         if size(one) <= NOTHING * beside {
             *one = Spread {
                 numerical_error: None,
@@ -112,5 +122,19 @@ mod tests {
             .map(|(name, _)| name.as_str())
             .collect();
         assert_eq!(told, ["bladder_energy_j", "tip_u3_m"]);
+        // a pressure that a port holds spreads by nothing
+        let held = Spread {
+            sd: 1e-8,
+            first_order: Some(FirstOrder {
+                sd: 2e-8,
+                shares: vec![1.0],
+            }),
+            ..of(6e4)
+        };
+        let figures = [("bladder__1_pressure_pa".to_owned(), held)].into();
+        let left = without_round_off(figures, &own, 0.1);
+        let held = &left["bladder__1_pressure_pa"];
+        let first = held.first_order.as_ref().map(|first| (first.sd, first.shares[0]));
+        assert_eq!((held.value, held.sd, first), (6e4, 0.0, Some((0.0, 0.0))));
     }
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::indices::indices;
 use super::nothing::without_round_off;
 use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
+use crate::error::Code;
 use crate::run::summary::Status;
 use crate::study::sweep::row::{Found, word};
 
@@ -28,6 +29,8 @@ const MATTERS: f64 = 1.0 / 3.0;
 const ELSEWHERE: f64 = 0.1;
 /// Spread beside the largest value that is none.
 const ROUND_OFF: f64 = 1e-12;
+/// Bands that come as near as this, over the frequency, meet.
+const MEET: f64 = 1e-3;
 /// Figures named in a warning.
 const NAMED: usize = 4;
 
@@ -232,6 +235,11 @@ fn warnings(
         }
     };
     named(
+        &|one| one.samples + lost < samples.len(),
+        "not all samples have it, since what is called so changes with what is uncertain (modes that change places, parts of the motion that take over): its band is that of \
+         several things",
+    );
+    named(
         &|one| {
             let first = one.first_order.as_ref();
             first.is_some_and(|first| (first.sd - one.sd).abs() > APART * one.sd_error.max(1e-3 * one.sd))
@@ -246,7 +254,29 @@ fn warnings(
         },
         "the numerical error is not small beside the spread; ask for an accuracy, a finer mesh or a smaller tolerance",
     );
+    all.extend(crossed(figures));
     all
+}
+
+/// Modes of which one's frequencies reach into those of the next: in some samples the one may have been the other.
+fn crossed(figures: &BTreeMap<String, Spread>) -> Option<String> {
+    let frequency = |k: usize| figures.get(&format!("mode_{k}.frequency_hz"));
+    let pairs = (1..).map_while(|k| Some((k, frequency(k)?, frequency(k + 1)?)));
+    let meet = |(_, one, next): &(usize, &Spread, &Spread)| {
+        let spreads = one.sd.max(next.sd) > 0.0;
+        spreads && one.high >= next.low * (1.0 - MEET)
+    };
+    let names: Vec<String> = pairs
+        .filter(meet)
+        .map(|(k, ..)| format!("mode_{k} and mode_{}", k + 1))
+        .collect();
+    (!names.is_empty()).then(|| {
+        Code::ModesExchanged.warning(format!(
+            "{}: their bands meet, so that they may have changed places in some samples; the bands are then those of the lower and the higher \
+             frequency, not of one motion",
+            names.join(", ")
+        ))
+    })
 }
 
 #[cfg(test)]
