@@ -195,7 +195,9 @@ def test_ctrl_c_is_raised_where_there_is_no_part_of_an_answer():
     measured = {"t_s": np.linspace(0.01, 1.5, 100), "tip_mm": np.linspace(0, 9, 100)}
     fitted = slcbeam.load("tour-actuator", set=fine)
     fit = lambda: slcbeam.fit(fitted, measured, {"/fluid/viscosity_pa_s": (0.05, 2)}, {"tip_mm": "tip_u1"})  # noqa: E731
-    assert whole(stopped(fit))
+    # a fit tells the best so far, where it has one
+    found = stopped(fit)
+    assert whole(found) or (found["interrupted"] and found["parameters"])
 
 
 def test_tables_are_frames_of_polars_too():
