@@ -244,8 +244,8 @@ fn warnings(
             let first = one.first_order.as_ref();
             first.is_some_and(|first| (first.sd - one.sd).abs() > APART * one.sd_error.max(1e-3 * one.sd))
         },
-        "first order and samples differ by more than chance explains; the figure is no straight line over what is uncertain, and the \
-         samples are right",
+        "first order and samples differ by more than chance explains: the figure is no straight line over what is uncertain, and the samples are right; or it \
+         jumps from run to run by its numerical error, and neither is",
     );
     named(
         &|one| {
