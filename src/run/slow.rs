@@ -10,11 +10,11 @@ use crate::model::slowest::Slowest;
 /// How far the slowest decay may lag behind what acts.
 const LEFT: f64 = 0.05;
 
-/// Instants at which a signal is looked at: a lag is told to a hundredth or so.
-const LOOKS: u16 = 2000;
-
 /// Time constants after which a change is followed.
 const FORGOTTEN: f64 = 20.0;
+
+/// Instants within these at which a signal is looked at: a lag is told to a hundredth or so.
+const LOOKS: u16 = 2000;
 
 /// What is said of a state at rest under the loads of an instant [s] where fluid needs longer than the run has until then, with valves as they stand at
 /// it: how far the slowest decay of a network lags behind.
@@ -52,29 +52,20 @@ fn lag(signal: &Signal, time_constant: f64, until: f64) -> f64 {
     if signal.is_constant() {
         return 0.0;
     }
-    let first = signal.value(0.0);
-    let mut reach = [first; 2];
-    let mut look = |t: f64| {
-        let value = signal.value(t);
-        reach = [reach[0].min(value), reach[1].max(value)];
-        value
-    };
-    (1..=LOOKS).for_each(|k| {
-        look(until * f64::from(k) / f64::from(LOOKS));
-    });
     // what was before is forgotten
     let begin = (until - FORGOTTEN * time_constant).max(0.0);
     let step = (until - begin) / f64::from(LOOKS);
     let kept = (-step / time_constant).exp();
     // of s on a straight line between two instants
     let mean = (1.0 - kept) * time_constant / step;
-    let (mut lag, mut last) = (0.0, look(begin));
+    let (mut lag, mut last) = (0.0, signal.value(begin));
     for k in 1..=LOOKS {
-        let value = look(begin + f64::from(k) * step);
+        let value = signal.value(begin + f64::from(k) * step);
         lag = kept * lag + mean * (value - last);
         last = value;
     }
-    let reach = reach[1] - reach[0];
+    let all = signal.range(0.0, until);
+    let reach = all.high - all.low;
     if reach > 0.0 { (lag / reach).abs() } else { 0.0 }
 }
 

@@ -9,9 +9,11 @@ use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::normal;
 use slcbeam::run::equilibrium::{self, Options};
 use slcbeam::run::record::{Control, Memory};
-use slcbeam::study::data::Table;
+use slcbeam::study::data::{Match, Table};
 use slcbeam::study::fit::fit;
 use slcbeam::study::fit::problem::{Asked, Problem};
+use slcbeam::study::fit::robust::Loss;
+use slcbeam::study::span::Span;
 use tempfile::TempDir;
 
 pub use crate::program::say;
@@ -96,5 +98,27 @@ pub fn count_held(case: &Case, asked: &Asked, data: &str, truth: [f64; 2], held:
     for (k, held) in held.iter_mut().enumerate() {
         let [low, high] = found.parameters[k].interval_95.expect("an interval");
         *held += u32::from((low..=high).contains(&truth[k]));
+    }
+}
+
+/// What is asked of a fit by squares, from one start: numbers between bounds, and columns that are matched.
+pub fn by_squares(spans: &[(&str, f64, f64)], matches: &[&str]) -> Asked {
+    let span = |(pointer, low, high): &(&str, f64, f64)| Span {
+        pointer: (*pointer).into(),
+        low: *low,
+        high: *high,
+    };
+    Asked {
+        spans: spans.iter().map(span).collect(),
+        matches: matches
+            .iter()
+            .map(|text| Match::parse(text).expect("a match"))
+            .collect(),
+        time: None,
+        drives: vec![],
+        noise: vec![],
+        loss: Loss::Squares,
+        starts: 1,
+        jobs: 1,
     }
 }

@@ -2,10 +2,7 @@
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::data::Match;
 use slcbeam::study::fit::problem::{Asked, Drive};
-use slcbeam::study::fit::robust::Loss;
-use slcbeam::study::span::Span;
 
 use crate::common::*;
 
@@ -158,20 +155,8 @@ fn held(seeds: u64) -> [u32; 2] {
         })
         .collect();
     let asked = Asked {
-        spans: [(YOUNG, 3e5, 1e7), (gravity, -20.0, -0.5)]
-            .map(|(pointer, low, high)| Span {
-                pointer: pointer.into(),
-                low,
-                high,
-            })
-            .to_vec(),
-        matches: vec![Match::parse("u_mm=tip_u1").expect("a match")],
-        time: None,
         drives: vec![Drive::parse(&format!("f_n={FORCE}")).expect("a drive")],
-        noise: vec![],
-        loss: Loss::Squares,
-        starts: 1,
-        jobs: 1,
+        ..by_squares(&[(YOUNG, 3e5, 1e7), (gravity, -20.0, -0.5)], &["u_mm=tip_u1"])
     };
     let mut held = [0; 2];
     for seed in 0..seeds {

@@ -1,9 +1,7 @@
 //! What does not fit together is told before anything is computed, and nothing is written.
 
-use slcbeam::study::data::{Match, Table};
+use slcbeam::study::data::Table;
 use slcbeam::study::fit::left_alone;
-use slcbeam::study::fit::problem::Asked;
-use slcbeam::study::fit::robust::Loss;
 
 use crate::common::*;
 
@@ -241,17 +239,6 @@ fn data_and_options_that_do_not_go_together() {
 fn columns_that_say_nothing_are_named() {
     let text = "t_s,u_mm,u_mm_sd,v_um,v_mm_sd\n0.0005,1,0.1,2,0.1\n0.001,1,0.1,2,0.1\n";
     let table = Table::parse("data.csv".as_ref(), text).expect("a table");
-    let asked = Asked {
-        spans: vec![],
-        matches: ["u_mm=tip_u1", "v_um=tip_u3"]
-            .map(|text| Match::parse(text).expect("a match"))
-            .to_vec(),
-        time: None,
-        drives: vec![],
-        noise: vec![],
-        loss: Loss::Squares,
-        starts: 1,
-        jobs: 1,
-    };
+    let asked = by_squares(&[], &["u_mm=tip_u1", "v_um=tip_u3"]);
     assert_eq!(left_alone(&table, &asked), ["v_mm_sd"]);
 }

@@ -1,10 +1,5 @@
 //! How often intervals of fits of runs hold the truth.
 
-use slcbeam::study::data::Match;
-use slcbeam::study::fit::problem::Asked;
-use slcbeam::study::fit::robust::Loss;
-use slcbeam::study::span::Span;
-
 use crate::common::*;
 
 const CASE: &str = "cases/two-bladders.json";
@@ -24,24 +19,10 @@ fn held(seeds: u64) -> [u32; 2] {
     let memory = run(&probed, &[(TUBE, truth[0]), (FIRST, truth[1])]);
     let [times, upper, lower] =
         ["t", "p_pressure_upper", "p_pressure_lower"].map(|name| memory.column(name).expect("a column"));
-    let asked = Asked {
-        spans: [(TUBE, 1e-13, 1e-11), (FIRST, 200.0, 5000.0)]
-            .map(|(pointer, low, high)| Span {
-                pointer: pointer.into(),
-                low,
-                high,
-            })
-            .to_vec(),
-        matches: ["first_pa=pressure@bladder 1", "second_pa=pressure@bladder -1"]
-            .map(|text| Match::parse(text).expect("a match"))
-            .to_vec(),
-        time: None,
-        drives: vec![],
-        noise: vec![],
-        loss: Loss::Squares,
-        starts: 1,
-        jobs: 1,
-    };
+    let asked = by_squares(
+        &[(TUBE, 1e-13, 1e-11), (FIRST, 200.0, 5000.0)],
+        &["first_pa=pressure@bladder 1", "second_pa=pressure@bladder -1"],
+    );
     let mut held = [0; 2];
     for seed in 0..seeds {
         let mut noise = noise(500 + seed);

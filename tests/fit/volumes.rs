@@ -7,11 +7,9 @@ use std::time::{Duration, Instant};
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::data::{Match, Table};
+use slcbeam::study::data::Table;
 use slcbeam::study::fit::fit;
 use slcbeam::study::fit::problem::{Asked, Drive, Problem};
-use slcbeam::study::fit::robust::Loss;
-use slcbeam::study::span::Span;
 
 use crate::common::*;
 
@@ -63,18 +61,9 @@ fn a_coefficient_from_pressures_over_volumes() {
 fn syringe() -> (Problem, Asked) {
     let case = load(ACTUATOR, &[&SYRINGE[..], &COARSE].concat());
     let asked = Asked {
-        spans: vec![Span {
-            pointer: COMPLIANCE.into(),
-            low: 5e-11,
-            high: 1e-9,
-        }],
-        matches: vec![Match::parse("p_kpa=pressure@bladder -1").expect("a match")],
-        time: None,
         drives: vec![Drive::parse("volume_ml=/network/chains/0/ends/0/volume_m3").expect("a drive")],
-        noise: vec![],
-        loss: Loss::Squares,
         starts: 2,
-        jobs: 1,
+        ..by_squares(&[(COMPLIANCE, 5e-11, 1e-9)], &["p_kpa=pressure@bladder -1"])
     };
     let table = Table::read(Path::new("cases/actuator-pv.csv")).expect("a table");
     let problem = Problem::new(&case, &table, &asked).expect("a problem");

@@ -64,6 +64,7 @@ impl<D: Dae> Newton<'_, D> {
         }
         None
     }
+
     /// Takes a correction, which becomes relative to 1 + |z|. Masks of 0 and 1 in place of a choice let this go several at a time.
     fn correct(&mut self, correction: &mut [f64]) {
         let masks = self.room.y_seeds.iter().zip(&self.room.yp_seeds);

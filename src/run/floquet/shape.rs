@@ -156,11 +156,12 @@ impl Modes {
         match part {
             Part::Bending(mode) => self.frequencies[mode - 1],
             Part::Along => {
-                let (s, sum) = (&system.model.section, |of: &dyn Fn(&[f64]) -> Vec<f64>| -> f64 {
-                    v.iter().map(|v| squares(&of(v))).sum()
-                });
-                let stretch = sum(&|v| self.stretches(system, v));
-                let moved = sum(&|v| self.along(&nodes(system, v, |line| Some(&line.u))));
+                let s = &system.model.section;
+                let (mut stretch, mut moved) = (0.0, 0.0);
+                for v in v {
+                    stretch += squares(&self.stretches(system, v));
+                    moved += squares(&self.along(&nodes(system, v, |line| Some(&line.u))));
+                }
                 (s.axial_stiffness * stretch / (s.mass_per_length * moved).max(f64::MIN_POSITIVE)).sqrt()
             }
             Part::Fluid => 0.0,
@@ -212,7 +213,7 @@ impl Modes {
     }
 }
 
-/// What the beam is stretched along in every cell, across and along, [E24] [E26]: `∂e/∂(u1', u3')`.
+/// What the beam is stretched along in every cell, across and along, [E11] [E26]: `∂e/∂(u1', u3')`.
 fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
     let u = nodes(system, state, |line| Some(&line.u));
     let cells = u

@@ -128,6 +128,13 @@ impl Table {
         })
     }
 
+    /// The column with the standard deviations of another: of its whole heading or of its name, with `_sd` behind.
+    pub fn deviation(&self, column: usize) -> Option<usize> {
+        let own = &self.columns[column];
+        let mut names = [&own.heading, &own.name].into_iter();
+        names.find_map(|name| self.find(&format!("{name}_sd")))
+    }
+
     /// The column of a name that was asked for by an option.
     ///
     /// # Errors

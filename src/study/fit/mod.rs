@@ -61,17 +61,14 @@ pub struct Fitted {
 /// Headings of a table that are neither matched, nor time, nor set by rows, nor the noise of what is matched.
 pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
     let matched = asked.matches.iter().filter_map(|one| table.find(&one.column));
-    let noise = matched.clone().flat_map(|k| {
-        let own = &table.columns[k];
-        [&own.heading, &own.name].map(|name| table.find(&format!("{name}_sd")))
-    });
+    let noise = matched.clone().filter_map(|k| table.deviation(k));
     let driven = asked.drives.iter().filter_map(|drive| table.find(&drive.column));
     let time = asked
         .drives
         .is_empty()
         .then(|| table.time(asked.time.as_deref()).ok())
         .flatten();
-    let used: Vec<usize> = matched.chain(noise.flatten()).chain(driven).chain(time).collect();
+    let used: Vec<usize> = matched.chain(noise).chain(driven).chain(time).collect();
     let all = table.columns.iter().enumerate();
     all.filter(|(k, _)| !used.contains(k))
         .map(|(_, one)| one.heading.clone())

@@ -369,9 +369,7 @@ fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Optio
             }
             return Ok(Some(vec![sigma * one.scale; table.len()]));
         }
-        let own = &table.columns[one.column];
-        let beside = table.find(&format!("{}_sd", own.heading));
-        let Some(beside) = beside.or_else(|| table.find(&format!("{}_sd", own.name))) else {
+        let Some(beside) = table.deviation(one.column) else {
             return Ok(None);
         };
         let own = &table.columns[beside];

@@ -132,7 +132,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         };
         let all_found = estimate(&mut problems, &ask)?;
         // what goes together is another sum where the beam is bent far
-        if let Some(largest) = largest(&all_found) {
+        if let Some((_, largest)) = largest(&all_found) {
             sight(&mut found, &amplitudes, &largest.jacobian.select_rows(&columns));
         }
         let combinations: Vec<Vec<f64>> = found
@@ -167,10 +167,8 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         let left: Vec<Left> = rows.flat_map(|(problem, one)| left(problem, one, &places)).collect();
         found.doubts = doubts(&found, &left, all.len(), &all_found);
         warnings.extend(found.doubts.clone());
-        if let Some(largest) = largest(&all_found) {
-            let row = all_found.found.iter().position(|one| std::ptr::eq(one, largest));
-            let line = row.and_then(|row| measured.lines.get(row)).copied().unwrap_or(0);
-            warnings.extend(aside(&model, largest, line)?);
+        if let Some((row, largest)) = largest(&all_found) {
+            warnings.extend(aside(&model, largest, measured.lines[row])?);
             about.clone_from(&largest.jacobian);
         }
     }
@@ -217,10 +215,10 @@ pub(super) fn differences(amplitudes: &[Amplitude], loads: &[Basis]) -> DMatrix<
     all
 }
 
-/// That with the largest loads.
-fn largest(estimate: &Estimate) -> Option<&Found> {
-    let size = |one: &&Found| one.mean.norm();
-    estimate.found.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
+/// The row with the largest loads, and these.
+fn largest(estimate: &Estimate) -> Option<(usize, &Found)> {
+    let rows = estimate.found.iter().enumerate();
+    rows.max_by(|(_, a), (_, b)| a.mean.norm().total_cmp(&b.mean.norm()))
 }
 
 /// What is said where the state of the largest loads, those of a line, is not that to which they lead from rest.

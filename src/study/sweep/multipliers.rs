@@ -26,39 +26,39 @@ pub fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
         let here = numbers::of_stability(&all);
         let mut of = |case: &Case| numbers::of_growth(case, None, COUNT, &stop);
         let by_mesh = meshes::judge(case, &here, &mut of)?;
-        for (k, (name, multiplier)) in numbers::named(&all).into_iter().enumerate() {
-            let growth = format!("multiplier_{}.growth_per_s", k + 1);
-            let known = [("modulus", format!("{name}.modulus")), ("growth_per_s", growth)];
-            for (figure, key) in known {
-                let value = if figure == "modulus" {
-                    multiplier.modulus
-                } else {
-                    multiplier.growth_per_s
-                };
-                let share = by_mesh.quantities.get(&key).filter(|share| share.known());
-                // a share is of the size that counts, an error of the figure itself
-                let by_steps = match figure {
-                    "modulus" => multiplier.numerical_damping_per_s.abs() * all.period_s,
-                    _ => multiplier.numerical_damping_per_s.abs() / value.abs(),
-                };
-                let error = share.zip(here.get(&key)).map(|(share, number)| {
+        let named = numbers::named(&all);
+        for (k, (name, multiplier)) in named.iter().enumerate() {
+            // a share is of the size that counts, an error of the figure itself
+            let error = |key: &str, value: f64, by_steps: f64| {
+                let share = by_mesh.quantities.get(key).filter(|share| share.known());
+                share.zip(here.get(key)).map(|(share, number)| {
                     let counts = number.size.max(value.abs());
                     share.total() * counts / value.abs() + by_steps
-                });
-                found.put(format!("{name}.{figure}.error"), error);
-                if k == 0 && figure == "growth_per_s" {
-                    found.put("growth_per_s.error", error);
-                }
+                })
+            };
+            let (modulus, growth) = (multiplier.modulus, multiplier.growth_per_s);
+            let by_steps = multiplier.numerical_damping_per_s.abs();
+            let of_modulus = error(&format!("{name}.modulus"), modulus, by_steps * all.period_s);
+            let of_growth = error(
+                &format!("multiplier_{}.growth_per_s", k + 1),
+                growth,
+                by_steps / growth.abs(),
+            );
+            found.put(format!("{name}.modulus.error"), of_modulus);
+            found.put(format!("{name}.growth_per_s.error"), of_growth);
+            if k == 0 {
+                found.put("growth_per_s.error", of_growth);
             }
         }
         found.warn(by_mesh.warning().as_slice());
         // what is gone after a period is round-off, and is no figure of the case; of samples it is there where it is not
-        found.figures.retain(|(name, _)| {
-            let of = numbers::named(&all)
-                .into_iter()
-                .find(|(own, _)| name.starts_with(&format!("{own}.")));
-            of.is_none_or(|(_, multiplier)| multiplier.modulus > numbers::GONE)
-        });
+        let gone = named
+            .iter()
+            .filter(|(_, multiplier)| multiplier.modulus <= numbers::GONE);
+        let gone: Vec<String> = gone.map(|(own, _)| format!("{own}.")).collect();
+        found
+            .figures
+            .retain(|(name, _)| !gone.iter().any(|own| name.starts_with(own)));
     }
     found.warn(scene.trapped.as_slice());
     Ok(found)

@@ -286,12 +286,8 @@ mod tests {
 
     fn found(q: f64) -> Found {
         Found {
-            status: Status::Finished,
-            reason: None,
-            steps: None,
             figures: vec![("q.final".into(), q), ("q.error".into(), 1e-3)],
-            warnings: vec![],
-            told: vec![],
+            ..Found::finished()
         }
     }
 
