@@ -44,7 +44,23 @@ def explore(all, scene, reference, python):
                 )
                 if ran["seconds"] > LONG or e < 0.3 * ACCURACIES[-1]:
                     break
+            points[name] += between(all[worker], scene, reference, method, [p for p in points[name] if p["method"] == method])
     return points
+
+
+def between(worker, scene, reference, method, points):
+    """For each accuracy the tolerance halfway to the next looser one: half decades are coarse where a method is of high order."""
+    found = []
+    for accuracy in ACCURACIES:
+        for looser, tighter in zip(points, points[1:]):
+            if looser["error"] > accuracy >= tighter["error"] and tighter["seconds"] < LONG:
+                rtol = math.sqrt(looser["rtol"] * tighter["rtol"])
+                rans = [ran for ran in (run(worker, scene, method, rtol, STUCK) for _ in range(3)) if ran]
+                if rans:
+                    e = error(rans[0]["histories"], reference)
+                    seconds = min(ran["seconds"] for ran in rans)
+                    found.append({"method": method, "rtol": rtol, "error": e, "seconds": seconds, "steps": rans[0]["steps"]})
+    return found
 
 
 def cheapest(points, accuracy):

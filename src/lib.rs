@@ -13,7 +13,7 @@
 //! | [`error`] | everything that ends a command without success, and its exit code |
 //! | [`numerics`] | mathematics that knows nothing of beams: dual numbers, kernels, quadrature, Krylov spaces |
 //! | [`functions`] | functions of time and place, with bounds of what they do |
-//! | [`sparse`] | sparse matrices: patterns, and SuiteSparse's KLU behind a safe type |
+//! | [`sparse`] | sparse matrices: patterns, LU factors in dense blocks along a line, and SuiteSparse's KLU behind a safe type |
 //! | [`case`] | what the user wrote: schema, check with all faults at once |
 //! | [`model`] | physics of one cross-section, one bladder, one network: pure functions generic over the scalar; effects chosen |
 //! | [`discrete`] | space: mesh, unknowns with their scales, the residual in the paper's order, the exact balances |

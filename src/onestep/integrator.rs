@@ -50,7 +50,7 @@ impl<D: Dae> OneStep<D> {
         options: &OneStepOptions,
     ) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
-        let klu = request::admit(&dae, [y0, yp0], options.check(n))
+        let lu = request::admit(&dae, [y0, yp0], options.check(n))
             .map_err(|message| IntegrationError::request(message, t0))?;
         let tableau = options.method.tableau();
         let order = options.method.order();
@@ -59,7 +59,7 @@ impl<D: Dae> OneStep<D> {
             mask: differential.iter().map(|&d| f64::from(u8::from(d))).collect(),
             algebraic: (0..n).filter(|&i| !differential[i]).collect(),
             absolute: options.absolute.each(n),
-            matrix: Matrix::new(klu),
+            matrix: Matrix::new(lu),
             now: Stages::new(tableau.stages, n),
             last: Stages::new(tableau.stages, n),
             work: Work::new(n),
@@ -294,8 +294,8 @@ impl<D: Dae> OneStep<D> {
         Counters {
             residual_evaluations: self.equations.residuals,
             jacobian_evaluations: self.equations.jacobians,
-            factorizations: self.matrix.klu.factorizations,
-            pivot_refreshes: self.matrix.klu.pivot_refreshes,
+            factorizations: self.matrix.lu.factorizations(),
+            pivot_refreshes: self.matrix.lu.pivot_refreshes(),
             newton_iterations: self.newton_iterations,
             linear_solves: self.matrix.solves,
             ..self.counters.clone()

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::equations::{Equations, StageError};
 use crate::dae::Dae;
-use crate::sparse::{Klu, KluError};
+use crate::sparse::{KluError, Lu};
 
 /// Contraction that is assumed before one is measured: corrections are then taken for what is left.
 const UNKNOWN_RATE: f64 = 0.5;
@@ -13,7 +13,7 @@ const SLOW: f64 = 0.1;
 
 /// The factors and what is known of them.
 pub(super) struct Matrix {
-    pub klu: Klu,
+    pub lu: Lu,
     values: Vec<f64>,
     /// `cj` of the factors; 0 without factors.
     cj: f64,
@@ -31,10 +31,10 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    pub fn new(klu: Klu) -> Self {
+    pub fn new(lu: Lu) -> Self {
         Self {
-            values: vec![0.0; klu.entries()],
-            klu,
+            values: vec![0.0; lu.entries()],
+            lu,
             cj: 0.0,
             rate: UNKNOWN_RATE,
             stale: true,
@@ -48,7 +48,7 @@ impl Matrix {
 
     /// As new, counters apart.
     pub fn forget(&mut self) {
-        self.klu.forget();
+        self.lu.forget();
         (self.cj, self.rate, self.stale) = (0.0, UNKNOWN_RATE, true);
         (self.fresh, self.slow) = (false, false);
         self.singular = None;
@@ -79,7 +79,7 @@ impl Matrix {
         self.stale = true;
         equations.jacobian(t, y, yp, cj, &mut self.values)?;
         let begin = Instant::now();
-        let factored = self.klu.factor(&self.values);
+        let factored = self.lu.factor(&self.values);
         self.wall += begin.elapsed();
         match factored {
             Ok(()) => {
@@ -100,7 +100,7 @@ impl Matrix {
     /// `2 / (1 + cj/cj_old)` halves the error at both ends of the spectrum (IDA's choice).
     pub fn solve(&mut self, b: &mut [f64], cj: f64) -> f64 {
         let begin = Instant::now();
-        self.klu.solve(b);
+        self.lu.solve(b);
         self.solves += 1;
         self.wall += begin.elapsed();
         2.0 / (1.0 + cj / self.cj)

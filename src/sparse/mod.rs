@@ -4,16 +4,22 @@
 //! |---|---|
 //! | [`pattern`] | positions of stored entries |
 //! | [`colour`] | columns that may be differentiated together |
+//! | [`lu`] | the cheaper of the next two |
+//! | [`tridiagonal`] | LU factors of small dense blocks along a line |
 //! | [`klu`] | sparse LU factors, real and complex, with a guard against stale pivots |
 
 #![allow(unsafe_code)]
 
 pub mod colour;
 pub mod klu;
+pub mod lu;
 pub mod pattern;
+pub mod tridiagonal;
 
 pub use klu::{Klu, KluError, RowScaling};
+pub use lu::Lu;
 pub use pattern::Pattern;
+pub use tridiagonal::BlockTridiagonal;
 
 /// Version of SuiteSparse, whose KLU it is, as its headers say.
 pub fn suitesparse_version() -> String {

@@ -68,7 +68,7 @@ impl<D: Dae> Ida<D> {
     pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
         let refuse = |message: String| IntegrationError::request(message, t0);
-        let klu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
+        let lu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
         let id: Vec<f64> = dae
@@ -83,7 +83,7 @@ impl<D: Dae> Ida<D> {
         } else {
             Some(vector(&vec![0.0; integrals])?)
         };
-        let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
+        let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let mut bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
@@ -243,7 +243,7 @@ impl<D: Dae> Ida<D> {
     /// Panics when a slice has another length than the unknowns.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         let counters = self.counters();
-        self.solver.system_mut().klu.forget();
+        self.solver.system_mut().lu.forget();
         let reset = self.reset_integrals();
         if reset < 0 {
             return Err(self.failure(reset));
@@ -298,8 +298,8 @@ impl<D: Dae> Ida<D> {
             steps: self.steps(),
             residual_evaluations: bridge.residuals,
             jacobian_evaluations: bridge.jacobians,
-            factorizations: system.klu.factorizations,
-            pivot_refreshes: system.klu.pivot_refreshes,
+            factorizations: system.lu.factorizations(),
+            pivot_refreshes: system.lu.pivot_refreshes(),
             error_test_failures: self.base.error_test_failures + self.number(s::IDAGetNumErrTestFails),
             newton_failures: self.base.newton_failures + self.number(s::IDAGetNumNonlinSolvConvFails),
             newton_iterations: self.base.newton_iterations + self.number(s::IDAGetNumNonlinSolvIters),

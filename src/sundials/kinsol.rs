@@ -131,11 +131,11 @@ impl<D: Dae> Kinsol<D> {
         let n = dae.len();
         let refuse = KinsolError::own;
         let zeros = vec![0.0; n];
-        let klu = request::admit(&dae, [&zeros, &zeros], Ok(())).map_err(refuse)?;
+        let lu = request::admit(&dae, [&zeros, &zeros], Ok(())).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let y = Vector::new(&zeros, context.raw()).map_err(refuse)?;
         let ones = Vector::new(&vec![1.0; n], context.raw()).map_err(refuse)?;
-        let solver = LinearSolver::new(klu, context.raw()).map_err(refuse)?;
+        let solver = LinearSolver::new(lu.sparse(), context.raw()).map_err(refuse)?;
         let fixed = Shared::new(Fixed {
             bridge: Bridge::new(dae, 0.0, vec![]),
             t: 0.0,
@@ -207,7 +207,7 @@ impl<D: Dae> Kinsol<D> {
         fixed.t = t;
         (fixed.bridge.residuals, fixed.bridge.jacobians) = (0, 0);
         self.y.entries_mut().copy_from_slice(y);
-        let factored = self.solver.system().klu.factorizations;
+        let factored = self.solver.system().lu.factorizations();
         let raw = self.memory.0;
         // SAFETY: memory and vectors are alive; the callbacks reach what they need through user data, which nobody borrows.
         let code = unsafe {
@@ -247,19 +247,19 @@ impl<D: Dae> Kinsol<D> {
         Ok(Solution {
             iterations: iterations as u64 + 1,
             residual_evaluations: bridge.residuals,
-            factorizations: self.solver.system().klu.factorizations - factored,
+            factorizations: self.solver.system().lu.factorizations() - factored,
             correction: correction.0,
         })
     }
 
     /// Solves `∂F/∂y x = b` with the matrix last factored: that of the solution. Panics when `b` has another length.
     pub fn apply_inverse(&mut self, b: &mut [f64]) -> bool {
-        self.solver.system_mut().klu.solve(b)
+        self.solver.system_mut().lu.solve(b)
     }
 
     /// Sign of the determinant of the matrix last factored.
     pub fn determinant_sign(&self) -> i8 {
-        self.solver.system().klu.determinant_sign()
+        self.solver.system().lu.determinant_sign()
     }
 
     /// One Newton step from `y`, taken: the correction, largest relative to 1 + |unknown|, and where.
@@ -279,7 +279,7 @@ impl<D: Dae> Kinsol<D> {
         if let Err(EvaluationError::Recoverable(what) | EvaluationError::Fatal(what)) = evaluated {
             return Err(refuse(what, None));
         }
-        if system.klu.factor(&system.values).is_err() || !system.klu.solve(&mut step) || !kernels::all_finite(&step) {
+        if system.lu.factor(&system.values).is_err() || !system.lu.solve(&mut step) || !kernels::all_finite(&step) {
             let worst = system.singular.map(|column| bridge.dae.name(column));
             return Err(refuse("the matrix is singular".into(), worst));
         }

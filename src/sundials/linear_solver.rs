@@ -1,4 +1,4 @@
-//! KLU as a linear solver for SUNDIALS, with a matrix that SUNDIALS only passes on.
+//! LU factors as a linear solver for SUNDIALS, with a matrix that SUNDIALS only passes on.
 //!
 //! SUNDIALS' sparse matrix would be zeroed, indices included, before each Jacobian, and its KLU interface does not
 //! notice stale pivots. Here the matrix is a handle to values owned by Rust; nothing in the library touches them.
@@ -14,14 +14,14 @@ use sundials_sys::{N_Vector, SUNContext, SUNLinearSolver, SUNMatrix};
 use super::shared::Shared;
 use super::vector::{entries, entries_mut};
 use crate::numerics::kernels;
-use crate::sparse::{Klu, KluError};
+use crate::sparse::{KluError, Lu};
 
 /// Matrix values, factors, and what happened to them.
 pub(super) struct LinearSystem {
     /// Values of the matrix, in the order of the pattern.
     pub values: Vec<f64>,
     /// Factors.
-    pub klu: Klu,
+    pub lu: Lu,
     /// Column of the last matrix that was singular; cleared by the next that is not.
     pub singular: Option<usize>,
     /// Linear solves.
@@ -40,11 +40,11 @@ pub(super) struct LinearSolver {
 }
 
 impl LinearSolver {
-    /// Solver of systems with the pattern that `klu` was made for.
-    pub fn new(klu: Klu, context: SUNContext) -> Result<Self, String> {
+    /// Solver of systems with the pattern that `lu` was made for.
+    pub fn new(lu: Lu, context: SUNContext) -> Result<Self, String> {
         let system = Shared::new(LinearSystem {
-            values: vec![0.0; klu.entries()],
-            klu,
+            values: vec![0.0; lu.entries()],
+            lu,
             singular: None,
             solves: 0,
             wall: Duration::ZERO,
@@ -133,7 +133,7 @@ unsafe fn with_system(solver: SUNLinearSolver, act: impl FnOnce(&mut LinearSyste
 
 /// Factors the matrix. A singular one is recoverable, the first one too: a shorter step may help.
 unsafe extern "C" fn setup(solver: SUNLinearSolver, _: SUNMatrix) -> c_int {
-    let factor = |system: &mut LinearSystem| match system.klu.factor(&system.values) {
+    let factor = |system: &mut LinearSystem| match system.lu.factor(&system.values) {
         Ok(()) => {
             system.singular = None;
             0
@@ -155,7 +155,7 @@ unsafe extern "C" fn solve(solver: SUNLinearSolver, _: SUNMatrix, x: N_Vector, b
     let solve = |system: &mut LinearSystem| {
         system.solves += 1;
         x.copy_from_slice(b);
-        let done = system.klu.solve(x) && kernels::all_finite(x);
+        let done = system.lu.solve(x) && kernels::all_finite(x);
         if done { 0 } else { s::SUNLS_PACKAGE_FAIL_REC as c_int }
     };
     // SAFETY: SUNDIALS passes the solver of `LinearSolver::new`.

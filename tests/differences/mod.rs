@@ -1,7 +1,7 @@
 //! Exact derivatives of a residual against coloured central differences.
 
 use slcbeam::dae::{BeamDae, Dae, Seeds};
-use slcbeam::sparse::colour;
+use slcbeam::sparse::{Lu, Pattern, colour};
 
 use crate::chance::Random;
 
@@ -25,6 +25,7 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
     let pattern = dae.pattern().clone();
     let mut exact = vec![0.0; pattern.entries()];
     dae.jacobian(t, &y, &yp, Seeds::Step { cj }, &mut exact).unwrap();
+    factors_hold(&pattern, &exact);
     let (colour, count) = colour::colours(&pattern);
     // Fourth-order differences: the step balances round-off 1e-16/h against h^4 over the kink's width.
     let mut differenced = vec![0.0; pattern.entries()];
@@ -63,4 +64,34 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
         }
     }
     worst
+}
+
+/// Factors of a Jacobian, where there are any: a solution has a small backward error, whichever way it was found.
+fn factors_hold(pattern: &Pattern, values: &[f64]) {
+    let n = pattern.columns();
+    let mut lu = Lu::new(pattern).unwrap();
+    if lu.factor(values).is_err() {
+        return;
+    }
+    let b: Vec<f64> = (0..n).map(|k| (1.3 * k as f64).cos()).collect();
+    let mut x = b.clone();
+    assert!(lu.solve(&mut x));
+    let (mut left, mut size) = (b.clone(), b.iter().map(|b| b.abs()).collect::<Vec<_>>());
+    for j in 0..n {
+        for entry in pattern.column(j) {
+            let i = pattern.rows[entry] as usize;
+            left[i] -= values[entry] * x[j];
+            size[i] += (values[entry] * x[j]).abs();
+        }
+    }
+    let worst = left
+        .iter()
+        .zip(&size)
+        .map(|(left, size)| left.abs() / size)
+        .fold(0.0, f64::max);
+    assert!(
+        worst < 1e-8,
+        "backward error {worst:.1e}, in blocks: {}",
+        lu.in_blocks()
+    );
 }

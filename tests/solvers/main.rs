@@ -1,5 +1,6 @@
 //! Mathematics and solvers that know nothing of beams, and the beam through them.
 
+mod blocks;
 mod bounds;
 mod numerics;
 mod onestep;

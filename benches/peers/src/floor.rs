@@ -21,6 +21,29 @@ fn memory() -> Option<u64> {
     Some(1024 * line.split_whitespace().next()?.parse::<u64>().ok()?)
 }
 
+/// Vectors of all unknowns that an iteration reads or writes at least, besides the factors: 5 to set values and rates, 5 to correct them, 2 for
+/// the norm, 1 to see that all is finite, 5 to give them units, 3 to scale the residual, and what predicts a stage.
+const VECTORS: usize = 24;
+
+/// Seconds a byte takes to be read from an array of so many bytes, over and over.
+fn reading(bytes: usize) -> f64 {
+    let numbers = vec![1.0_f64; (bytes / 8).max(1024)];
+    let passes = (200_000_000 / bytes.max(1)).clamp(2, 20_000);
+    let mut best = f64::INFINITY;
+    for _ in 0..5 {
+        let begin = Instant::now();
+        for _ in 0..passes {
+            let sums = numbers.chunks_exact(16).fold([0.0; 16], |mut sums, chunk| {
+                sums.iter_mut().zip(chunk).for_each(|(sum, x)| *sum += x);
+                sums
+            });
+            std::hint::black_box(sums);
+        }
+        best = best.min(begin.elapsed().as_secs_f64() / (passes * 8 * numbers.len()) as f64);
+    }
+    best
+}
+
 /// Runs `esdirk46` for a while at rtol 1e-4.
 pub fn measure(case: Case) -> Value {
     let begin = Instant::now();
@@ -46,11 +69,14 @@ pub fn measure(case: Case) -> Value {
     let iterations = after.newton_iterations - before.newton_iterations;
     let jacobians = after.jacobian_evaluations - before.jacobian_evaluations;
     let factors = after.factorizations - before.factorizations;
+    let bytes = bench.factor_bytes() + 8 * VECTORS * scene.y.len();
+    let reading = reading(bytes);
     let floor = iterations as f64 * (residual + solve);
     json!({
         "case": scene.case.name, "unknowns": scene.y.len(), "start": start, "set_up": set_up, "steps": STEPS,
         "seconds": seconds, "iterations": iterations, "jacobians": jacobians, "factorizations": factors,
         "floor": floor, "accounted": floor + jacobians as f64 * jacobian + factors as f64 * factor, "memory": memory,
         "residual": residual, "jacobian": jacobian, "factor": factor, "solve": solve,
+        "bytes": bytes, "reading": reading,
     })
 }

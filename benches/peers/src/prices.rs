@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde_json::{Value, json};
 use slcbeam::dae::{Dae, Seeds};
-use slcbeam::sparse::Klu;
+use slcbeam::sparse::Lu;
 
 use crate::scene::{Bare, Scene};
 
@@ -15,7 +15,7 @@ pub const OPERATIONS: [&str; 4] = ["residual", "jacobian", "factor", "solve"];
 pub struct Bench<'a> {
     scene: &'a Scene,
     dae: Bare,
-    klu: Klu,
+    lu: Lu,
     values: Vec<f64>,
     r: Vec<f64>,
 }
@@ -25,15 +25,15 @@ impl<'a> Bench<'a> {
         let mut dae = scene.dae();
         let n = scene.y.len();
         let mut values = vec![0.0; dae.pattern().entries()];
-        let mut klu = Klu::new(dae.pattern()).expect("factors");
+        let mut lu = Lu::new(dae.pattern()).expect("factors");
         let seeds = Seeds::Step { cj: 1e3 };
         dae.jacobian(0.0, &scene.y, &scene.yp, seeds, &mut values)
             .expect("a Jacobian");
-        klu.factor(&values).expect("factors");
+        lu.factor(&values).expect("factors");
         Self {
             scene,
             dae,
-            klu,
+            lu,
             values,
             r: vec![0.0; n],
         }
@@ -44,7 +44,7 @@ impl<'a> Bench<'a> {
         let Self {
             scene,
             dae,
-            klu,
+            lu,
             values,
             r,
         } = self;
@@ -55,10 +55,10 @@ impl<'a> Bench<'a> {
                 dae.jacobian(0.0, y, yp, Seeds::Step { cj: 1e3 }, values)
                     .expect("a Jacobian");
             }),
-            "factor" => (0..count).for_each(|_| klu.factor(values).expect("factors")),
+            "factor" => (0..count).for_each(|_| lu.factor(values).expect("factors")),
             "solve" => (0..count).for_each(|_| {
                 r.fill(1.0);
-                assert!(klu.solve(r));
+                assert!(lu.solve(r));
             }),
             other => panic!("no operation {other}"),
         }
@@ -81,6 +81,11 @@ impl<'a> Bench<'a> {
             .collect();
         batches.sort_by(f64::total_cmp);
         batches[4]
+    }
+
+    /// Bytes of the factors that one solution reads.
+    pub fn factor_bytes(&self) -> usize {
+        self.lu.bytes()
     }
 
     /// Seconds of all of them.

@@ -170,6 +170,18 @@ impl Klu {
         self.analysis.rows.len()
     }
 
+    /// Entries that the factors will have, as long as pivots stay on the diagonal.
+    pub fn expected_entries(&self) -> f64 {
+        // SAFETY: made by `klu_l_analyze`, and there.
+        let symbolic = unsafe { &*self.analysis.symbolic };
+        symbolic.lnz + symbolic.unz + symbolic.nzoff as f64
+    }
+
+    /// Bytes of the present factors that a solution reads, 0 without any.
+    pub fn bytes(&self) -> usize {
+        self.rows.as_ref().map_or(0, Rows::bytes)
+    }
+
     /// Factors the matrix whose entries, in the order of the pattern, are `values`; with the old pivots while they last.
     ///
     /// After a fault there are no factors. Panics when the number of values is not that of the pattern.

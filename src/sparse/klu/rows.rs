@@ -162,6 +162,16 @@ impl Rows {
         })
     }
 
+    /// Bytes that one solution reads.
+    pub fn bytes(&self) -> usize {
+        let triangles = [&self.above, &self.lower, &self.upper];
+        let entries: usize = triangles
+            .iter()
+            .map(|triangle| 12 * triangle.values.len() + 8 * triangle.starts.len())
+            .sum();
+        entries + 24 * self.per_pivot.len()
+    }
+
     /// Numbers of the factors of a block.
     ///
     /// # Safety

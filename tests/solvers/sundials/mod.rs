@@ -1,7 +1,7 @@
 //! The solver room alone: problems with published answers, the protocol of faults, the guard of the factors.
 
 #[path = "../../common/chance.rs"]
-mod chance;
+pub mod chance;
 mod faults;
 mod klu;
 mod published;

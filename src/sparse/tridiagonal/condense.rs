@@ -1,0 +1,95 @@
+//! Static condensation: unknowns that a row of two entries gives by another unknown.
+//!
+//! `a x_e + c x_o = b_r` is solved for `x_e`, whose column joins that of `x_o`. Of a beam these are its velocities, `cj u - v = b`.
+
+use crate::sparse::Pattern;
+
+/// Entries that a column may add to that which it joins.
+const MORE: usize = 2;
+
+/// An unknown given by another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pair {
+    /// Row of two entries.
+    pub row: u32,
+    /// Unknown that is given, and the entry of its coefficient.
+    pub given: (u32, u32),
+    /// Unknown that is kept, and the entry of its coefficient.
+    pub kept: (u32, u32),
+}
+
+/// What is left of a matrix.
+pub(super) struct Condensed {
+    pub pairs: Vec<Pair>,
+    /// Pair that gives each unknown.
+    pub by: Vec<Option<u32>>,
+    /// Row that goes with each unknown that is kept; of no use for the others.
+    pub row: Vec<u32>,
+}
+
+impl Condensed {
+    pub fn new(pattern: &Pattern) -> Self {
+        let n = pattern.columns();
+        let mut rows: Vec<[u32; 3]> = vec![[0, 0, 0]; n]; // count, first entries
+        let mut columns: Vec<[u32; 2]> = vec![[0, 0]; n];
+        for column in 0..n {
+            for entry in pattern.column(column) {
+                let row = pattern.rows[entry] as usize;
+                let count = rows[row][0] as usize;
+                if count < 2 {
+                    rows[row][1 + count] = entry as u32;
+                    columns[row][count] = column as u32;
+                }
+                rows[row][0] += 1;
+            }
+        }
+        let mut this = Self {
+            pairs: vec![],
+            by: vec![None; n],
+            row: (0..n as u32).collect(),
+        };
+        let mut anchor = vec![false; n];
+        for row in 0..n {
+            if rows[row][0] != 2 {
+                continue;
+            }
+            let both = [(columns[row][0], rows[row][1]), (columns[row][1], rows[row][2])];
+            if both.iter().all(|(unknown, _)| *unknown as usize != row) {
+                continue;
+            }
+            let length = |unknown: u32| pattern.column(unknown as usize).len();
+            let (given, kept) = if length(both[0].0) <= length(both[1].0) {
+                (both[0], both[1])
+            } else {
+                (both[1], both[0])
+            };
+            let (e, o) = (given.0 as usize, kept.0 as usize);
+            if anchor[e] || this.by[e].is_some() || this.by[o].is_some() || more(pattern, e, o, row) > MORE {
+                continue;
+            }
+            if row == o {
+                // the row of the unknown that goes stays, with the other one
+                if this.row[o] as usize != o {
+                    continue;
+                }
+                this.row[o] = e as u32;
+            }
+            anchor[o] = true;
+            this.by[e] = Some(this.pairs.len() as u32);
+            this.pairs.push(Pair {
+                row: row as u32,
+                given,
+                kept,
+            });
+        }
+        this
+    }
+}
+
+/// Rows of column `e`, other than `row`, that column `o` does not have.
+fn more(pattern: &Pattern, e: usize, o: usize, row: usize) -> usize {
+    let theirs = &pattern.rows[pattern.column(o)];
+    let mine = pattern.rows[pattern.column(e)].iter();
+    mine.filter(|r| **r as usize != row && theirs.binary_search(r).is_err())
+        .count()
+}

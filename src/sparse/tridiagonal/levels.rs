@@ -1,0 +1,97 @@
+//! Level structures of a graph: sets of nodes of which each touches the one before and the one after alone.
+
+/// Searches for a node far from the others, at most.
+const SEARCHES: usize = 6;
+
+/// Neighbours of every node: those of node k are `to[starts[k]..starts[k + 1]]`.
+pub(super) struct Graph {
+    pub starts: Vec<usize>,
+    pub to: Vec<u32>,
+}
+
+impl Graph {
+    /// Both directions of every edge between two nodes.
+    pub fn new(nodes: usize, edges: &[[u32; 2]]) -> Self {
+        let mut starts = vec![0; nodes + 1];
+        let ends = || edges.iter().filter(|[a, b]| a != b);
+        for [a, b] in ends() {
+            starts[*a as usize + 1] += 1;
+            starts[*b as usize + 1] += 1;
+        }
+        (0..nodes).for_each(|k| starts[k + 1] += starts[k]);
+        let mut next = starts.clone();
+        let mut to = vec![0; starts[nodes]];
+        for [a, b] in ends() {
+            for (from, other) in [(*a, *b), (*b, *a)] {
+                to[next[from as usize]] = other;
+                next[from as usize] += 1;
+            }
+        }
+        Self { starts, to }
+    }
+
+    pub fn neighbours(&self, node: u32) -> &[u32] {
+        &self.to[self.starts[node as usize]..self.starts[node as usize + 1]]
+    }
+
+    /// Levels of every connected part, one part after the other; each begins at a node far from the rest of its part (George & Liu 1979).
+    pub fn levels(&self) -> Vec<Vec<u32>> {
+        let nodes = self.starts.len() - 1;
+        let mut mark = vec![0_u32; nodes];
+        let mut round = 0;
+        let mut done = vec![false; nodes];
+        let mut all = vec![];
+        for start in 0..nodes as u32 {
+            if done[start as usize] {
+                continue;
+            }
+            round += 1;
+            let mut levels = self.from(start, round, &mut mark);
+            for _ in 0..SEARCHES {
+                let Some(end) = levels
+                    .last()
+                    .and_then(|last| last.iter().min_by_key(|k| self.neighbours(**k).len()))
+                else {
+                    break;
+                };
+                round += 1;
+                let other = self.from(*end, round, &mut mark);
+                let deeper = other.len() > levels.len();
+                if deeper || other.len() == levels.len() && width(&other) < width(&levels) {
+                    levels = other;
+                }
+                if !deeper {
+                    break;
+                }
+            }
+            levels.iter().flatten().for_each(|k| done[*k as usize] = true);
+            all.extend(levels);
+        }
+        all
+    }
+
+    /// Levels by distance from a node.
+    fn from(&self, start: u32, round: u32, mark: &mut [u32]) -> Vec<Vec<u32>> {
+        mark[start as usize] = round;
+        let mut levels = vec![vec![start]];
+        loop {
+            let mut next = vec![];
+            for node in &levels[levels.len() - 1] {
+                for other in self.neighbours(*node) {
+                    if mark[*other as usize] != round {
+                        mark[*other as usize] = round;
+                        next.push(*other);
+                    }
+                }
+            }
+            if next.is_empty() {
+                return levels;
+            }
+            levels.push(next);
+        }
+    }
+}
+
+fn width(levels: &[Vec<u32>]) -> usize {
+    levels.iter().map(Vec::len).max().unwrap_or(0)
+}

@@ -1,0 +1,385 @@
+//! LU factors of matrices that are block tridiagonal: what hangs together along a line.
+//!
+//! Unknowns that a row of two entries gives by another one are left out first ([`condense`]). Levels of the graph of the rest, by distance from a
+//! node at its end, touch the level before and the one after alone ([`levels`]); each is a small dense block. Elimination goes
+//! from both ends to a block in the middle, so that two chains of operations do not wait for each other (a twisted factorisation):
+//!
+//! ```text
+//! D_j = A_jj - A_ji D_i⁻¹ A_ij      i the block before on the way to the middle, or both at the middle
+//! y_j = D_j⁻¹ (b_j - A_ji y_i)      x_i = y_i - (D_i⁻¹ A_ij) x_j
+//! ```
+//!
+//! Rows are exchanged within blocks alone; whether that was enough is asked of every factorisation by a solution, whose backward error is
+//! to be small (Oettli & Prager 1964).
+
+mod condense;
+mod dense;
+mod levels;
+mod plan;
+
+use crate::sparse::Pattern;
+use dense::{Add, Apart, Fused, padded};
+use plan::{Block, Plan};
+
+/// Backward error up to which factors are taken for those of the matrix: Newton's iteration notices no sixth digit of its Jacobian.
+///
+/// With a rate that is nearly given, `v = cj u - b` of a very short step, v is a difference of numbers of the size of b: that is the largest there is.
+const BACKWARD: f64 = 1e-6;
+
+/// Factors of matrices that share a pattern.
+pub struct BlockTridiagonal {
+    plan: Plan,
+    /// Rows of each entry, starts of columns.
+    rows: Vec<u32>,
+    starts: Vec<u32>,
+    /// Of each block: inverse, what its unknowns take off the next block, what the next block takes off them.
+    numbers: Vec<f64>,
+    /// What the row of each pair gives: `x_e = per b_r + ratio x_o`.
+    per: Vec<f64>,
+    ratio: Vec<f64>,
+    /// Its first part, of the solution at hand.
+    given: Vec<f64>,
+    /// What `b_r` adds to other rows.
+    shifts: Vec<f64>,
+    /// Right-hand side and solution, block by block.
+    x: Vec<f64>,
+    y: Vec<f64>,
+    room: Room,
+}
+
+/// Room to work in.
+#[derive(Default)]
+struct Room {
+    /// A block as it is assembled.
+    block: Vec<f64>,
+    exchanged: Vec<usize>,
+    columns: Vec<f64>,
+    /// What both blocks before take off a block.
+    taken: [Vec<f64>; 2],
+    /// What the next block takes off a block.
+    through: Vec<f64>,
+    solution: Vec<f64>,
+    left: Vec<f64>,
+    size: Vec<f64>,
+}
+
+impl BlockTridiagonal {
+    /// Analyses a square pattern; none where there is no line along which it could be cut, or where 32 bits do not count all.
+    pub fn new(pattern: &Pattern) -> Option<Self> {
+        let plan = Plan::new(pattern)?;
+        let most = |size: &dyn Fn(&Block) -> usize| plan.blocks.iter().map(size).max().unwrap_or(0);
+        let (rows, n) = (most(&|block| block.rows), pattern.columns());
+        let touched = most(&|block| padded(block.theirs.len()));
+        let room = Room {
+            block: vec![0.0; most(&|block| block.room().iter().sum())],
+            exchanged: vec![0; rows],
+            columns: vec![0.0; 3 * rows],
+            taken: [(); 2].map(|()| vec![0.0; touched * touched]),
+            through: vec![0.0; most(&|block| block.rows * block.theirs.len())],
+            solution: vec![0.0; n],
+            left: vec![0.0; n],
+            size: vec![0.0; n],
+        };
+        let narrow = |wide: &[i64]| wide.iter().map(|&k| u32::try_from(k).ok()).collect::<Option<Vec<_>>>();
+        let pairs = plan.condensed.pairs.len();
+        Some(Self {
+            rows: narrow(&pattern.rows)?,
+            starts: narrow(&pattern.starts)?,
+            numbers: vec![0.0; plan.numbers],
+            per: vec![0.0; pairs],
+            ratio: vec![0.0; pairs],
+            given: vec![0.0; pairs],
+            shifts: vec![0.0; plan.shifts.len()],
+            x: vec![0.0; plan.places],
+            y: vec![0.0; plan.places],
+            plan,
+            room,
+        })
+    }
+
+    /// Products that one solution takes.
+    pub fn products(&self) -> usize {
+        self.plan.products()
+    }
+
+    /// Bytes that one solution reads.
+    pub fn bytes(&self) -> usize {
+        let plan = &self.plan;
+        let pairs = size_of_val(&plan.condensed.pairs[..]) + 8 * (self.per.len() + self.ratio.len());
+        8 * self.numbers.len()
+            + size_of_val(&plan.kept[..])
+            + size_of_val(&plan.shifts[..])
+            + 8 * self.shifts.len()
+            + pairs
+    }
+
+    /// Factors the matrix whose entries, in the order of the pattern, are `values`; false where rows would have to be exchanged between blocks.
+    /// Panics when the number of values is not that of the pattern.
+    pub fn factor(&mut self, values: &[f64]) -> bool {
+        assert_eq!(values.len(), self.rows.len(), "values of another pattern");
+        #[cfg(target_arch = "x86_64")]
+        if wide() {
+            // SAFETY: the processor has what the function is compiled for.
+            return unsafe { self.factor_wide(values) };
+        }
+        self.factor_by::<Apart>(values)
+    }
+
+    /// Replaces `b` by the solution of `A x = b`. Panics when `b` has another length.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        assert_eq!(b.len() + 1, self.starts.len(), "right-hand side of another size");
+        #[cfg(target_arch = "x86_64")]
+        if wide() {
+            // SAFETY: the processor has what the function is compiled for.
+            return unsafe { self.solve_wide(b) };
+        }
+        self.solve_by::<Apart>(b);
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn factor_wide(&mut self, values: &[f64]) -> bool {
+        self.factor_by::<Fused>(values)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma")]
+    fn solve_wide(&mut self, b: &mut [f64]) {
+        self.solve_by::<Fused>(b);
+    }
+
+    #[inline(always)]
+    fn factor_by<A: Add>(&mut self, values: &[f64]) -> bool {
+        self.condense(values);
+        let (blocks, twist) = (self.plan.blocks.len(), self.plan.twist);
+        let ways: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..twist), &mut (twist + 1..blocks).rev()];
+        for (side, way) in ways.into_iter().enumerate() {
+            let mut before = None;
+            for j in way {
+                if !self.block::<A>(values, j, side, before) {
+                    return false;
+                }
+                before = Some(j);
+            }
+        }
+        self.block::<A>(values, twist, 0, None) && self.holds::<A>(values)
+    }
+
+    /// Coefficients of the rows that give an unknown.
+    #[inline(always)]
+    fn condense(&mut self, values: &[f64]) {
+        let plan = &self.plan;
+        for ((pair, per), ratio) in plan.condensed.pairs.iter().zip(&mut self.per).zip(&mut self.ratio) {
+            *per = 1.0 / values[pair.given.1 as usize];
+            *ratio = -*per * values[pair.kept.1 as usize];
+        }
+        for ([.., entry], shift) in plan.shifts.iter().zip(&mut self.shifts) {
+            *shift = -values[*entry as usize];
+        }
+    }
+
+    /// Assembles a block, takes off it what the one before tells ([`Room::taken`] of that side), or both, and inverts it.
+    #[inline(always)]
+    fn block<A: Add>(&mut self, values: &[f64], j: usize, side: usize, before: Option<usize>) -> bool {
+        let Self {
+            plan,
+            numbers,
+            room,
+            ratio,
+            ..
+        } = self;
+        let block = &plan.blocks[j];
+        let [square, beside, column] = block.room();
+        let work = &mut room.block[..square + beside + column];
+        work.fill(0.0);
+        for [to, entry] in &plan.sources[block.sources.clone()] {
+            work[*to as usize] += values[*entry as usize];
+        }
+        for [to, entry, pair] in &plan.folded[block.folded.clone()] {
+            work[*to as usize] += ratio[*pair as usize] * values[*entry as usize];
+        }
+        let (d, rest) = work.split_at_mut(square);
+        let (beside, column) = rest.split_at_mut(beside);
+        let mut take = |theirs: &std::ops::Range<usize>, taken: &[f64]| {
+            let rows = padded(theirs.len());
+            for (c, taken) in theirs.clone().zip(taken.chunks_exact(rows.max(1))) {
+                let to = &mut d[c * block.rows + theirs.start..][..theirs.len()];
+                // both factors stand with the other sign
+                to.iter_mut().zip(taken).for_each(|(to, taken)| *to -= taken);
+            }
+        };
+        if let Some(before) = before {
+            take(&plan.blocks[before].theirs, &room.taken[side]);
+        }
+        if j == plan.twist {
+            let both = [j.checked_sub(1), Some(j + 1).filter(|k| *k < plan.blocks.len())];
+            for (before, taken) in both.into_iter().zip(&room.taken) {
+                if let Some(before) = before {
+                    take(&plan.blocks[before].theirs, taken);
+                }
+            }
+        }
+        if !dense::invert::<A>(
+            d,
+            block.rows,
+            &mut room.exchanged[..block.size],
+            &mut room.columns[..3 * block.rows],
+        ) {
+            return false;
+        }
+        let numbers = &mut numbers[block.numbers[0]..][..square + column.len() + block.rows * block.theirs.len()];
+        let (inverse, rest) = numbers.split_at_mut(square);
+        let (away, back) = rest.split_at_mut(column.len());
+        dense::strips(d, block.rows, inverse);
+        away.iter_mut().zip(column).for_each(|(away, entry)| *away = -*entry);
+        let through = &mut room.through[..back.len()];
+        let (rows, mine) = (block.rows, &block.mine);
+        dense::product::<A>(
+            &d[mine.start * rows..mine.end * rows],
+            rows,
+            beside,
+            mine.len().max(1),
+            through,
+        );
+        dense::strips(through, rows, back);
+        // D of the next block loses A D⁻¹ A
+        let taken = &mut room.taken[side];
+        let touched = padded(block.theirs.len());
+        for (to, through) in taken.chunks_exact_mut(touched.max(1)).zip(through.chunks_exact(rows)) {
+            dense::multiply::<A, false>(away, &through[mine.clone()], to);
+        }
+        true
+    }
+
+    #[inline(always)]
+    fn solve_by<A: Add>(&mut self, b: &mut [f64]) {
+        let Self {
+            plan,
+            numbers,
+            x,
+            y,
+            per,
+            ratio,
+            shifts,
+            given,
+            ..
+        } = self;
+        x.fill(0.0);
+        // SAFETY: the plan's rows and unknowns are below n, the length of b; its places below that of x and y.
+        unsafe {
+            for kept in &plan.kept {
+                *x.get_unchecked_mut(kept.at as usize) = *b.get_unchecked(kept.row as usize);
+            }
+            for ((pair, given), per) in plan.condensed.pairs.iter().zip(&mut *given).zip(&*per) {
+                *given = per * b.get_unchecked(pair.row as usize);
+            }
+            for ([to, pair, _], shift) in plan.shifts.iter().zip(&*shifts) {
+                *x.get_unchecked_mut(*to as usize) += shift * given.get_unchecked(*pair as usize);
+            }
+        }
+        let (blocks, twist) = (&plan.blocks[..], plan.twist);
+        // one block of each side after the other: neither waits for its neighbour's result
+        let last = blocks.len() - 1;
+        let turns = twist.max(last - twist);
+        for turn in 0..turns {
+            if turn < twist {
+                forward::<A>(blocks, [turn, turn + 1], numbers, x, y);
+            }
+            if turn < last - twist {
+                forward::<A>(blocks, [last - turn, last - turn - 1], numbers, x, y);
+            }
+        }
+        apply::<A>(&blocks[twist], numbers, x, y);
+        for turn in (0..turns).rev() {
+            if turn < twist {
+                back::<A>(blocks, [turn, turn + 1], numbers, y);
+            }
+            if turn < last - twist {
+                back::<A>(blocks, [last - turn, last - turn - 1], numbers, y);
+            }
+        }
+        // SAFETY: as above.
+        unsafe {
+            for kept in &plan.kept {
+                *b.get_unchecked_mut(kept.unknown as usize) = *y.get_unchecked(kept.at as usize);
+            }
+            for ((pair, given), ratio) in plan.condensed.pairs.iter().zip(&*given).zip(&*ratio) {
+                *b.get_unchecked_mut(pair.given.0 as usize) = given + ratio * b.get_unchecked(pair.kept.0 as usize);
+            }
+        }
+    }
+
+    /// Whether a solution has a small backward error, row by row.
+    #[inline(always)]
+    fn holds<A: Add>(&mut self, values: &[f64]) -> bool {
+        let n = self.starts.len() - 1;
+        let mut solution = std::mem::take(&mut self.room.solution);
+        let mut left = std::mem::take(&mut self.room.left);
+        let mut size = std::mem::take(&mut self.room.size);
+        let mut state = 1_u64;
+        for (left, size) in left.iter_mut().zip(&mut size) {
+            // signs and sizes that no matrix knows (Knuth's generator)
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            *left = (state >> 40) as f64 / (1 << 23) as f64 - 1.0;
+            *size = left.abs();
+        }
+        solution.copy_from_slice(&left);
+        self.solve_by::<A>(&mut solution);
+        for column in 0..n {
+            let own = self.starts[column] as usize..self.starts[column + 1] as usize;
+            for (row, value) in self.rows[own.clone()].iter().zip(&values[own]) {
+                let product = value * solution[column];
+                left[*row as usize] -= product;
+                size[*row as usize] += product.abs();
+            }
+        }
+        // written so that what is no number does not hold
+        let holds = left.iter().zip(&size).all(|(left, size)| left.abs() <= BACKWARD * size);
+        (self.room.solution, self.room.left, self.room.size) = (solution, left, size);
+        holds
+    }
+}
+
+/// `y = D⁻¹ b` of a block.
+#[inline(always)]
+fn apply<A: Add>(block: &Block, numbers: &[f64], b: &[f64], y: &mut [f64]) {
+    let inverse = &numbers[block.numbers[0]..][..block.rows * block.size];
+    let own = &mut y[block.at..][..block.rows];
+    dense::multiply::<A, false>(inverse, &b[block.at..][..block.size], own);
+}
+
+/// The same, and what it takes off the next block `j`.
+#[inline(always)]
+fn forward<A: Add>(blocks: &[Block], [i, j]: [usize; 2], numbers: &[f64], b: &mut [f64], y: &mut [f64]) {
+    let block = &blocks[i];
+    apply::<A>(block, numbers, b, y);
+    let (mine, theirs) = (&block.mine, &block.theirs);
+    let rows = padded(theirs.len());
+    let away = &numbers[block.numbers[1]..][..rows * mine.len()];
+    let to = &mut b[blocks[j].at + theirs.start..][..rows];
+    dense::multiply::<A, true>(away, &y[block.at + mine.start..][..mine.len()], to);
+}
+
+/// Takes off a block what the next one, `j`, tells.
+#[inline(always)]
+fn back<A: Add>(blocks: &[Block], [i, j]: [usize; 2], numbers: &[f64], y: &mut [f64]) {
+    let (block, next) = (&blocks[i], &blocks[j]);
+    let theirs = block.theirs.len();
+    let numbers = &numbers[block.numbers[2]..][..block.rows * theirs];
+    // blocks do not overlap
+    let (low, high) = y.split_at_mut(block.at.max(next.at));
+    let (own, known) = if block.at < next.at {
+        (&mut low[block.at..], &high[block.theirs.start..])
+    } else {
+        (high, &low[next.at + block.theirs.start..])
+    };
+    dense::multiply::<A, true>(numbers, &known[..theirs], &mut own[..block.rows]);
+}
+
+/// Whether the processor has the instructions of x86-64-v3 that are used here; asked for once.
+#[cfg(target_arch = "x86_64")]
+fn wide() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}

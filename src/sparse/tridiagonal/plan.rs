@@ -1,0 +1,318 @@
+//! Which unknown stands in which block, and where every entry of the matrix goes.
+
+use std::ops::Range;
+
+use super::condense::Condensed;
+use super::dense::{LANES, padded, place};
+use super::levels::Graph;
+use crate::sparse::Pattern;
+
+/// Unknowns up to which neighbouring levels become one block.
+const TOGETHER: usize = 12;
+
+/// Unknowns of a block, and how it touches the next one on the way to the twist.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Block {
+    /// Place of its first unknown among all.
+    pub at: usize,
+    /// Its unknowns.
+    pub size: usize,
+    /// The same, filled up.
+    pub rows: usize,
+    /// Those that touch the next block.
+    pub mine: Range<usize>,
+    /// Those of the next block that are touched.
+    pub theirs: Range<usize>,
+    /// Where its numbers begin: inverse, what it adds to the next block, what that adds to it.
+    pub numbers: [usize; 3],
+    /// Its part of [`Plan::sources`] and of [`Plan::folded`].
+    pub sources: Range<usize>,
+    pub folded: Range<usize>,
+}
+
+impl Block {
+    /// Sizes of the square block, of what stands in its rows and in its columns beside it, as they are assembled.
+    pub fn room(&self) -> [usize; 3] {
+        let (mine, theirs) = (self.mine.len(), self.theirs.len());
+        [self.rows * self.size, mine * theirs, padded(theirs) * mine]
+    }
+
+    /// Products that a solution takes.
+    pub fn products(&self) -> usize {
+        self.rows * (self.size + self.theirs.len()) + padded(self.theirs.len()) * self.mine.len()
+    }
+
+    fn at(&self) -> Range<usize> {
+        self.at..self.at + self.rows
+    }
+}
+
+/// An unknown that is kept.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    /// Its place in the blocks.
+    pub at: u32,
+    /// Its row, and itself.
+    pub row: u32,
+    pub unknown: u32,
+}
+
+pub(super) struct Plan {
+    pub condensed: Condensed,
+    pub blocks: Vec<Block>,
+    /// The block at which elimination from both ends meets.
+    pub twist: usize,
+    /// Unknowns with their filling.
+    pub places: usize,
+    /// All numbers of the factors.
+    pub numbers: usize,
+    pub kept: Vec<Kept>,
+    /// Destination and entry, block by block.
+    pub sources: Vec<[u32; 2]>,
+    /// Destination, entry and pair of entries that belong to the column of an unknown that is given.
+    pub folded: Vec<[u32; 3]>,
+    /// Place of the row, pair and entry of each entry in the column of an unknown that is given.
+    pub shifts: Vec<[u32; 3]>,
+}
+
+impl Plan {
+    /// None where 32 bits do not count everything, or where there is nothing to put in blocks.
+    pub fn new(pattern: &Pattern) -> Option<Self> {
+        let n = pattern.columns();
+        u32::try_from(pattern.entries()).ok()?;
+        let condensed = Condensed::new(pattern);
+        let (node_of, unknown_of) = nodes(&condensed, n);
+        let row_node = row_nodes(&condensed, &node_of);
+        let edges = edges(pattern, &condensed, &node_of, &row_node);
+        let graph = Graph::new(unknown_of.len(), &edges);
+        let levels = together(graph.levels());
+        if levels.is_empty() {
+            return None;
+        }
+        let mut level_of = vec![0_u32; unknown_of.len()];
+        for (level, nodes) in levels.iter().enumerate() {
+            nodes.iter().for_each(|k| level_of[*k as usize] = level as u32);
+        }
+        let twist = middle(&levels);
+        let mut blocks = vec![Block::default(); levels.len()];
+        let mut place_of = vec![0_u32; unknown_of.len()];
+        let mut at = 0;
+        let mut reaches = vec![[0..0, 0..0]; levels.len()];
+        for (j, nodes) in levels.iter().enumerate() {
+            let neighbours = if j <= twist {
+                [j.wrapping_sub(1), j + 1]
+            } else {
+                [j + 1, j - 1]
+            };
+            let touches = |node: u32, level: usize| {
+                graph
+                    .neighbours(node)
+                    .iter()
+                    .any(|other| level_of[*other as usize] as usize == level)
+            };
+            let [mut first, mut both, mut second, mut rest] = [vec![], vec![], vec![], vec![]];
+            for &node in nodes {
+                let to = match neighbours.map(|level| touches(node, level)) {
+                    [true, false] => &mut first,
+                    [true, true] => &mut both,
+                    [false, true] => &mut second,
+                    [false, false] => &mut rest,
+                };
+                to.push(node);
+            }
+            let outer = 0..first.len() + both.len();
+            let inner = first.len()..first.len() + both.len() + second.len();
+            reaches[j] = [outer, inner];
+            let own = first.iter().chain(&both).chain(&second).chain(&rest);
+            for (k, node) in own.enumerate() {
+                place_of[*node as usize] = u32::try_from(at + k).ok()?;
+            }
+            let filling = if j == twist { LANES } else { 0 };
+            blocks[j] = Block {
+                at,
+                size: nodes.len(),
+                rows: padded(nodes.len()) + filling,
+                ..Block::default()
+            };
+            at += blocks[j].rows;
+        }
+        let mut numbers = 0;
+        for j in 0..blocks.len() {
+            if j != twist {
+                let inner = if j < twist { j + 1 } else { j - 1 };
+                let side = usize::from(inner == twist && j > twist);
+                blocks[j].mine = reaches[j][1].clone();
+                blocks[j].theirs = reaches[inner][side].clone();
+            }
+            let block = &mut blocks[j];
+            let [square, _, column] = block.room();
+            let back = block.rows * block.theirs.len();
+            block.numbers = [numbers, numbers + square, numbers + square + column];
+            numbers += square + column + back;
+        }
+        let kept = unknown_of.iter().enumerate().map(|(node, &unknown)| Kept {
+            at: place_of[node],
+            row: condensed.row[unknown as usize],
+            unknown,
+        });
+        let mut kept: Vec<Kept> = kept.collect();
+        kept.sort_unstable_by_key(|kept| kept.at);
+        let mut this = Self {
+            kept,
+            blocks,
+            twist,
+            places: at,
+            numbers,
+            sources: vec![],
+            folded: vec![],
+            shifts: vec![],
+            condensed,
+        };
+        this.lay(pattern, [&node_of, &row_node, &place_of, &level_of])?;
+        Some(this)
+    }
+
+    /// Products of one solution.
+    pub fn products(&self) -> usize {
+        self.blocks.iter().map(Block::products).sum::<usize>() + 2 * self.shifts.len()
+    }
+
+    /// Finds the destination of every entry.
+    fn lay(&mut self, pattern: &Pattern, [node_of, row_node, place_of, level_of]: [&[u32]; 4]) -> Option<()> {
+        let mut sources: Vec<(u32, [u32; 2])> = vec![];
+        let mut folded: Vec<(u32, [u32; 3])> = vec![];
+        for column in 0..pattern.columns() {
+            let pair = self.condensed.by[column];
+            let unknown = pair.map_or(column, |pair| self.condensed.pairs[pair as usize].kept.0 as usize);
+            let to = node_of[unknown] as usize;
+            for entry in pattern.column(column) {
+                let from = row_node[pattern.rows[entry] as usize];
+                if from == NONE {
+                    continue;
+                }
+                let from = from as usize;
+                let (level, destination) =
+                    self.destination([(level_of[from], place_of[from]), (level_of[to], place_of[to])])?;
+                match pair {
+                    None => sources.push((level, [destination, entry as u32])),
+                    Some(pair) => {
+                        folded.push((level, [destination, entry as u32, pair]));
+                        self.shifts.push([place_of[from], pair, entry as u32]);
+                    }
+                }
+            }
+        }
+        sources.sort_unstable();
+        folded.sort_unstable();
+        let (mut first, mut second) = (0, 0);
+        for (level, block) in self.blocks.iter_mut().enumerate() {
+            let end = |all: usize, next: &dyn Fn(usize) -> u32, mut k: usize| {
+                while k < all && next(k) as usize == level {
+                    k += 1;
+                }
+                k
+            };
+            block.sources = first..end(sources.len(), &|k| sources[k].0, first);
+            block.folded = second..end(folded.len(), &|k| folded[k].0, second);
+            (first, second) = (block.sources.end, block.folded.end);
+        }
+        self.sources = sources.into_iter().map(|(_, source)| source).collect();
+        self.folded = folded.into_iter().map(|(_, source)| source).collect();
+        Some(())
+    }
+
+    /// Block that assembles the entry in a row and column, each given by level and place, and where; see [`Block::room`].
+    fn destination(&self, [row, column]: [(u32, u32); 2]) -> Option<(u32, u32)> {
+        let of = |(level, place): (u32, u32)| {
+            let block = &self.blocks[level as usize];
+            debug_assert!(block.at().contains(&(place as usize)));
+            (block, place as usize - block.at)
+        };
+        let ((row_block, r), (column_block, c)) = (of(row), of(column));
+        let inner = |level: u32| {
+            if (level as usize) < self.twist {
+                level + 1
+            } else {
+                level.wrapping_sub(1)
+            }
+        };
+        let (level, to) = if row.0 == column.0 {
+            (row.0, c * row_block.rows + r)
+        } else if row.0 as usize != self.twist && inner(row.0) == column.0 {
+            // in its rows, beside it
+            let [square, ..] = row_block.room();
+            let (r, c) = (r - row_block.mine.start, c - row_block.theirs.start);
+            (row.0, square + c * row_block.mine.len() + r)
+        } else {
+            let block = column_block;
+            let [square, beside, _] = block.room();
+            let (r, c) = (r - block.theirs.start, c - block.mine.start);
+            let rows = padded(block.theirs.len());
+            (column.0, square + beside + place(r, c, rows, block.mine.len()))
+        };
+        Some((level, u32::try_from(to).ok()?))
+    }
+}
+
+const NONE: u32 = u32::MAX;
+
+/// Number of each unknown among those that are kept, and these unknowns.
+fn nodes(condensed: &Condensed, n: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut node_of = vec![NONE; n];
+    let mut unknown_of = vec![];
+    for unknown in (0..n).filter(|&k| condensed.by[k].is_none()) {
+        node_of[unknown] = unknown_of.len() as u32;
+        unknown_of.push(unknown as u32);
+    }
+    (node_of, unknown_of)
+}
+
+/// Kept unknown that goes with each row.
+fn row_nodes(condensed: &Condensed, node_of: &[u32]) -> Vec<u32> {
+    let mut row_node = vec![NONE; node_of.len()];
+    for (unknown, &node) in node_of.iter().enumerate().filter(|(_, node)| **node != NONE) {
+        row_node[condensed.row[unknown] as usize] = node;
+    }
+    row_node
+}
+
+fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[u32]) -> Vec<[u32; 2]> {
+    let mut edges = vec![];
+    for column in 0..pattern.columns() {
+        let unknown = condensed.by[column].map_or(column, |pair| condensed.pairs[pair as usize].kept.0 as usize);
+        let to = node_of[unknown];
+        for entry in pattern.column(column) {
+            let from = row_node[pattern.rows[entry] as usize];
+            if from != NONE && from != to {
+                edges.push([from, to]);
+            }
+        }
+    }
+    edges
+}
+
+/// Joins small neighbours.
+fn together(levels: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
+    let mut joined: Vec<Vec<u32>> = vec![];
+    for level in levels {
+        match joined.last_mut() {
+            Some(last) if last.len() + level.len() <= TOGETHER => last.extend(level),
+            _ => joined.push(level),
+        }
+    }
+    joined
+}
+
+/// The level before and after which there is the same work.
+fn middle(levels: &[Vec<u32>]) -> usize {
+    let work = |level: &Vec<u32>| (level.len() * level.len()) as u64;
+    let all: u64 = levels.iter().map(work).sum();
+    let mut before = 0;
+    for (k, level) in levels.iter().enumerate() {
+        before += work(level);
+        if 2 * before >= all {
+            return k;
+        }
+    }
+    levels.len() - 1
+}

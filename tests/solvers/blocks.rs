@@ -1,0 +1,202 @@
+//! Factors in dense blocks along a line.
+
+use slcbeam::sparse::{BlockTridiagonal, KluError, Lu, Pattern};
+
+use super::sundials::chance::Random;
+
+/// A matrix by columns: a pattern and its values.
+struct Matrix {
+    pattern: Pattern,
+    values: Vec<f64>,
+}
+
+impl Matrix {
+    /// Of entries (row, column, value), no place twice.
+    fn new(n: usize, entries: &[(usize, usize, f64)]) -> Self {
+        let mut columns = vec![vec![]; n];
+        entries.iter().for_each(|(row, column, _)| columns[*column].push(*row));
+        let pattern = Pattern::from_columns(&columns);
+        let mut values = vec![0.0; pattern.entries()];
+        for (row, column, value) in entries {
+            let own = pattern.column(*column);
+            let entry = own.start + pattern.rows[own].iter().position(|r| *r as usize == *row).unwrap();
+            values[entry] = *value;
+        }
+        Self { pattern, values }
+    }
+
+    fn times(&self, x: &[f64]) -> Vec<f64> {
+        let mut b = vec![0.0; x.len()];
+        for (column, x) in x.iter().enumerate() {
+            for entry in self.pattern.column(column) {
+                b[self.pattern.rows[entry] as usize] += self.values[entry] * x;
+            }
+        }
+        b
+    }
+
+    /// Largest error of a known solution.
+    fn error(&self, mut solve: impl FnMut(&mut [f64])) -> f64 {
+        let x: Vec<f64> = (0..self.pattern.columns()).map(|k| (1.7 * k as f64).sin()).collect();
+        let mut b = self.times(&x);
+        solve(&mut b);
+        b.iter().zip(&x).map(|(b, x)| (b - x).abs()).fold(0.0, f64::max)
+    }
+}
+
+/// Cells along a line, each with displacements `u`, velocities `v = u'` and a few unknowns more, touching `reach` cells to both sides; a ring
+/// where the last touches the first. Rows outweigh their neighbours.
+fn cells(count: usize, kinds: usize, reach: usize, ring: bool, cj: f64) -> Matrix {
+    let mut random = Random(7 + count as u64);
+    let mut entries = vec![];
+    let n = count * (kinds + 1);
+    for cell in 0..count {
+        let own = cell * (kinds + 1);
+        let (u, v) = (own, own + kinds);
+        entries.push((u, u, cj));
+        entries.push((u, v, -1.0));
+        entries.push((v, v, 3.0 * cj));
+        for shift in 0..=2 * reach {
+            let other = cell as isize + shift as isize - reach as isize;
+            let inside = (0..count as isize).contains(&other);
+            if !inside && !ring {
+                continue;
+            }
+            let other = other.rem_euclid(count as isize) as usize * (kinds + 1);
+            for row in (1..kinds).map(|k| own + k).chain([v]) {
+                for column in (0..kinds).map(|k| other + k) {
+                    let diagonal = if row == column {
+                        10.0 * (kinds * reach) as f64
+                    } else {
+                        0.0
+                    };
+                    entries.push((row, column, random.between(-1.0, 1.0) + diagonal));
+                }
+            }
+        }
+    }
+    Matrix::new(n, &entries)
+}
+
+/// Chains and rings of several widths, in blocks and through the choice.
+///
+/// Goal: solutions of known matrices, blocks of all remainders of a vector's length among them. Tolerance: rounding times a condition below 1e4.
+#[test]
+fn chains_and_rings_are_solved() {
+    for kinds in 1..8 {
+        for (count, reach, ring) in [
+            (1, 1, false),
+            (2, 1, false),
+            (40, 1, false),
+            (41, 2, false),
+            (60, 1, true),
+            (200, 3, false),
+        ] {
+            for cj in [1e-2, 1.0, 1e4] {
+                let matrix = cells(count, kinds, reach, ring, cj);
+                let mut blocks = BlockTridiagonal::new(&matrix.pattern).unwrap();
+                let what = format!("{count} cells of {kinds} kinds, reach {reach}, ring {ring}, cj {cj}");
+                assert!(blocks.factor(&matrix.values), "{what}");
+                let error = matrix.error(|b| blocks.solve(b));
+                assert!(error < 1e-10, "{what}: {error:.1e}");
+                let mut lu = Lu::new(&matrix.pattern).unwrap();
+                lu.factor(&matrix.values).unwrap();
+                let error = matrix.error(|b| assert!(lu.solve(b)));
+                assert!(error < 1e-10, "{what}, by choice: {error:.1e}");
+            }
+        }
+    }
+}
+
+/// Factors do not remember the ones before: what was factored between leaves no trace, bit for bit.
+#[test]
+fn factors_have_no_past() {
+    let (one, other) = (cells(50, 4, 1, false, 1.0), cells(50, 4, 1, false, 1e3));
+    let mut blocks = BlockTridiagonal::new(&one.pattern).unwrap();
+    let mut solution = |values: &[f64]| {
+        assert!(blocks.factor(values));
+        let mut b: Vec<f64> = (0..one.pattern.columns()).map(|k| (k as f64).cos()).collect();
+        blocks.solve(&mut b);
+        b
+    };
+    let first = solution(&one.values);
+    solution(&other.values);
+    assert_eq!(solution(&one.values), first);
+}
+
+/// Long lines are cut into blocks; where unknowns touch any others by chance KLU's few entries are cheaper. A star needs neither: its tips are given by its centre.
+#[test]
+fn the_cheaper_way_is_chosen() {
+    let chosen = |matrix: &Matrix| {
+        let mut lu = Lu::new(&matrix.pattern).unwrap();
+        lu.factor(&matrix.values).unwrap();
+        assert!(matrix.error(|b| assert!(lu.solve(b))) < 1e-9);
+        lu.in_blocks()
+    };
+    assert!(chosen(&cells(40, 6, 1, false, 1.0)));
+    let mut random = Random(3);
+    let n = 400;
+    let mut scattered: Vec<(usize, usize, f64)> = (0..n).map(|k| (k, k, 10.0)).collect();
+    for k in 0..n {
+        let others: std::collections::BTreeSet<usize> =
+            (0..4).map(|_| random.below(n)).filter(|other| *other != k).collect();
+        scattered.extend(others.into_iter().map(|other| (k, other, random.between(-1.0, 1.0))));
+    }
+    assert!(!chosen(&Matrix::new(n, &scattered)));
+    let star = (1..n).flat_map(|k| {
+        [
+            (k, k, 10.0),
+            (0, k, random.between(-0.01, 0.01)),
+            (k, 0, random.between(-1.0, 1.0)),
+        ]
+    });
+    assert!(chosen(&Matrix::new(
+        n,
+        &[(0, 0, 10.0)].into_iter().chain(star).collect::<Vec<_>>()
+    )));
+}
+
+/// A block without an inverse, in a matrix that has one: rows would have to go from block to block, and KLU does it.
+///
+/// Goal: refused, counted, solved. A matrix without an inverse names a column, as KLU does. Tolerance: rounding.
+#[test]
+fn what_blocks_cannot_do_goes_to_klu() {
+    let (count, kinds) = (30, 6);
+    let sound = cells(count, kinds, 1, false, 1.0);
+    let n = sound.pattern.columns();
+    let mut lu = Lu::new(&sound.pattern).unwrap();
+    lu.factor(&sound.values).unwrap();
+    assert!(lu.in_blocks());
+    // a row that touches the next cell alone is a row of zeros where its cell is the last of its block
+    let emptied = |row: usize, kept: std::ops::Range<usize>| {
+        let mut values = sound.values.clone();
+        for column in (0..n).filter(|column| !kept.contains(column)) {
+            for entry in sound.pattern.column(column) {
+                if sound.pattern.rows[entry] as usize == row {
+                    values[entry] = 0.0;
+                }
+            }
+        }
+        values
+    };
+    let mut refused = 0;
+    for cell in 0..count - 1 {
+        let next = (cell + 1) * (kinds + 1);
+        let values = emptied(next - 2, next..next + kinds);
+        lu.factor(&values).unwrap();
+        refused += u64::from(!lu.in_blocks());
+        let matrix = Matrix {
+            pattern: sound.pattern.clone(),
+            values,
+        };
+        let error = matrix.error(|b| assert!(lu.solve(b)));
+        assert!(error < 1e-9, "cell {cell}: {error:.1e}");
+    }
+    assert!(refused > 0, "no cell was the last of its block");
+    assert!(lu.pivot_refreshes() >= refused);
+    let fault = lu.factor(&emptied(5, 0..0));
+    assert!(matches!(fault, Err(KluError::Singular { .. })), "{fault:?}");
+    assert!(!lu.solve(&mut vec![1.0; n]), "no factors are left");
+    lu.factor(&sound.values).unwrap();
+    assert!(sound.error(|b| assert!(lu.solve(b))) < 1e-12);
+}
