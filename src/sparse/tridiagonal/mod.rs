@@ -32,8 +32,10 @@ pub struct BlockTridiagonal {
     /// Rows of each entry, starts of columns.
     rows: Vec<u32>,
     starts: Vec<u32>,
-    /// Of each block: inverse, what its unknowns take off the next block, what the next block takes off them.
-    numbers: Vec<f64>,
+    /// Of each block: its inverse, and what its unknowns take off the next block.
+    onward: Vec<f64>,
+    /// What the next block takes off them.
+    back: Vec<f64>,
     /// What the row of each pair gives: `x_e = per b_r + ratio x_o`.
     per: Vec<f64>,
     ratio: Vec<f64>,
@@ -85,7 +87,8 @@ impl BlockTridiagonal {
         Some(Self {
             rows: narrow(&pattern.rows)?,
             starts: narrow(&pattern.starts)?,
-            numbers: vec![0.0; plan.numbers],
+            onward: vec![0.0; plan.numbers[0]],
+            back: vec![0.0; plan.numbers[1]],
             per: vec![0.0; pairs],
             ratio: vec![0.0; pairs],
             given: vec![0.0; pairs],
@@ -106,7 +109,7 @@ impl BlockTridiagonal {
     pub fn bytes(&self) -> usize {
         let plan = &self.plan;
         let pairs = size_of_val(&plan.condensed.pairs[..]) + 8 * (self.per.len() + self.ratio.len());
-        8 * self.numbers.len()
+        8 * (self.onward.len() + self.back.len())
             + size_of_val(&plan.kept[..])
             + size_of_val(&plan.shifts[..])
             + 8 * self.shifts.len()
@@ -151,18 +154,13 @@ impl BlockTridiagonal {
     #[inline(always)]
     fn factor_by<A: Add>(&mut self, values: &[f64]) -> bool {
         self.condense(values);
-        let (blocks, twist) = (self.plan.blocks.len(), self.plan.twist);
-        let ways: [&mut dyn Iterator<Item = usize>; 2] = [&mut (0..twist), &mut (twist + 1..blocks).rev()];
-        for (side, way) in ways.into_iter().enumerate() {
-            let mut before = None;
-            for j in way {
-                if !self.block::<A>(values, j, side, before) {
-                    return false;
-                }
-                before = Some(j);
+        let twist = self.plan.twist;
+        for step in 0..self.plan.steps.len() {
+            if !self.block::<A>(values, self.plan.steps[step][0] as usize) {
+                return false;
             }
         }
-        self.block::<A>(values, twist, 0, None) && self.holds::<A>(values)
+        self.block::<A>(values, twist) && self.holds::<A>(values)
     }
 
     /// Coefficients of the rows that give an unknown.
@@ -178,12 +176,13 @@ impl BlockTridiagonal {
         }
     }
 
-    /// Assembles a block, takes off it what the one before tells ([`Room::taken`] of that side), or both, and inverts it.
+    /// Assembles a block, takes off it what those before tell ([`Room::taken`]), and inverts it.
     #[inline(always)]
-    fn block<A: Add>(&mut self, values: &[f64], j: usize, side: usize, before: Option<usize>) -> bool {
+    fn block<A: Add>(&mut self, values: &[f64], j: usize) -> bool {
         let Self {
             plan,
-            numbers,
+            onward,
+            back,
             room,
             ratio,
             ..
@@ -208,15 +207,14 @@ impl BlockTridiagonal {
                 to.iter_mut().zip(taken).for_each(|(to, taken)| *to -= taken);
             }
         };
-        if let Some(before) = before {
-            take(&plan.blocks[before].theirs, &room.taken[side]);
-        }
-        if j == plan.twist {
-            let both = [j.checked_sub(1), Some(j + 1).filter(|k| *k < plan.blocks.len())];
-            for (before, taken) in both.into_iter().zip(&room.taken) {
-                if let Some(before) = before {
-                    take(&plan.blocks[before].theirs, taken);
-                }
+        // from the left, from the right; the twist has both
+        let before = [
+            (j <= plan.twist).then(|| j.checked_sub(1)).flatten(),
+            (j >= plan.twist).then_some(j + 1).filter(|k| *k < plan.blocks.len()),
+        ];
+        for (before, taken) in before.into_iter().zip(&room.taken) {
+            if let Some(before) = before {
+                take(&plan.blocks[before].theirs, taken);
             }
         }
         if !dense::invert::<A>(
@@ -227,9 +225,9 @@ impl BlockTridiagonal {
         ) {
             return false;
         }
-        let numbers = &mut numbers[block.numbers[0]..][..square + column.len() + block.rows * block.theirs.len()];
-        let (inverse, rest) = numbers.split_at_mut(square);
-        let (away, back) = rest.split_at_mut(column.len());
+        let onward = &mut onward[block.numbers[0]..][..square + column.len()];
+        let (inverse, away) = onward.split_at_mut(square);
+        let back = &mut back[block.numbers[1]..][..block.rows * block.theirs.len()];
         dense::strips(d, block.rows, inverse);
         away.iter_mut().zip(column).for_each(|(away, entry)| *away = -*entry);
         let through = &mut room.through[..back.len()];
@@ -243,7 +241,7 @@ impl BlockTridiagonal {
         );
         dense::strips(through, rows, back);
         // D of the next block loses A D⁻¹ A
-        let taken = &mut room.taken[side];
+        let taken = &mut room.taken[usize::from(j > plan.twist)];
         let touched = padded(block.theirs.len());
         for (to, through) in taken.chunks_exact_mut(touched.max(1)).zip(through.chunks_exact(rows)) {
             dense::multiply::<A, false>(away, &through[mine.clone()], to);
@@ -255,7 +253,8 @@ impl BlockTridiagonal {
     fn solve_by<A: Add>(&mut self, b: &mut [f64]) {
         let Self {
             plan,
-            numbers,
+            onward,
+            back,
             x,
             y,
             per,
@@ -277,26 +276,13 @@ impl BlockTridiagonal {
                 *x.get_unchecked_mut(*to as usize) += shift * given.get_unchecked(*pair as usize);
             }
         }
-        let (blocks, twist) = (&plan.blocks[..], plan.twist);
-        // one block of each side after the other: neither waits for its neighbour's result
-        let last = blocks.len() - 1;
-        let turns = twist.max(last - twist);
-        for turn in 0..turns {
-            if turn < twist {
-                forward::<A>(blocks, [turn, turn + 1], numbers, x, y);
-            }
-            if turn < last - twist {
-                forward::<A>(blocks, [last - turn, last - turn - 1], numbers, x, y);
-            }
+        let blocks = &plan.blocks[..];
+        for step in &plan.steps {
+            forward::<A>(blocks, *step, onward, x, y);
         }
-        apply::<A>(&blocks[twist], numbers, x, y);
-        for turn in (0..turns).rev() {
-            if turn < twist {
-                back::<A>(blocks, [turn, turn + 1], numbers, y);
-            }
-            if turn < last - twist {
-                back::<A>(blocks, [last - turn, last - turn - 1], numbers, y);
-            }
+        apply::<A>(&blocks[plan.twist], onward, x, y);
+        for step in plan.steps.iter().rev() {
+            backward::<A>(blocks, *step, back, y);
         }
         // SAFETY: as above.
         unsafe {
@@ -344,30 +330,30 @@ impl BlockTridiagonal {
 
 /// `y = D⁻¹ b` of a block.
 #[inline(always)]
-fn apply<A: Add>(block: &Block, numbers: &[f64], b: &[f64], y: &mut [f64]) {
-    let inverse = &numbers[block.numbers[0]..][..block.rows * block.size];
+fn apply<A: Add>(block: &Block, onward: &[f64], b: &[f64], y: &mut [f64]) {
+    let inverse = &onward[block.numbers[0]..][..block.rows * block.size];
     let own = &mut y[block.at..][..block.rows];
     dense::multiply::<A, false>(inverse, &b[block.at..][..block.size], own);
 }
 
-/// The same, and what it takes off the next block `j`.
+/// The same, and what it takes off the next block.
 #[inline(always)]
-fn forward<A: Add>(blocks: &[Block], [i, j]: [usize; 2], numbers: &[f64], b: &mut [f64], y: &mut [f64]) {
-    let block = &blocks[i];
-    apply::<A>(block, numbers, b, y);
+fn forward<A: Add>(blocks: &[Block], [i, next]: [u32; 2], onward: &[f64], b: &mut [f64], y: &mut [f64]) {
+    let block = &blocks[i as usize];
+    apply::<A>(block, onward, b, y);
     let (mine, theirs) = (&block.mine, &block.theirs);
     let rows = padded(theirs.len());
-    let away = &numbers[block.numbers[1]..][..rows * mine.len()];
-    let to = &mut b[blocks[j].at + theirs.start..][..rows];
+    let away = &onward[block.numbers[0] + block.rows * block.size..][..rows * mine.len()];
+    let to = &mut b[blocks[next as usize].at + theirs.start..][..rows];
     dense::multiply::<A, true>(away, &y[block.at + mine.start..][..mine.len()], to);
 }
 
-/// Takes off a block what the next one, `j`, tells.
+/// Takes off a block what the next one tells.
 #[inline(always)]
-fn back<A: Add>(blocks: &[Block], [i, j]: [usize; 2], numbers: &[f64], y: &mut [f64]) {
-    let (block, next) = (&blocks[i], &blocks[j]);
+fn backward<A: Add>(blocks: &[Block], [i, next]: [u32; 2], back: &[f64], y: &mut [f64]) {
+    let (block, next) = (&blocks[i as usize], &blocks[next as usize]);
     let theirs = block.theirs.len();
-    let numbers = &numbers[block.numbers[2]..][..block.rows * theirs];
+    let numbers = &back[block.numbers[1]..][..block.rows * theirs];
     // blocks do not overlap
     let (low, high) = y.split_at_mut(block.at.max(next.at));
     let (own, known) = if block.at < next.at {

@@ -23,8 +23,8 @@ pub(super) struct Block {
     pub mine: Range<usize>,
     /// Those of the next block that are touched.
     pub theirs: Range<usize>,
-    /// Where its numbers begin: inverse, what it adds to the next block, what that adds to it.
-    pub numbers: [usize; 3],
+    /// Where its numbers begin: inverse with what it adds to the next block behind it, and what that adds to it.
+    pub numbers: [usize; 2],
     /// Its part of [`Plan::sources`] and of [`Plan::folded`].
     pub sources: Range<usize>,
     pub folded: Range<usize>,
@@ -64,8 +64,10 @@ pub(super) struct Plan {
     pub twist: usize,
     /// Unknowns with their filling.
     pub places: usize,
-    /// All numbers of the factors.
-    pub numbers: usize,
+    /// Every block but the twist with its next one, in the order of elimination: from both ends in turns, so that neither waits for its neighbour.
+    pub steps: Vec<[u32; 2]>,
+    /// All numbers of the factors, in the order in which they are read: on the way to the twist, and back.
+    pub numbers: [usize; 2],
     pub kept: Vec<Kept>,
     /// Destination and entry, block by block.
     pub sources: Vec<[u32; 2]>,
@@ -136,20 +138,24 @@ impl Plan {
             };
             at += blocks[j].rows;
         }
-        let mut numbers = 0;
-        for j in 0..blocks.len() {
-            if j != twist {
-                let inner = if j < twist { j + 1 } else { j - 1 };
-                let side = usize::from(inner == twist && j > twist);
-                blocks[j].mine = reaches[j][1].clone();
-                blocks[j].theirs = reaches[inner][side].clone();
-            }
-            let block = &mut blocks[j];
+        let steps = steps(blocks.len(), twist);
+        let mut numbers = [0, 0];
+        for &[j, inner] in &steps {
+            let side = usize::from(inner as usize == twist && j > inner);
+            let theirs = reaches[inner as usize][side].clone();
+            let block = &mut blocks[j as usize];
+            (block.mine, block.theirs) = (reaches[j as usize][1].clone(), theirs);
             let [square, _, column] = block.room();
-            let back = block.rows * block.theirs.len();
-            block.numbers = [numbers, numbers + square, numbers + square + column];
-            numbers += square + column + back;
+            block.numbers[0] = numbers[0];
+            numbers[0] += square + column;
         }
+        for &[j, _] in steps.iter().rev() {
+            let block = &mut blocks[j as usize];
+            block.numbers[1] = numbers[1];
+            numbers[1] += block.rows * block.theirs.len();
+        }
+        blocks[twist].numbers = numbers;
+        numbers[0] += blocks[twist].room()[0];
         let kept = unknown_of.iter().enumerate().map(|(node, &unknown)| Kept {
             at: place_of[node],
             row: condensed.row[unknown as usize],
@@ -162,6 +168,7 @@ impl Plan {
             blocks,
             twist,
             places: at,
+            steps,
             numbers,
             sources: vec![],
             folded: vec![],
@@ -301,6 +308,20 @@ fn together(levels: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
         }
     }
     joined
+}
+
+fn steps(blocks: usize, twist: usize) -> Vec<[u32; 2]> {
+    let last = blocks - 1;
+    let mut steps = vec![];
+    for turn in 0..twist.max(last - twist) {
+        if turn < twist {
+            steps.push([turn as u32, turn as u32 + 1]);
+        }
+        if turn < last - twist {
+            steps.push([(last - turn) as u32, (last - turn) as u32 - 1]);
+        }
+    }
+    steps
 }
 
 /// The level before and after which there is the same work.
