@@ -3,15 +3,18 @@
 use super::klu::{Klu, KluError};
 use super::{BlockTridiagonal, Pattern};
 
-/// Products of dense blocks that are worth one of sparse factors: they stand in order, four go at a time, and none waits for an index.
-const DENSE: f64 = 2.5;
+/// Products of dense blocks up to which these are chosen, for each entry of the matrix. KLU's factors of a beam have some 1.5 times as many entries as
+/// the matrix; a product of a dense block is worth less than half a sparse one: they stand in order, four go at a time, and none waits for an index.
+const DENSE: f64 = 4.0;
 
 /// Factors of matrices that share a pattern, for one right-hand side after the other.
 pub struct Lu {
-    klu: Klu,
+    pattern: Pattern,
     /// None where a line of dense blocks would cost more.
     blocks: Option<Box<BlockTridiagonal>>,
-    /// Whether the present factors are these blocks.
+    /// None before it is needed.
+    klu: Option<Klu>,
+    /// Whether the present factors are the blocks.
     in_blocks: bool,
     factorizations: u64,
     refused: u64,
@@ -20,12 +23,17 @@ pub struct Lu {
 impl Lu {
     /// Analyses a square pattern; the way that is chosen depends on it alone.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
-        let klu = Klu::new(pattern)?;
-        let worth = |blocks: &BlockTridiagonal| blocks.products() as f64 <= DENSE * klu.expected_entries();
+        let worth = |blocks: &BlockTridiagonal| blocks.products() as f64 <= DENSE * pattern.entries() as f64;
         let blocks = BlockTridiagonal::new(pattern).filter(worth).map(Box::new);
+        let klu = if blocks.is_some() {
+            None
+        } else {
+            Some(Klu::new(pattern)?)
+        };
         Ok(Self {
-            klu,
+            pattern: pattern.clone(),
             blocks,
+            klu,
             in_blocks: false,
             factorizations: 0,
             refused: 0,
@@ -40,12 +48,12 @@ impl Lu {
 
     /// Sign of the determinant of KLU's factors: 1, -1, or 0 without any.
     pub fn determinant_sign(&self) -> i8 {
-        self.klu.determinant_sign()
+        self.klu.as_ref().map_or(0, Klu::determinant_sign)
     }
 
     /// Number of stored entries.
     pub fn entries(&self) -> usize {
-        self.klu.entries()
+        self.pattern.entries()
     }
 
     /// Whether the present factors are dense blocks along a line.
@@ -57,18 +65,18 @@ impl Lu {
     pub fn bytes(&self) -> usize {
         match &self.blocks {
             Some(blocks) if self.in_blocks => blocks.bytes(),
-            _ => self.klu.bytes(),
+            _ => self.klu.as_ref().map_or(0, Klu::bytes),
         }
     }
 
     /// Factorisations.
     pub fn factorizations(&self) -> u64 {
-        self.factorizations + self.klu.factorizations
+        self.factorizations + self.klu.as_ref().map_or(0, |klu| klu.factorizations)
     }
 
     /// Factorisations done anew because pivots were bad: old ones of KLU's, or those within blocks.
     pub fn pivot_refreshes(&self) -> u64 {
-        self.refused + self.klu.pivot_refreshes
+        self.refused + self.klu.as_ref().map_or(0, |klu| klu.pivot_refreshes)
     }
 
     /// Factors the matrix whose entries, in the order of the pattern, are `values`. What would need rows exchanged between blocks goes to KLU.
@@ -83,23 +91,28 @@ impl Lu {
             }
             self.refused += 1;
         }
-        self.klu.factor(values)
+        let klu = match &mut self.klu {
+            Some(klu) => klu,
+            none => none.insert(Klu::new(&self.pattern)?),
+        };
+        klu.factor(values)
     }
 
     /// Forgets the factors: the next ones get pivots of their own.
     pub fn forget(&mut self) {
         self.in_blocks = false;
-        self.klu.forget();
+        self.klu.iter_mut().for_each(Klu::forget);
     }
 
     /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
-        match &mut self.blocks {
-            Some(blocks) if self.in_blocks => {
+        match (&mut self.blocks, &mut self.klu) {
+            (Some(blocks), _) if self.in_blocks => {
                 blocks.solve(b);
                 true
             }
-            _ => self.klu.solve(b),
+            (_, Some(klu)) => klu.solve(b),
+            _ => false,
         }
     }
 }

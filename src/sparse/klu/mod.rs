@@ -170,13 +170,6 @@ impl Klu {
         self.analysis.rows.len()
     }
 
-    /// Entries that the factors will have, as long as pivots stay on the diagonal.
-    pub fn expected_entries(&self) -> f64 {
-        // SAFETY: made by `klu_l_analyze`, and there.
-        let symbolic = unsafe { &*self.analysis.symbolic };
-        symbolic.lnz + symbolic.unz + symbolic.nzoff as f64
-    }
-
     /// Bytes of the present factors that a solution reads, 0 without any.
     pub fn bytes(&self) -> usize {
         self.rows.as_ref().map_or(0, Rows::bytes)

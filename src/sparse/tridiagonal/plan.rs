@@ -209,22 +209,14 @@ impl Plan {
                 }
             }
         }
-        sources.sort_unstable();
-        folded.sort_unstable();
-        let (mut first, mut second) = (0, 0);
+        let blocks = self.blocks.len();
+        let (sources, ends) = by_level(blocks, &sources);
+        let (folded, folded_ends) = by_level(blocks, &folded);
         for (level, block) in self.blocks.iter_mut().enumerate() {
-            let end = |all: usize, next: &dyn Fn(usize) -> u32, mut k: usize| {
-                while k < all && next(k) as usize == level {
-                    k += 1;
-                }
-                k
-            };
-            block.sources = first..end(sources.len(), &|k| sources[k].0, first);
-            block.folded = second..end(folded.len(), &|k| folded[k].0, second);
-            (first, second) = (block.sources.end, block.folded.end);
+            block.sources = ends[level]..ends[level + 1];
+            block.folded = folded_ends[level]..folded_ends[level + 1];
         }
-        self.sources = sources.into_iter().map(|(_, source)| source).collect();
-        self.folded = folded.into_iter().map(|(_, source)| source).collect();
+        (self.sources, self.folded) = (sources, folded);
         Some(())
     }
 
@@ -296,6 +288,21 @@ fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[
         }
     }
     edges
+}
+
+/// What belongs to each level, one after the other in the order in which it stands, and where each begins.
+fn by_level<T: Copy + Default>(levels: usize, all: &[(u32, T)]) -> (Vec<T>, Vec<usize>) {
+    let mut starts = vec![0; levels + 1];
+    all.iter().for_each(|(level, _)| starts[*level as usize + 1] += 1);
+    (0..levels).for_each(|k| starts[k + 1] += starts[k]);
+    let mut next = starts.clone();
+    let mut sorted = vec![T::default(); all.len()];
+    for (level, one) in all {
+        let at = &mut next[*level as usize];
+        sorted[*at] = *one;
+        *at += 1;
+    }
+    (sorted, starts)
 }
 
 /// Joins small neighbours.
