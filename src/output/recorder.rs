@@ -150,9 +150,7 @@ impl FolderRecorder {
                 .chain([REPORT])
                 .try_for_each(|name| self.folder.remove(name))?;
         }
-        for (name, text) in drawn {
-            self.folder.write(name, text.as_bytes())?;
-        }
+        self.folder.write_all(&drawn)?;
         spent.files += laps.lap();
         Ok(Finished {
             spent,

@@ -11,18 +11,24 @@ impl ResultFolder {
     /// Writes the case: its tables first, so that one that is there has all it names; then those go that it does not name.
     pub fn write_case(&self, case: &Written) -> Result<()> {
         self.write_tables(case)?;
-        self.write(CASE, case.json.as_bytes())?;
+        self.write_once(CASE, &case.json)?;
         self.remove_other_tables(case)
     }
 
-    /// Writes the tables of a case; one that is there already stays.
+    /// Writes the tables of a case.
     pub(super) fn write_tables(&self, case: &Written) -> Result<()> {
         for (name, text) in &case.tables {
-            if fs::read(self.path(name)).ok().as_deref() != Some(text.as_bytes()) {
-                self.write(name, text.as_bytes())?;
-            }
+            self.write_once(name, text)?;
         }
         Ok(())
+    }
+
+    /// Writes a file unless it is there with the same text.
+    fn write_once(&self, name: &str, text: &str) -> Result<()> {
+        if fs::read(self.path(name)).ok().as_deref() == Some(text.as_bytes()) {
+            return self.tell_origin();
+        }
+        self.write(name, text.as_bytes()).map(|_| ())
     }
 
     /// Removes tables of an older case.

@@ -8,6 +8,7 @@ mod whole;
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::{panic, thread};
 
 use super::kind::Kind;
 use super::uncertainty::UNCERTAINTY;
@@ -158,6 +159,21 @@ impl ResultFolder {
         let target = self.path(name);
         put_whole(&target, |file| file.write_all(contents))?;
         Ok(target)
+    }
+
+    /// Writes files, each whole or not at all, at the same time: most of it is waiting for the disk.
+    ///
+    /// # Errors
+    /// The first of those that could not be written; the others are there.
+    pub fn write_all<T: AsRef<[u8]> + Sync>(&self, files: &[(&'static str, T)]) -> Result<()> {
+        thread::scope(|scope| {
+            let write = |file: &(&'static str, T)| self.write(file.0, file.1.as_ref());
+            let all: Vec<_> = files.iter().map(|file| scope.spawn(move || write(file))).collect();
+            let ended = all
+                .into_iter()
+                .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)));
+            ended.map(|written| written.map(|_| ())).fold(Ok(()), Result::and)
+        })
     }
 
     /// Writes all files of a result that has no run, its sign last, in place of an older one. Returns their paths.
