@@ -5,7 +5,10 @@ use super::{BlockTridiagonal, Pattern};
 
 /// Products of dense blocks up to which these are chosen, for each entry of the matrix. KLU's factors of a beam have some 1.5 times as many entries as
 /// the matrix; a product of a dense block is worth less than half a sparse one: they stand in order, four go at a time, and none waits for an index.
-const DENSE: f64 = 4.0;
+const DENSE: usize = 4;
+
+/// Matrices in a row that blocks may refuse before they are no longer asked.
+const PATIENCE: u32 = 3;
 
 /// Factors of matrices that share a pattern, for one right-hand side after the other.
 pub struct Lu {
@@ -18,13 +21,14 @@ pub struct Lu {
     in_blocks: bool,
     factorizations: u64,
     refused: u64,
+    /// The last ones in a row.
+    in_vain: u32,
 }
 
 impl Lu {
     /// Analyses a square pattern; the way that is chosen depends on it alone.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
-        let worth = |blocks: &BlockTridiagonal| blocks.products() as f64 <= DENSE * pattern.entries() as f64;
-        let blocks = BlockTridiagonal::new(pattern).filter(worth).map(Box::new);
+        let blocks = BlockTridiagonal::new(pattern, DENSE * pattern.entries()).map(Box::new);
         let klu = if blocks.is_some() {
             None
         } else {
@@ -37,6 +41,7 @@ impl Lu {
             in_blocks: false,
             factorizations: 0,
             refused: 0,
+            in_vain: 0,
         })
     }
 
@@ -83,13 +88,15 @@ impl Lu {
     ///
     /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), KluError> {
-        if let Some(blocks) = &mut self.blocks {
+        if let Some(blocks) = self.blocks.as_mut().filter(|_| self.in_vain < PATIENCE) {
             self.factorizations += 1;
             self.in_blocks = blocks.factor(values);
             if self.in_blocks {
+                self.in_vain = 0;
                 return Ok(());
             }
             self.refused += 1;
+            self.in_vain += 1;
         }
         let klu = match &mut self.klu {
             Some(klu) => klu,
@@ -98,9 +105,9 @@ impl Lu {
         klu.factor(values)
     }
 
-    /// Forgets the factors: the next ones get pivots of their own.
+    /// Forgets the factors, and what was learnt of them: the next ones get pivots of their own.
     pub fn forget(&mut self) {
-        self.in_blocks = false;
+        (self.in_blocks, self.in_vain) = (false, 0);
         self.klu.iter_mut().for_each(Klu::forget);
     }
 

@@ -77,11 +77,11 @@ fn factors_hold(pattern: &Pattern, values: &[f64]) {
     let mut x = b.clone();
     assert!(lu.solve(&mut x));
     let (mut left, mut size) = (b.clone(), b.iter().map(|b| b.abs()).collect::<Vec<_>>());
-    for j in 0..n {
+    for (j, x) in x.iter().enumerate() {
         for entry in pattern.column(j) {
             let i = pattern.rows[entry] as usize;
-            left[i] -= values[entry] * x[j];
-            size[i] += (values[entry] * x[j]).abs();
+            left[i] -= values[entry] * x;
+            size[i] += (values[entry] * x).abs();
         }
     }
     let worst = left

@@ -94,7 +94,7 @@ fn chains_and_rings_are_solved() {
         ] {
             for cj in [1e-2, 1.0, 1e4] {
                 let matrix = cells(count, kinds, reach, ring, cj);
-                let mut blocks = BlockTridiagonal::new(&matrix.pattern).unwrap();
+                let mut blocks = BlockTridiagonal::new(&matrix.pattern, usize::MAX).unwrap();
                 let what = format!("{count} cells of {kinds} kinds, reach {reach}, ring {ring}, cj {cj}");
                 assert!(blocks.factor(&matrix.values), "{what}");
                 let error = matrix.error(|b| blocks.solve(b));
@@ -112,7 +112,7 @@ fn chains_and_rings_are_solved() {
 #[test]
 fn factors_have_no_past() {
     let (one, other) = (cells(50, 4, 1, false, 1.0), cells(50, 4, 1, false, 1e3));
-    let mut blocks = BlockTridiagonal::new(&one.pattern).unwrap();
+    let mut blocks = BlockTridiagonal::new(&one.pattern, usize::MAX).unwrap();
     let mut solution = |values: &[f64]| {
         assert!(blocks.factor(values));
         let mut b: Vec<f64> = (0..one.pattern.columns()).map(|k| (k as f64).cos()).collect();
@@ -183,6 +183,7 @@ fn what_blocks_cannot_do_goes_to_klu() {
     for cell in 0..count - 1 {
         let next = (cell + 1) * (kinds + 1);
         let values = emptied(next - 2, next..next + kinds);
+        lu.forget();
         lu.factor(&values).unwrap();
         refused += u64::from(!lu.in_blocks());
         let matrix = Matrix {
@@ -194,6 +195,21 @@ fn what_blocks_cannot_do_goes_to_klu() {
     }
     assert!(refused > 0, "no cell was the last of its block");
     assert!(lu.pivot_refreshes() >= refused);
+    // asked in vain some times, blocks are asked no more, until all is forgotten
+    let last = (0..count - 1).map(|cell| (cell + 1) * (kinds + 1));
+    let refusing = last.map(|next| emptied(next - 2, next..next + kinds)).find(|values| {
+        lu.forget();
+        lu.factor(values).unwrap();
+        !lu.in_blocks()
+    });
+    let before = lu.pivot_refreshes();
+    (0..20).for_each(|_| lu.factor(refusing.as_ref().unwrap()).unwrap());
+    assert!(lu.pivot_refreshes() - before < 5);
+    lu.factor(&sound.values).unwrap();
+    assert!(!lu.in_blocks());
+    lu.forget();
+    lu.factor(&sound.values).unwrap();
+    assert!(lu.in_blocks());
     let fault = lu.factor(&emptied(5, 0..0));
     assert!(matches!(fault, Err(KluError::Singular { .. })), "{fault:?}");
     assert!(!lu.solve(&mut vec![1.0; n]), "no factors are left");

@@ -66,9 +66,10 @@ struct Room {
 }
 
 impl BlockTridiagonal {
-    /// Analyses a square pattern; none where there is no line along which it could be cut, or where 32 bits do not count all.
-    pub fn new(pattern: &Pattern) -> Option<Self> {
-        let plan = Plan::new(pattern)?;
+    /// Analyses a square pattern; none where there is no line along which it could be cut so that a solution takes no more than `most` products of
+    /// blocks, or where 32 bits do not count all.
+    pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
+        let plan = Plan::new(pattern, most)?;
         let most = |size: &dyn Fn(&Block) -> usize| plan.blocks.iter().map(size).max().unwrap_or(0);
         let (rows, n) = (most(&|block| block.rows), pattern.columns());
         let touched = most(&|block| padded(block.theirs.len()));
@@ -98,11 +99,6 @@ impl BlockTridiagonal {
             plan,
             room,
         })
-    }
-
-    /// Products that one solution takes.
-    pub fn products(&self) -> usize {
-        self.plan.products()
     }
 
     /// Bytes that one solution reads.
@@ -298,7 +294,6 @@ impl BlockTridiagonal {
     /// Whether a solution has a small backward error, row by row.
     #[inline(always)]
     fn holds<A: Add>(&mut self, values: &[f64]) -> bool {
-        let n = self.starts.len() - 1;
         let mut solution = std::mem::take(&mut self.room.solution);
         let mut left = std::mem::take(&mut self.room.left);
         let mut size = std::mem::take(&mut self.room.size);
@@ -313,10 +308,10 @@ impl BlockTridiagonal {
         }
         solution.copy_from_slice(&left);
         self.solve_by::<A>(&mut solution);
-        for column in 0..n {
-            let own = self.starts[column] as usize..self.starts[column + 1] as usize;
+        for (x, ends) in solution.iter().zip(self.starts.windows(2)) {
+            let own = ends[0] as usize..ends[1] as usize;
             for (row, value) in self.rows[own.clone()].iter().zip(&values[own]) {
-                let product = value * solution[column];
+                let product = value * x;
                 left[*row as usize] -= product;
                 size[*row as usize] += product.abs();
             }

@@ -78,8 +78,9 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// None where 32 bits do not count everything, or where there is nothing to put in blocks.
-    pub fn new(pattern: &Pattern) -> Option<Self> {
+    /// None where a solution would take more products than `most`, where 32 bits do not count everything, or where there is nothing to put in
+    /// blocks.
+    pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
         let n = pattern.columns();
         u32::try_from(pattern.entries()).ok()?;
         let condensed = Condensed::new(pattern);
@@ -156,6 +157,9 @@ impl Plan {
         }
         blocks[twist].numbers = numbers;
         numbers[0] += blocks[twist].room()[0];
+        if blocks.iter().map(Block::products).sum::<usize>() > most {
+            return None;
+        }
         let kept = unknown_of.iter().enumerate().map(|(node, &unknown)| Kept {
             at: place_of[node],
             row: condensed.row[unknown as usize],
@@ -177,11 +181,6 @@ impl Plan {
         };
         this.lay(pattern, [&node_of, &row_node, &place_of, &level_of])?;
         Some(this)
-    }
-
-    /// Products of one solution.
-    pub fn products(&self) -> usize {
-        self.blocks.iter().map(Block::products).sum::<usize>() + 2 * self.shifts.len()
     }
 
     /// Finds the destination of every entry.
