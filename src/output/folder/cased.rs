@@ -23,9 +23,11 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Writes a file unless it is there with the same text.
+    /// Writes a file unless it is there, as one of its own, with the same text.
     fn write_once(&self, name: &str, text: &str) -> Result<()> {
-        if fs::read(self.path(name)).ok().as_deref() == Some(text.as_bytes()) {
+        let path = self.path(name);
+        let own = fs::symlink_metadata(&path).is_ok_and(|there| there.is_file());
+        if own && fs::read(&path).ok().as_deref() == Some(text.as_bytes()) {
             return self.tell_origin();
         }
         self.write(name, text.as_bytes()).map(|_| ())
