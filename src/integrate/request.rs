@@ -2,10 +2,15 @@
 
 use super::failure::IntegrationError;
 use crate::dae::Dae;
-use crate::sparse::{KluError, Lu};
+use crate::sparse::{KluError, Lu, Pattern};
 
-/// The factors to be of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
-pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), String>) -> Result<Lu, String> {
+/// The factors to be, by `analyse`, of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
+pub(crate) fn admit<D: Dae>(
+    dae: &D,
+    values: [&[f64]; 2],
+    options: Result<(), String>,
+    analyse: fn(&Pattern) -> Result<Lu, KluError>,
+) -> Result<Lu, String> {
     let n = dae.len();
     if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
         return Err(format!("{n} unknowns do not fit the pattern or the kinds of unknowns"));
@@ -15,7 +20,7 @@ pub(crate) fn admit<D: Dae>(dae: &D, values: [&[f64]; 2], options: Result<(), St
         return Err(format!("{y} values and {yp} derivatives stand for {n} unknowns"));
     }
     options?;
-    Lu::new(dae.pattern()).map_err(|fault| match fault {
+    analyse(dae.pattern()).map_err(|fault| match fault {
         KluError::Singular { column } => format!("no equation can be solved for {}", dae.name(column)),
         KluError::Package { status } => format!("KLU cannot analyse the pattern (status {status})"),
     })

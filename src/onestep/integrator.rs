@@ -10,6 +10,7 @@ use super::tableau::Tableau;
 use crate::dae::Dae;
 use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
 use crate::numerics::kernels;
+use crate::sparse::Lu;
 use crate::sundials::Step;
 
 /// Failures of a first step after which it begins as short as the rates ask for.
@@ -50,7 +51,7 @@ impl<D: Dae> OneStep<D> {
         options: &OneStepOptions,
     ) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
-        let lu = request::admit(&dae, [y0, yp0], options.check(n))
+        let lu = request::admit(&dae, [y0, yp0], options.check(n), Lu::new)
             .map_err(|message| IntegrationError::request(message, t0))?;
         let tableau = options.method.tableau();
         let order = options.method.order();

@@ -29,12 +29,19 @@ impl Lu {
     /// Analyses a square pattern; the way that is chosen depends on it alone.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         let blocks = BlockTridiagonal::new(pattern, DENSE * pattern.entries()).map(Box::new);
-        let klu = if blocks.is_some() {
-            None
-        } else {
-            Some(Klu::new(pattern)?)
-        };
-        Ok(Self {
+        match blocks {
+            Some(_) => Ok(Self::of(pattern, blocks, None)),
+            None => Self::sparse(pattern),
+        }
+    }
+
+    /// KLU's factors in any case: of these alone the sign of the determinant is known.
+    pub fn sparse(pattern: &Pattern) -> Result<Self, KluError> {
+        Ok(Self::of(pattern, None, Some(Klu::new(pattern)?)))
+    }
+
+    fn of(pattern: &Pattern, blocks: Option<Box<BlockTridiagonal>>, klu: Option<Klu>) -> Self {
+        Self {
             pattern: pattern.clone(),
             blocks,
             klu,
@@ -42,13 +49,7 @@ impl Lu {
             factorizations: 0,
             refused: 0,
             in_vain: 0,
-        })
-    }
-
-    /// KLU's factors in any case: of these alone the sign of the determinant is known.
-    #[must_use]
-    pub fn sparse(self) -> Self {
-        Self { blocks: None, ..self }
+        }
     }
 
     /// Sign of the determinant of KLU's factors: 1, -1, or 0 without any.
@@ -90,7 +91,7 @@ impl Lu {
     pub fn factor(&mut self, values: &[f64]) -> Result<(), KluError> {
         if let Some(blocks) = self.blocks.as_mut().filter(|_| self.in_vain < PATIENCE) {
             self.factorizations += 1;
-            self.in_blocks = blocks.factor(values);
+            self.in_blocks = blocks.factor(&self.pattern, values);
             if self.in_blocks {
                 self.in_vain = 0;
                 return Ok(());

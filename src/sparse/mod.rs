@@ -6,11 +6,13 @@
 //! | [`colour`] | columns that may be differentiated together |
 //! | [`lu`] | the cheaper of the next two |
 //! | [`tridiagonal`] | LU factors of small dense blocks along a line |
+//! | `groups` | things put together by the group that they belong to |
 //! | [`klu`] | sparse LU factors, real and complex, with a guard against stale pivots |
 
 #![allow(unsafe_code)]
 
 pub mod colour;
+mod groups;
 pub mod klu;
 pub mod lu;
 pub mod pattern;

@@ -18,6 +18,7 @@ use crate::dae::Dae;
 use crate::integrate::IntegrationError;
 use crate::integrate::request;
 use crate::integrate::{Counters, Wall};
+use crate::sparse::Lu;
 
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +69,7 @@ impl<D: Dae> Ida<D> {
     pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
         let refuse = |message: String| IntegrationError::request(message, t0);
-        let lu = request::admit(&dae, [y0, yp0], options.check(n)).map_err(refuse)?;
+        let lu = request::admit(&dae, [y0, yp0], options.check(n), Lu::new).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let vector = |entries: &[f64]| Vector::new(entries, context.raw()).map_err(refuse);
         let id: Vec<f64> = dae

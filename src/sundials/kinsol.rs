@@ -15,6 +15,7 @@ use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::integrate::request;
 use crate::numerics::kernels;
+use crate::sparse::Lu;
 
 /// Settings of [`Kinsol::solve`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,11 +132,11 @@ impl<D: Dae> Kinsol<D> {
         let n = dae.len();
         let refuse = KinsolError::own;
         let zeros = vec![0.0; n];
-        let lu = request::admit(&dae, [&zeros, &zeros], Ok(())).map_err(refuse)?;
+        let lu = request::admit(&dae, [&zeros, &zeros], Ok(()), Lu::sparse).map_err(refuse)?;
         let context = Context::new().map_err(refuse)?;
         let y = Vector::new(&zeros, context.raw()).map_err(refuse)?;
         let ones = Vector::new(&vec![1.0; n], context.raw()).map_err(refuse)?;
-        let solver = LinearSolver::new(lu.sparse(), context.raw()).map_err(refuse)?;
+        let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let fixed = Shared::new(Fixed {
             bridge: Bridge::new(dae, 0.0, vec![]),
             t: 0.0,

@@ -5,7 +5,7 @@
 
 use std::slice::from_raw_parts;
 
-use crate::sparse::c;
+use crate::sparse::{c, groups::groups};
 
 /// `R⁻¹ P A Q = L U + F`: factors of each diagonal block, and F, what stands above the blocks.
 pub(super) struct Rows {
@@ -38,17 +38,9 @@ struct Triangle {
 impl Triangle {
     /// Rows hold their entries in the order in which these are given.
     fn new(n: usize, entries: &[Entry]) -> Self {
-        let mut starts = vec![0; n + 1];
-        entries.iter().for_each(|[row, ..]| starts[*row as usize + 1] += 1);
-        (0..n).for_each(|k| starts[k + 1] += starts[k]);
-        let mut next = starts.clone();
-        let mut columns = vec![0; entries.len()];
-        let mut places = columns.clone();
-        for &[row, column, place] in entries {
-            let at = &mut next[row as usize];
-            (columns[*at], places[*at]) = (column, place);
-            *at += 1;
-        }
+        let by_row = entries.iter().map(|&[row, column, place]| (row, (column, place)));
+        let (rows, starts) = groups(n, by_row);
+        let (columns, places) = rows.into_iter().unzip();
         Self {
             values: vec![0.0; entries.len()],
             starts,

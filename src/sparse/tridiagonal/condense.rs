@@ -84,6 +84,11 @@ impl Condensed {
         }
         this
     }
+
+    /// The unknown whose column that of another joins: its own where it is kept.
+    pub fn joins(&self, unknown: usize) -> usize {
+        self.by[unknown].map_or(unknown, |pair| self.pairs[pair as usize].kept.0 as usize)
+    }
 }
 
 /// Rows of column `e`, other than `row`, that column `o` does not have.

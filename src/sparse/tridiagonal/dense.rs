@@ -118,7 +118,8 @@ pub(super) fn place(row: usize, column: usize, rows: usize, columns: usize) -> u
 
 /// Replaces the square block `d`, by columns of `rows` entries, by its inverse; false where a pivot is none.
 ///
-/// Gauss-Jordan with the diagonal's pivot while it is no tenth of the largest of its column, all beside their rows' entries; `exchanged` is room for as many numbers as there are columns.
+/// Gauss-Jordan with the pivot on the diagonal unless that is below a tenth of the largest of its column, all beside their rows' entries. `exchanged` is
+/// room for as many numbers as there are columns, `room` for three times as many as there are rows.
 #[inline(always)]
 pub(super) fn invert<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
     // lengths that are known are loops that need no count

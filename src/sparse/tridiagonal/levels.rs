@@ -1,5 +1,7 @@
 //! Level structures of a graph: sets of nodes of which each touches the one before and the one after alone.
 
+use crate::sparse::groups::groups;
+
 /// Searches for a node far from the others, at most.
 const SEARCHES: usize = 6;
 
@@ -12,21 +14,8 @@ pub(super) struct Graph {
 impl Graph {
     /// Both directions of every edge between two nodes.
     pub fn new(nodes: usize, edges: &[[u32; 2]]) -> Self {
-        let mut starts = vec![0; nodes + 1];
-        let ends = || edges.iter().filter(|[a, b]| a != b);
-        for [a, b] in ends() {
-            starts[*a as usize + 1] += 1;
-            starts[*b as usize + 1] += 1;
-        }
-        (0..nodes).for_each(|k| starts[k + 1] += starts[k]);
-        let mut next = starts.clone();
-        let mut to = vec![0; starts[nodes]];
-        for [a, b] in ends() {
-            for (from, other) in [(*a, *b), (*b, *a)] {
-                to[next[from as usize]] = other;
-                next[from as usize] += 1;
-            }
-        }
+        let ends = edges.iter().filter(|[a, b]| a != b);
+        let (to, starts) = groups(nodes, ends.flat_map(|&[a, b]| [(a, b), (b, a)]));
         Self { starts, to }
     }
 

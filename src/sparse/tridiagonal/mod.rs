@@ -29,9 +29,6 @@ const BACKWARD: f64 = 1e-6;
 /// Factors of matrices that share a pattern.
 pub struct BlockTridiagonal {
     plan: Plan,
-    /// Rows of each entry, starts of columns.
-    rows: Vec<u32>,
-    starts: Vec<u32>,
     /// Of each block: its inverse, and what its unknowns take off the next block.
     onward: Vec<f64>,
     /// What the next block takes off them.
@@ -50,7 +47,6 @@ pub struct BlockTridiagonal {
 }
 
 /// Room to work in.
-#[derive(Default)]
 struct Room {
     /// A block as it is assembled.
     block: Vec<f64>,
@@ -83,11 +79,8 @@ impl BlockTridiagonal {
             left: vec![0.0; n],
             size: vec![0.0; n],
         };
-        let narrow = |wide: &[i64]| wide.iter().map(|&k| u32::try_from(k).ok()).collect::<Option<Vec<_>>>();
         let pairs = plan.condensed.pairs.len();
         Some(Self {
-            rows: narrow(&pattern.rows)?,
-            starts: narrow(&pattern.starts)?,
             onward: vec![0.0; plan.numbers[0]],
             back: vec![0.0; plan.numbers[1]],
             per: vec![0.0; pairs],
@@ -112,21 +105,21 @@ impl BlockTridiagonal {
             + pairs
     }
 
-    /// Factors the matrix whose entries, in the order of the pattern, are `values`; false where rows would have to be exchanged between blocks.
-    /// Panics when the number of values is not that of the pattern.
-    pub fn factor(&mut self, values: &[f64]) -> bool {
-        assert_eq!(values.len(), self.rows.len(), "values of another pattern");
+    /// Factors the matrix whose entries, in the order of the pattern that was analysed, are `values`; false where rows would have to be exchanged
+    /// between blocks. Panics when the number of values is not that of the pattern.
+    pub fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
+        assert_eq!(values.len(), pattern.entries(), "values of another pattern");
         #[cfg(target_arch = "x86_64")]
         if wide() {
             // SAFETY: the processor has what the function is compiled for.
-            return unsafe { self.factor_wide(values) };
+            return unsafe { self.factor_wide(pattern, values) };
         }
-        self.factor_by::<Apart>(values)
+        self.factor_by::<Apart>(pattern, values)
     }
 
     /// Replaces `b` by the solution of `A x = b`. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) {
-        assert_eq!(b.len() + 1, self.starts.len(), "right-hand side of another size");
+        assert_eq!(b.len(), self.plan.condensed.by.len(), "right-hand side of another size");
         #[cfg(target_arch = "x86_64")]
         if wide() {
             // SAFETY: the processor has what the function is compiled for.
@@ -137,8 +130,8 @@ impl BlockTridiagonal {
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    fn factor_wide(&mut self, values: &[f64]) -> bool {
-        self.factor_by::<Fused>(values)
+    fn factor_wide(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
+        self.factor_by::<Fused>(pattern, values)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -148,7 +141,7 @@ impl BlockTridiagonal {
     }
 
     #[inline(always)]
-    fn factor_by<A: Add>(&mut self, values: &[f64]) -> bool {
+    fn factor_by<A: Add>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         self.condense(values);
         let twist = self.plan.twist;
         for step in 0..self.plan.steps.len() {
@@ -156,7 +149,7 @@ impl BlockTridiagonal {
                 return false;
             }
         }
-        self.block::<A>(values, twist) && self.holds::<A>(values)
+        self.block::<A>(values, twist) && self.holds::<A>(pattern, values)
     }
 
     /// Coefficients of the rows that give an unknown.
@@ -293,7 +286,7 @@ impl BlockTridiagonal {
 
     /// Whether a solution has a small backward error, row by row.
     #[inline(always)]
-    fn holds<A: Add>(&mut self, values: &[f64]) -> bool {
+    fn holds<A: Add>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         let mut solution = std::mem::take(&mut self.room.solution);
         let mut left = std::mem::take(&mut self.room.left);
         let mut size = std::mem::take(&mut self.room.size);
@@ -308,9 +301,9 @@ impl BlockTridiagonal {
         }
         solution.copy_from_slice(&left);
         self.solve_by::<A>(&mut solution);
-        for (x, ends) in solution.iter().zip(self.starts.windows(2)) {
-            let own = ends[0] as usize..ends[1] as usize;
-            for (row, value) in self.rows[own.clone()].iter().zip(&values[own]) {
+        for (column, x) in solution.iter().enumerate() {
+            let own = pattern.column(column);
+            for (row, value) in pattern.rows[own.clone()].iter().zip(&values[own]) {
                 let product = value * x;
                 left[*row as usize] -= product;
                 size[*row as usize] += product.abs();

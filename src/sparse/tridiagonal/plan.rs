@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::condense::Condensed;
 use super::dense::{LANES, padded, place};
 use super::levels::Graph;
-use crate::sparse::Pattern;
+use crate::sparse::{Pattern, groups::groups};
 
 /// Unknowns up to which neighbouring levels become one block.
 const TOGETHER: usize = 12;
@@ -40,10 +40,6 @@ impl Block {
     /// Products that a solution takes.
     pub fn products(&self) -> usize {
         self.rows * (self.size + self.theirs.len()) + padded(self.theirs.len()) * self.mine.len()
-    }
-
-    fn at(&self) -> Range<usize> {
-        self.at..self.at + self.rows
     }
 }
 
@@ -189,8 +185,7 @@ impl Plan {
         let mut folded: Vec<(u32, [u32; 3])> = vec![];
         for column in 0..pattern.columns() {
             let pair = self.condensed.by[column];
-            let unknown = pair.map_or(column, |pair| self.condensed.pairs[pair as usize].kept.0 as usize);
-            let to = node_of[unknown] as usize;
+            let to = node_of[self.condensed.joins(column)] as usize;
             for entry in pattern.column(column) {
                 let from = row_node[pattern.rows[entry] as usize];
                 if from == NONE {
@@ -209,8 +204,8 @@ impl Plan {
             }
         }
         let blocks = self.blocks.len();
-        let (sources, ends) = by_level(blocks, &sources);
-        let (folded, folded_ends) = by_level(blocks, &folded);
+        let (sources, ends) = groups(blocks, sources.into_iter());
+        let (folded, folded_ends) = groups(blocks, folded.into_iter());
         for (level, block) in self.blocks.iter_mut().enumerate() {
             block.sources = ends[level]..ends[level + 1];
             block.folded = folded_ends[level]..folded_ends[level + 1];
@@ -223,20 +218,13 @@ impl Plan {
     fn destination(&self, [row, column]: [(u32, u32); 2]) -> Option<(u32, u32)> {
         let of = |(level, place): (u32, u32)| {
             let block = &self.blocks[level as usize];
-            debug_assert!(block.at().contains(&(place as usize)));
             (block, place as usize - block.at)
         };
         let ((row_block, r), (column_block, c)) = (of(row), of(column));
-        let inner = |level: u32| {
-            if (level as usize) < self.twist {
-                level + 1
-            } else {
-                level.wrapping_sub(1)
-            }
-        };
+        let far = |level: u32| (level as usize).abs_diff(self.twist);
         let (level, to) = if row.0 == column.0 {
             (row.0, c * row_block.rows + r)
-        } else if row.0 as usize != self.twist && inner(row.0) == column.0 {
+        } else if far(row.0) > far(column.0) {
             // in its rows, beside it
             let [square, ..] = row_block.room();
             let (r, c) = (r - row_block.mine.start, c - row_block.theirs.start);
@@ -277,8 +265,7 @@ fn row_nodes(condensed: &Condensed, node_of: &[u32]) -> Vec<u32> {
 fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[u32]) -> Vec<[u32; 2]> {
     let mut edges = vec![];
     for column in 0..pattern.columns() {
-        let unknown = condensed.by[column].map_or(column, |pair| condensed.pairs[pair as usize].kept.0 as usize);
-        let to = node_of[unknown];
+        let to = node_of[condensed.joins(column)];
         for entry in pattern.column(column) {
             let from = row_node[pattern.rows[entry] as usize];
             if from != NONE && from != to {
@@ -287,21 +274,6 @@ fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[
         }
     }
     edges
-}
-
-/// What belongs to each level, one after the other in the order in which it stands, and where each begins.
-fn by_level<T: Copy + Default>(levels: usize, all: &[(u32, T)]) -> (Vec<T>, Vec<usize>) {
-    let mut starts = vec![0; levels + 1];
-    all.iter().for_each(|(level, _)| starts[*level as usize + 1] += 1);
-    (0..levels).for_each(|k| starts[k + 1] += starts[k]);
-    let mut next = starts.clone();
-    let mut sorted = vec![T::default(); all.len()];
-    for (level, one) in all {
-        let at = &mut next[*level as usize];
-        sorted[*at] = *one;
-        *at += 1;
-    }
-    (sorted, starts)
 }
 
 /// Joins small neighbours.
