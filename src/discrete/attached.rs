@@ -1,6 +1,6 @@
 //! What is attached to the beam, on a mesh.
 
-use super::residual::rows;
+use super::residual::momentum;
 use super::{Mesh, System, TimeData, Workspace};
 use crate::model::{Attachment, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
@@ -108,11 +108,11 @@ impl Attached {
         }
         let (cell, node, by) = self.beyond;
         let sizes = [given.follower.z, given.follower.x];
-        dead + rows::follower(
+        dead + momentum::follower(
             system,
             sizes,
-            || rows::tangent_beyond(w, cell, node, by),
-            || rows::angle_beyond(w, cell, node, by),
+            || momentum::tangent_beyond(w, cell, node, by),
+            || momentum::angle_beyond(w, cell, node, by),
         )
     }
 

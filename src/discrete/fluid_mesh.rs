@@ -131,6 +131,12 @@ pub struct FluidMesh {
     pub branches: usize,
     /// Links along which fluid flows; behind those of the network faces between cells.
     pub links: Vec<MeshLink>,
+    /// Those that are nothing but a resistance between two cells: number, cell that positive flow comes from, cell that it goes to.
+    pub between_cells: Vec<[u32; 3]>,
+    /// All others.
+    pub other_links: Vec<usize>,
+    /// Those with a valve that opens and shuts.
+    pub valves: Vec<usize>,
     /// Prescribed flows.
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
@@ -272,6 +278,20 @@ impl FluidMesh {
         }
         // in the order of their unknowns
         accumulators.sort_by_key(|one| one.junction);
+        let (mut between_cells, mut other_links) = (vec![], vec![]);
+        for (k, link) in links.iter().enumerate() {
+            match (link.from, link.to) {
+                (Place::Cell(from), Place::Cell(to)) if link.is_plain() => {
+                    between_cells.push([k, from, to].map(|number| number as u32));
+                }
+                _ => other_links.push(k),
+            }
+        }
+        let opens = |link: &MeshLink| {
+            link.number
+                .is_some_and(|number| network.links[number].opening.is_some())
+        };
+        let valves = (0..links.len()).filter(|&k| opens(&links[k])).collect();
         let mut mesh = Self {
             bladders,
             cells_per_bladder,
@@ -285,6 +305,9 @@ impl FluidMesh {
             branches,
             adrift,
             links,
+            between_cells,
+            other_links,
+            valves,
             sources: sources.collect(),
             bridges,
             accumulators,

@@ -310,6 +310,9 @@ impl TimeData {
     }
 
     fn loads(&mut self, system: &System, clock: Clock) {
+        if system.loads.is_empty() {
+            return;
+        }
         self.force.fill(Planar::default());
         self.moment.fill(Planar::default());
         self.rest_curvature.iter_mut().for_each(|values| values.fill(0.0));
@@ -356,27 +359,24 @@ impl TimeData {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return;
         };
-        for (k, mesh_link) in fluid.links.iter().enumerate() {
-            match mesh_link
-                .number
-                .and_then(|number| wet.network.links[number].opening.as_ref())
-            {
-                None if !first => {}
-                None => {
-                    self.conductance[k] = 1.0 / mesh_link.in_series();
-                    self.resistance[k] = mesh_link.resistance;
-                }
-                Some(opening) => {
-                    let mut o = opening.jet(clock).value.clamp(0.0, 1.0);
-                    if mesh_link.flow.is_some() {
-                        o = o.max(TIGHT);
-                    }
-                    self.opening[k] = o;
-                    let behind = mesh_link.half_cells + mesh_link.of_pump;
-                    self.conductance[k] = o / (o * behind + mesh_link.resistance);
-                    self.resistance[k] = mesh_link.resistance / o;
-                }
+        if first {
+            for (k, link) in fluid.links.iter().enumerate() {
+                self.conductance[k] = 1.0 / link.in_series();
+                self.resistance[k] = link.resistance;
             }
+        }
+        for &k in &fluid.valves {
+            let link = &fluid.links[k];
+            let valve = link
+                .number
+                .and_then(|number| wet.network.links[number].opening.as_ref());
+            let mut o = valve.map_or(1.0, |opening| opening.jet(clock).value.clamp(0.0, 1.0));
+            if link.flow.is_some() {
+                o = o.max(TIGHT);
+            }
+            self.opening[k] = o;
+            self.conductance[k] = o / (o * (link.half_cells + link.of_pump) + link.resistance);
+            self.resistance[k] = link.resistance / o;
         }
         for (k, port) in wet.network.ports.iter().enumerate() {
             let pressure = port.pressure.jet(clock);

@@ -107,6 +107,8 @@ pub struct Forces<T> {
     pub shear: Vec<T>,
     /// Section force in lab axes [N].
     pub section: Vec<Planar<T>>,
+    /// What the published form adds at nodes, [E15] [N]; empty in the conservative one.
+    pub formulation: Vec<Planar<T>>,
     /// Part of the moment that relaxes [N m]; empty without.
     pub relaxing_moment: Vec<T>,
     /// And of the normal force [N].
@@ -330,6 +332,7 @@ impl<T: Scalar> Workspace<T> {
                 viscous_normal: zeros(c),
                 shear: zeros(c),
                 section: vectors(c),
+                formulation: vectors(if system.model.published() { n } else { 0 }),
                 relaxing_moment: zeros(relaxation.curvature.len().min(n)),
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),

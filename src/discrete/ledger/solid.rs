@@ -2,7 +2,7 @@
 
 use super::{Energies, EnergyRate, add};
 use crate::case::schema::Effect;
-use crate::discrete::residual::rows::outer_forces;
+use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::residual::{fourth, relaxation};
 use crate::discrete::{System, TimeData, Workspace, attached};

@@ -5,7 +5,7 @@ use super::probes::ProbeColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::ledger::reaction;
-use crate::discrete::residual::rows::end_tangent;
+use crate::discrete::residual::momentum::end_tangent;
 
 /// What is told of an end or an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]

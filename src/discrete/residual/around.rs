@@ -137,8 +137,14 @@ fn turning<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
 /// Unit tangent at a node: along the mean of those of its cells.
 #[inline]
 pub fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let cells = &w.shape.tangent;
-    let mean = cells[node.saturating_sub(1)] + cells[node.min(system.mesh.cells - 1)];
+    let cells = [node.saturating_sub(1), node.min(system.mesh.cells - 1)];
+    mean_direction(cells.map(|c| w.shape.tangent[c]))
+}
+
+/// Unit vector along the mean of two.
+#[inline(always)]
+pub fn mean_direction<T: Scalar>([one, other]: [Planar<T>; 2]) -> Planar<T> {
+    let mean = one + other;
     mean.times(T::constant(1.0) / mean.squared().sqrt())
 }
 

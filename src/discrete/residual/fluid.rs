@@ -176,19 +176,28 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     w.fluid.inflow.fill(T::zero());
     w.fluid.junction_inflow.fill(T::zero());
     let own = &mut w.fluid;
-    let driven_by = if wet.compression.is_some() {
-        &own.potential
-    } else {
-        &own.pressure
-    };
+    let compressed = wet.compression.is_some();
+    let driven_by = if compressed { &own.potential } else { &own.pressure };
     for [from, to] in fluid.creeping_faces() {
         let q = (driven_by[from] - driven_by[to]) * fluid.conductance;
         own.inflow[from] -= q;
         own.inflow[to] += q;
     }
-    for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
+    for &[k, from, to] in &fluid.between_cells {
+        let [k, from, to] = [k, from, to].map(|number| number as usize);
+        let drop = driven_by[from] - driven_by[to];
+        // [E55], which Newton's iteration follows down to vacuum
+        let q = drop * now.conductance[k];
+        if !compressed {
+            own.drop[k] = drop;
+        }
+        own.flow[k] = q;
+        own.inflow[from] -= q;
+        own.inflow[to] += q;
+    }
+    for &k in &fluid.other_links {
+        let (link, conductance) = (&fluid.links[k], now.conductance[k]);
         let q = match (link.flow, &wet.compression) {
-            // [E55], which Newton's iteration follows down to vacuum
             (None, Some(compression)) if link.is_plain() => {
                 let ends = [link.from, link.to].map(|place| potential_at(compression, place, now, w));
                 (ends[0] - ends[1]) * conductance

@@ -5,6 +5,7 @@ pub mod bar;
 pub mod bending;
 pub mod fluid;
 pub mod fourth;
+pub mod momentum;
 pub mod nonlinear;
 pub mod relaxation;
 pub mod rows;
@@ -82,6 +83,7 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             }
         }
     }
+    momentum::published_forces(system, now, w);
     fluid::flows(system, now, w);
 }
 
@@ -103,7 +105,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
 
 /// The residual after everything has been evaluated.
 pub fn equations<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
-    rows::momentum(system, now, w, r);
+    momentum::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
     sheared::rows(system, w, r);
     relaxation::rows(system, now, w, r);

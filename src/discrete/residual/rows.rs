@@ -1,198 +1,11 @@
-//! The equations, one block after the other.
+//! The equations beside those of momentum, one block after the other.
 
-use super::around::{self, node_tangent};
 use super::fluid::{driving, over_bridge};
-use super::fourth;
-use crate::discrete::attached::at_node;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
-use crate::discrete::ledger::EnergyRate;
-use crate::discrete::{System, TimeData, Workspace, bodies, let_in, touching};
+use crate::discrete::{System, TimeData, Workspace, let_in};
+use crate::model::LumpedKind;
 use crate::model::network::Feed;
-use crate::model::{Kinematics, LumpedKind};
-use crate::numerics::{Planar, Scalar};
-
-/// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
-///
-/// ```text
-/// m h_i a_i = h_i (b_i - c v_i) + n_{i+1/2} - n_{i-1/2} (+ end force) (+ c_i, published)
-/// ```
-///
-/// `[E27]` Without axial inertia the beam is carried along by its frame, [E22], and its waves are left out; inertia of the
-/// sections' rotation is then that of `m y11 |d3_t|²/2`, whose parts along x and z are apart:
-///
-/// ```text
-/// m h_i U_i'' = h_i (b_z,i - c v3_i) + n_z,i+1/2 - n_z,i-1/2        n_x gains m y11 x'_tt, n_z nothing
-/// ```
-///
-/// The force `-m U''` does work on displacements relative to the frame: `P_ends` gains `-Σ h_i m U_i'' (v3_i - U_i')`, and the
-/// kinetic energy along is that of the frame, `Σ h_i m U_i'²/2`.
-pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
-    let (l, mesh) = (&system.layout, &system.mesh);
-    let last = mesh.nodes - 1;
-    for i in 0..=last {
-        let mut f = Planar::zero();
-        outer_forces(system, now, w, i, |_, force| f += force);
-        if i < last {
-            f += w.forces.section[i];
-        }
-        if i > 0 {
-            f -= w.forces.section[i - 1];
-        }
-        let mass = system.masses[i];
-        for (axis, line) in l.lines.iter().enumerate() {
-            if let Some(row) = line.momentum(i) {
-                r[row] = if l.inertia {
-                    w.motion.a[i][axis] * mass - f[axis]
-                } else {
-                    -f[axis]
-                };
-            }
-        }
-    }
-}
-
-/// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19]; none
-/// where it is stored, [E49].
-#[inline(always)]
-pub fn outer_forces<T: Scalar>(
-    system: &System,
-    now: &TimeData,
-    w: &Workspace<T>,
-    node: usize,
-    mut each: impl FnMut(Option<EnergyRate>, Planar<T>),
-) {
-    let length = system.mesh.node_length(node);
-    let mut given = Planar::constant(now.force[node] * length);
-    if node == 0 || node == system.mesh.nodes - 1 {
-        given += end_force(system, now, w, node);
-    }
-    each(Some(EnergyRate::Loads), given);
-    if system.model.published() {
-        each(Some(EnergyRate::Formulation), published_force(system, now, w, node));
-    }
-    if system.stands_alone {
-        return;
-    }
-    around::forces(system, now, w, node, system.lengths[node], &mut each);
-    for (attached, weight) in at_node(&system.attached, node) {
-        let given = attached.given(system, now, w);
-        each(Some(EnergyRate::Loads), given * weight);
-        each(None, attached.spring(w) * weight);
-        each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
-    }
-    if !system.bodies.is_empty() {
-        bodies::forces(system, w, node, |force| each(None, force));
-    }
-    if !system.touching.is_empty() {
-        touching::forces(system, w, node, &mut each);
-    }
-}
-
-/// Force given at an end node: dead, plus follower section forces `N e_t + V e_n` at the end's angle (A.53, A.54),
-/// which act on the body with the sign of the outward section.
-pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let last = system.mesh.nodes - 1;
-    let end = &now.ends[usize::from(node == last)];
-    let dead = Planar::constant(end.force);
-    let Some((normal, shear)) = end.follower else {
-        return dead;
-    };
-    let outward = if node == last { 1.0 } else { -1.0 };
-    let (normal, shear) = (outward * normal, outward * shear);
-    let own = follower(
-        system,
-        [normal, shear],
-        || end_tangent(system, now, w, node),
-        || end_angle(system, now, w, node),
-    );
-    dead + own
-}
-
-/// `N e_t + V e_n` at a place with this tangent, or this angle of a beam that turns little.
-#[inline]
-pub fn follower<T: Scalar>(
-    system: &System,
-    [normal, shear]: [f64; 2],
-    tangent: impl FnOnce() -> Planar<T>,
-    angle: impl FnOnce() -> T,
-) -> Planar<T> {
-    match system.model.kinematics {
-        Kinematics::FiniteRotation => {
-            let tangent = tangent();
-            tangent * normal + tangent.normal() * shear
-        }
-        // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
-        Kinematics::SmallRotation => Planar::new(angle() * normal - shear, T::constant(normal)),
-        Kinematics::Linear | Kinematics::Bar => Planar::constant(Planar { x: -shear, z: normal }),
-    }
-}
-
-/// Unit tangent at an end: prescribed, or `φ_0 = φ_{1/2} + (h/2) κ_0`, `φ_n = φ_{n-1/2} - (h/2) κ_n`.
-pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
-    let last = system.mesh.nodes - 1;
-    let at_tip = node == last;
-    if let Some(slope) = now.ends[usize::from(at_tip)].slope {
-        return Planar::constant(Planar::tangent(slope.value));
-    }
-    let cell = if at_tip { last - 1 } else { 0 };
-    let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.h;
-    tangent_beyond(w, cell, node, half)
-}
-
-/// Unit tangent `by` beyond the midpoint of a cell, towards or away from a node at one of its ends: `φ = φ_c - by κ_node`.
-#[inline]
-pub fn tangent_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> Planar<T> {
-    if let Some(angle) = w.shape.sections.angle.get(cell) {
-        return Planar::tangent(*angle - w.shape.kappa[node] * by);
-    }
-    let (sine, cosine) = (w.shape.kappa[node] * -by).sin_cos();
-    let tangent = w.shape.tangent[cell];
-    tangent.times(cosine) - tangent.normal().times(sine)
-}
-
-/// The same angle of a beam that turns little.
-#[inline]
-pub fn angle_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> T {
-    let angle = w.shape.sections.angle.get(cell).copied();
-    angle.unwrap_or(w.shape.d3[cell].x) - w.shape.kappa[node] * by
-}
-
-/// Angle at an end of a beam that turns little, as [`end_tangent`] has it.
-fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
-    let at_tip = node + 1 == system.mesh.nodes;
-    if let Some(slope) = now.ends[usize::from(at_tip)].slope {
-        return T::constant(slope.value);
-    }
-    let (cell, half) = if at_tip { (node - 1, 0.5) } else { (0, -0.5) };
-    angle_beyond(w, cell, node, half * system.mesh.h)
-}
-
-/// `[E15]` What the published form adds to the conservative one at a node:
-///
-/// ```text
-/// c_i = h_i (κ_i - M_i/EI) (V^ e_t(φ^) - N^ e_n(φ^))        ^ mean of the neighbouring cells
-/// ```
-#[inline]
-pub fn published_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, i: usize) -> Planar<T> {
-    let last = system.mesh.nodes - 1;
-    let (a, b) = (i.saturating_sub(1), i.min(last - 1));
-    let (forces, tangent) = (&w.forces, node_tangent(system, w, i));
-    let mut normal = (forces.normal[a] + forces.normal[b]) * 0.5;
-    if system.damped {
-        normal += (forces.viscous_normal[a] + forces.viscous_normal[b]) * 0.5;
-    }
-    if let (Some(left), Some(right)) = (forces.relaxing_normal.get(a), forces.relaxing_normal.get(b)) {
-        normal += (*left + *right) * 0.5;
-    }
-    let shear = (forces.shear[a] + forces.shear[b]) * 0.5;
-    let elastic = if system.mesh.fourth {
-        fourth::elastic_curvature(system, now, w, i)
-    } else {
-        forces.moment[i] * (1.0 / system.model.section.bending_stiffness)
-    };
-    let excess = (w.shape.kappa[i] - elastic) * system.lengths[i];
-    (tangent.times(shear) - tangent.normal().times(normal)).times(excess)
-}
+use crate::numerics::Scalar;
 
 /// `u' = v`, where velocities are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
@@ -226,11 +39,13 @@ pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize)
 /// Mean over a segment of what stands at nodes, with the weights of [`means`].
 pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
-    let mut mean = T::zero();
-    for i in 0..=k {
-        mean += values[segment * k + i] * system.mesh.moment_weight(i);
+    let [at_edge, inside] = [0, 1].map(|i| system.mesh.moment_weight(i));
+    let own = &values[segment * k..=(segment + 1) * k];
+    let mut mean = own[0] * at_edge;
+    for value in &own[1..k] {
+        mean += *value * inside;
     }
-    mean
+    mean + own[k] * at_edge
 }
 
 /// `Nbar` of a segment.
@@ -330,7 +145,8 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = &system.fluid else { return };
     let own = &system.layout.network;
-    for (k, link) in fluid.links.iter().enumerate() {
+    for &k in &fluid.other_links {
+        let link = &fluid.links[k];
         let Some(MeshFlow { number, branch, law }) = link.flow else {
             continue;
         };

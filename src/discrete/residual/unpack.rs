@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::discrete::layout::Line;
 use crate::discrete::let_in::{self, Share, Store};
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
@@ -31,25 +32,7 @@ use crate::numerics::{Planar, Scalar};
 /// pressure of a lumped network, [E25], is counted from V/C likewise.
 pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
-    for (axis, line) in l.lines.iter().enumerate() {
-        let motion = &mut w.motion;
-        take(&mut motion.u[line.free.clone()], axis, &y[line.u.clone()]);
-        let (v, a) = (&mut motion.v[line.free.clone()], &mut motion.a[line.free.clone()]);
-        match &line.v {
-            Some(velocity) => {
-                take(v, axis, &y[velocity.clone()]);
-                take(a, axis, &yp[velocity.clone()]);
-            }
-            None if !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]) => {
-                take(v, axis, &yp[line.u.clone()]);
-                a.iter_mut().for_each(|a| a[axis] = T::zero());
-            }
-            None => v.iter_mut().chain(a).for_each(|own| own[axis] = T::zero()),
-        }
-        if let Some(frame) = now.frame(axis) {
-            carry(&frame, system, axis, motion);
-        }
-    }
+    move_nodes(system, now, y, yp, &mut w.motion);
     let sections = &mut w.shape.sections;
     copy(&mut sections.angle, y, &l.turning.angle);
     match &l.turning.rate {
@@ -135,35 +118,68 @@ fn copy<T: Scalar>(target: &mut [T], source: &[T], block: &Range<usize>) {
     }
 }
 
-/// Components of vectors.
-fn take<T: Scalar>(target: &mut [Planar<T>], axis: usize, source: &[T]) {
-    for (target, source) in target.iter_mut().zip(source) {
-        target[axis] = *source;
+/// How nodes move: what is unknown of it, and their frames.
+fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], motion: &mut Motion<T>) {
+    let l = &system.layout;
+    let moves = |line: &Line| !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]);
+    let at_rate = |line: &Line| (line.v.is_none() && moves(line)).then(|| &yp[line.u.clone()]);
+    let lines = l.lines.each_ref();
+    let fields = [
+        (&mut motion.u, lines.map(|line| Some(&y[line.u.clone()]))),
+        (
+            &mut motion.v,
+            lines.map(|line| line.v.clone().map(|v| &y[v]).or_else(|| at_rate(line))),
+        ),
+        (&mut motion.a, lines.map(|line| line.v.clone().map(|v| &yp[v]))),
+    ];
+    let frames = [now.frame(0), now.frame(1)];
+    let given: [fn(Jet) -> f64; 3] = [|jet| jet.value, |jet| jet.rate, |jet| jet.acceleration];
+    for (k, ((own, from), given)) in fields.into_iter().zip(given).enumerate() {
+        let carried = k < 2 || l.inertia;
+        let frames = frames.map(|frame| frame.filter(|_| carried));
+        let alike = |frame: Frame| if frame.leans() { 0.0 } else { given(frame.at(0.0)) };
+        lay(own, &l.lines, from, frames.map(|frame| frame.map(alike)));
+        for (axis, frame) in frames.into_iter().enumerate() {
+            if let Some(frame) = frame.filter(Frame::leans) {
+                let last = (own.len() - 1) as f64;
+                for (node, own) in own.iter_mut().enumerate() {
+                    own[axis] = own[axis] + given(frame.at(node as f64 / last));
+                }
+            }
+        }
     }
 }
 
-/// Adds the frame's motion to the free nodes and gives it to the driven ones.
-fn carry<T: Scalar>(frame: &Frame, system: &System, axis: usize, motion: &mut Motion<T>) {
-    let last = system.mesh.nodes - 1;
-    let free = &system.layout.lines[axis].free;
-    let inertia = system.layout.inertia;
-    let given: [fn(Jet) -> f64; 3] = [|jet| jet.value, |jet| jet.rate, |jet| jet.acceleration];
-    let own = [&mut motion.u, &mut motion.v, &mut motion.a];
-    for (own, given) in own.into_iter().zip(given).take(if inertia { 3 } else { 2 }) {
-        let (before, after) = own.split_at_mut(free.end);
-        for driven in before[..free.start].iter_mut().chain(after) {
-            driven[axis] = T::zero();
+/// Puts together what vectors are along both axes, zero where nothing is said, and adds what a frame gives to all nodes, driven ones too.
+#[inline(always)]
+fn lay<T: Scalar>(own: &mut [Planar<T>], lines: &[Line; 2], from: [Option<&[T]>; 2], given: [Option<f64>; 2]) {
+    let [across, along] = lines.each_ref().map(|line| &line.free);
+    let shift = given.map(Option::unwrap_or_default);
+    let mut both = across.start.max(along.start)..across.end.min(along.end);
+    if let (Some(x), Some(z), false) = (from[0], from[1], both.is_empty()) {
+        let x = &x[both.start - across.start..][..both.len()];
+        let z = &z[both.start - along.start..][..both.len()];
+        for ((own, x), z) in own[both.clone()].iter_mut().zip(x).zip(z) {
+            *own = Planar::new(*x + shift[0], *z + shift[1]);
         }
-        if frame.leans() {
-            for (node, own) in own.iter_mut().enumerate() {
-                own[axis] = own[axis] + given(frame.at(node as f64 / last as f64));
-            }
-        } else {
-            let given = given(frame.at(0.0));
-            own.iter_mut().for_each(|own| own[axis] = own[axis] + given);
-        }
+    } else {
+        both = 0..0;
     }
-    if !inertia {
-        motion.a.iter_mut().for_each(|a| a[axis] = T::zero());
+    let nodes = own.len();
+    for (axis, line) in lines.iter().enumerate() {
+        let free = &line.free;
+        let told = if both.is_empty() {
+            free.start..free.start
+        } else {
+            both.clone()
+        };
+        for node in (free.start..told.start).chain(told.end..free.end) {
+            own[node][axis] = from[axis].map_or(T::zero(), |from| from[node - free.start]) + shift[axis];
+        }
+        if let Some(given) = given[axis] {
+            for node in (0..free.start).chain(free.end..nodes) {
+                own[node][axis] = T::constant(given);
+            }
+        }
     }
 }
