@@ -5,7 +5,7 @@ use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds};
 use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
-use crate::numerics::Dual;
+use crate::numerics::{Dual, kernels};
 
 /// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
 #[derive(Clone, Debug)]
@@ -199,9 +199,7 @@ impl BeamDae {
         self.now.update(&self.system, Clock { t, within: self.within });
         let scales = &self.system.layout.scales;
         for (own, given) in [(&mut self.plain.y, y), (&mut self.plain.yp, yp)] {
-            for ((own, given), scale) in own.iter_mut().zip(given).zip(scales) {
-                *own = given * scale;
-            }
+            kernels::products(given, scales, own);
         }
     }
 }
@@ -223,9 +221,7 @@ impl Dae for BeamDae {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         residual::residual(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace, residual);
-        for (r, per) in residual.iter_mut().zip(&self.per_row) {
-            *r *= per;
-        }
+        kernels::multiply(residual, &self.per_row);
         Ok(())
     }
 

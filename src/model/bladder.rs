@@ -1,6 +1,6 @@
 //! One bladder's cross-section: how its area changes with pressure, bending moment and normal force.
 
-use super::Section;
+use super::{ROWS, Section};
 use crate::case::schema::{Bladders, Case, Coupling as CouplingChoice};
 use crate::numerics::Scalar;
 
@@ -16,6 +16,8 @@ use crate::numerics::Scalar;
 pub struct AreaLaw {
     /// `a_p` [m^2/Pa].
     pub per_pressure: f64,
+    /// `1/a_p` [Pa/m^2].
+    pub per_area: f64,
     /// `am` [m^2/(N m)].
     pub moment_mean: f64,
     /// `dm` [m^2/(N m)].
@@ -40,6 +42,7 @@ impl AreaLaw {
         let half = if kinked { 0.5 } else { 0.0 };
         Self {
             per_pressure: bladders.area_per_pressure_m2_per_pa,
+            per_area: 1.0 / bladders.area_per_pressure_m2_per_pa,
             moment_mean: 0.5 * (m.closing + m.opening),
             moment_half_difference: half * (m.closing - m.opening),
             force_mean: 0.5 * (n.compression + n.tension),
@@ -73,6 +76,13 @@ impl AreaLaw {
         moment * (row * self.moment_mean) - kink(moment, self.moment_width) * self.moment_half_difference
     }
 
+    /// `R A_M(M)` of the upper and of the lower row [m^2].
+    #[inline]
+    pub fn of_moments<T: Scalar>(&self, moment: T) -> [T; 2] {
+        let kinked = kink(moment, self.moment_width) * self.moment_half_difference;
+        ROWS.map(|row| moment * (row * self.moment_mean) - kinked)
+    }
+
     /// `A_N'(N)` [m^2/N].
     #[inline]
     pub fn force_slope<T: Scalar>(&self, force: T) -> T {
@@ -88,7 +98,7 @@ impl AreaLaw {
     /// Pressure of a cell with area change `area`, where bending and force already account for `imposed`.
     #[inline]
     pub fn pressure<T: Scalar>(&self, area: T, imposed: T) -> T {
-        (area - imposed) * (1.0 / self.per_pressure)
+        (area - imposed) * self.per_area
     }
 }
 

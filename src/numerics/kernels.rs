@@ -2,16 +2,39 @@
 //!
 //! Debian's SUNDIALS is compiled without optimisation; these kernels in place of its own cut a run to about 1/2.7.
 
+use super::threads::{LARGE, both};
+use super::wide;
+
 /// Entries that sums of vectors are made of at a time: what is written stays in the first cache while vector after vector is added.
-const TILE: usize = 512;
+pub const TILE: usize = 512;
+
+/// Where two threads meet: half of so many numbers, in whole tiles.
+pub fn halfway(len: usize) -> usize {
+    (len / 2).next_multiple_of(TILE).min(len)
+}
 
 /// `out = Σ factorₖ vₖ`, terms added in their order. Panics when a vector has another length.
 pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (_, v) in terms {
         assert_eq!(v.len(), out.len(), "a vector of another system");
     }
+    if out.len() < LARGE {
+        return combine_from(0, out, terms);
+    }
+    let half = halfway(out.len());
+    let (left, right) = out.split_at_mut(half);
+    both(|| combine_from(0, left, terms), || combine_from(half, right, terms));
+}
+
+/// `out` begins at so many entries of the vectors.
+fn combine_from(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
+    wide!(combine_tiles(first, out, terms));
+}
+
+#[inline(always)]
+fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (k, tile) in out.chunks_mut(TILE).enumerate() {
-        let begin = k * TILE;
+        let begin = first + k * TILE;
         let place = begin..begin + tile.len();
         let Some(((factor, v), rest)) = terms.split_first() else {
             tile.fill(0.0);
@@ -33,6 +56,43 @@ pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
             }
         }
     }
+}
+
+/// `outᵢ = xᵢ yᵢ` of vectors of one length.
+pub fn products(x: &[f64], y: &[f64], out: &mut [f64]) {
+    if out.len() >= LARGE {
+        let half = halfway(out.len());
+        let (left, right) = out.split_at_mut(half);
+        both(
+            || products_of(&x[..half], &y[..half], left),
+            || products_of(&x[half..], &y[half..], right),
+        );
+    } else {
+        products_of(x, y, out);
+    }
+}
+
+fn products_of(x: &[f64], y: &[f64], out: &mut [f64]) {
+    wide!({
+        for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
+            *out = x * y;
+        }
+    });
+}
+
+/// `xᵢ ← xᵢ yᵢ` of vectors of one length.
+pub fn multiply(x: &mut [f64], y: &[f64]) {
+    if x.len() >= LARGE {
+        let half = halfway(x.len());
+        let (left, right) = x.split_at_mut(half);
+        both(|| multiply_by(left, &y[..half]), || multiply_by(right, &y[half..]));
+    } else {
+        multiply_by(x, y);
+    }
+}
+
+fn multiply_by(x: &mut [f64], y: &[f64]) {
+    wide!(x.iter_mut().zip(y).for_each(|(x, y)| *x *= y));
 }
 
 /// Partial sums kept side by side: two registers of four doubles, or four of two.
@@ -57,17 +117,17 @@ fn sum(x: &[f64], y: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// `Σ xᵢ yᵢ`.
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    sum(x, y, |a, b| a * b)
+    wide!(sum(x, y, |a, b| a * b))
 }
 
 /// `Σ |xᵢ|`.
 pub fn sum_abs(x: &[f64]) -> f64 {
-    sum(x, x, |a, _| a.abs())
+    wide!(sum(x, x, |a, _| a.abs()))
 }
 
 /// `Σ (xᵢ wᵢ)²`.
 pub fn weighted_square(x: &[f64], w: &[f64]) -> f64 {
-    sum(x, w, |a, b| (a * b) * (a * b))
+    wide!(sum(x, w, |a, b| (a * b) * (a * b)))
 }
 
 /// `Σ (xᵢ wᵢ)²` over the entries with `idᵢ > 0`.
@@ -123,7 +183,7 @@ pub fn min(x: &[f64]) -> f64 {
 /// True when no entry is infinite or NaN.
 pub fn all_finite(x: &[f64]) -> bool {
     // 0 · a is NaN for exactly those, and NaN stays in a sum
-    sum(x, x, |a, _| 0.0 * a) == 0.0
+    wide!(sum(x, x, |a, _| 0.0 * a)) == 0.0
 }
 
 /// Position of the first entry that is infinite or NaN.

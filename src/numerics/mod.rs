@@ -7,6 +7,8 @@
 //! | [`angle`] | angles of vectors |
 //! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
+//! | `wide` | the same in vectors as wide as the processor has |
+//! | [`threads`] | and in two threads |
 //! | `gauss` | Gauss' quadrature |
 //! | `ramp` | a ramp with a round foot |
 //! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
@@ -38,8 +40,11 @@ pub mod sets;
 pub mod sobol;
 pub mod sqp;
 pub mod student;
+pub mod threads;
+mod wide;
 
 pub use dual::Dual;
 pub use planar::Planar;
 pub use ramp::ramp;
 pub use scalar::Scalar;
+pub(crate) use wide::wide;

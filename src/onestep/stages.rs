@@ -9,7 +9,9 @@ use super::integrator::OneStep;
 use super::polynomial;
 use super::tableau;
 use crate::dae::Dae;
-use crate::numerics::kernels::{self, weighted_square};
+use crate::numerics::kernels::{self, TILE, weighted_square};
+use crate::numerics::threads::{LARGE, both};
+use crate::numerics::wide;
 
 /// Iterations allowed in one stage.
 const ITERATIONS: usize = 7;
@@ -96,8 +98,72 @@ fn or_one(mask: f64, f: f64) -> f64 {
     mask * f + (1.0 - mask)
 }
 
+/// What a correction changes, all of it or a part.
+struct Corrected<'a> {
+    x: &'a mut [f64],
+    y: &'a mut [f64],
+    yp: &'a mut [f64],
+    r: &'a mut [f64],
+    base: &'a [f64],
+    mask: &'a [f64],
+    weights: &'a [f64],
+}
+
+impl<'a> Corrected<'a> {
+    /// Its first entries and the rest.
+    fn split_at(self, k: usize) -> [Self; 2] {
+        let (x, y) = (self.x.split_at_mut(k), self.y.split_at_mut(k));
+        let (yp, r) = (self.yp.split_at_mut(k), self.r.split_at_mut(k));
+        let (base, mask) = (self.base.split_at(k), self.mask.split_at(k));
+        let weights = self.weights.split_at(k);
+        let part = |x, y, yp, r, [base, mask, weights]: [&'a [f64]; 3]| Self {
+            x,
+            y,
+            yp,
+            r,
+            base,
+            mask,
+            weights,
+        };
+        [
+            part(x.0, y.0, yp.0, r.0, [base.0, mask.0, weights.0]),
+            part(x.1, y.1, yp.1, r.1, [base.1, mask.1, weights.1]),
+        ]
+    }
+
+    /// Corrects unknowns, values and rates; returns the weighted square of the correction.
+    fn by(self, factors: [f64; 2], step: f64) -> f64 {
+        let n = self.r.len();
+        if n < LARGE {
+            return self.tile_by_tile(factors, step);
+        }
+        let [left, right] = self.split_at(kernels::halfway(n));
+        let (left, right) = both(
+            || left.tile_by_tile(factors, step),
+            || right.tile_by_tile(factors, step),
+        );
+        left + right
+    }
+
+    /// What is written stays in the first cache until it is read again.
+    fn tile_by_tile(mut self, factors: [f64; 2], step: f64) -> f64 {
+        let mut square = 0.0;
+        while !self.r.is_empty() {
+            let [tile, rest] = {
+                let k = self.r.len().min(TILE);
+                self.split_at(k)
+            };
+            wide!(correct(tile.x, tile.r, tile.mask, factors));
+            values(tile.x, tile.base, tile.mask, step, [tile.y, tile.yp]);
+            square += weighted_square(tile.r, tile.weights);
+            self = rest;
+        }
+        square
+    }
+}
+
 /// `r` becomes the correction of the values, and `x` is moved by that of its own: `∂x/∂Y` is `cj` or 1.
-#[inline(never)] // three slices that the compiler knows to be apart
+#[inline(always)] // three slices that the compiler knows to be apart
 fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
     for ((x, r), mask) in x.iter_mut().zip(r).zip(mask) {
         *r *= factor;
@@ -106,12 +172,17 @@ fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
 }
 
 /// `Y = base + s x` with `s = h γ`, of algebraic unknowns `x`; rates of differential unknowns, 0 of the others.
-#[inline(never)]
-pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
+#[inline(always)]
+fn values_of(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
     for (((y, yp), (x, base)), mask) in y.iter_mut().zip(yp).zip(x.iter().zip(base)).zip(mask) {
         *y = mask * base + or_one(*mask, step) * x;
         *yp = mask * x;
     }
+}
+
+/// The same, in wide vectors.
+pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, both: [&mut [f64]; 2]) {
+    wide!(values_of(x, base, mask, step, both));
 }
 
 impl<D: Dae> OneStep<D> {
@@ -196,7 +267,7 @@ impl<D: Dae> OneStep<D> {
     }
 
     fn iterate(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
-        self.update(i, cj, None);
+        self.take_up(i);
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
@@ -207,8 +278,7 @@ impl<D: Dae> OneStep<D> {
             self.equations
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
             let factor = -self.matrix.solve(&mut self.work.r, cj);
-            self.update(i, cj, Some(factor));
-            let size = norm(&self.work.r, &self.work.weights);
+            let size = self.correct(i, [factor, cj]);
             if !size.is_finite() {
                 return Err(StageError::Newton);
             }
@@ -237,15 +307,27 @@ impl<D: Dae> OneStep<D> {
         Err(StageError::Newton)
     }
 
-    /// Values and rates of stage `i` from its own unknowns, which are corrected first where there is a correction: what a solution times a
-    /// factor takes off the values.
-    fn update(&mut self, i: usize, cj: f64, correction: Option<f64>) {
+    /// Values and rates of stage `i` from its own unknowns.
+    fn take_up(&mut self, i: usize) {
         let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
-        let Work { base, yp, r, .. } = w;
-        if let Some(factor) = correction {
-            correct(&mut x[i], r, &self.mask, [factor, cj]);
-        }
-        values(&x[i], base, &self.mask, *h * self.tableau.gamma(), [&mut y[i], yp]);
+        let step = *h * self.tableau.gamma();
+        values(&x[i], &w.base, &self.mask, step, [&mut y[i], &mut w.yp]);
+    }
+
+    /// Corrects these by a solution times a factor; returns the norm of the correction.
+    fn correct(&mut self, i: usize, factors: [f64; 2]) -> f64 {
+        let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
+        let n = w.r.len() as f64;
+        let corrected = Corrected {
+            x: &mut x[i],
+            y: &mut y[i],
+            yp: &mut w.yp,
+            r: &mut w.r,
+            base: &w.base,
+            mask: &self.mask,
+            weights: &w.weights,
+        };
+        (corrected.by(factors, *h * self.tableau.gamma()) / n).sqrt()
     }
 
     /// Error of the step, relative to the tolerance.

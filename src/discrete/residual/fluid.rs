@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
-use crate::model::{Compression, ROWS, Storage, Wet};
+use crate::model::{Closing, Compression, Storage, Wet};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
@@ -23,8 +23,9 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let share = 1.0 / fluid.cells_per_bladder as f64;
     for j in 0..wet.per_row {
         let of_force = law.of_force(w.coupling.mean_force[j]);
-        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-            let mut imposed = of_force + law.of_moment(w.coupling.mean_moment[j], row);
+        let of_moments = law.of_moments(w.coupling.mean_moment[j]);
+        for (bladder, of_moment) in wet.pair(j).into_iter().zip(of_moments) {
+            let mut imposed = of_force + of_moment;
             if let Some(excess) = w.coupling.excess_area.get(bladder) {
                 imposed += *excess;
             }
@@ -62,6 +63,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 }
 
 /// The same where fluid is compressed, [E54], with what drives its flow, [E55].
+#[inline(never)] // so that its constants are not made where fluid is not
 fn compressed<T: Scalar>(
     wet: &Wet,
     compression: &Compression,
@@ -119,7 +121,7 @@ fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, impos
 fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
     match &wet.closing {
         None => fluid,
-        Some(closing) => fluid + closing.pressure(area),
+        Some(closing) => fluid + of_closing(closing, area),
     }
 }
 
@@ -128,8 +130,14 @@ fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
 fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
     match &wet.closing {
         None => in_walls,
-        Some(closing) => in_walls - closing.pressure(area),
+        Some(closing) => in_walls - of_closing(closing, area),
     }
+}
+
+/// Pressure of walls that touch, [E71].
+#[inline(never)]
+fn of_closing<T: Scalar>(closing: &Closing, area: T) -> T {
+    closing.pressure(area)
 }
 
 /// Stretch and curvature of each segment due to pressure, `[E3]`.

@@ -5,7 +5,7 @@ use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace, bodies, touching};
 use crate::model::Kinematics;
-use crate::numerics::{Planar, Scalar};
+use crate::numerics::{Planar, Scalar, wide};
 
 /// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
 ///
@@ -25,8 +25,8 @@ use crate::numerics::{Planar, Scalar};
 pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let last = system.mesh.nodes - 1;
     if system.stands_alone && system.layout.inertia {
-        inner_momentum::<T, 0>(system, now, w, r);
-        inner_momentum::<T, 1>(system, now, w, r);
+        wide!(inner_momentum::<T, 0>(system, now, w, r));
+        wide!(inner_momentum::<T, 1>(system, now, w, r));
         for end in [0, last] {
             node_momentum(system, now, w, end, r);
         }
@@ -61,6 +61,7 @@ fn node_momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, i
 }
 
 /// The same along one axis of all nodes between the ends of a beam with inertia that stands alone.
+#[inline(always)]
 fn inner_momentum<T: Scalar, const AXIS: usize>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (mesh, line) = (&system.mesh, &system.layout.lines[AXIS]);
     let nodes = line.free.start.max(1)..line.free.end.min(mesh.nodes - 1);
@@ -223,12 +224,12 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
     add_means(&forces.shear, &mut added, |at_node| &mut at_node.z);
     if system.mesh.fourth {
         let excess = |i: usize| w.shape.kappa[i] - fourth::elastic_curvature(system, now, w, i);
-        turn_excess(system, &w.shape.tangent, excess, &mut added);
+        wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     } else {
         let softness = 1.0 / system.model.section.bending_stiffness;
         let (kappa, moment) = (&w.shape.kappa[..added.len()], &forces.moment[..added.len()]);
         let excess = |i: usize| kappa[i] - moment[i] * softness;
-        turn_excess(system, &w.shape.tangent, excess, &mut added);
+        wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     }
     w.forces.formulation = added;
 }

@@ -5,7 +5,7 @@ use crate::case::schema::Effect;
 use crate::discrete::workspace::{Sections, Shape};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
-use crate::numerics::{Planar, Scalar};
+use crate::numerics::{Planar, Scalar, wide};
 
 /// `[E11]` Directors, stretch, tangent and curvature (A.1, A.2, A.19, A.20), curvature positive with the +x fibre in
 /// tension:
@@ -20,13 +20,12 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.cells;
     let shape = &mut w.shape;
-    lines(system, &w.motion.u, shape, |_, _, e, line| {
+    let strain = |_, _: &mut Sections<T>, e: Planar<T>, line: &Line<T>| {
         (e.x.squared() + e.z * (e.z + 2.0)) / (line.stretch + 1.0)
-    });
-    let tangent = &shape.tangent[..last];
-    for (kappa, pair) in shape.kappa[1..last].iter_mut().zip(tangent.windows(2)) {
-        *kappa = -pair[0].angle_to(pair[1]) * inverse;
-    }
+    };
+    wide!(lines(system, &w.motion.u, shape, strain));
+    let (tangent, kappa) = (&shape.tangent[..last], &mut shape.kappa);
+    wide!(curvatures(tangent, inverse, &mut kappa[1..last]));
     if let Some(slope) = now.ends[0].slope {
         let given = Planar::constant(Planar::tangent(slope.value));
         shape.kappa[0] = -given.angle_to(tangent[0]) * (2.0 * inverse);
@@ -34,6 +33,14 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     if let Some(slope) = now.ends[1].slope {
         let given = Planar::constant(Planar::tangent(slope.value));
         shape.kappa[last] = -tangent[last - 1].angle_to(given) * (2.0 * inverse);
+    }
+}
+
+/// `κ` between cells.
+#[inline(always)]
+fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: f64, kappa: &mut [T]) {
+    for (kappa, pair) in kappa.iter_mut().zip(tangent.windows(2)) {
+        *kappa = -pair[0].angle_to(pair[1]) * inverse;
     }
 }
 
@@ -238,9 +245,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     let (forces, shape) = (&mut w.forces, &w.shape);
     let (tangent, section_force) = (&shape.tangent[..cells], &mut forces.section[..cells]);
     let (normal, shear) = (&forces.normal[..cells], &forces.shear[..cells]);
-    for c in 0..cells {
-        section_force[c] = tangent[c].times(normal[c]) + tangent[c].normal().times(shear[c]);
-    }
+    wide!(turned(tangent, [normal, shear], section_force));
     if fourth::bends_its_cells(system) {
         for c in 0..cells {
             let share = fourth::arc(system, now, &shape.kappa, c);
@@ -266,6 +271,14 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     bodies::turning(system, now, w, add_couple);
     if system.model.effects.has(Effect::RotaryInertia) {
         rotary_inertia(system, w);
+    }
+}
+
+/// `N e_t + V e_n` of each cell.
+#[inline(always)]
+fn turned<T: Scalar>(tangent: &[Planar<T>], [normal, shear]: [&[T]; 2], force: &mut [Planar<T>]) {
+    for (((force, tangent), normal), shear) in force.iter_mut().zip(tangent).zip(normal).zip(shear) {
+        *force = tangent.times(*normal) + tangent.normal().times(*shear);
     }
 }
 

@@ -9,7 +9,7 @@ use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
 use crate::model::LumpedKind;
-use crate::numerics::{Planar, Scalar};
+use crate::numerics::{Planar, Scalar, wide};
 
 /// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
 ///
@@ -138,7 +138,8 @@ fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], mot
         let carried = k < 2 || l.inertia;
         let frames = frames.map(|frame| frame.filter(|_| carried));
         let alike = |frame: Frame| if frame.leans() { 0.0 } else { given(frame.at(0.0)) };
-        lay(own, &l.lines, from, frames.map(|frame| frame.map(alike)));
+        let shifts = frames.map(|frame| frame.map(alike));
+        wide!(lay(own, &l.lines, from, shifts));
         for (axis, frame) in frames.into_iter().enumerate() {
             if let Some(frame) = frame.filter(Frame::leans) {
                 let last = (own.len() - 1) as f64;
