@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::let_in::{self, Share};
+use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
 use crate::model::network::{AccumulatorLaw, CheckValve, FlowLaw, Link, LinkKind, Node};
 use crate::model::{Network, Storage, Wet};
@@ -131,12 +132,8 @@ pub struct FluidMesh {
     pub branches: usize,
     /// Links along which fluid flows; behind those of the network faces between cells.
     pub links: Vec<MeshLink>,
-    /// Those that are nothing but a resistance between two cells: number, cell that positive flow comes from, cell that it goes to.
-    pub between_cells: Vec<[u32; 3]>,
-    /// All others.
-    pub other_links: Vec<usize>,
-    /// Those with a valve that opens and shuts.
-    pub valves: Vec<usize>,
+    /// Which of them are what.
+    pub sorted: SortedLinks,
     /// Prescribed flows.
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
@@ -278,20 +275,6 @@ impl FluidMesh {
         }
         // in the order of their unknowns
         accumulators.sort_by_key(|one| one.junction);
-        let (mut between_cells, mut other_links) = (vec![], vec![]);
-        for (k, link) in links.iter().enumerate() {
-            match (link.from, link.to) {
-                (Place::Cell(from), Place::Cell(to)) if link.is_plain() => {
-                    between_cells.push([k, from, to].map(|number| number as u32));
-                }
-                _ => other_links.push(k),
-            }
-        }
-        let opens = |link: &MeshLink| {
-            link.number
-                .is_some_and(|number| network.links[number].opening.is_some())
-        };
-        let valves = (0..links.len()).filter(|&k| opens(&links[k])).collect();
         let mut mesh = Self {
             bladders,
             cells_per_bladder,
@@ -304,10 +287,8 @@ impl FluidMesh {
             flows: count,
             branches,
             adrift,
+            sorted: SortedLinks::new(&links, network),
             links,
-            between_cells,
-            other_links,
-            valves,
             sources: sources.collect(),
             bridges,
             accumulators,

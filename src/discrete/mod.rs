@@ -14,6 +14,7 @@ pub mod readings;
 pub mod residual;
 pub mod resolution;
 pub mod shapes;
+pub mod sorted_links;
 pub mod start;
 pub mod statics;
 pub mod straight;

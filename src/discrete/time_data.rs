@@ -365,7 +365,7 @@ impl TimeData {
                 self.resistance[k] = link.resistance;
             }
         }
-        for &k in &fluid.valves {
+        for &k in &fluid.sorted.valves {
             let link = &fluid.links[k];
             let valve = link
                 .number

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::thread;
 
-/// Numbers from which on two threads share a loop: a thread takes some 20 us to begin, which so many numbers take to come from memory.
+/// Numbers from which on two threads share a loop: a thread takes some 50 us to begin and end, in which so many numbers come from memory.
 pub const LARGE: usize = 1 << 17;
 
 /// Does both, at the same time where the machine can: what they give is the same.

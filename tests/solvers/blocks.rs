@@ -108,6 +108,24 @@ fn chains_and_rings_are_solved() {
     }
 }
 
+/// A line so long that two threads share it.
+///
+/// Goal: the solution of a known matrix, and the same one again. Tolerance: as above.
+#[test]
+fn a_long_line_is_solved_by_two_threads() {
+    let matrix = cells(50_000, 3, 1, false, 1.0);
+    let mut blocks = BlockTridiagonal::new(&matrix.pattern, usize::MAX).unwrap();
+    assert!(blocks.factor(&matrix.pattern, &matrix.values));
+    let error = matrix.error(|b| blocks.solve(b));
+    assert!(error < 1e-10, "{error:.1e}");
+    let mut solution = || {
+        let mut b: Vec<f64> = (0..matrix.pattern.columns()).map(|k| (k as f64).cos()).collect();
+        blocks.solve(&mut b);
+        b
+    };
+    assert_eq!(solution(), solution());
+}
+
 /// Factors do not remember the ones before: what was factored between leaves no trace, bit for bit.
 #[test]
 fn factors_have_no_past() {

@@ -191,7 +191,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         own.inflow[from] -= q;
         own.inflow[to] += q;
     }
-    for &[k, from, to] in &fluid.between_cells {
+    for &[k, from, to] in &fluid.sorted.between_cells {
         let [k, from, to] = [k, from, to].map(|number| number as usize);
         let drop = driven_by[from] - driven_by[to];
         // [E55], which Newton's iteration follows down to vacuum
@@ -203,7 +203,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
         own.inflow[from] -= q;
         own.inflow[to] += q;
     }
-    for &k in &fluid.other_links {
+    for &k in &fluid.sorted.others {
         let (link, conductance) = (&fluid.links[k], now.conductance[k]);
         let q = match (link.flow, &wet.compression) {
             (None, Some(compression)) if link.is_plain() => {

@@ -145,7 +145,7 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = &system.fluid else { return };
     let own = &system.layout.network;
-    for &k in &fluid.other_links {
+    for &k in &fluid.sorted.others {
         let link = &fluid.links[k];
         let Some(MeshFlow { number, branch, law }) = link.flow else {
             continue;

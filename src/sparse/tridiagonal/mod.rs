@@ -16,10 +16,14 @@ mod condense;
 mod dense;
 mod levels;
 mod plan;
+mod sweeps;
 
+use crate::numerics::threads::both;
 use crate::sparse::Pattern;
 use dense::{Add, Apart, Fused, padded};
 use plan::{Block, Plan};
+#[cfg(target_arch = "x86_64")]
+use sweeps::wide;
 
 /// Backward error up to which factors are taken for those of the matrix: Newton's iteration notices no sixth digit of its Jacobian.
 ///
@@ -120,6 +124,9 @@ impl BlockTridiagonal {
     /// Replaces `b` by the solution of `A x = b`. Panics when `b` has another length.
     pub fn solve(&mut self, b: &mut [f64]) {
         assert_eq!(b.len(), self.plan.condensed.by.len(), "right-hand side of another size");
+        if self.plan.apart {
+            return self.solve_apart(b);
+        }
         #[cfg(target_arch = "x86_64")]
         if wide() {
             // SAFETY: the processor has what the function is compiled for.
@@ -240,14 +247,51 @@ impl BlockTridiagonal {
 
     #[inline(always)]
     fn solve_by<A: Add>(&mut self, b: &mut [f64]) {
+        self.take(b);
+        let (plan, x, y) = (&self.plan, &mut self.x, &mut self.y);
+        let (blocks, onward, back) = (&plan.blocks[..], &self.onward[..], &self.back[..]);
+        sweeps::inwards::<A>(blocks, plan.steps.iter(), onward, [x, y], 0);
+        sweeps::apply::<A>(&blocks[plan.twist], onward, [x, y], 0);
+        sweeps::outwards::<A>(blocks, plan.steps.iter().rev(), back, y, 0);
+        self.give(b);
+    }
+
+    /// The same from both ends in two threads; to the same bits.
+    fn solve_apart(&mut self, b: &mut [f64]) {
+        self.take(b);
+        let (plan, x, y) = (&self.plan, &mut self.x, &mut self.y);
+        let (blocks, onward, back) = (&plan.blocks[..], &self.onward[..], &self.back[..]);
+        let twist = &blocks[plan.twist];
+        let beyond = twist.at + twist.rows;
+        let (left, right) = plan.steps.split_at(plan.twist);
+        // what the right gives to the twist waits for the left
+        let (right, last) = right.split_at(right.len().saturating_sub(1));
+        {
+            let (left_x, right_x) = x.split_at_mut(beyond);
+            let (left_y, right_y) = y.split_at_mut(beyond);
+            both(
+                || sweeps::to_the_twist(blocks, left, onward, [left_x, left_y], 0),
+                || sweeps::to_the_twist(blocks, right, onward, [right_x, right_y], beyond),
+            );
+        }
+        sweeps::to_the_twist(blocks, last, onward, [x, y], 0);
+        sweeps::at_the_twist(twist, onward, [x, y]);
+        sweeps::from_the_twist(blocks, last, back, y, 0);
+        let (left_y, right_y) = y.split_at_mut(beyond);
+        both(
+            || sweeps::from_the_twist(blocks, left, back, left_y, 0),
+            || sweeps::from_the_twist(blocks, right, back, right_y, beyond),
+        );
+        self.give(b);
+    }
+
+    /// Right-hand side, block by block.
+    #[inline(always)]
+    fn take(&mut self, b: &[f64]) {
         let Self {
             plan,
-            onward,
-            back,
             x,
-            y,
             per,
-            ratio,
             shifts,
             given,
             ..
@@ -265,15 +309,15 @@ impl BlockTridiagonal {
                 *x.get_unchecked_mut(*to as usize) += shift * given.get_unchecked(*pair as usize);
             }
         }
-        let blocks = &plan.blocks[..];
-        for step in &plan.steps {
-            forward::<A>(blocks, *step, onward, x, y);
-        }
-        apply::<A>(&blocks[plan.twist], onward, x, y);
-        for step in plan.steps.iter().rev() {
-            backward::<A>(blocks, *step, back, y);
-        }
-        // SAFETY: as above.
+    }
+
+    /// The solution, and what follows from it.
+    #[inline(always)]
+    fn give(&self, b: &mut [f64]) {
+        let Self {
+            plan, y, ratio, given, ..
+        } = self;
+        // SAFETY: as in [`Self::take`].
         unsafe {
             for kept in &plan.kept {
                 *b.get_unchecked_mut(kept.unknown as usize) = *y.get_unchecked(kept.at as usize);
@@ -314,46 +358,4 @@ impl BlockTridiagonal {
         (self.room.solution, self.room.left, self.room.size) = (solution, left, size);
         holds
     }
-}
-
-/// `y = D⁻¹ b` of a block.
-#[inline(always)]
-fn apply<A: Add>(block: &Block, onward: &[f64], b: &[f64], y: &mut [f64]) {
-    let inverse = &onward[block.numbers[0]..][..block.rows * block.size];
-    let own = &mut y[block.at..][..block.rows];
-    dense::multiply::<A, false>(inverse, &b[block.at..][..block.size], own);
-}
-
-/// The same, and what it takes off the next block.
-#[inline(always)]
-fn forward<A: Add>(blocks: &[Block], [i, next]: [u32; 2], onward: &[f64], b: &mut [f64], y: &mut [f64]) {
-    let block = &blocks[i as usize];
-    apply::<A>(block, onward, b, y);
-    let (mine, theirs) = (&block.mine, &block.theirs);
-    let rows = padded(theirs.len());
-    let away = &onward[block.numbers[0] + block.rows * block.size..][..rows * mine.len()];
-    let to = &mut b[blocks[next as usize].at + theirs.start..][..rows];
-    dense::multiply::<A, true>(away, &y[block.at + mine.start..][..mine.len()], to);
-}
-
-/// Takes off a block what the next one tells.
-#[inline(always)]
-fn backward<A: Add>(blocks: &[Block], [i, next]: [u32; 2], back: &[f64], y: &mut [f64]) {
-    let (block, next) = (&blocks[i as usize], &blocks[next as usize]);
-    let theirs = block.theirs.len();
-    let numbers = &back[block.numbers[1]..][..block.rows * theirs];
-    // blocks do not overlap
-    let (low, high) = y.split_at_mut(block.at.max(next.at));
-    let (own, known) = if block.at < next.at {
-        (&mut low[block.at..], &high[block.theirs.start..])
-    } else {
-        (high, &low[next.at + block.theirs.start..])
-    };
-    dense::multiply::<A, true>(numbers, &known[..theirs], &mut own[..block.rows]);
-}
-
-/// Whether the processor has the instructions of x86-64-v3 that are used here; asked for once.
-#[cfg(target_arch = "x86_64")]
-fn wide() -> bool {
-    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
 }

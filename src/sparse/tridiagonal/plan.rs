@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::condense::Condensed;
 use super::dense::{LANES, padded, place};
 use super::levels::Graph;
+use crate::numerics::threads::LARGE;
 use crate::sparse::{Pattern, groups::groups};
 
 /// Unknowns up to which neighbouring levels become one block.
@@ -60,8 +61,11 @@ pub(super) struct Plan {
     pub twist: usize,
     /// Unknowns with their filling.
     pub places: usize,
-    /// Every block but the twist with its next one, in the order of elimination: from both ends in turns, so that neither waits for its neighbour.
+    /// Every block but the twist with its next one, in the order of elimination: from both ends in turns, so that neither waits for its neighbour, or where
+    /// two threads share them those from the left first.
     pub steps: Vec<[u32; 2]>,
+    /// Whether two threads share them.
+    pub apart: bool,
     /// All numbers of the factors, in the order in which they are read: on the way to the twist, and back.
     pub numbers: [usize; 2],
     pub kept: Vec<Kept>,
@@ -135,7 +139,12 @@ impl Plan {
             };
             at += blocks[j].rows;
         }
-        let steps = steps(blocks.len(), twist);
+        let apart = at >= LARGE / 2;
+        let steps = if apart {
+            left_first(blocks.len(), twist)
+        } else {
+            steps(blocks.len(), twist)
+        };
         let mut numbers = [0, 0];
         for &[j, inner] in &steps {
             let side = usize::from(inner as usize == twist && j > inner);
@@ -169,6 +178,7 @@ impl Plan {
             twist,
             places: at,
             steps,
+            apart,
             numbers,
             sources: vec![],
             folded: vec![],
@@ -300,6 +310,13 @@ fn steps(blocks: usize, twist: usize) -> Vec<[u32; 2]> {
         }
     }
     steps
+}
+
+/// The same, one end after the other.
+fn left_first(blocks: usize, twist: usize) -> Vec<[u32; 2]> {
+    let left = (0..twist as u32).map(|j| [j, j + 1]);
+    let right = (twist as u32 + 1..blocks as u32).rev().map(|j| [j, j - 1]);
+    left.chain(right).collect()
 }
 
 /// The level before and after which there is the same work.

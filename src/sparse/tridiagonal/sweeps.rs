@@ -1,0 +1,109 @@
+//! From the ends to the twist and back, of vectors that begin at the place `first`.
+
+use super::dense::{self, Add, Apart, Fused, padded};
+use super::plan::Block;
+
+/// Right-hand side and what the blocks make of it.
+type Vectors<'a> = [&'a mut [f64]; 2];
+
+/// `y = D⁻¹ b` of a block.
+#[inline(always)]
+pub(super) fn apply<A: Add>(block: &Block, onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
+    let inverse = &onward[block.numbers[0]..][..block.rows * block.size];
+    let at = block.at - first;
+    dense::multiply::<A, false>(inverse, &b[at..][..block.size], &mut y[at..][..block.rows]);
+}
+
+/// The same of blocks in this order, and what each takes off the next one.
+#[inline(always)]
+pub(super) fn inwards<'s, A: Add>(
+    blocks: &[Block],
+    steps: impl Iterator<Item = &'s [u32; 2]>,
+    onward: &[f64],
+    [b, y]: Vectors<'_>,
+    first: usize,
+) {
+    for &[i, next] in steps {
+        let block = &blocks[i as usize];
+        apply::<A>(block, onward, [b, y], first);
+        let (mine, theirs) = (&block.mine, &block.theirs);
+        let rows = padded(theirs.len());
+        let away = &onward[block.numbers[0] + block.rows * block.size..][..rows * mine.len()];
+        let to = &mut b[blocks[next as usize].at - first + theirs.start..][..rows];
+        let own = &y[block.at - first + mine.start..][..mine.len()];
+        dense::multiply::<A, true>(away, own, to);
+    }
+}
+
+/// Takes off blocks, in this order, what each one's next one tells.
+#[inline(always)]
+pub(super) fn outwards<'s, A: Add>(
+    blocks: &[Block],
+    steps: impl Iterator<Item = &'s [u32; 2]>,
+    back: &[f64],
+    y: &mut [f64],
+    first: usize,
+) {
+    for &[i, next] in steps {
+        let (block, next) = (&blocks[i as usize], &blocks[next as usize]);
+        let theirs = block.theirs.len();
+        let numbers = &back[block.numbers[1]..][..block.rows * theirs];
+        let (at, there) = (block.at - first, next.at - first);
+        // blocks do not overlap
+        let (low, high) = y.split_at_mut(at.max(there));
+        let (own, known) = if at < there {
+            (&mut low[at..], &high[block.theirs.start..])
+        } else {
+            (high, &low[there + block.theirs.start..])
+        };
+        dense::multiply::<A, true>(numbers, &known[..theirs], &mut own[..block.rows]);
+    }
+}
+
+/// [`inwards`] in vectors as wide as the processor has.
+pub(super) fn to_the_twist(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if wide() {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
+            inwards::<Fused>(blocks, steps.iter(), onward, [b, y], first);
+        }
+        // SAFETY: the processor has what the function is compiled for.
+        return unsafe { fused(blocks, steps, onward, [b, y], first) };
+    }
+    inwards::<Apart>(blocks, steps.iter(), onward, [b, y], first);
+}
+
+/// [`apply`] likewise.
+pub(super) fn at_the_twist(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
+    #[cfg(target_arch = "x86_64")]
+    if wide() {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
+            apply::<Fused>(block, onward, [b, y], 0);
+        }
+        // SAFETY: the processor has what the function is compiled for.
+        return unsafe { fused(block, onward, [b, y]) };
+    }
+    apply::<Apart>(block, onward, [b, y], 0);
+}
+
+/// [`outwards`] likewise, against the order of the steps.
+pub(super) fn from_the_twist(blocks: &[Block], steps: &[[u32; 2]], back: &[f64], y: &mut [f64], first: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if wide() {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(blocks: &[Block], steps: &[[u32; 2]], back: &[f64], y: &mut [f64], first: usize) {
+            outwards::<Fused>(blocks, steps.iter().rev(), back, y, first);
+        }
+        // SAFETY: the processor has what the function is compiled for.
+        return unsafe { fused(blocks, steps, back, y, first) };
+    }
+    outwards::<Apart>(blocks, steps.iter().rev(), back, y, first);
+}
+
+/// Whether the processor has the instructions of x86-64-v3 that are used here; asked for once.
+#[cfg(target_arch = "x86_64")]
+pub(super) fn wide() -> bool {
+    std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+}
