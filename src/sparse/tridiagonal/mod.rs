@@ -322,7 +322,7 @@ impl BlockTridiagonal {
             for kept in &plan.kept {
                 *b.get_unchecked_mut(kept.unknown as usize) = *y.get_unchecked(kept.at as usize);
             }
-            for ((pair, given), ratio) in plan.condensed.pairs.iter().zip(&*given).zip(&*ratio) {
+            for ((pair, given), ratio) in plan.condensed.pairs.iter().zip(given).zip(ratio) {
                 *b.get_unchecked_mut(pair.given.0 as usize) = given + ratio * b.get_unchecked(pair.kept.0 as usize);
             }
         }
