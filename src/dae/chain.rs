@@ -115,7 +115,7 @@ impl Chain {
         stand(places.moments, &on.moments, &|_| own.mean_moment.is_empty());
         stand(places.forces, &on.forces, &|_| own.mean_force.is_empty());
         stand(places.strains, &on.strains, &|_| false);
-        let (colour, count) = colour::colours(&Pattern::from_columns(&columns), LANES);
+        let (colour, count) = colour::colours(&Pattern::from_columns(&columns));
         let mut chain = Self {
             sweeps: vec![Sweep::default(); count.div_ceil(LANES)],
             products: vec![],

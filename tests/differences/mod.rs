@@ -26,7 +26,7 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
     let mut exact = vec![0.0; pattern.entries()];
     dae.jacobian(t, &y, &yp, Seeds::Step { cj }, &mut exact).unwrap();
     factors_hold(&pattern, &exact);
-    let (colour, count) = colour::colours(&pattern, 1);
+    let (colour, count) = colour::colours(&pattern);
     // Fourth-order differences: the step balances round-off 1e-16/h against h^4 over the kink's width.
     let mut differenced = vec![0.0; pattern.entries()];
     let mut residual = vec![vec![0.0; n]; 4];
