@@ -49,9 +49,7 @@ impl<T: crate::numerics::Scalar> Buffers<T> {
 impl Buffers<f64> {
     /// Evaluates a scaled state whose rates do not matter: its place and its velocities.
     pub(super) fn take_up(&mut self, system: &System, now: &TimeData, state: &[f64]) {
-        for ((y, state), scale) in self.y.iter_mut().zip(state).zip(&system.layout.scales) {
-            *y = state * scale;
-        }
+        kernels::products(state, &system.layout.scales, &mut self.y);
         self.yp.fill(0.0);
         residual::evaluate(system, now, &self.y, &self.yp, &mut self.workspace);
     }

@@ -18,19 +18,20 @@ pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (_, v) in terms {
         assert_eq!(v.len(), out.len(), "a vector of another system");
     }
+    halves(out, |first, part| wide!(combine_tiles(first, part, terms)));
+}
+
+/// Does a loop for all entries, where there are many in two threads for a half each; told how many stand before those it is given.
+fn halves(out: &mut [f64], each: impl Fn(usize, &mut [f64]) + Sync) {
     if out.len() < LARGE {
-        return combine_from(0, out, terms);
+        return each(0, out);
     }
     let half = halfway(out.len());
     let (left, right) = out.split_at_mut(half);
-    both(|| combine_from(0, left, terms), || combine_from(half, right, terms));
+    both(|| each(0, left), || each(half, right));
 }
 
 /// `out` begins at so many entries of the vectors.
-fn combine_from(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
-    wide!(combine_tiles(first, out, terms));
-}
-
 #[inline(always)]
 fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (k, tile) in out.chunks_mut(TILE).enumerate() {
@@ -60,39 +61,20 @@ fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
 
 /// `outᵢ = xᵢ yᵢ` of vectors of one length.
 pub fn products(x: &[f64], y: &[f64], out: &mut [f64]) {
-    if out.len() >= LARGE {
-        let half = halfway(out.len());
-        let (left, right) = out.split_at_mut(half);
-        both(
-            || products_of(&x[..half], &y[..half], left),
-            || products_of(&x[half..], &y[half..], right),
-        );
-    } else {
-        products_of(x, y, out);
-    }
-}
-
-fn products_of(x: &[f64], y: &[f64], out: &mut [f64]) {
-    wide!({
-        for ((out, x), y) in out.iter_mut().zip(x).zip(y) {
-            *out = x * y;
-        }
+    halves(out, |first, out| {
+        wide!({
+            for ((out, x), y) in out.iter_mut().zip(&x[first..]).zip(&y[first..]) {
+                *out = x * y;
+            }
+        });
     });
 }
 
 /// `xᵢ ← xᵢ yᵢ` of vectors of one length.
 pub fn multiply(x: &mut [f64], y: &[f64]) {
-    if x.len() >= LARGE {
-        let half = halfway(x.len());
-        let (left, right) = x.split_at_mut(half);
-        both(|| multiply_by(left, &y[..half]), || multiply_by(right, &y[half..]));
-    } else {
-        multiply_by(x, y);
-    }
-}
-
-fn multiply_by(x: &mut [f64], y: &[f64]) {
-    wide!(x.iter_mut().zip(y).for_each(|(x, y)| *x *= y));
+    halves(x, |first, x| {
+        wide!(x.iter_mut().zip(&y[first..]).for_each(|(x, y)| *x *= y));
+    });
 }
 
 /// Partial sums kept side by side: two registers of four doubles, or four of two.

@@ -180,15 +180,10 @@ fn values_of(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f
     }
 }
 
-/// The same, in wide vectors.
-pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, out: [&mut [f64]; 2]) {
-    wide!(values_of(x, base, mask, step, out));
-}
-
-/// The same, shared by two threads where there is much of it.
-fn values_shared(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
+/// The same, in wide vectors, and shared by two threads where there is much of it.
+pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
     if x.len() < LARGE {
-        return values(x, base, mask, step, [y, yp]);
+        return wide!(values_of(x, base, mask, step, [y, yp]));
     }
     let half = kernels::halfway(x.len());
     let ((left_y, right_y), (left_yp, right_yp)) = (y.split_at_mut(half), yp.split_at_mut(half));
@@ -324,7 +319,7 @@ impl<D: Dae> OneStep<D> {
     fn take_up(&mut self, i: usize) {
         let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
         let step = *h * self.tableau.gamma();
-        values_shared(&x[i], &w.base, &self.mask, step, [&mut y[i], &mut w.yp]);
+        values(&x[i], &w.base, &self.mask, step, [&mut y[i], &mut w.yp]);
     }
 
     /// Corrects these by a solution times a factor; returns the norm of the correction.

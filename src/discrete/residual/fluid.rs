@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
-use crate::model::{Closing, Compression, Storage, Wet};
+use crate::model::{Compression, Storage, Wet};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
@@ -121,7 +121,7 @@ fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, impos
 fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
     match &wet.closing {
         None => fluid,
-        Some(closing) => fluid + of_closing(closing, area),
+        Some(closing) => fluid + closing.pressure(area),
     }
 }
 
@@ -130,14 +130,8 @@ fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
 fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
     match &wet.closing {
         None => in_walls,
-        Some(closing) => in_walls - of_closing(closing, area),
+        Some(closing) => in_walls - closing.pressure(area),
     }
-}
-
-/// Pressure of walls that touch, [E71].
-#[inline(never)]
-fn of_closing<T: Scalar>(closing: &Closing, area: T) -> T {
-    closing.pressure(area)
 }
 
 /// Stretch and curvature of each segment due to pressure, `[E3]`.

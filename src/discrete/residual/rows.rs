@@ -120,7 +120,8 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
             r[rows.start + first] += w.fluid.junction_inflow[junction];
         }
     }
-    for link in &fluid.links {
+    for &k in &fluid.sorted.others {
+        let link = &fluid.links[k];
         let Some(flow) = link.flow else { continue };
         for (place, sign) in [(link.from, -delay), (link.to, delay)] {
             if let Place::Junction(j) = place
