@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 79] = [
+const INDEX: [(&str, &str, &str); 80] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -237,6 +237,7 @@ const INDEX: [(&str, &str, &str); 79] = [
     ("[E77]", "tests/modes/fourth.rs", "frequencies_are_of_fourth_order"),
     ("[E78]", "tests/modes/fourth.rs", "frequencies_are_of_fourth_order"),
     ("[E79]", "tests/modes/fourth.rs", "tension_is_of_fourth_order"),
+    ("[E80]", "tests/solvers/corotation.rs", "a_matrix_turns_with_the_beam"),
 ];
 
 #[test]

@@ -1,11 +1,13 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::chain::{self, Chain, LANES};
+use super::corotation;
 use super::trace::Dependence;
-use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds};
+use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
 use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
-use crate::numerics::{Dual, kernels};
+use crate::model::Kinematics;
+use crate::numerics::{Dual, Planar, kernels, wide};
 
 /// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
 #[derive(Clone, Debug)]
@@ -225,6 +227,45 @@ impl Dae for BeamDae {
 
     fn approach(&mut self, cj: f64) {
         self.now.cj = cj;
+    }
+
+    /// Of displacements and, where both are unknowns, velocities.
+    fn vectors(&self) -> Vec<Vectors> {
+        let l = &self.system.layout;
+        if self.system.model.kinematics != Kinematics::FiniteRotation {
+            return vec![];
+        }
+        let blocks = match l.lines.each_ref().map(|line| (line.u.start, line.v.as_ref())) {
+            [(across, None), (along, None)] => vec![[across, along]],
+            [(across, Some(rates_across)), (along, Some(rates_along))] => {
+                vec![[across, along], [rates_across.start, rates_along.start]]
+            }
+            _ => return vec![], // inertia across alone does not turn
+        };
+        let [across, along] = l.lines.each_ref().map(|line| line.free.clone());
+        let both = across.start.max(along.start)..across.end.min(along.end);
+        let vectors = blocks.into_iter().filter(|_| !both.is_empty()).map(|[x, z]| {
+            let (x, z) = (x + both.start - across.start, z + both.start - along.start);
+            Vectors {
+                across: x..x + both.len(),
+                along: z..z + both.len(),
+                node: both.start,
+                size: l.scales[z] / l.scales[x],
+                row_size: l.row_scales[z] / l.row_scales[x],
+            }
+        });
+        vectors.collect()
+    }
+
+    /// In the middle between those of the cells beside a node.
+    fn directions(&self, out: &mut [Planar<f64>]) {
+        let cells = &self.plain.workspace.shape.tangent;
+        let last = cells.len();
+        out[0] = cells[0];
+        wide!(corotation::midway(cells, &mut out[1..]));
+        if out.len() > last {
+            out[last] = cells[last - 1];
+        }
     }
 
     fn jacobian(

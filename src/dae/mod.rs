@@ -3,15 +3,18 @@
 pub mod beam;
 mod between;
 mod chain;
+mod corotation;
 mod jumps;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;
 
 pub use beam::BeamDae;
+pub use corotation::{Corotation, Vectors};
 pub use perturbed::PerturbedSystems;
 pub use statics::StaticBeam;
 
+use crate::numerics::Planar;
 use crate::sparse::Pattern;
 
 /// Why an evaluation could not be done.
@@ -67,6 +70,14 @@ pub trait Dae {
     /// Tells `c_j` of the implicit step for which residuals and Jacobians are asked for from now on: the rate of an unknown moves by so
     /// much with it. Equations may be written so that they are nearly linear along such a step; their roots are the same.
     fn approach(&mut self, _cj: f64) {}
+
+    /// Unknowns that turn with the beam; none where nothing turns, or not so that its forces would turn with it.
+    fn vectors(&self) -> Vec<Vectors> {
+        vec![]
+    }
+
+    /// Unit vectors along the beam at the first nodes, in the state in which [`Dae::residual`] was evaluated last.
+    fn directions(&self, _out: &mut [Planar<f64>]) {}
 
     /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
     fn integrals(&self) -> usize {

@@ -7,7 +7,7 @@ use super::matrix::Matrix;
 use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::Tableau;
-use crate::dae::Dae;
+use crate::dae::{Corotation, Dae};
 use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
 use crate::numerics::kernels;
 use crate::sparse::Lu;
@@ -60,7 +60,7 @@ impl<D: Dae> OneStep<D> {
             mask: differential.iter().map(|&d| f64::from(u8::from(d))).collect(),
             algebraic: (0..n).filter(|&i| !differential[i]).collect(),
             absolute: options.absolute.each(n),
-            matrix: Matrix::new(lu),
+            matrix: Matrix::new(lu, Corotation::new(&dae)),
             now: Stages::new(tableau.stages, n),
             last: Stages::new(tableau.stages, n),
             work: Work::new(n),

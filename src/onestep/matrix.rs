@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::equations::{Equations, StageError};
-use crate::dae::Dae;
+use crate::dae::{Corotation, Dae};
 use crate::sparse::{KluError, Lu};
 
 /// Contraction that is assumed before one is measured: corrections are then taken for what is left.
@@ -14,6 +14,8 @@ const SLOW: f64 = 0.1;
 /// The factors and what is known of them.
 pub(super) struct Matrix {
     pub lu: Lu,
+    /// How the beam has turned since.
+    pub corotation: Corotation,
     values: Vec<f64>,
     /// `cj` of the factors; 0 without factors.
     cj: f64,
@@ -31,10 +33,11 @@ pub(super) struct Matrix {
 }
 
 impl Matrix {
-    pub fn new(lu: Lu) -> Self {
+    pub fn new(lu: Lu, corotation: Corotation) -> Self {
         Self {
             values: vec![0.0; lu.entries()],
             lu,
+            corotation,
             cj: 0.0,
             rate: UNKNOWN_RATE,
             stale: true,
@@ -80,6 +83,7 @@ impl Matrix {
         equations.jacobian(t, y, yp, cj, &mut self.values)?;
         let begin = Instant::now();
         let factored = self.lu.factor(&self.values);
+        self.corotation.renew();
         self.wall += begin.elapsed();
         match factored {
             Ok(()) => {
@@ -100,7 +104,9 @@ impl Matrix {
     /// `2 / (1 + cj/cj_old)` halves the error at both ends of the spectrum (IDA's choice).
     pub fn solve(&mut self, b: &mut [f64], cj: f64) -> f64 {
         let begin = Instant::now();
+        self.corotation.back(b);
         self.lu.solve(b);
+        self.corotation.forth(b);
         self.solves += 1;
         self.wall += begin.elapsed();
         2.0 / (1.0 + cj / self.cj)

@@ -285,6 +285,9 @@ impl<D: Dae> OneStep<D> {
             self.newton_iterations += 1;
             self.equations
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
+            if iteration == 0 {
+                self.matrix.corotation.look(&self.equations.dae);
+            }
             let factor = -self.matrix.solve(&mut self.work.r, cj);
             let size = self.correct(i, [factor, cj]);
             if !size.is_finite() {

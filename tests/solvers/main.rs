@@ -2,6 +2,9 @@
 
 mod blocks;
 mod bounds;
+#[path = "../common/chance.rs"]
+mod chance;
+mod corotation;
 mod numerics;
 mod onestep;
 mod problems;

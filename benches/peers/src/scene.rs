@@ -1,10 +1,11 @@
 //! What all solve: the beam without its ledger, its start, and what is read off.
 
 use slcbeam::case::{self, Case};
-use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds};
+use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds, Vectors};
 use slcbeam::discrete::{System, start};
 use slcbeam::integrate::start::{StartOptions, consistent_start};
 use slcbeam::model::AreaLaw;
+use slcbeam::numerics::Planar;
 use slcbeam::run::strides::Strides;
 use slcbeam::sparse::Pattern;
 
@@ -35,6 +36,12 @@ impl Dae for Bare {
     ) -> Result<(), EvaluationError> {
         self.0.enter_smooth_interval(t);
         self.0.jacobian(t, y, yp, seeds, values)
+    }
+    fn vectors(&self) -> Vec<Vectors> {
+        self.0.vectors()
+    }
+    fn directions(&self, out: &mut [Planar<f64>]) {
+        self.0.directions(out);
     }
     fn name(&self, unknown: usize) -> String {
         self.0.name(unknown)
