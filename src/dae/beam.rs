@@ -250,6 +250,7 @@ impl Dae for BeamDae {
                 across: x..x + both.len(),
                 along: z..z + both.len(),
                 node: both.start,
+                free: both.len() == self.system.mesh.nodes,
                 size: l.scales[z] / l.scales[x],
                 row_size: l.row_scales[z] / l.row_scales[x],
             }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::Dae;
 use crate::numerics::{Planar, wide};
 
-/// Sines of angles that change nothing.
-const NOTHING: f64 = 1e-4;
+/// Sines of angles from which on a matrix is turned: scenes in which nothing turns as far are spared the work, and turn no fewer matrices for it.
+const LITTLE: f64 = 1e-2;
 
 /// Unknowns that are vectors in the plane, one a node; their equations are vectors likewise.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Vectors {
     pub along: Range<usize>,
     /// Node of the first.
     pub node: usize,
+    /// Whether no node is held, so that momentum is kept: only where all turn alike do iterations keep it exactly.
+    pub free: bool,
     /// Size of an unknown along, over that of one across.
     pub size: f64,
     /// Size of an equation along, over that of one across.
@@ -36,6 +38,8 @@ pub struct Vectors {
 #[derive(Clone, Debug)]
 pub struct Corotation {
     vectors: Vec<Vectors>,
+    /// Whether all nodes turn by one angle.
+    as_one: bool,
     /// Directions of nodes where the matrix was made.
     made: Vec<Planar<f64>>,
     /// And where it is used.
@@ -55,6 +59,7 @@ impl Corotation {
         let nodes = vectors.iter().map(|v| v.node + v.across.len()).max().unwrap_or(0);
         let straight = vec![Planar::new(0.0, 1.0); nodes];
         Self {
+            as_one: vectors.iter().any(|v| v.free),
             vectors,
             made: straight.clone(),
             now: straight,
@@ -75,6 +80,10 @@ impl Corotation {
             return;
         }
         dae.directions(&mut self.now);
+        if self.as_one {
+            let all = self.now.iter().fold(Planar::zero(), |sum, &one| sum + one);
+            self.now.fill(all * (1.0 / all.squared().sqrt()));
+        }
         if std::mem::take(&mut self.renewed) {
             self.made.copy_from_slice(&self.now);
             self.turned = false;
@@ -82,7 +91,12 @@ impl Corotation {
         }
         let [cos, sin] = &mut self.turn;
         wide!(angles(&self.made, &self.now, cos, sin));
-        self.turned = sin.iter().zip(cos).any(|(sin, cos)| sin.abs() > NOTHING || *cos < 0.0);
+        self.turned = sin.iter().zip(cos).any(|(sin, cos)| sin.abs() > LITTLE || *cos < 0.0);
+    }
+
+    /// Whether the matrix is turned.
+    pub fn turned(&self) -> bool {
+        self.turned
     }
 
     /// `r ← Qᵀ r`, of a residual.

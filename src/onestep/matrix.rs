@@ -119,6 +119,16 @@ impl Matrix {
         self.slow |= rate > SLOW && !settled;
     }
 
+    /// Contraction to be reckoned with, measured in the present iteration or before; one that was measured before does not hold for a beam that has turned
+    /// since: what else has changed is not known.
+    pub fn rate_of(&self, measured: bool) -> f64 {
+        if measured || !self.corotation.turned() {
+            self.rate
+        } else {
+            UNKNOWN_RATE
+        }
+    }
+
     /// Trust in an old measurement fades (Hairer & Wanner IV.8).
     pub fn trust_less(&mut self) {
         self.rate = self.rate.max(1e-12).powf(0.8).min(UNKNOWN_RATE);

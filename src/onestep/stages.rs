@@ -306,7 +306,7 @@ impl<D: Dae> OneStep<D> {
                     return Err(StageError::Newton);
                 }
             }
-            let rate = self.matrix.rate;
+            let rate = self.matrix.rate_of(before.is_some());
             if rate / (1.0 - rate) * size <= tolerance {
                 if before.is_none() {
                     self.matrix.trust_less();

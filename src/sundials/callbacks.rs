@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use sundials_sys as s;
 use sundials_sys::{N_Vector, SUNMatrix};
 
-use super::linear_solver::{LinearSystem, system_of};
+use super::linear_solver::system_of;
 use super::sensitivities::Slopes;
 use super::vector::{entries, entries_mut};
 use crate::dae::{Dae, EvaluationError, Seeds};
@@ -49,8 +49,6 @@ pub(super) struct Bridge<D> {
     pub integrand_wall: Duration,
     /// Memory of IDA, to be asked for `c_j` of the step that it tries; null without.
     pub ida: *mut c_void,
-    /// The linear system, which turns with the beam; null where it does not.
-    pub system: *mut LinearSystem,
     /// Derivatives of the residual by parameters, at the state of the last step.
     pub slopes: Slopes,
 }
@@ -70,7 +68,6 @@ impl<D: Dae> Bridge<D> {
             jacobian_wall: Duration::ZERO,
             integrand_wall: Duration::ZERO,
             ida: std::ptr::null_mut(),
-            system: std::ptr::null_mut(),
             slopes: Slopes::default(),
         }
     }
@@ -125,13 +122,8 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
     if !bridge.ida.is_null() && unsafe { s::IDAGetCurrentCj(bridge.ida, &raw mut cj) } == s::IDA_SUCCESS {
         bridge.dae.approach(cj);
     }
-    // SAFETY: null, or a linear system that lives as long as the bridge, and which nothing borrows while C evaluates a residual.
-    let system = unsafe { bridge.system.as_mut() };
     let code = bridge.call(|dae| {
         dae.residual(t, y, yp, out)?;
-        if let Some(system) = system {
-            system.corotation.look(dae);
-        }
         match kernels::first_not_finite(out) {
             None => Ok(()),
             Some(i) => Err(EvaluationError::Recoverable(format!(
@@ -166,9 +158,6 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
     let begin = Instant::now();
     let code = bridge.call(|dae| {
         dae.jacobian(t, y, yp, Seeds::Step { cj }, &mut system.values)?;
-        // the residual was evaluated at this state just before
-        system.corotation.renew();
-        system.corotation.look(dae);
         match kernels::first_not_finite(&system.values) {
             None => Ok(()),
             Some(entry) => Err(EvaluationError::Recoverable(not_finite(dae, entry, t))),

@@ -14,7 +14,7 @@ use super::sensitivities::Carried;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::case::schema::Method;
-use crate::dae::{Corotation, Dae};
+use crate::dae::Dae;
 use crate::integrate::IntegrationError;
 use crate::integrate::request;
 use crate::integrate::{Counters, Wall};
@@ -84,13 +84,13 @@ impl<D: Dae> Ida<D> {
         } else {
             Some(vector(&vec![0.0; integrals])?)
         };
-        let solver = LinearSolver::new(lu, Corotation::new(&dae), context.raw()).map_err(refuse)?;
+        let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let mut bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::IDACreate(context.raw()) };
         let memory = Memory(raw);
-        (bridge.get_mut().ida, bridge.get_mut().system) = (raw, solver.system_pointer());
+        bridge.get_mut().ida = raw;
         if raw.is_null() {
             return Err(refuse("no memory for the integrator".to_owned()));
         }

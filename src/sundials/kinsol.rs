@@ -11,7 +11,7 @@ use super::context::{Context, Messages, keep};
 use super::linear_solver::{LinearSolver, system_of};
 use super::shared::Shared;
 use super::vector::{Vector, entries, entries_mut};
-use crate::dae::{Corotation, Dae, EvaluationError, Seeds};
+use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::integrate::request;
 use crate::numerics::kernels;
@@ -136,7 +136,7 @@ impl<D: Dae> Kinsol<D> {
         let context = Context::new().map_err(refuse)?;
         let y = Vector::new(&zeros, context.raw()).map_err(refuse)?;
         let ones = Vector::new(&vec![1.0; n], context.raw()).map_err(refuse)?;
-        let solver = LinearSolver::new(lu, Corotation::new(&dae), context.raw()).map_err(refuse)?;
+        let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let fixed = Shared::new(Fixed {
             bridge: Bridge::new(dae, 0.0, vec![]),
             t: 0.0,

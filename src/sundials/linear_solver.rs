@@ -13,7 +13,6 @@ use sundials_sys::{N_Vector, SUNContext, SUNLinearSolver, SUNMatrix};
 
 use super::shared::Shared;
 use super::vector::{entries, entries_mut};
-use crate::dae::Corotation;
 use crate::numerics::kernels;
 use crate::sparse::{KluError, Lu};
 
@@ -23,8 +22,6 @@ pub(super) struct LinearSystem {
     pub values: Vec<f64>,
     /// Factors.
     pub lu: Lu,
-    /// How the beam has turned since they were made.
-    pub corotation: Corotation,
     /// Column of the last matrix that was singular; cleared by the next that is not.
     pub singular: Option<usize>,
     /// Linear solves.
@@ -44,11 +41,10 @@ pub(super) struct LinearSolver {
 
 impl LinearSolver {
     /// Solver of systems with the pattern that `lu` was made for.
-    pub fn new(lu: Lu, corotation: Corotation, context: SUNContext) -> Result<Self, String> {
+    pub fn new(lu: Lu, context: SUNContext) -> Result<Self, String> {
         let system = Shared::new(LinearSystem {
             values: vec![0.0; lu.entries()],
             lu,
-            corotation,
             singular: None,
             solves: 0,
             wall: Duration::ZERO,
@@ -87,11 +83,6 @@ impl LinearSolver {
     /// For C.
     pub fn matrix(&self) -> SUNMatrix {
         self.matrix
-    }
-
-    /// For C's callbacks.
-    pub fn system_pointer(&self) -> *mut LinearSystem {
-        self.system.pointer()
     }
 
     /// The system.
@@ -164,14 +155,8 @@ unsafe extern "C" fn solve(solver: SUNLinearSolver, _: SUNMatrix, x: N_Vector, b
     let solve = |system: &mut LinearSystem| {
         system.solves += 1;
         x.copy_from_slice(b);
-        system.corotation.back(x);
-        let solved = system.lu.solve(x);
-        system.corotation.forth(x);
-        if solved && kernels::all_finite(x) {
-            0
-        } else {
-            s::SUNLS_PACKAGE_FAIL_REC as c_int
-        }
+        let done = system.lu.solve(x) && kernels::all_finite(x);
+        if done { 0 } else { s::SUNLS_PACKAGE_FAIL_REC as c_int }
     };
     // SAFETY: SUNDIALS passes the solver of `LinearSolver::new`.
     unsafe { with_system(solver, solve) }

@@ -23,7 +23,8 @@ pub struct IdaOptions {
     pub max_newton_failures: u16,
     /// Newton iterations allowed in one solve; IDA's own is 4.
     pub max_newton_iterations: u16,
-    /// Error-test failures allowed in one step; IDA's own is 10.
+    /// Error-test failures allowed in one step; IDA's own is 10. Each but the first makes it a quarter, and a first step may have to become that of algebraic
+    /// unknowns which move and have no rates yet.
     pub max_error_test_failures: u16,
     /// Leaves algebraic unknowns out of the error test.
     ///
@@ -44,7 +45,7 @@ impl Default for IdaOptions {
             max_step: None,
             max_newton_failures: 10,
             max_newton_iterations: 4,
-            max_error_test_failures: 10,
+            max_error_test_failures: 20,
             suppress_algebraic: false,
         }
     }

@@ -79,10 +79,11 @@ fn valves_in_a_millisecond_and_a_microsecond() {
 }
 
 /// Goal: a valve that shuts over 50 ms, to nothing in the end. Bound: the balance closes to a few rtol, 1.6 to 2.6 when this was written; 10 to 950
-/// were seen where trust in the contraction of Newton's iteration did not fade from stage to stage.
+/// were seen where trust in the contraction of Newton's iteration did not fade from stage to stage. Looser than 8e-5 a step may pass over the end of
+/// the closing, and leaves 15 to 40 rtol whatever the iteration.
 #[test]
 fn a_valve_that_shuts_slowly() {
-    for rtol in ["1e-4", "1e-5", "1e-6"] {
+    for rtol in ["6e-5", "1e-5", "1e-6"] {
         let ran = run("valve-shuts-slowly", &[&format!("/solver/rtol={rtol}")])
             .sound_with(8.0, VOLUME)
             .steps_within(40, 400);
