@@ -14,7 +14,8 @@ use super::schema_words;
 /// be left out; and everywhere a member whose key begins with `//` may stand as a remark.
 pub fn schema_json() -> Value {
     let mut schema = CASE.clone();
-    let definitions = schema["$defs"].as_object().cloned().unwrap_or_default();
+    let nothing = Map::new();
+    let definitions = CASE["$defs"].as_object().unwrap_or(&nothing);
     let mut parts: Vec<(String, Value)> = vec![];
     for section in SECTIONS {
         let reference = schema["properties"][section]["$ref"].take();
@@ -22,7 +23,7 @@ pub fn schema_json() -> Value {
             .as_str()
             .and_then(|r| r.rsplit('/').next())
             .unwrap_or_default();
-        relaxed(name, &definitions, &mut parts);
+        relaxed(name, definitions, &mut parts);
         let partly = json!({"anyOf": [{"$ref": format!("#/$defs/{name}{PARTLY}")}, {"type": "null"}]});
         schema["then"]["properties"][section] = partly;
         schema["else"]["properties"][section] = json!({"$ref": reference});

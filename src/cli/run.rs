@@ -90,9 +90,10 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
             summary::write(finished.folder(), &summary)?;
         }
     }
-    let page = match asked.lean {
-        true => Ok(()),
-        false => report::write(&out, None).map(|_| ()),
+    let page = match &finished {
+        _ if asked.lean => Ok(()),
+        Some(finished) => finished.page(),
+        None => report::write(&out, None).map(|_| ()),
     };
     let written = laps.lap();
     summary.wall_s.report = if asked.lean { 0.0 } else { written };
@@ -184,10 +185,10 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
         Some(accuracy) => reach(case, accuracy, folder, &way)?,
         None => record(case, System::new(case)?, &[], folder, &way)?,
     };
-    if !lean {
-        report::write(dir, None)?;
-    }
     if let Some(finished) = finished {
+        if !lean {
+            finished.page()?;
+        }
         laps.lap();
         close(finished, &mut outcome.summary, &mut laps)?;
     }

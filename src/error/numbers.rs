@@ -166,10 +166,14 @@ pub fn duration(seconds: f64) -> String {
 
 /// The shortest text that reads back as the same number, without long rows of zeros.
 pub fn shortest(value: f64) -> String {
+    shortest_in(&mut zmij::Buffer::new(), value).into()
+}
+
+/// The same, written where there is room for it.
+pub fn shortest_in(room: &mut zmij::Buffer, value: f64) -> &str {
     if value.is_nan() {
-        return "nan".into();
+        return "nan";
     }
-    let mut buffer = zmij::Buffer::new();
-    let text = buffer.format(value);
-    text.strip_suffix(".0").unwrap_or(text).into()
+    let text = room.format(value);
+    text.strip_suffix(".0").unwrap_or(text)
 }

@@ -34,6 +34,11 @@ pub struct Mathieu {
 
 /// Numbers of a case by name, SI units in the name.
 pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
+    numbers_with(case, model, mathieu(model).as_ref())
+}
+
+/// The same with Mathieu's parameters, which are known.
+pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&Mathieu>) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     let mut put = |name: &str, value: f64| {
         if value.is_finite() {
@@ -97,7 +102,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
         put("euler_load_n", PI * PI * ei / (4.0 * l * l));
         put("self_weight_buckling_load_n_m", 7.837_347_438_94 * ei / l.powi(3));
     }
-    if let Some(a) = mathieu(model) {
+    if let Some(a) = mathieu {
         put("base_acceleration_m_s2", a.acceleration);
         put("inertial_compression_n_m", m * a.acceleration);
         put("mathieu_modulation", a.modulation);

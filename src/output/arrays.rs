@@ -5,7 +5,8 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
+use std::os::unix::fs::FileExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -13,7 +14,7 @@ use npyz::WriterBuilder;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::folder::{damaged, fault, put_whole};
+use super::folder::{Whole, damaged, fault};
 use super::history::FLUSH;
 use super::stream::{Mark, Stream};
 use crate::error::Result;
@@ -21,6 +22,9 @@ use crate::run::record::{Axis, Field, Header};
 
 /// Name of the array of times.
 pub const TIMES: &str = "t_fields_s";
+
+/// Bytes that are read or written at once.
+const BLOCK: usize = 1 << 16;
 
 /// What of each raw file was safe on disk at a checkpoint.
 pub type Marks = BTreeMap<String, Mark>;
@@ -98,8 +102,7 @@ impl ArraysWriter {
 
     /// Appends one instant: its time and all fields, one after the other in the order of the header.
     pub fn append(&mut self, instant: &[f64]) -> Result<()> {
-        let announced = 1 + self.fields.iter().map(|f| f.len).sum::<usize>();
-        if instant.len() != announced {
+        if instant.len() != self.numbers() {
             let why = "the arrays do not have the lengths announced";
             return Err(fault(
                 "write",
@@ -135,10 +138,15 @@ impl ArraysWriter {
         self.instants
     }
 
-    /// All times [s].
-    pub fn times(&mut self) -> Result<Vec<f64>> {
-        self.times.flush()?;
-        self.times.read(0, self.instants as usize)
+    /// Numbers of one of them.
+    pub(super) fn numbers(&self) -> usize {
+        1 + self.fields.iter().map(|f| f.len).sum::<usize>()
+    }
+
+    /// All times [s], once they are flushed.
+    pub fn times(&self) -> Result<Vec<f64>> {
+        let mut all = self.times.read(self.instants as usize, &[0])?;
+        Ok(all.pop().unwrap_or_default())
     }
 
     /// Coordinates of an axis.
@@ -146,24 +154,19 @@ impl ArraysWriter {
         self.axes.iter().find(|a| a.name == name).map(|a| a.values.as_slice())
     }
 
-    /// One field at chosen instants, read back from disk; `None` when there is no such field.
-    pub fn read(&mut self, name: &str, instants: &[usize]) -> Result<Option<Vec<Vec<f64>>>> {
+    /// One field at chosen instants, read back from disk once it is flushed; `None` when there is no such field.
+    pub fn read(&self, name: &str, instants: &[usize]) -> Result<Option<Vec<Vec<f64>>>> {
         let Some(k) = self.fields.iter().position(|f| f.name == name) else {
             return Ok(None);
         };
-        let len = self.fields[k].len;
-        let raw = &mut self.raw[k];
-        raw.flush()?;
-        let arrays = instants.iter().map(|&i| raw.read((i * len) as u64, len));
-        arrays.collect::<Result<_>>().map(Some)
+        self.raw[k].read(self.fields[k].len, instants).map(Some)
     }
 
-    /// Packs axes, times and fields into `target`; the raw files stay.
+    /// Packs axes, times and fields, once they are flushed, into a file that is to become `target`; the raw files stay.
     ///
     /// Arrays are stored, not deflated: doubles of a simulation hardly shrink, and stored ones load at once.
-    pub fn finish(mut self, target: &Path) -> Result<()> {
-        self.flush()?;
-        put_whole(target, |file| self.pack(file))
+    pub(super) fn packed(&self, target: &Path) -> Result<Whole> {
+        Whole::fill(target, |file| self.pack(file))
     }
 
     fn pack(&self, file: &mut File) -> io::Result<()> {
@@ -195,12 +198,14 @@ pub(super) fn write_array<W: Write + Seek>(
         .last_modified_time(DateTime::default())
         .large_file(large);
     npz.start_file(format!("{name}.npy"), options)?;
+    let mut blocks = BufWriter::with_capacity(BLOCK, npz);
     let array = npyz::WriteOptions::<f64>::new().default_dtype().shape(shape);
-    let mut array = array.writer(npz).begin_nd()?;
+    let mut array = array.writer(&mut blocks).begin_nd()?;
     for value in values {
         array.push(&value?)?;
     }
-    array.finish()
+    array.finish()?;
+    blocks.flush()
 }
 
 /// Little-endian doubles in a file, appended and read back.
@@ -227,7 +232,7 @@ impl RawFile {
     fn of(stream: Stream) -> Self {
         Self {
             path: stream.path().to_path_buf(),
-            out: BufWriter::with_capacity(1 << 16, stream),
+            out: BufWriter::with_capacity(BLOCK, stream),
             bytes: Vec::new(),
         }
     }
@@ -244,21 +249,23 @@ impl RawFile {
         self.out.flush().map_err(|e| fault("write", &self.path, e))
     }
 
-    /// `len` values from position `start`, counted in values.
-    fn read(&self, start: u64, len: usize) -> Result<Vec<f64>> {
-        let get = || -> io::Result<Vec<f64>> {
-            let mut file = File::open(&self.path)?;
-            file.seek(SeekFrom::Start(8 * start))?;
+    /// The instants of these numbers, `len` values each.
+    fn read(&self, len: usize, instants: &[usize]) -> Result<Vec<Vec<f64>>> {
+        let get = || -> io::Result<Vec<Vec<f64>>> {
+            let file = File::open(&self.path)?;
             let mut bytes = vec![0; 8 * len];
-            file.read_exact(&mut bytes)?;
-            Ok(bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
+            let one = |&instant: &usize| {
+                file.read_exact_at(&mut bytes, 8 * (instant * len) as u64)?;
+                Ok(bytes.as_chunks().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
+            };
+            instants.iter().map(one).collect()
         };
         get().map_err(|e| fault("read", &self.path, e))
     }
 
     /// All values, one after the other.
     fn stream(&self) -> io::Result<impl Iterator<Item = io::Result<f64>>> {
-        let mut input = BufReader::with_capacity(1 << 16, File::open(&self.path)?);
+        let mut input = BufReader::with_capacity(BLOCK, File::open(&self.path)?);
         Ok(std::iter::from_fn(move || {
             let mut bytes = [0; 8];
             match input.read_exact(&mut bytes) {

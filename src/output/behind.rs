@@ -1,6 +1,6 @@
 //! The files that grow with a run, written behind it: a thread makes text of numbers while the run goes on.
 //!
-//! Rows are handed over in batches, of which few wait at a time, so that memory stays flat. Files hold what they would if the run wrote them itself.
+//! Rows are handed over in batches, of which few numbers wait at a time, so that memory stays flat. Files hold what they would if the run wrote them itself.
 
 use std::io;
 use std::mem;
@@ -11,6 +11,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::arrays::{ArraysWriter, Marks};
+use super::envelope::Remembered;
 use super::folder::{HISTORY, fault};
 use super::history::HistoryWriter;
 use super::stream::Mark;
@@ -20,14 +21,17 @@ use crate::error::{Error, Result};
 const BATCH: usize = 1 << 13;
 /// Wall time after which a batch is handed over however small it is.
 const WAIT: Duration = Duration::from_millis(100);
-/// Batches that may wait to be written: of a large beam one holds a whole instant.
-const WAITING: usize = 1;
+/// Numbers that may wait to be written, so that a disk that is busy for a moment does not hold up the run; of a large beam one batch, which
+/// holds a whole instant.
+const WAITING: usize = 1 << 18;
 
 /// The files of a folder that grow with a run.
 #[derive(Debug)]
 pub struct Growing {
     /// The history.
     pub history: HistoryWriter,
+    /// The same in memory, if it is whole and short.
+    pub kept: Option<Remembered>,
     /// Fields.
     pub arrays: ArraysWriter,
     /// What is left of output times that are not written.
@@ -59,24 +63,22 @@ pub struct Tables {
 impl Growing {
     /// Brings everything to the disk itself.
     pub fn secure(&mut self) -> Result<Secured> {
+        let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
         Ok(Secured {
-            tables: self.secure_tables()?,
+            tables: Tables {
+                history: self.history.secure()?,
+                envelope: secured(&mut self.envelope)?,
+                sensitivities: secured(&mut self.sensitivities)?,
+            },
             arrays: self.arrays.secure()?,
         })
     }
 
-    /// Brings all but the arrays to the disk itself.
-    pub fn secure_tables(&mut self) -> Result<Tables> {
-        let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
-        Ok(Tables {
-            history: self.history.secure()?,
-            envelope: secured(&mut self.envelope)?,
-            sensitivities: secured(&mut self.sensitivities)?,
-        })
-    }
-
     fn take(&mut self, batch: &Batch) -> Result<()> {
-        batch.history.each(|row| self.history.row(row))?;
+        batch.history.each(|row| {
+            self.kept.take_if(|kept| !kept.push(row));
+            self.history.row(row)
+        })?;
         for (rows, out) in [
             (&batch.envelope, &mut self.envelope),
             (&batch.sensitivities, &mut self.sensitivities),
@@ -145,7 +147,8 @@ pub struct Behind {
 impl Behind {
     /// Takes over the files.
     pub fn new(files: Growing) -> Self {
-        let (work, todo) = mpsc::sync_channel(WAITING);
+        let batch = BATCH.max(files.arrays.numbers());
+        let (work, todo) = mpsc::sync_channel((WAITING / batch).max(1));
         Self {
             batch: Batch::default(),
             handed: Instant::now(),

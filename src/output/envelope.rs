@@ -63,11 +63,11 @@ impl Envelope {
         }
     }
 
-    /// Reads the history of a folder, and before the window what is left of it, where not all was written. A last line cut short, as
+    /// Reads a history, and before the window what is left of it, where not all was written. A last line cut short, as
     /// a killed run leaves it, is passed over.
-    pub fn read(dir: &Path, most: usize) -> Result<Self> {
+    pub fn read(history: History, most: usize) -> Result<Self> {
         let mut envelope = Self::new(vec![], most);
-        each_row(dir, |names, source, row| {
+        each_row(history, |names, source, row| {
             if envelope.names.is_empty() {
                 envelope.names = names.to_vec();
             }
@@ -180,9 +180,61 @@ pub enum Source {
 /// Names and units of the columns of a history.
 pub type Names = [(String, String)];
 
-/// All rows of a folder in order of time, with the names of their columns: those of the envelope, least values where a stretch begins
+/// Numbers of a history that are kept in memory at most.
+const KEPT: usize = 1 << 19;
+
+/// A history that is short enough to be kept in memory while it is written, and need not be read back.
+#[derive(Debug)]
+pub struct Remembered {
+    names: Vec<(String, String)>,
+    numbers: Vec<f64>,
+}
+
+impl Remembered {
+    /// With the columns of these headings.
+    pub fn new(headings: &[String]) -> Self {
+        Self {
+            names: headings.iter().map(|heading| split_name(heading)).collect(),
+            numbers: vec![],
+        }
+    }
+
+    /// Adds a row of as many numbers as columns; whether the history is still short enough.
+    pub fn push(&mut self, row: &[f64]) -> bool {
+        // of what is no number the text says no more than that
+        let as_read = row.iter().map(|&x| if x.is_nan() { f64::NAN } else { x });
+        self.numbers.extend(as_read);
+        self.numbers.len() < KEPT
+    }
+}
+
+/// Where a history is.
+#[derive(Clone, Copy, Debug)]
+pub enum History<'a> {
+    /// In the tables of a folder.
+    Folder(&'a Path),
+    /// In memory, all of it.
+    Memory(&'a Remembered),
+}
+
+impl<'a> History<'a> {
+    /// Of a run that has just ended in a folder.
+    pub fn of(dir: &'a Path, kept: Option<&'a Remembered>) -> Self {
+        kept.map_or(Self::Folder(dir), Self::Memory)
+    }
+}
+
+/// All rows of a history in order of time, with the names of their columns: those of the envelope, least values where a stretch begins
 /// and greatest ones where it ends, then those of the history. Rows of the history that the envelope covers come where they stand.
-pub fn each_row(dir: &Path, mut take: impl FnMut(&Names, Source, &[f64])) -> Result<()> {
+pub fn each_row(history: History, mut take: impl FnMut(&Names, Source, &[f64])) -> Result<()> {
+    let dir = match history {
+        History::Folder(dir) => dir,
+        History::Memory(Remembered { names, numbers }) => {
+            let rows = numbers.chunks_exact(names.len().max(1));
+            rows.for_each(|row| take(names, Source::History, row));
+            return Ok(());
+        }
+    };
     let path = dir.join(HISTORY);
     let (names, mut rows) = table(&path)?;
     let covered = dir.join(ENVELOPE);

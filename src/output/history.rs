@@ -5,13 +5,18 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::folder::fault;
-use super::numbers::shortest;
+use super::numbers::shortest_in;
 use super::stream::{Mark, Stream};
 use crate::error::Result;
 use crate::run::record::Column;
 
 /// Wall time after which rows reach the disk at the latest, so that a run can be watched and loses little when killed.
 pub(crate) const FLUSH: Duration = Duration::from_millis(500);
+
+/// Names of columns with their units, `name [unit]`.
+pub fn headings(columns: &[Column]) -> Vec<String> {
+    columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
+}
 
 /// Writes the history as it comes.
 #[derive(Debug)]
@@ -25,10 +30,7 @@ pub struct HistoryWriter {
 impl HistoryWriter {
     /// Creates the file with its line of names, `name [unit]`.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self> {
-        Self::with_names(
-            path,
-            columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect(),
-        )
+        Self::with_names(path, headings(columns))
     }
 
     /// Creates the file with its line of names, which hold the units already.
@@ -68,7 +70,13 @@ impl HistoryWriter {
     /// Appends a row; as many numbers as columns.
     pub fn row(&mut self, row: &[f64]) -> Result<()> {
         debug_assert_eq!(row.len(), self.columns);
-        let written = self.out.write_record(row.iter().map(|&x| shortest(x)));
+        let mut room = zmij::Buffer::new();
+        let mut write = || {
+            let each = |&x: &f64| self.out.write_field(shortest_in(&mut room, x));
+            row.iter().try_for_each(each)?;
+            self.out.write_record(None::<&[u8]>)
+        };
+        let written = write();
         self.settle(written)?;
         if self.flushed.elapsed() >= FLUSH {
             self.flush()?;

@@ -46,17 +46,17 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
 }
 
 /// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.
-pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &mut ArraysWriter) -> Result<Vec<Picture>> {
+pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) -> Result<Vec<Picture>> {
     let all = arrays.times()?;
     let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
     let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
-    let axis = |arrays: &ArraysWriter, axis: Axis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
+    let axis = |axis: Axis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
     let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
     let deflection = Deflection {
         case: case.to_string(),
         span,
         times: times.clone(),
-        theta: axis(arrays, Axis::Nodes),
+        theta: axis(Axis::Nodes),
         u1: arrays.read(Field::U1.name(), &instants)?.unwrap_or_default(),
         u3: arrays.read(Field::U3.name(), &instants)?.unwrap_or_default(),
     };
@@ -64,9 +64,9 @@ pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &mut ArraysWrit
         case: case.to_string(),
         span,
         times,
-        x_f: axis(arrays, Axis::Network),
-        bladder: integers(axis(arrays, Axis::Bladder)),
-        network: integers(axis(arrays, Axis::Array)),
+        x_f: axis(Axis::Network),
+        bladder: integers(axis(Axis::Bladder)),
+        network: integers(axis(Axis::Array)),
         pressure: arrays.read(Field::Pressure.name(), &instants)?.unwrap_or_default(),
     };
     Ok(present([

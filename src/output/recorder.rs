@@ -1,22 +1,23 @@
 //! The recorder that fills a result folder.
 
+use std::io::Write as _;
 use std::panic;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Instant;
 
 use super::arrays::ArraysWriter;
 use super::behind::{Behind, Growing, Secured};
 use super::checkpoint::{self, Saved};
-use super::envelope::Envelope;
+use super::envelope::{Envelope, History, Remembered};
 use super::folder::{
     CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
-    SENSITIVITIES, SUMMARY,
+    SENSITIVITIES, SUMMARY, Wait, Whole, at_once,
 };
-use super::history::HistoryWriter;
+use super::history::{HistoryWriter, headings};
 use super::pictures::{self, Picture, STRETCHES};
 use super::stream::Stream;
-use super::summary;
+use super::{report, summary};
 use crate::case::{Case, Written};
 use crate::error::Result;
 use crate::model::characteristic;
@@ -105,6 +106,7 @@ impl FolderRecorder {
         });
         let files = Growing {
             history,
+            kept: None,
             arrays,
             envelope: envelope?,
             sensitivities: sensitivities?,
@@ -115,87 +117,127 @@ impl FolderRecorder {
         })
     }
 
-    /// Completes the folder however the run ended: history and arrays whole and on the disk, then the summary that says so, then
-    /// pictures. What a run could go on from stays until [`Finished::close`], so that all of this can be repeated.
+    /// Completes the folder however the run ended: history, arrays and the summary that says they are whole go to the disk together,
+    /// and only then do arrays and summary take their names; then come pictures. What a run could go on from stays until
+    /// [`Finished::close`], so that all of this can be repeated.
     ///
     /// A run that failed before it began leaves case and summary, and moves an older result aside.
     ///
     /// # Errors
     ///
-    /// A file cannot be written; the summary then says `failed`, and why.
+    /// A file cannot be written; where it is one of tables or arrays the summary says `failed`, and why.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
         let (mut laps, mut spent) = (Laps::since(Instant::now()), Spent::default());
-        let began = self.open.is_some();
-        let aside = if began { None } else { self.folder.set_aside()? };
-        let mut drawn = vec![];
-        let completed = match self.open.take() {
-            Some(open) => self.complete(open, summary.status, &mut drawn, &mut laps, &mut spent),
-            None => Ok(()),
+        let aside = match self.open {
+            Some(_) => None,
+            None => self.folder.set_aside()?,
         };
-        // The summary matters most: it is tried whatever could not be written before.
         let cased = self.folder.write_case(&self.labels.case);
-        // where arrays or tables are not whole nothing may say that they are
-        let failed = completed.as_ref().err().map(|error| Summary {
-            status: Status::Failed,
-            reason: Some(error.to_string()),
-            ..summary.clone()
-        });
-        let told = summary::write(&self.folder, failed.as_ref().unwrap_or(summary));
-        completed.and(cased).and(told.map(|_| ()))?;
-        self.folder.secure()?;
+        let completed = match self.open.take() {
+            Some(open) => self.complete(open, summary, &mut laps, &mut spent),
+            None => summary::write(&self.folder, summary).map(|_| Completed::default()),
+        };
+        if let Err(error) = &completed {
+            // Where arrays or tables are not whole nothing may say that they are. The summary matters most: it is tried whatever could
+            // not be written before.
+            let failed = Summary {
+                status: Status::Failed,
+                reason: Some(error.to_string()),
+                ..summary.clone()
+            };
+            let _ = summary::write(&self.folder, &failed);
+        }
+        let Completed { drawn, history } = cased.and(completed)?;
+        self.folder.secure_behind()?;
         if self.lean {
             // of a run that is gone on with
-            PICTURES
-                .into_iter()
-                .chain([REPORT])
-                .try_for_each(|name| self.folder.remove(name))?;
+            self.folder.remove_all(&PICTURES)?;
+            self.folder.remove(REPORT)?;
         }
-        self.folder.write_all(&drawn)?;
+        for pictures in drawn {
+            for (name, picture) in pictures? {
+                self.folder.lay(name, picture.as_bytes())?;
+            }
+        }
         spent.files += laps.lap();
         Ok(Finished {
             spent,
             lean: self.lean,
             resumable: summary.status != Status::Finished && self.folder.path(CHECKPOINT).exists(),
             folder: self.folder,
+            history,
             aside,
         })
     }
 
-    /// Brings the tables to the disk, draws pictures of them and packs the arrays, both at once.
-    fn complete(
-        &self,
-        open: Behind,
-        status: Status,
-        drawn: &mut Vec<Picture>,
-        laps: &mut Laps,
-        spent: &mut Spent,
-    ) -> Result<()> {
+    /// Brings tables, arrays and summary to the disk, and draws pictures meanwhile.
+    fn complete(&self, open: Behind, summary: &Summary, laps: &mut Laps, spent: &mut Spent) -> Result<Completed> {
         let mut files = open.close()?;
-        if !(self.lean && status == Status::Finished) {
-            files.secure_tables()?;
-        }
-        let mut arrays = files.arrays;
+        files.arrays.flush()?;
+        let arrays = &files.arrays;
+        let tables = [Some(files.history), files.envelope, files.sensitivities];
+        // of a lean run that has finished they go again
+        let stay = !self.lean || summary.status != Status::Finished;
+        let mut tables: Vec<_> = tables.into_iter().flatten().filter(|_| stay).collect();
+        tables.iter_mut().try_for_each(HistoryWriter::flush)?;
+        let (laid, told) = (self.folder.laid(), summary::to_json(summary));
+        let [fields, summary] = [FIELDS, SUMMARY].map(|name| self.folder.path(name));
         spent.files += laps.lap();
-        if self.lean {
-            return arrays.finish(&self.folder.path(FIELDS));
-        }
         let (case, dir) = (&self.labels.case_name, self.folder.dir());
-        let over_time = || Ok(pictures::over_time(case, &Envelope::read(dir, STRETCHES)?));
-        thread::scope(|scope| {
-            let over_time = scope.spawn(over_time);
-            let over_space = pictures::over_space(case, self.labels.frequency_hz, &mut arrays);
-            spent.pictures += laps.lap();
-            let packed = arrays.finish(&self.folder.path(FIELDS));
+        let frequency = self.labels.frequency_hz;
+        let over_time = || {
+            let rows = Envelope::read(History::of(dir, files.kept.as_ref()), STRETCHES)?;
+            Ok(pictures::over_time(case, &rows))
+        };
+        let drawn = thread::scope(|scope| {
+            let drawing = match self.lean {
+                true => vec![],
+                false => vec![
+                    scope.spawn(over_time),
+                    scope.spawn(|| pictures::over_space(case, frequency, arrays)),
+                ],
+            };
+            let put = put(tables, &laid, (arrays, &fields), (&told, &summary));
             spent.files += laps.lap();
-            let over_time: Result<_> = over_time
-                .join()
-                .unwrap_or_else(|panicked| panic::resume_unwind(panicked));
+            let drawn = drawing
+                .into_iter()
+                .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)))
+                .collect();
             spent.pictures += laps.lap();
-            drawn.extend(over_time?);
-            drawn.extend(over_space?);
-            packed
+            put.map(|()| drawn)
+        })?;
+        Ok(Completed {
+            drawn,
+            history: files.kept,
         })
     }
+}
+
+/// What a folder that is whole has still to be given.
+#[derive(Default)]
+struct Completed {
+    /// Pictures, or why there are none.
+    drawn: Vec<Result<Vec<Picture>>>,
+    /// The history, if it was kept.
+    history: Option<Remembered>,
+}
+
+/// Brings tables, laid files, arrays and summary to the disk itself, all at once; then arrays and summary take their names.
+fn put(
+    mut tables: Vec<HistoryWriter>,
+    laid: &[Whole],
+    (arrays, fields): (&ArraysWriter, &Path),
+    (told, summary): (&str, &Path),
+) -> Result<()> {
+    let fields = arrays.packed(fields)?;
+    let summary = Whole::fill(summary, |file| file.write_all(told.as_bytes()))?;
+    let tables = tables
+        .iter_mut()
+        .map(|table| Box::new(|| table.secure().map(|_| ())) as Wait);
+    let others = laid.iter().chain([&fields, &summary]).map(Whole::wait);
+    at_once(tables.chain(others).collect())?;
+    fields.name()?;
+    summary.name().map(|_| ())
 }
 
 /// Wall time that a completed folder took [s].
@@ -212,6 +254,7 @@ pub struct Spent {
 #[must_use = "what the run could go on from is still there"]
 pub struct Finished {
     folder: ResultFolder,
+    history: Option<Remembered>,
     resumable: bool,
     lean: bool,
     /// What completing it took.
@@ -227,25 +270,35 @@ impl Finished {
             resumable: true,
             lean: false,
             folder,
+            history: None,
             spent: Spent::default(),
             aside: None,
         }
     }
 
-    /// Removes what a run could go on from, unless it is yet to go on. Returns the folder, still locked.
+    /// Writes the page.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be made; then the folder is not to be closed, and all of this can be repeated.
+    pub fn page(&self) -> Result<()> {
+        report::lay(&self.folder, self.history.as_ref())
+    }
+
+    /// Brings everything to the disk itself and removes what a run could go on from, unless it is yet to go on. Returns the folder, still
+    /// locked.
     pub fn close(self) -> Result<ResultFolder> {
+        self.folder.secure()?;
         if self.resumable {
             return Ok(self.folder);
         }
-        self.folder.secure()?;
-        self.folder.remove(CHECKPOINT_BEFORE)?;
-        self.folder.remove(CHECKPOINT)?;
-        self.folder.secure()?;
+        if self.folder.remove_all(&[CHECKPOINT_BEFORE, CHECKPOINT])? {
+            self.folder.secure()?;
+        }
         self.folder.remove_raw()?;
         if self.lean {
             // last: with a checkpoint still there, it would be damaged without them
-            let tables = [HISTORY, ENVELOPE, SENSITIVITIES];
-            tables.iter().try_for_each(|name| self.folder.remove(name))?;
+            self.folder.remove_all(&[HISTORY, ENVELOPE, SENSITIVITIES])?;
         }
         Ok(self.folder)
     }
@@ -269,8 +322,11 @@ impl Recorder for FolderRecorder {
                 .then(|| HistoryWriter::with_names(&path, names.to_vec()))
                 .transpose()
         };
+        // all of it, in rows that page and pictures are made of
+        let shown = !self.lean && header.envelope.is_empty();
         let files = Growing {
             history,
+            kept: shown.then(|| Remembered::new(&headings(&header.columns))),
             arrays,
             envelope: table(ENVELOPE, &header.envelope)?,
             sensitivities: table(SENSITIVITIES, &header.sensitivities)?,

@@ -1,14 +1,19 @@
 //! What is known of a case before anything is computed, for every command in the same words.
 
+use std::collections::BTreeMap;
+
 use crate::case::schema::Case;
 use crate::case::seldom;
 use crate::discrete::{System, resolution};
 use crate::error::Code;
 use crate::model::{audit, characteristic};
 
-/// What stays true whatever a run finds: of the case and its mesh.
-pub fn lasting(case: &Case, system: &System) -> Vec<String> {
-    with_the_mesh(on_any_mesh(case, system), case, system)
+/// Characteristic numbers by name.
+type Numbers = BTreeMap<String, f64>;
+
+/// What stays true whatever a run finds: of the case with its characteristic numbers, and of its mesh.
+pub fn lasting(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
+    with_the_mesh(audit::lasting(case, &system.model, numbers), case, system, numbers)
 }
 
 /// The part of that which no mesh changes.
@@ -20,7 +25,7 @@ pub fn on_any_mesh(case: &Case, system: &System) -> Vec<String> {
 /// That, and what is expected of it: of what does not run and look for itself.
 pub fn warnings(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
-    with_the_mesh(audit::warnings(case, &system.model, &numbers), case, system)
+    with_the_mesh(audit::warnings(case, &system.model, &numbers), case, system, &numbers)
 }
 
 /// The same of what has no output times: a cycle, multipliers.
@@ -49,10 +54,9 @@ fn told(seldom: Vec<(String, String)>) -> Vec<String> {
     seldom.into_iter().map(told).collect()
 }
 
-fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System) -> Vec<String> {
+fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
     all.extend(told(seldom::sizes(case)));
     all.extend(told(seldom::late(case)));
-    let numbers = characteristic::numbers(case, &system.model);
     let first = numbers.get("first_bending_frequency_hz").copied();
     all.extend(told(seldom::damping(case, first)));
     all.extend(told(seldom::unheld(case, &system.model.unheld()).into_iter().collect()));

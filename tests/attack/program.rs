@@ -7,6 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+use slcbeam::output::folder::PICTURES;
 
 pub const CASE: &str = "cases/wiring-2.json";
 
@@ -147,7 +148,7 @@ pub fn stderr(output: &Output) -> String {
 
 /// Whether two results are the same, but for wall time.
 pub fn same(a: &Path, b: &Path) -> Result<(), String> {
-    for name in ["history.csv", "fields.npz", "case.json"] {
+    for name in ["history.csv", "fields.npz", "case.json"].into_iter().chain(PICTURES) {
         let read = |dir: &Path| fs::read(dir.join(name)).map_err(|e| format!("{name}: {e}"));
         if read(a)? != read(b)? {
             return Err(format!("{name} differs"));

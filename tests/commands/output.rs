@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use slcbeam::case::Written;
-use slcbeam::output::envelope::Envelope;
+use slcbeam::output::envelope::{Envelope, History};
 use slcbeam::output::kind::Kind;
 use slcbeam::output::recorder::Finished;
-use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, plot, summary};
+use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
 use slcbeam::run::record::{Axis, Column, Control, Field, Header, Progress, Recorder};
 use slcbeam::run::summary::{Quantity, Status, Summary};
 
@@ -245,6 +245,42 @@ fn a_run_makes_all_files_of_a_result() {
         "summary.json",
     ];
     assert_eq!(names, expected, "no temporary files are left");
+}
+
+/// Page and pictures of a run that has just ended are drawn of rows in memory: they are those of its files.
+#[test]
+fn what_was_kept_in_memory_is_what_files_say() {
+    let dir = tempfile::tempdir().expect("a place");
+    let out = dir.path();
+    let mut recorder = record(out, 1500, 1.0);
+    let odd = [
+        0.76,
+        -0.0,
+        -f64::NAN,
+        f64::INFINITY,
+        5e-324,
+        1e300,
+        0.1,
+        0.2,
+        0.3,
+        1e-7,
+        1e21,
+        f64::NEG_INFINITY,
+        0.0,
+    ];
+    recorder.history(&odd).expect("a row is written");
+    let finished = recorder.finish(&summary_of(Status::Finished)).expect("it finishes");
+    finished.page().expect("a page");
+    finished.close().expect("it is closed");
+    let page = read(out, "report.html");
+    report::write(out, None).expect("the same page");
+    assert!(page == read(out, "report.html"), "the page of the folder is another");
+    let rows = Envelope::read(History::Folder(out), pictures::STRETCHES).expect("rows");
+    let drawn = pictures::over_time("wiring-3 <&>", &rows);
+    assert_eq!(drawn.len(), 2);
+    for (name, picture) in drawn {
+        assert!(picture == read(out, name), "{name} of the folder is another");
+    }
 }
 
 #[test]

@@ -8,7 +8,8 @@ use crate::case::{Written, is_table};
 use crate::error::Result;
 
 impl ResultFolder {
-    /// Writes the case: its tables first, so that one that is there has all it names; then those go that it does not name.
+    /// Writes the case: its tables first, so that one that is there has all it names; then those go that it does not name. The disk has it
+    /// from [`ResultFolder::secure`] on.
     pub fn write_case(&self, case: &Written) -> Result<()> {
         self.write_tables(case)?;
         self.write_once(CASE, &case.json)?;
@@ -30,14 +31,16 @@ impl ResultFolder {
         if own && fs::read(&path).ok().as_deref() == Some(text.as_bytes()) {
             return self.tell_origin();
         }
-        self.write(name, text.as_bytes()).map(|_| ())
+        self.lay(name, text.as_bytes()).map(|_| ())
     }
 
     /// Removes tables of an older case.
     pub(super) fn remove_other_tables(&self, case: &Written) -> Result<()> {
         let named = |path: &PathBuf| case.tables.iter().any(|(name, _)| self.path(name) == *path);
         let all = self.tables()?;
-        all.iter().filter(|path| !named(path)).try_for_each(|path| remove(path))
+        all.iter()
+            .filter(|path| !named(path))
+            .try_for_each(|path| remove(path).map(|_| ()))
     }
 
     /// The tables of cases in the folder.

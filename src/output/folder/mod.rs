@@ -1,6 +1,7 @@
 //! The result folder: one writer at a time, no file half written, nothing of others taken.
 
 mod cased;
+mod laid;
 mod lock;
 mod origin;
 mod whole;
@@ -8,7 +9,6 @@ mod whole;
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::{panic, thread};
 
 use super::kind::Kind;
 use super::uncertainty::UNCERTAINTY;
@@ -18,7 +18,7 @@ use crate::results;
 use lock::Lock;
 use origin::ORIGIN;
 pub use origin::other_origin;
-pub(crate) use whole::{damaged, entries, name_of, open, put_whole, result, text_of};
+pub(crate) use whole::{Wait, Whole, at_once, damaged, entries, name_of, open, put_whole, result, text_of};
 pub use whole::{replace, replace_alike};
 
 /// The case as resolved.
@@ -75,6 +75,7 @@ pub struct ResultFolder {
     made: bool,
     lock: Option<Lock>,
     origin: origin::Origin,
+    laid: laid::Laid,
 }
 
 impl ResultFolder {
@@ -110,6 +111,7 @@ impl ResultFolder {
             made,
             lock: Some(lock),
             origin: origin::Origin::default(),
+            laid: laid::Laid::default(),
         };
         folder.sweep();
         Ok(folder)
@@ -161,19 +163,15 @@ impl ResultFolder {
         Ok(target)
     }
 
-    /// Writes files, each whole or not at all, at the same time: most of it is waiting for the disk.
-    ///
-    /// # Errors
-    /// The first of those that could not be written; the others are there.
-    pub fn write_all<T: AsRef<[u8]> + Sync>(&self, files: &[(&'static str, T)]) -> Result<()> {
-        thread::scope(|scope| {
-            let write = |file: &(&'static str, T)| self.write(file.0, file.1.as_ref());
-            let all: Vec<_> = files.iter().map(|file| scope.spawn(move || write(file))).collect();
-            let ended = all
-                .into_iter()
-                .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)));
-            ended.map(|written| written.map(|_| ())).fold(Ok(()), Result::and)
-        })
+    /// Writes files, each as [`ResultFolder::write`], with what was laid before; the disk is waited for once.
+    fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<Vec<PathBuf>> {
+        self.tell_origin()?;
+        let fill = |(name, bytes): &(&str, T)| Whole::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
+        let parts = files.iter().map(fill).collect::<Result<Vec<_>>>()?;
+        let laid = self.laid();
+        at_once(parts.iter().chain(&laid).map(Whole::wait).collect())?;
+        parts.into_iter().try_for_each(|part| part.name().map(|_| ()))?;
+        Ok(files.iter().map(|(name, _)| self.path(name)).collect())
     }
 
     /// Writes all files of a result that has no run, its sign last, in place of an older one. Returns their paths.
@@ -182,19 +180,16 @@ impl ResultFolder {
             self.clear()?;
         }
         let (last, first): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0 == self.kind.sign());
-        let all: Vec<_> = first.into_iter().chain(last).collect();
         for name in self.kind.files() {
-            if all.iter().all(|f| f.0 != name) {
+            if first.iter().chain(&last).all(|f| f.0 != name) {
                 self.remove(name)?;
             }
         }
-        let written = all
-            .iter()
-            .map(|(name, bytes)| self.write(name, bytes.as_ref()))
-            .collect();
+        let mut written = self.write_all(&first)?;
+        written.extend(self.write_all(&last)?);
         self.secure()?;
         self.older = Some(self.kind);
-        written
+        Ok(written)
     }
 
     /// Writes all files of a result that has no run with its case, as [`ResultFolder::fill`].
@@ -205,16 +200,18 @@ impl ResultFolder {
         Ok(written)
     }
 
-    /// Brings the names of files to the disk itself.
-    pub fn secure(&self) -> Result<()> {
-        self.tell_origin()?;
-        let sync = || File::open(&self.dir)?.sync_all();
-        sync().map_err(|e| fault("write", &self.dir, e))
-    }
-
     /// Removes one file, if it is there.
     pub fn remove(&self, name: &str) -> Result<()> {
-        remove(&self.path(name))
+        remove(&self.path(name)).map(|_| ())
+    }
+
+    /// Removes files; whether any was there.
+    pub fn remove_all(&self, names: &[&str]) -> Result<bool> {
+        let mut any = false;
+        for name in names {
+            any |= remove(&self.path(name))?;
+        }
+        Ok(any)
     }
 
     /// Removes the raw arrays of a run, if they are there.
@@ -299,6 +296,7 @@ impl ResultFolder {
 
 impl Drop for ResultFolder {
     fn drop(&mut self) {
+        self.settle();
         self.lock.take();
         if self.made {
             // only an empty one can be removed so
@@ -316,10 +314,11 @@ pub(crate) fn fault(action: &'static str, path: &Path, source: io::Error) -> Err
     }
 }
 
-fn remove(path: &Path) -> Result<()> {
+/// Removes a file; whether it was there.
+fn remove(path: &Path) -> Result<bool> {
     match fs::remove_file(path) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(fault("remove", path, e)),
-        _ => Ok(()),
+        removed => Ok(removed.is_ok()),
     }
 }
 

@@ -1,11 +1,10 @@
 //! Of which case file the result in a folder is.
 
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{CASE, ResultFolder, put_whole};
+use super::{CASE, ResultFolder};
 use crate::case::Case;
 use crate::error::Result;
 
@@ -37,7 +36,7 @@ impl ResultFolder {
             return Ok(());
         }
         match &self.origin.file {
-            Some(file) => put_whole(&self.path(ORIGIN), |out| out.write_all(file.as_bytes())),
+            Some(file) => self.lay(ORIGIN, file.as_bytes()).map(|_| ()),
             None => self.remove(ORIGIN),
         }
     }

@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
+use std::{panic, thread};
 
 use super::fault;
 use crate::error::Result;
@@ -52,16 +53,80 @@ pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()>
 
 /// Fills a file under another name, brings it to the disk and renames it; what could not be filled is removed.
 pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
-    let part = part_of(target);
-    let put = || -> io::Result<()> {
-        let mut file = File::create(&part)?;
-        fill(&mut file)?;
-        file.sync_all()?;
-        fs::rename(&part, target)
-    };
-    put().map_err(|e| {
-        let _ = fs::remove_file(&part);
-        fault("write", target, e)
+    let file = Whole::fill(target, fill)?;
+    file.secure()?;
+    file.name().map(|_| ())
+}
+
+/// A file that is whole and has a hidden name yet; it is removed unless it gets its own.
+#[derive(Debug)]
+pub(crate) struct Whole {
+    target: PathBuf,
+    /// Nothing once it has its name.
+    part: Option<PathBuf>,
+    file: File,
+}
+
+impl Whole {
+    /// Makes and fills it.
+    pub(crate) fn fill(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Self> {
+        let part = part_of(target);
+        let file = File::create(&part).map_err(|e| fault("write", target, e))?;
+        let mut made = Self {
+            target: target.to_path_buf(),
+            part: Some(part),
+            file,
+        };
+        match fill(&mut made.file) {
+            Ok(()) => Ok(made),
+            Err(e) => Err(fault("write", target, e)),
+        }
+    }
+
+    /// Brings what it holds to the disk itself.
+    pub(crate) fn secure(&self) -> Result<()> {
+        self.file.sync_all().map_err(|e| fault("write", &self.target, e))
+    }
+
+    /// The same, to be waited for along with others.
+    pub(crate) fn wait(&self) -> Wait<'_> {
+        Box::new(|| self.secure())
+    }
+
+    /// Gives it its name, in place of what had it.
+    pub(crate) fn name(mut self) -> Result<Self> {
+        if let Some(part) = &self.part {
+            fs::rename(part, &self.target).map_err(|e| fault("write", &self.target, e))?;
+        }
+        self.part = None;
+        Ok(self)
+    }
+}
+
+impl Drop for Whole {
+    fn drop(&mut self) {
+        if let Some(part) = &self.part {
+            let _ = fs::remove_file(part);
+        }
+    }
+}
+
+/// What waits for the disk.
+pub(crate) type Wait<'a> = Box<dyn FnOnce() -> Result<()> + Send + 'a>;
+
+/// Waits for the disk once for all: each in a thread of its own, so that what they have to bring there goes together.
+///
+/// # Errors
+/// The first in their order; all have ended.
+pub(crate) fn at_once(mut all: Vec<Wait>) -> Result<()> {
+    let Some(last) = all.pop() else { return Ok(()) };
+    thread::scope(|scope| {
+        let others: Vec<_> = all.into_iter().map(|one| scope.spawn(one)).collect();
+        let last = last();
+        let ended = others
+            .into_iter()
+            .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)));
+        ended.fold(Ok(()), Result::and).and(last)
     })
 }
 

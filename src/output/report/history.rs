@@ -1,13 +1,11 @@
 //! `history.csv`, thinned to what a screen can show; no peak is lost.
 
-use std::path::Path;
-
 use serde_json::{Map, Value, json};
 
 use super::pack;
 use crate::discrete::quantities::{Group, Observable, Role};
 use crate::error::Result;
-use crate::output::envelope::{Envelope, Source, each_row};
+use crate::output::envelope::{Envelope, History as Recorded, Source, each_row};
 use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
 
@@ -28,15 +26,16 @@ pub struct History {
 }
 
 impl History {
-    /// Of a folder; empty when the run ended before its first row.
-    pub fn read(dir: &Path) -> Result<Self> {
-        let path = dir.join(HISTORY);
-        if !path.is_file() {
+    /// Of what was recorded; empty when the run ended before its first row.
+    pub fn read(recorded: Recorded) -> Result<Self> {
+        if let Recorded::Folder(dir) = recorded
+            && !dir.join(HISTORY).is_file()
+        {
             return Ok(Self::default());
         }
         let mut found = Self::default();
         let mut envelope = Envelope::default();
-        each_row(dir, |names, source, row| {
+        each_row(recorded, |names, source, row| {
             if found.names.is_empty() {
                 found.names = names.to_vec();
                 envelope = Envelope::new(found.names.clone(), STRETCHES);

@@ -53,11 +53,13 @@ mod warnings;
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::{panic, thread};
 
 use serde_json::{Map, Value, json};
 
 pub use compared::{compared, over_data};
 
+use super::envelope::Remembered;
 use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, replace, replace_alike, text_of};
 use super::kind::Kind;
 use super::uncertainty::{self, UNCERTAINTY};
@@ -87,42 +89,10 @@ pub struct Written {
 ///
 /// The folder holds no result, a file of it cannot be read, or the page cannot be written.
 pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
-    of_kind(dir, Kind::find(dir)?, out)
-}
-
-/// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
-pub fn complete(folder: &ResultFolder, case: &Case) -> Result<Written> {
-    folder.write_case(&case.written())?;
-    write(folder.dir(), None)
-}
-
-fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
-    let place = Place::new(dir);
-    let mut page = match kind {
-        Kind::Run | Kind::Cycle => run::data(&place)?,
-        Kind::Equilibrium => equilibrium::data(&place)?,
-        Kind::Modes => modes::data(&place)?,
-        Kind::Study => studies::study(&place)?,
-        Kind::Effects => studies::effects(&place)?,
-        Kind::Floquet => cycles::floquet(&place)?,
-        Kind::Map => cycles::map(&place)?,
-        Kind::Sweep => cycles::sweep(&place)?,
-        Kind::Designs => designs::data(&place)?,
-        Kind::Fit => fit::data(&place)?,
-        Kind::Sense => sense::data(&place)?,
-        Kind::Optimum => optimum::data(&place)?,
-    };
-    if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
-        let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;
-        page.put("uncertainty", uncertainty::section(&found));
-    }
-    // Whoever sees the page first needs them in words; their numbers alone say little.
-    page.put("warnings", warnings::groups(&page.warnings));
+    let kind = Kind::find(dir)?;
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
-    if folder_of(&path) != fs::canonicalize(dir).ok() {
-        page.put("elsewhere", true);
-    }
-    let text = page::assemble(&page);
+    let elsewhere = folder_of(&path) != fs::canonicalize(dir).ok();
+    let text = text(&Place::new(dir, None), kind, elsewhere)?;
     match out {
         Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
         None => replace(&path, &text)?,
@@ -133,18 +103,82 @@ fn of_kind(dir: &Path, kind: Kind, out: Option<&Path>) -> Result<Written> {
     })
 }
 
+/// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
+pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
+    folder.write_case(&case.written())?;
+    write(folder.dir(), None)?;
+    folder.secure()
+}
+
+/// Lays the page of a run beside its files ([`ResultFolder::lay`]); the history is read where it was not kept.
+///
+/// # Errors
+///
+/// As [`write`].
+pub fn lay(folder: &ResultFolder, history: Option<&Remembered>) -> Result<()> {
+    let dir = folder.dir();
+    let text = text(&Place::new(dir, history), Kind::find(dir)?, false)?;
+    folder.lay(REPORT, text.as_bytes()).map(|_| ())
+}
+
+/// What the page of a kind shows.
+fn data(place: &Place, kind: Kind) -> Result<Page> {
+    match kind {
+        Kind::Run | Kind::Cycle => run::data(place),
+        Kind::Equilibrium => equilibrium::data(place),
+        Kind::Modes => modes::data(place),
+        Kind::Study => studies::study(place),
+        Kind::Effects => studies::effects(place),
+        Kind::Floquet => cycles::floquet(place),
+        Kind::Map => cycles::map(place),
+        Kind::Sweep => cycles::sweep(place),
+        Kind::Designs => designs::data(place),
+        Kind::Fit => fit::data(place),
+        Kind::Sense => sense::data(place),
+        Kind::Optimum => optimum::data(place),
+    }
+}
+
+/// The page.
+fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
+    // the longest of what a case has to tell, in a thread of its own
+    let (page, parameters) = thread::scope(|scope| {
+        let rows = scope.spawn(|| place.case_text.as_deref().map(parameters::rows));
+        let page = data(place, kind);
+        (
+            page,
+            rows.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)),
+        )
+    });
+    let mut page = page?;
+    page.put("parameters", parameters.unwrap_or_default());
+    if kind.files().contains(&UNCERTAINTY) && place.path(UNCERTAINTY).is_file() {
+        let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;
+        page.put("uncertainty", uncertainty::section(&found));
+    }
+    // Whoever sees the page first needs them in words; their numbers alone say little.
+    page.put("warnings", warnings::groups(&page.warnings));
+    if elsewhere {
+        page.put("elsewhere", true);
+    }
+    Ok(page::assemble(&page))
+}
+
 /// A folder under report, with its case as far as it can be read.
 struct Place<'a> {
     dir: &'a Path,
+    /// The history of a run that has just ended.
+    history: Option<&'a Remembered>,
     case: Option<Case>,
     case_text: Option<String>,
 }
 
 impl<'a> Place<'a> {
-    fn new(dir: &'a Path) -> Self {
+    fn new(dir: &'a Path, history: Option<&'a Remembered>) -> Self {
         let path = dir.join(CASE);
         Self {
             dir,
+            history,
             // A case of an older or newer program may no longer be one; the page then goes without what needs it.
             case: case::load(&path, &[]).ok(),
             case_text: text_of(&path).ok(),
@@ -181,6 +215,12 @@ impl<'a> Place<'a> {
 
     /// What every page begins with. `name` is used where the case cannot be read.
     fn page(&self, kind: Kind, name: &str, head: Option<&Head>) -> Page {
+        let numbers = self.case.as_ref().map(facts::characteristic_of);
+        self.page_with(kind, name, head, numbers.unwrap_or_default())
+    }
+
+    /// The same with rows of characteristic numbers that are known.
+    fn page_with(&self, kind: Kind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
         let mut page = Page {
             name: name.into(),
             ..Page::default()
@@ -194,12 +234,11 @@ impl<'a> Place<'a> {
         let section = self.case.as_ref().and_then(|c| c.section.as_ref());
         page.put("cell", section.map_or_else(Vec::new, cell::pictures));
         page.put("scene", self.case.as_ref().and_then(scene::of));
-        let rows = self.case_text.as_deref().map(parameters::rows);
-        page.put("parameters", rows.unwrap_or_default());
+        // their place: see `text`
+        page.put("parameters", Value::Null);
         let text = self.case_text.clone();
         page.put("case_text", text.filter(|text| text.len() < LARGEST_TEXT));
-        let numbers = self.case.as_ref().map(facts::characteristic_of);
-        page.put("characteristic", numbers.unwrap_or_default());
+        page.put("characteristic", numbers);
         page
     }
 }

@@ -10,6 +10,7 @@ use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::characteristic;
 use crate::output::bands;
+use crate::output::envelope::History as Recorded;
 use crate::output::folder::{CASE, FIELDS, SUMMARY};
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
@@ -27,12 +28,19 @@ pub fn data(place: &Place) -> Result<Page> {
         false => None,
     };
     let (summary, head) = found.map(|found| (found.result, found.head)).unzip();
-    let history = History::read(place.dir)?;
     let name = summary
         .as_ref()
         .map(|s| s.case.clone())
         .or_else(|| place.case.as_ref().map(|c| c.name.clone()));
-    let mut page = place.page(Kind::Run, name.as_deref().unwrap_or("unnamed"), head.as_ref());
+    let history = History::read(Recorded::of(place.dir, place.history))?;
+    let name = name.as_deref().unwrap_or("unnamed");
+    let mut page = match &summary {
+        Some(summary) => {
+            let numbers = facts::characteristic(&summary.characteristic);
+            place.page_with(Kind::Run, name, head.as_ref(), numbers)
+        }
+        None => place.page(Kind::Run, name, head.as_ref()),
+    };
     let frequency = place
         .case
         .as_ref()
@@ -101,7 +109,6 @@ fn fill(page: &mut Page, summary: &Summary, history: &History) {
     page.put("ledger", energy_balance::of(summary, history));
     page.put("effects", facts::effects(summary));
     page.put("work", facts::work(summary));
-    page.put("characteristic", facts::characteristic(&summary.characteristic));
     page.put("remarks", remarks(summary));
 }
 

@@ -124,8 +124,9 @@ impl<'a> Run<'a> {
     fn of(case: &'a Case, system: System, by: By<'a>) -> Result<(Self, BeamDae)> {
         let laps = Laps::since(Instant::now());
         let interval = case.time.output_interval();
-        let characteristic = characteristic::numbers(case, &system.model);
-        let mut warnings = known::lasting(case, &system);
+        let mathieu = characteristic::mathieu(&system.model);
+        let characteristic = characteristic::numbers_with(case, &system.model, mathieu.as_ref());
+        let mut warnings = known::lasting(case, &system, &characteristic);
         if !by.parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
         }
@@ -138,7 +139,6 @@ impl<'a> Run<'a> {
         let strides = Strides::new(case, &system);
         let options = Options::new(case, &system, &chosen, strides.least());
         let inertia = system.layout.inertia;
-        let mathieu = characteristic::mathieu(&system.model);
         let linear = Linear {
             mathieu,
             euler_load: characteristic.get("euler_load_n").copied(),

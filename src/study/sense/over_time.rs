@@ -22,6 +22,7 @@ use super::sight::{over_sizes, sight};
 use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
+use crate::model::characteristic;
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::known;
 
@@ -76,7 +77,8 @@ pub(super) fn find(
         Some(all) => all[row].clone(),
         None => vec![asked.noise_pa.unwrap_or(1.0); measured.bladders.len()],
     });
-    let warnings = known::lasting(case, &model.system(&model.loaded(&zeros))?);
+    let system = model.system(&model.loaded(&zeros))?;
+    let warnings = known::lasting(case, &system, &characteristic::numbers(case, &system.model));
     let mut problems = [Problem {
         line: None,
         forward: Box::new(model),

@@ -1,0 +1,85 @@
+//! Files of a folder that have their names, but are not on the disk itself yet: the disk is waited for once for all of them.
+
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::{mem, panic};
+
+use super::whole::{Wait, Whole, at_once};
+use super::{ResultFolder, fault};
+use crate::error::Result;
+
+/// What a folder has still to bring to the disk.
+#[derive(Debug, Default)]
+pub(super) struct Laid {
+    files: Mutex<Vec<Whole>>,
+    /// What is being brought there.
+    behind: Mutex<Option<JoinHandle<Result<()>>>>,
+}
+
+impl ResultFolder {
+    /// Writes a file whole or not at all, for everyone but a failing disk: [`ResultFolder::secure`] brings it there.
+    pub fn lay(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
+        self.tell_origin()?;
+        let target = self.path(name);
+        let file = Whole::fill(&target, |file| file.write_all(contents))?;
+        let file = file.name()?;
+        held(&self.laid.files, |files| files.push(file));
+        Ok(target)
+    }
+
+    /// Files that were laid, for whoever brings them to the disk along with others.
+    pub(crate) fn laid(&self) -> Vec<Whole> {
+        held(&self.laid.files, mem::take)
+    }
+
+    /// Brings files that were laid, and the names of all files, to the disk itself.
+    pub fn secure(&self) -> Result<()> {
+        self.tell_origin()?;
+        let brought = bring(&self.laid(), &self.dir);
+        self.secured_behind().and(brought)
+    }
+
+    /// The same while other things are done; [`ResultFolder::secure`] waits for it, and tells what became of it.
+    pub fn secure_behind(&self) -> Result<()> {
+        self.tell_origin()?;
+        self.secured_behind()?;
+        let (files, dir) = (self.laid(), self.dir.clone());
+        let behind = thread::spawn(move || bring(&files, &dir));
+        held(&self.laid.behind, |place| *place = Some(behind));
+        Ok(())
+    }
+
+    fn secured_behind(&self) -> Result<()> {
+        let behind = held(&self.laid.behind, Option::take).map(JoinHandle::join);
+        behind.map_or(Ok(()), |ended| {
+            ended.unwrap_or_else(|panicked| panic::resume_unwind(panicked))
+        })
+    }
+
+    /// Leaves nothing behind, whatever became of it.
+    pub(super) fn settle(&self) {
+        let files = self.laid();
+        if !files.is_empty() {
+            let _ = bring(&files, &self.dir);
+        }
+        let _ = held(&self.laid.behind, Option::take).map(JoinHandle::join);
+    }
+}
+
+/// Brings files and the names in a folder to the disk itself.
+fn bring(files: &[Whole], dir: &Path) -> Result<()> {
+    let names = || {
+        let sync = || File::open(dir)?.sync_all();
+        sync().map_err(|e| fault("write", dir, e))
+    };
+    let mut all: Vec<Wait> = files.iter().map(Whole::wait).collect();
+    all.push(Box::new(names));
+    at_once(all)
+}
+
+fn held<T, R>(what: &Mutex<T>, change: impl FnOnce(&mut T) -> R) -> R {
+    change(&mut what.lock().unwrap_or_else(PoisonError::into_inner))
+}
