@@ -74,7 +74,7 @@ fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
 
 /// Reads off what [`Readings`] holds, of an evaluated state. Loads that are weighed by [E78] leave at a node `M - h² M''/12`, at the one beside an end
 /// `M - h² M''/8`, and M itself at the ends; M'' there is that of the third node, which no end touches. Curvature follows from M, normal forces from
-/// strains.
+/// strains, shear forces where sections shear, too.
 pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if !system.mesh.fourth {
         return;
@@ -105,6 +105,14 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut R
             + now.rest_curvature(i);
         let published = system.model.published();
         readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
+    }
+    if !w.shape.sections.angle.is_empty() {
+        let section = &system.model.section;
+        let strains = w.shape.sections.shear.iter().zip(&w.shape.sections.shear_rate);
+        for (shear, (strain, rate)) in readings.shear.iter_mut().zip(strains) {
+            *shear = section.shear_stiffness * (strain + section.bending_damping_time * rate);
+        }
+        return;
     }
     for c in 0..last {
         let [known, read] = [moment, &readings.moment].map(|m| m[c] - m[c + 1]);

@@ -145,5 +145,7 @@ fn shearing(system: &System) -> f64 {
     let (s, h) = (&system.model.section, system.mesh.h);
     let (m, rotary) = (s.mass_per_length, s.mass_per_length * s.gyration_radius_squared);
     let per = 4.0 / (h * h);
-    (per * s.shear_stiffness / m + s.shear_stiffness / rotary + per * s.bending_stiffness / rotary).sqrt()
+    let [bending, shear] = stiffer(system).map(|more| more * more);
+    (shear * per * s.shear_stiffness / m + s.shear_stiffness / rotary + bending * per * s.bending_stiffness / rotary)
+        .sqrt()
 }

@@ -3,6 +3,7 @@
 use super::System;
 use super::readings::Readings;
 use super::residual::fourth;
+use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
 /// What an evaluation makes of the unknowns, in the order in which it is computed. Names follow the equations.
@@ -71,8 +72,10 @@ pub struct Sections<T> {
     pub normal: Vec<Planar<T>>,
     /// Shear strain γ.
     pub shear: Vec<T>,
-    /// `d gamma/dt` [1/s].
+    /// `d gamma/dt` [1/s], of the ends of cells.
     pub shear_rate: Vec<T>,
+    /// `(d3·e_n, d3·e_t)` where γ and 1 + ε are others, [E79]; empty without.
+    pub line: Vec<Planar<T>>,
 }
 
 /// Of the branches of a solid that relaxes, one after the other; empty without.
@@ -105,6 +108,10 @@ pub struct Forces<T> {
     pub viscous_normal: Vec<T>,
     /// Shear force V [N].
     pub shear: Vec<T>,
+    /// Viscous part of it [N], on a mesh of fourth order; empty without.
+    pub viscous_shear: Vec<T>,
+    /// What [E79] adds to (V, N), or for small rotations to the force across [N]; empty without.
+    pub arc_section: Vec<Planar<T>>,
     /// Section force in lab axes [N].
     pub section: Vec<Planar<T>>,
     /// What the published form adds at nodes, [E15] [N]; empty in the conservative one.
@@ -280,6 +287,8 @@ impl<T: Scalar> Workspace<T> {
         let s = system.fluid.as_ref().map_or(0, |_| system.mesh.segments);
         let relaxation = &system.layout.relaxation;
         let sheared = system.layout.turning.angle.len();
+        let bent = fourth::bends_its_cells(system);
+        let finite = system.model.kinematics == Kinematics::FiniteRotation;
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
@@ -315,6 +324,7 @@ impl<T: Scalar> Workspace<T> {
                     normal: vectors(sheared),
                     shear: zeros(sheared),
                     shear_rate: zeros(sheared),
+                    line: vectors(if bent && finite { sheared } else { 0 }),
                 },
             },
             relaxed: Relaxed {
@@ -331,13 +341,19 @@ impl<T: Scalar> Workspace<T> {
                 normal: zeros(c),
                 viscous_normal: zeros(c),
                 shear: zeros(c),
+                viscous_shear: zeros(if system.mesh.fourth && system.damped {
+                    sheared
+                } else {
+                    0
+                }),
+                arc_section: vectors(if bent { sheared } else { 0 }),
                 section: vectors(c),
                 formulation: vectors(if system.model.published() { n } else { 0 }),
                 relaxing_moment: zeros(relaxation.curvature.len().min(n)),
                 relaxing_normal: zeros(relaxation.stretch.len().min(c)),
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 turning: zeros(sheared),
-                arc_moment: zeros(if fourth::bends_its_cells(system) { n } else { 0 }),
+                arc_moment: zeros(if bent { n } else { 0 }),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },

@@ -109,7 +109,8 @@ fn the_ledger_closes_for_a_quasi_static_solid() {
     all_combinations(r#"{"solid_inertia":"off"}"#, 0..3);
 }
 
-/// `[E77]` `[E79]` Goal: the same on meshes of fourth order, both formulations, finite and small rotations, with and without stretch.
+/// `[E77]` `[E79]` Goal: the same on meshes of fourth order, both formulations, finite and small rotations, with and without stretch, sections
+/// that shear and do not.
 #[test]
 fn the_ledger_closes_of_fourth_order() {
     let order = "/mesh/order=4";
@@ -135,6 +136,20 @@ fn the_ledger_closes_of_fourth_order() {
         closes(what, &[ends, CONSERVATIVE, RECIPROCAL, small]);
     }
     closes(ENDS[1].0, &[ENDS[1].1, CONSERVATIVE, RECIPROCAL, inextensible]);
+    let stiff = "/beam/shear_stiffness_n=300";
+    let sheared = [
+        r#"/effects={"shear":"on","rotary_inertia":"on"}"#,
+        r#"/effects={"shear":"on","rotary_inertia":"off"}"#,
+        r#"/effects={"shear":"on","finite_rotation":"off","rotary_inertia":"on"}"#,
+    ];
+    for ((what, ends), cells) in ENDS.into_iter().zip([2, 3, 1, 2, 2]) {
+        let cells = format!("/mesh/cells_per_segment={cells}");
+        for effects in sheared {
+            closes(what, &[ends, RECIPROCAL, stiff, effects, &cells]);
+        }
+    }
+    let inextensible = r#"/effects={"shear":"on","finite_rotation":"off","axial_stretch":"off","rotary_inertia":"on"}"#;
+    closes(ENDS[1].0, &[ENDS[1].1, RECIPROCAL, stiff, inextensible]);
 }
 
 /// Goal: the same where sections shear, with fluid, whatever they turn against and however small rotations are.

@@ -122,6 +122,32 @@ fn a_large_tip_force() {
     }
 }
 
+/// Source: [`shot`]. Goal: ten cells of fourth order are nearer to the same cantilevers than a hundred and sixty of second order, and where cells are
+/// halved a sixteenth is left. Tolerance: an observed order above 3.4.
+#[test]
+fn a_large_tip_force_at_fourth_order() {
+    let load = EI / (L * L);
+    for force in [[2.5 * load, 0.0], [2.0 * load, 2.0 * load], [0.8 * load, -1.2 * load]] {
+        let exact = shot(force);
+        let ends = json!({"root": "clamped", "tip": {"free": {"force_x_n": force[0], "force_z_n": force[1]}}});
+        let error = |order: u8, segments: usize| {
+            let mut case = block(KGA, &on(segments, &ends));
+            case["mesh"]["order"] = json!(order);
+            let tip = at_rest(&case, &["tip_u1", "tip_u3", "tip_angle"]).0;
+            let off = [
+                (tip[0] - exact[0]) / L,
+                (tip[1] - (exact[1] - L)) / L,
+                tip[2] - exact[2],
+            ];
+            off.iter().fold(0.0_f64, |most, off| most.max(off.abs()))
+        };
+        let [coarse, fine, second] = [error(4, 10), error(4, 20), error(2, 160)];
+        let order = (coarse / fine).log2();
+        println!("{force:?}: {coarse:.1e} {fine:.1e}, order {order:.2}; of second order {second:.1e}");
+        assert!(coarse < second && order > 3.4, "{force:?}: {coarse} {fine} {second}");
+    }
+}
+
 /// Source: a moment alone bends without shear. Goal: two full turns, which angles of sections count, to 1e-9.
 #[test]
 fn a_moment_rolls_it_up() {

@@ -82,12 +82,37 @@ fn unknowns_and_their_jacobian() {
     }
 }
 
-/// Goal: the same with fluid, whose pressures bend what is damped.
+/// What fourth order goes with, of [`laden`].
+fn laden_of_fourth_order(effects: &Value, full: bool) -> Value {
+    let mut case = laden(effects, full);
+    let own = case.as_object_mut().unwrap();
+    own.shift_remove("attachments");
+    own["mesh"]["order"] = json!(4);
+    own["beam"].as_object_mut().unwrap().shift_remove("viscoelasticity");
+    case
+}
+
+/// Goal: the Jacobian is that of the residual on meshes of fourth order, in every kinematics, with and without damping.
+#[test]
+fn the_jacobian_of_fourth_order() {
+    for effects in kinds() {
+        for full in [false, true] {
+            let mut dae = BeamDae::new(System::new(&parse(&laden_of_fourth_order(&effects, full))).unwrap());
+            assert!(dae.system().mesh.fourth);
+            for (seed, size) in [(1, 0.3), (2, 0.1)] {
+                let worst = worst_difference(&mut dae, seed, size);
+                assert!(worst < 1e-6, "{effects} {full}: {worst:e}");
+            }
+        }
+    }
+}
+
+/// Goal: the same with fluid, whose pressures bend what is damped, of both orders.
 #[test]
 fn the_jacobian_with_fluid() {
     let ends = json!(["connected", "sealed"]);
     let turbine = json!({"from": {"bladder": 1, "end": "inlet"}, "to": {"bladder": -1, "end": "inlet"}, "conductance": {"m3_s_pa": 5e-10}});
-    let case = json!({
+    let mut case = json!({
         "name": "shaken", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.05},
         "beam": {"shear_stiffness_n": 91.2, "damping": {"bending_time_s": 2e-3, "axial_time_s": 2e-3}},
         "network": {"chains": [{"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ends},
@@ -95,14 +120,17 @@ fn the_jacobian_with_fluid() {
         "ends": {"root": {"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 11}}}}, "tip": "free"},
         "time": {"end_s": 1}
     });
-    for seed in 1..=4 {
-        let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
-        let worst = worst_difference(&mut dae, seed, 0.3);
-        assert!(worst < 1e-6, "{worst:e}");
+    for order in [2, 4] {
+        case["mesh"] = json!({"cells_per_segment": order / 2, "order": order});
+        for seed in 1..=4 {
+            let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+            let worst = worst_difference(&mut dae, seed, 0.3);
+            assert!(worst < 1e-6, "{order}: {worst:e}");
+        }
     }
 }
 
-/// Goal: energy, momentum and angular momentum close with everything at once that turns sections, to 1e-6.
+/// Goal: energy, momentum and angular momentum close with everything at once that turns sections, to 1e-6, of both orders.
 #[test]
 fn balances_close() {
     for effects in kinds() {
@@ -112,6 +140,8 @@ fn balances_close() {
             }
             let (_, summary) = finished(&laden(&effects, full));
             close(&format!("{effects} {full}"), &summary, 1e-6);
+            let (_, summary) = finished(&laden_of_fourth_order(&effects, full));
+            close(&format!("{effects} {full}, of fourth order"), &summary, 1e-6);
         }
     }
 }

@@ -188,7 +188,11 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
         );
         if let Some(rate) = w.shape.sections.shear_rate.get(c) {
             let viscous = section.shear_stiffness * section.bending_damping_time;
-            add(out, EnergyRate::Damping, h * viscous * rate * rate);
+            let loss = match w.forces.viscous_shear.get(c) {
+                Some(force) => h * force * rate,
+                None => h * viscous * rate * rate,
+            };
+            add(out, EnergyRate::Damping, loss);
         }
         if turned_across(system) {
             let turning = (w.motion.v[c + 1].z - w.motion.v[c].z) * turning_rate(system, w, c);
@@ -227,6 +231,7 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 /// Kinetic and elastic energy, that of shear with that of bending.
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
+    let sheared = system.model.effects.has(Effect::Shear);
     let mut e = Energies::default();
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
@@ -255,11 +260,21 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
                 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness
             };
         }
+        if mesh.fourth && sheared {
+            continue;
+        }
         if let Some(shear) = w.shape.sections.shear.get(c) {
             e.bending += 0.5 * mesh.h * section.shear_stiffness * shear * shear;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
+        }
+    }
+    if mesh.fourth && sheared {
+        e.bending += 0.5 * mesh.h * section.shear_stiffness * fourth::squares(&w.shape.sections.shear);
+        if system.model.effects.has(Effect::RotaryInertia) {
+            let inertia = section.mass_per_length * section.gyration_radius_squared;
+            e.rotary += 0.5 * mesh.h * inertia * fourth::squares(&w.shape.angle_rate);
         }
     }
     e

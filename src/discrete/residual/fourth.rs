@@ -1,5 +1,6 @@
 //! A beam whose mesh leaves out what is of fourth order.
 
+use super::arcs;
 use super::bending::pressure_curvature;
 use super::solid::node_stretch;
 use crate::case::schema::Effect;
@@ -46,17 +47,30 @@ pub fn moments<T: Scalar>(mesh: &Mesh, now: &TimeData, moment: &mut [T]) {
     }
 }
 
-/// Normal forces of cells, likewise.
-pub fn normal_forces<T: Scalar>(normal: &mut [T]) {
-    let last = normal.len() - 1;
+/// Normal forces of cells, likewise; of sections that shear V, and what resists their turning.
+pub fn of_cells<T: Scalar>(values: &mut [T]) {
+    let last = values.len() - 1;
     let mut before = T::zero();
     for c in 0..last {
-        let weight = if c == 0 || c + 1 == last { 0.125 } else { 1.0 / 12.0 };
-        let step = (normal[c + 1] - normal[c]) * weight;
-        normal[c] += before - step;
+        let step = (values[c + 1] - values[c]) * cell_weight(c, last);
+        values[c] += before - step;
         before = step;
     }
-    normal[last] += before;
+    values[last] += before;
+}
+
+/// `g` of the node behind cell `c` of those up to `last`.
+#[inline]
+pub fn cell_weight(c: usize, last: usize) -> f64 {
+    if c == 0 || c + 1 == last { 0.125 } else { 1.0 / 12.0 }
+}
+
+/// Sum over cells of the mean squares of what has these means: `Σ x_c² + Σ_i g_i (x_i+ - x_i-)²`.
+pub fn squares(means: &[f64]) -> f64 {
+    let last = means.len() - 1;
+    let apart = means.windows(2).enumerate();
+    let within = apart.map(|(c, pair)| cell_weight(c, last) * (pair[1] - pair[0]).powi(2));
+    means.iter().map(|x| x * x).sum::<f64>() + within.sum::<f64>()
 }
 
 /// `[E79]` Between the ends of a cell the line of a beam that bends is longer than their distance, and steeper and less steep than straight:
@@ -68,7 +82,11 @@ pub fn normal_forces<T: Scalar>(normal: &mut [T]) {
 /// beside an end whose moment is given that of the other node, κ of the end being no unknown. What N does by it is a moment,
 /// `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the cells beside the node.
 pub fn arcs<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    if !bends_its_cells(system) {
+    if !bends_its_cells(system) || !system.model.effects.has(Effect::AxialStretch) {
+        return;
+    }
+    if system.model.effects.has(Effect::Shear) {
+        arcs::strains(system, now, w);
         return;
     }
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
@@ -97,16 +115,23 @@ pub fn arc<T: Scalar>(system: &System, now: &TimeData, kappa: &[T], cell: usize)
     (kappa[cell].squared() * left + kappa[cell + 1].squared() * right) * (system.mesh.h * system.mesh.h / 48.0)
 }
 
-/// Its rate [1/s].
-pub fn arc_rate(system: &System, now: &TimeData, w: &Workspace<f64>, cell: usize) -> f64 {
+/// The same of a beam that turns little, whether or not its sections shear, and its rate [1/s].
+pub fn small_arc(system: &System, now: &TimeData, w: &Workspace<f64>, cell: usize) -> [f64; 2] {
+    if system.model.effects.has(Effect::Shear) {
+        return [
+            arcs::of_line(system, &w.shape, cell),
+            arcs::rate_of_line(system, w, cell),
+        ];
+    }
     let [left, right] = shares(system, now, cell);
     let of = |node: usize| 2.0 * w.shape.kappa[node] * w.shape.kappa_rate[node];
-    (left * of(cell) + right * of(cell + 1)) * (system.mesh.h * system.mesh.h / 48.0)
+    let rate = (left * of(cell) + right * of(cell + 1)) * (system.mesh.h * system.mesh.h / 48.0);
+    [arc(system, now, &w.shape.kappa, cell), rate]
 }
 
 /// Weights of the squares at a cell's two nodes.
 #[inline]
-fn shares(system: &System, now: &TimeData, cell: usize) -> [f64; 2] {
+pub fn shares(system: &System, now: &TimeData, cell: usize) -> [f64; 2] {
     if cell == 0 && now.ends[0].slope.is_none() {
         [0.0, 2.0]
     } else if cell + 1 == system.mesh.cells && now.ends[1].slope.is_none() {
@@ -116,9 +141,9 @@ fn shares(system: &System, now: &TimeData, cell: usize) -> [f64; 2] {
     }
 }
 
-/// What N does by [`arcs`].
+/// What N does by [`arcs`], where sections stay across the beam.
 pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    if !bends_its_cells(system) {
+    if !bends_its_cells(system) || system.model.effects.has(Effect::Shear) {
         return;
     }
     let mesh = &system.mesh;
@@ -180,8 +205,6 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
-    } else if model.effects.has(Effect::Shear) {
-        "a beam that shears is of second order"
     } else if !model.relaxation.is_empty() {
         "a solid that relaxes is of second order"
     } else if model.strain_energy().is_some() {

@@ -1,5 +1,6 @@
 //! The semi-discrete equations in the paper's order: what lies between two instants is nothing but this.
 
+pub mod arcs;
 pub mod around;
 pub mod bar;
 pub mod bending;

@@ -1,9 +1,10 @@
 //! The beam that shears: its sections turn by angles of their own.
 
 use super::bending::total_moment_drop;
-use super::relaxation;
 use super::solid::{couple, lines, normal_force};
+use super::{arcs, fourth, relaxation};
 use crate::case::schema::Effect;
+use crate::discrete::workspace::Sections;
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
@@ -72,8 +73,9 @@ pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         let sections = &mut w.shape.sections;
         if finite {
             let normal = sections.normal[c];
-            w.shape.stretch_rate[c] = d3_t.dot(normal) - sections.shear[c] * turning;
-            sections.shear_rate[c] = d3_t.dot(normal.normal()) + (w.shape.strain[c] + 1.0) * turning;
+            let line = sections.of_ends(c, w.shape.strain[c]);
+            w.shape.stretch_rate[c] = d3_t.dot(normal) - line.x * turning;
+            sections.shear_rate[c] = d3_t.dot(normal.normal()) + line.z * turning;
         } else {
             sections.shear_rate[c] = turning - d3_t.x;
         }
@@ -82,19 +84,32 @@ pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// Shear forces, section forces, and what turns sections.
 pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    shears(system, w);
+    shears(system, now, w);
     section_forces(system, now, w);
 }
 
 /// Shear forces with their viscous and relaxing parts.
-fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let viscous = section.shear_stiffness * section.bending_damping_time;
     let sections = &w.shape.sections;
     for (force, shear) in w.forces.shear.iter_mut().zip(&sections.shear) {
         *force = *shear * section.shear_stiffness;
     }
-    if viscous > 0.0 {
+    if system.mesh.fourth {
+        fourth::of_cells(&mut w.forces.shear);
+        arcs::forces(system, now, w);
+        if viscous > 0.0 {
+            for (force, rate) in w.forces.viscous_shear.iter_mut().zip(&w.shape.sections.shear_rate) {
+                *force = *rate * viscous;
+            }
+            fourth::of_cells(&mut w.forces.viscous_shear);
+            for (force, viscous) in w.forces.shear.iter_mut().zip(&w.forces.viscous_shear) {
+                *force += *viscous;
+            }
+        }
+    } else if viscous > 0.0 {
+        let sections = &w.shape.sections;
         for (force, rate) in w.forces.shear.iter_mut().zip(&sections.shear_rate) {
             *force += *rate * viscous;
         }
@@ -111,18 +126,27 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
     for c in 0..system.mesh.cells {
-        let (normal, shear) = (normal_force(system, w, c), w.forces.shear[c]);
+        let (mut normal, mut shear) = (normal_force(system, w, c), w.forces.shear[c]);
+        let more = w.forces.arc_section.get(c).copied();
+        if let Some(more) = more.filter(|_| finite) {
+            normal += more.z;
+            shear += more.x;
+        }
         let mut turning = shear;
         if finite {
             let e_t = w.shape.sections.normal[c];
             w.forces.section[c] = e_t.times(normal) + e_t.normal().times(shear);
-            turning = shear * (w.shape.strain[c] + 1.0) - normal * w.shape.sections.shear[c];
+            let line = w.shape.sections.of_ends(c, w.shape.strain[c]);
+            turning = shear * line.z - normal * line.x;
         } else {
-            let across = if tension {
+            let mut across = if tension {
                 normal * w.shape.d3[c].x - shear
             } else {
                 -shear
             };
+            if let Some(more) = more {
+                across += more.x;
+            }
             w.forces.section[c] = Planar::new(across, normal);
         }
         if system.has_moments {
@@ -134,6 +158,17 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     bodies::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
 }
 
+impl<T: Scalar> Sections<T> {
+    /// `(γ, 1 + ε)` of the ends of a cell whose ε is this.
+    #[inline]
+    pub fn of_ends(&self, cell: usize, strain: T) -> Planar<T> {
+        match self.line.get(cell) {
+            Some(line) => *line,
+            None => Planar::new(self.shear[cell], strain + 1.0),
+        }
+    }
+}
+
 /// The balance of moments of each section.
 pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let section = &system.model.section;
@@ -143,6 +178,15 @@ pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
         r[row] = -w.forces.turning[c];
         if resists {
             r[row] += w.shape.sections.acceleration[c] * inertia;
+        }
+    }
+    if resists && system.mesh.fourth {
+        let first = system.layout.turning.moments().start;
+        let last = system.mesh.cells - 1;
+        for (c, pair) in w.shape.sections.acceleration.windows(2).enumerate() {
+            let step = (pair[1] - pair[0]) * (inertia * fourth::cell_weight(c, last));
+            r[first + c] -= step;
+            r[first + c + 1] += step;
         }
     }
 }

@@ -123,8 +123,9 @@ pub fn foreshorten(
             v -= outward * w.shape.d3[cell].x * (w.motion.v[cell + 1].x - w.motion.v[cell].x);
         }
         if fourth::bends_its_cells(system) {
-            u -= outward * h * fourth::arc(system, now, &w.shape.kappa, cell);
-            v -= outward * h * fourth::arc_rate(system, now, w, cell);
+            let [longer, rate] = fourth::small_arc(system, now, w, cell);
+            u -= outward * h * longer;
+            v -= outward * h * rate;
         }
         (w.motion.u[node].z, w.motion.v[node].z) = (u, v);
     }

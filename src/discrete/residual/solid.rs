@@ -185,9 +185,9 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         }
     }
     if system.mesh.fourth {
-        fourth::normal_forces(&mut w.forces.normal);
+        fourth::of_cells(&mut w.forces.normal);
         if section.axial_damping_time > 0.0 {
-            fourth::normal_forces(&mut w.forces.viscous_normal);
+            fourth::of_cells(&mut w.forces.viscous_normal);
         }
     }
 }

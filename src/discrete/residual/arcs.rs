@@ -1,0 +1,163 @@
+//! Cells of sections that shear, whose ends tell strains of a beam that is straight between them: those of fourth order.
+
+use super::fourth::{bends_its_cells, shares};
+use crate::case::schema::Effect;
+use crate::discrete::workspace::Shape;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::model::Kinematics;
+use crate::numerics::{Planar, Scalar};
+
+/// [E79] of [E63]: θ, ε and γ of a cell are its means. Its ends tell `(λ, γ) = (d3·e_t, d3·e_n)`, λ = 1 + ε, as if θ were the same all over it;
+/// sections that turn within the cell make more of both,
+///
+/// ```text
+/// (λ, γ)_c gains (λ, γ)_c h²/24 mean(κ²) + h/24 Σ_i κ_i (Δγ_i, -Δλ_i)        Δ from the cell before node i to that behind, i the cell's nodes
+/// small rotations   e gains g h²/24 mean(u1''²)      h u1''_i = Δu1'_i         γ is the mean
+/// ```
+///
+/// which leaves out what is of the order `h^4`: of the mean of r' = λ e_t + γ e_n, `h²/12 θ' (γ', -λ')` is what λ and γ change while sections turn.
+/// An end, and a node between segments that pressure stretches apart, has no Δ: the cell's other node stands for it. Forces and moments are
+/// derivatives of the energy: those of [E79] with `N λ + V γ`, and
+///
+/// ```text
+/// (N, V) of the cell behind node i gains κ_i h/24 (-ΣV, ΣN), of that before it the opposite, ΣN and ΣV over both
+/// M_i gains (ΣN Δγ_i - ΣV Δλ_i) h/24
+/// ```
+///
+/// where what acts on nodes and turns sections goes with λ and γ of the ends.
+pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if system.model.kinematics != Kinematics::FiniteRotation {
+        for c in 0..system.mesh.cells {
+            let longer = of_line(system, &w.shape, c);
+            w.shape.strain[c] += longer;
+        }
+        return;
+    }
+    let cells = system.mesh.cells;
+    for c in 0..cells {
+        let [left, right] = shares(system, now, c);
+        let bent = w.shape.kappa[c].squared() * left + w.shape.kappa[c + 1].squared() * right;
+        let longer = bent * (system.mesh.h * system.mesh.h / 48.0);
+        let e_t = w.shape.sections.normal[c];
+        let line = Planar::new(w.shape.d3[c].dot(e_t.normal()), w.shape.d3[c].dot(e_t));
+        w.shape.sections.line[c] = line;
+        w.shape.sections.shear[c] += line.x * longer;
+        w.shape.strain[c] += line.z * longer;
+    }
+    for node in 1..cells {
+        let change = change(system, &w.shape, node);
+        for (cell, share) in beside(system, node) {
+            w.shape.sections.shear[cell] -= change.z * share;
+            w.shape.strain[cell] += change.x * share;
+        }
+    }
+}
+
+/// `(Δγ, Δλ) κ h/24` of a node.
+#[inline]
+fn change<T: Scalar>(system: &System, shape: &Shape<T>, node: usize) -> Planar<T> {
+    let line = &shape.sections.line;
+    (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.h / 24.0))
+}
+
+/// The cells beside a node between cells, with its weight in each.
+#[inline]
+fn beside(system: &System, node: usize) -> [(usize, f64); 2] {
+    let weight = |node: usize, other: usize| match (smooth(system, node), smooth(system, other)) {
+        (false, _) => 0.0,
+        (true, true) => 1.0,
+        (true, false) => 2.0,
+    };
+    [(node - 1, weight(node, node - 1)), (node, weight(node, node + 1))]
+}
+
+/// Whether λ is smooth at a node.
+fn smooth(system: &System, node: usize) -> bool {
+    let mesh = &system.mesh;
+    let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
+    node > 0 && node < mesh.cells && !(pressed && node.is_multiple_of(mesh.cells_per_segment))
+}
+
+/// What N and V, elastic parts, do by [`strains`]: to the moments of nodes, to section forces of cells.
+pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if !bends_its_cells(system) {
+        return;
+    }
+    let (shape, forces) = (&w.shape, &mut w.forces);
+    let mesh = &system.mesh;
+    if system.model.kinematics != Kinematics::FiniteRotation {
+        forces.arc_section.fill(Planar::zero());
+        for node in 1..mesh.cells {
+            let mut both = T::zero();
+            for cell in [node - 1, node] {
+                both += forces.normal[cell] * line_share(mesh.cells, cell, node);
+            }
+            let force = both * (shape.d3[node].x - shape.d3[node - 1].x) * (1.0 / 24.0);
+            forces.arc_section[node].x += force;
+            forces.arc_section[node - 1].x -= force;
+        }
+        return;
+    }
+    forces.arc_moment.fill(T::zero());
+    for c in 0..mesh.cells {
+        let shares = shares(system, now, c);
+        let (line, force) = (shape.sections.line[c], Planar::new(forces.shear[c], forces.normal[c]));
+        let both = line.dot(force) * (mesh.h * mesh.h / 24.0);
+        let mut bent = T::zero();
+        for (node, share) in [c, c + 1].into_iter().zip(shares) {
+            bent += shape.kappa[node].squared() * share;
+            forces.arc_moment[node] += shape.kappa[node] * both * (share * mesh.h / mesh.node_length(node));
+        }
+        forces.arc_section[c] = force.times(bent * (mesh.h * mesh.h / 48.0));
+    }
+    let per_node = mesh.h / 24.0;
+    for node in 1..mesh.cells {
+        let mut both = Planar::zero();
+        for (cell, share) in beside(system, node) {
+            both += Planar::new(forces.shear[cell], forces.normal[cell]) * share;
+        }
+        let handed = Planar::new(both.z, -both.x).times(shape.kappa[node] * per_node);
+        forces.arc_section[node] += handed;
+        forces.arc_section[node - 1] -= handed;
+        let line = shape.sections.line[node] - shape.sections.line[node - 1];
+        forces.arc_moment[node] += (both.z * line.x - both.x * line.z) * per_node;
+    }
+}
+
+/// By how much the line of a cell is longer than its ends are apart, for small rotations, a share of that.
+#[inline]
+pub fn of_line<T: Scalar>(system: &System, shape: &Shape<T>, cell: usize) -> T {
+    let mut sum = T::zero();
+    for node in [cell, cell + 1] {
+        let share = line_share(system.mesh.cells, cell, node);
+        if share > 0.0 {
+            sum += (shape.d3[node].x - shape.d3[node - 1].x).squared() * (share / 48.0);
+        }
+    }
+    sum
+}
+
+/// Its rate [1/s].
+pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
+    let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h;
+    let of = |node: usize| {
+        let share = line_share(system.mesh.cells, cell, node);
+        if share == 0.0 {
+            return 0.0;
+        }
+        (w.shape.d3[node].x - w.shape.d3[node - 1].x) * (turned(node) - turned(node - 1)) * (share / 24.0)
+    };
+    of(cell) + of(cell + 1)
+}
+
+/// Weight of a node in [`of_line`]: at an end `u1''` is not known.
+#[inline]
+fn line_share(cells: usize, cell: usize, node: usize) -> f64 {
+    if node == 0 || node == cells {
+        0.0
+    } else if cell == 0 || cell + 1 == cells {
+        2.0
+    } else {
+        1.0
+    }
+}
