@@ -119,8 +119,8 @@ RODS = {
     "Exudyn": ("swing", "exudyn", [2, 4, 8, 16], [1, 2, 4, 8, 16], ACCURACIES, None),
 }
 OWN_CELLS = ["1", "2", "4", "8", "16"]
-# Of fourth order, where nothing shears.
-OWN_FOURTH = {"swing": ["1/4", "2/4", "4/4"]}
+# Of fourth order.
+OWN_FOURTH = {"swing": ["1/4", "2/4", "4/4"], "dry-cantilever-sheared": ["1/4", "2/4", "4/4", "8/4"]}
 
 
 def measure_rods(all):

@@ -101,8 +101,8 @@ fn differences(a: &Value, b: &Value, at: &str, tolerance: f64, found: &mut Vec<S
     }
 }
 
-/// The cheap figures, run and drawn anew. 5 %: with the published coupling the work put in is the small difference of
-/// what swings to and fro, and its error at rtol 1e-5 depends on the steps, which another build may choose otherwise.
+/// The cheap figures, run and drawn anew. 5 %: errors at the tolerances of the cases depend on the steps, which another
+/// build may choose otherwise.
 #[test]
 fn the_numbers_of_the_cheap_figures_come_out_again() {
     let dir = TempDir::new().unwrap();
