@@ -243,6 +243,10 @@ impl Dae for BeamDae {
             _ => return vec![], // inertia across alone does not turn
         };
         let [across, along] = l.lines.each_ref().map(|line| line.free.clone());
+        let kept = [&across, &along].map(|free| free.len() == self.system.mesh.nodes);
+        if kept[0] != kept[1] {
+            return vec![]; // no turn keeps momentum in one direction alone
+        }
         let both = across.start.max(along.start)..across.end.min(along.end);
         let vectors = blocks.into_iter().filter(|_| !both.is_empty()).map(|[x, z]| {
             let (x, z) = (x + both.start - across.start, z + both.start - along.start);
@@ -250,7 +254,7 @@ impl Dae for BeamDae {
                 across: x..x + both.len(),
                 along: z..z + both.len(),
                 node: both.start,
-                free: both.len() == self.system.mesh.nodes,
+                free: kept == [true; 2],
                 size: l.scales[z] / l.scales[x],
                 row_size: l.row_scales[z] / l.row_scales[x],
             }

@@ -17,7 +17,7 @@ pub struct Vectors {
     pub along: Range<usize>,
     /// Node of the first.
     pub node: usize,
-    /// Whether no node is held, so that momentum is kept: only where all turn alike do iterations keep it exactly.
+    /// Whether no node is held: momentum is kept then, and by iterations to round-off only where all nodes turn alike.
     pub free: bool,
     /// Size of an unknown along, over that of one across.
     pub size: f64,

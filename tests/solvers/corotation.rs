@@ -127,13 +127,20 @@ fn a_matrix_turns_with_the_beam() {
     }
 }
 
-/// Beams that are not turned with their forces have no vectors: of small rotations, and with inertia across alone.
+/// Beams that are not turned with their forces have no vectors: of small rotations, with inertia across alone, and with an end that keeps momentum in one
+/// direction. One that nothing holds turns as one.
 #[test]
 fn what_does_not_turn_has_no_vectors() {
-    for effects in [json!({"finite_rotation": "off"}), json!({"axial_inertia": "off"})] {
-        let dae = beam(&json!({ "effects": effects }));
-        assert!(dae.vectors().is_empty(), "{effects}");
+    let guided = json!({"root": "guided", "tip": "free"});
+    for form in [
+        json!({"effects": {"finite_rotation": "off"}}),
+        json!({"effects": {"axial_inertia": "off"}}),
+        json!({ "ends": guided }),
+    ] {
+        assert!(beam(&form).vectors().is_empty(), "{form}");
     }
+    let free = beam(&json!({"ends": {"root": "free", "tip": "free"}})).vectors();
+    assert!(free.len() == 2 && free.iter().all(|vectors| vectors.free));
 }
 
 /// What a run took: steps, times that Newton's iteration failed, matrices.
