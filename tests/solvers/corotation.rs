@@ -11,7 +11,7 @@ use slcbeam::discrete::System;
 use slcbeam::run::{dynamics, record::Memory, summary::Status};
 use slcbeam::sparse::Lu;
 
-use crate::chance::Random;
+use super::sundials::chance::Random;
 
 const CJ: f64 = 900.0;
 

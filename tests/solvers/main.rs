@@ -2,8 +2,6 @@
 
 mod blocks;
 mod bounds;
-#[path = "../common/chance.rs"]
-mod chance;
 mod corotation;
 mod numerics;
 mod onestep;
