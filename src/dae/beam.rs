@@ -1,9 +1,9 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
 use super::chain::{self, Chain, LANES};
-use super::corotation;
 use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
+use crate::discrete::residual::around::mean_direction;
 use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
 use crate::model::Kinematics;
@@ -248,7 +248,10 @@ impl Dae for BeamDae {
             return vec![]; // no turn keeps momentum in one direction alone
         }
         let both = across.start.max(along.start)..across.end.min(along.end);
-        let vectors = blocks.into_iter().filter(|_| !both.is_empty()).map(|[x, z]| {
+        if both.is_empty() {
+            return vec![];
+        }
+        let vectors = blocks.into_iter().map(|[x, z]| {
             let (x, z) = (x + both.start - across.start, z + both.start - along.start);
             Vectors {
                 across: x..x + both.len(),
@@ -267,7 +270,11 @@ impl Dae for BeamDae {
         let cells = &self.plain.workspace.shape.tangent;
         let last = cells.len();
         out[0] = cells[0];
-        wide!(corotation::midway(cells, &mut out[1..]));
+        wide!({
+            for (out, pair) in out[1..].iter_mut().zip(cells.windows(2)) {
+                *out = mean_direction([pair[0], pair[1]]);
+            }
+        });
         if out.len() > last {
             out[last] = cells[last - 1];
         }

@@ -38,8 +38,6 @@ pub struct Vectors {
 #[derive(Clone, Debug)]
 pub struct Corotation {
     vectors: Vec<Vectors>,
-    /// Whether all nodes turn by one angle.
-    as_one: bool,
     /// Directions of nodes where the matrix was made.
     made: Vec<Planar<f64>>,
     /// And where it is used.
@@ -59,7 +57,6 @@ impl Corotation {
         let nodes = vectors.iter().map(|v| v.node + v.across.len()).max().unwrap_or(0);
         let straight = vec![Planar::new(0.0, 1.0); nodes];
         Self {
-            as_one: vectors.iter().any(|v| v.free),
             vectors,
             made: straight.clone(),
             now: straight,
@@ -80,9 +77,9 @@ impl Corotation {
             return;
         }
         dae.directions(&mut self.now);
-        if self.as_one {
+        if self.vectors.iter().any(|vectors| vectors.free) {
             let all = self.now.iter().fold(Planar::zero(), |sum, &one| sum + one);
-            self.now.fill(all * (1.0 / all.squared().sqrt()));
+            self.now.fill(all.unit());
         }
         if std::mem::take(&mut self.renewed) {
             self.made.copy_from_slice(&self.now);
@@ -121,15 +118,6 @@ impl Corotation {
             let size = size(vectors);
             wide!(turn(x, z, [cos, sin], [sense * size, sense / size]));
         }
-    }
-}
-
-/// Unit vectors midway between each of some unit vectors and the next.
-#[inline(always)]
-pub(super) fn midway(of: &[Planar<f64>], out: &mut [Planar<f64>]) {
-    for (out, pair) in out.iter_mut().zip(of.windows(2)) {
-        let both = pair[0] + pair[1];
-        *out = both * (1.0 / both.squared().sqrt());
     }
 }
 

@@ -69,6 +69,12 @@ impl<T: Scalar> Planar<T> {
         self.x.squared() + self.z.squared()
     }
 
+    /// Of length one, in its direction.
+    #[inline(always)]
+    pub fn unit(self) -> Self {
+        self.times(T::constant(1.0) / self.squared().sqrt())
+    }
+
     /// Angle to another, `(-π, π]`.
     #[inline(always)]
     pub fn angle_to(self, to: Self) -> T {

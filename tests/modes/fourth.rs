@@ -106,6 +106,18 @@ fn waves_along_are_of_fourth_order() {
     assert!(coarse < 4e-4 && (coarse / fine).log2() > 3.7, "{coarse} {fine}");
 }
 
+/// Pinned at both ends and stretched, of fourth order.
+fn stretched(cells: usize, stiffness: f64, strain: f64, kinematics: &str) -> Value {
+    let mut case = beam(cells, 4);
+    case["beam"]["axial_stiffness_factor"] = json!(stiffness / 1.2e5);
+    case["ends"] = json!({"root": "pinned", "tip": {"pinned": {"u3_m": strain}}});
+    case["start"] = json!({"u3_m": {"polynomial": {"coefficients": [0.0, strain]}}});
+    if kinematics == "small" {
+        case["effects"]["finite_rotation"] = json!("off");
+    }
+    case
+}
+
 /// `[E79]` A beam under tension, pinned at both ends: `ω² = β⁴ EI/m + N β²/m`; what the arc of a cell is longer than its chord is of second order there.
 #[test]
 fn tension_is_of_fourth_order() {
@@ -116,16 +128,7 @@ fn tension_is_of_fourth_order() {
         (beta.powi(4) + strain * stiffness * beta * beta).sqrt()
     });
     for kinematics in ["finite", "small"] {
-        let of = |cells| {
-            let mut case = beam(cells, 4);
-            case["beam"]["axial_stiffness_factor"] = json!(stiffness / 1.2e5);
-            case["ends"] = json!({"root": "pinned", "tip": {"pinned": {"u3_m": strain}}});
-            case["start"] = json!({"u3_m": {"polynomial": {"coefficients": [0.0, strain]}}});
-            if kinematics == "small" {
-                case["effects"]["finite_rotation"] = json!("off");
-            }
-            worst(&errors(&case, &exact))
-        };
+        let of = |cells| worst(&errors(&stretched(cells, stiffness, strain, kinematics), &exact));
         let [coarse, fine] = [of(20), of(40)];
         println!("{kinematics}: {coarse:.1e} {fine:.1e}");
         println!("order {:.2}", (coarse / fine).log2());
@@ -154,15 +157,9 @@ fn tension_of_what_shears_is_of_fourth_order() {
             square.sqrt()
         });
         let of = |cells| {
-            let mut case = beam(cells, 4);
-            case["beam"]["axial_stiffness_factor"] = json!(stiffness / 1.2e5);
+            let mut case = stretched(cells, stiffness, strain, kinematics);
             case["beam"]["shear_stiffness_n"] = json!(shear);
             case["effects"]["shear"] = json!("on");
-            case["ends"] = json!({"root": "pinned", "tip": {"pinned": {"u3_m": strain}}});
-            case["start"] = json!({"u3_m": {"polynomial": {"coefficients": [0.0, strain]}}});
-            if kinematics == "small" {
-                case["effects"]["finite_rotation"] = json!("off");
-            }
             worst(&errors(&case, &exact))
         };
         let [coarse, fine] = [of(20), of(40)];

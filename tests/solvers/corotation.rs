@@ -36,7 +36,7 @@ fn beam(form: &Value) -> BeamDae {
     BeamDae::new(System::new(&case).unwrap())
 }
 
-/// Vectors of a scaled state, each turned by an angle; places counted from the root where `lengths` tells how far along nodes stand.
+/// Vectors of a scaled state, each turned by an angle; places counted from the root where `along` tells how far along nodes stand.
 fn turned(of: &Vectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(usize) -> f64) {
     let (sin, cos) = angle.sin_cos();
     for k in 0..of.across.len() {
@@ -48,7 +48,7 @@ fn turned(of: &Vectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(us
 }
 
 /// `[E80]` A pinned beam, bent, stretched, filled and moving at random, then turned about its pin: its residual is the old one turned, and
-/// solutions with the old matrix, carried along, solve with its own. Tolerance: round-off. Published and conservative form, second and fourth order, with rotary inertia, that of nothing, and shear.
+/// solutions with the old matrix, carried along, solve with its own. Tolerance: round-off. Published and conservative form, second and fourth order, with rotary inertia, without any inertia, and with shear.
 #[test]
 fn a_matrix_turns_with_the_beam() {
     let forms = [
@@ -66,13 +66,9 @@ fn a_matrix_turns_with_the_beam() {
         let vectors = dae.vectors();
         assert!(!vectors.is_empty(), "{form}");
         let (h, scales) = (dae.system().mesh.h, dae.system().layout.scales.clone());
-        let moved: Vec<usize> = vectors
-            .iter()
-            .flat_map(|v| v.across.clone().chain(v.along.clone()))
-            .collect();
         let state = |random: &mut Random| -> Vec<f64> { (0..n).map(|_| 0.1 * random.between(-1.0, 1.0)).collect() };
         let (mut y, mut yp) = (state(&mut random), state(&mut random));
-        for &i in &moved {
+        for i in vectors.iter().flat_map(|v| v.across.clone().chain(v.along.clone())) {
             y[i] *= (0.5 * h / scales[i]).min(1.0);
         }
         let mut corotation = Corotation::new(&dae);

@@ -1,6 +1,6 @@
 //! Cells of sections that shear, whose ends tell strains of a beam that is straight between them: those of fourth order.
 
-use super::fourth::{bends_its_cells, shares};
+use super::fourth::{arc, bends_its_cells, shares};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::Shape;
 use crate::discrete::{System, TimeData, Workspace};
@@ -35,9 +35,7 @@ pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     }
     let cells = system.mesh.cells;
     for c in 0..cells {
-        let [left, right] = shares(system, now, c);
-        let bent = w.shape.kappa[c].squared() * left + w.shape.kappa[c + 1].squared() * right;
-        let longer = bent * (system.mesh.h * system.mesh.h / 48.0);
+        let longer = arc(system, now, &w.shape.kappa, c);
         let e_t = w.shape.sections.normal[c];
         let line = Planar::new(w.shape.d3[c].dot(e_t.normal()), w.shape.d3[c].dot(e_t));
         w.shape.sections.line[c] = line;
@@ -100,15 +98,12 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     }
     forces.arc_moment.fill(T::zero());
     for c in 0..mesh.cells {
-        let shares = shares(system, now, c);
         let (line, force) = (shape.sections.line[c], Planar::new(forces.shear[c], forces.normal[c]));
         let both = line.dot(force) * (mesh.h * mesh.h / 24.0);
-        let mut bent = T::zero();
-        for (node, share) in [c, c + 1].into_iter().zip(shares) {
-            bent += shape.kappa[node].squared() * share;
+        for (node, share) in [c, c + 1].into_iter().zip(shares(system, now, c)) {
             forces.arc_moment[node] += shape.kappa[node] * both * (share * mesh.h / mesh.node_length(node));
         }
-        forces.arc_section[c] = force.times(bent * (mesh.h * mesh.h / 48.0));
+        forces.arc_section[c] = force.times(arc(system, now, &shape.kappa, c));
     }
     let per_node = mesh.h / 24.0;
     for node in 1..mesh.cells {

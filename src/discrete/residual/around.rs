@@ -144,8 +144,7 @@ pub fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -
 /// Unit vector along the mean of two.
 #[inline(always)]
 pub fn mean_direction<T: Scalar>([one, other]: [Planar<T>; 2]) -> Planar<T> {
-    let mean = one + other;
-    mean.times(T::constant(1.0) / mean.squared().sqrt())
+    (one + other).unit()
 }
 
 /// Velocity with which a node meets what surrounds the beam: its own; along a beam that does not stretch that of its frame, [E28].
