@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 
-from workers import ACCURACIES, BUILT, LONG, PEER_GROUPS, PEERS, ROOT, ROUNDS, SCENES, TOLERANCES, error, peers, run, shown
+from workers import ACCURACIES, BUILT, LONG, PEER_GROUPS, PEERS, ROOT, ROUNDS, SCENES, TOLERANCES, error, peers, run, shown, timed
 
 
 # a run that takes longer is given up, and its method at tighter tolerances, too [s]
@@ -79,7 +79,7 @@ def compare(all, scene, points, python):
                 settings[key].append(settings[key][0])
                 continue
             name, method, rtol = key
-            ran = run(all[PEER_GROUPS[name][0]], scene, method, rtol)
+            ran = timed(all[PEER_GROUPS[name][0]], scene, method, rtol)
             settings[key].append(ran["seconds"] if ran else math.nan)
     table = {}
     for name, row in chosen.items():
@@ -161,7 +161,7 @@ def measure_rods(all):
             if None not in pair:
                 for _ in range(ROUNDS):
                     for k, (p, worker) in enumerate(zip(pair, ("peers", "rods"))):
-                        times[k].append(run(all[worker], p["scene"], p["method"], p["rtol"])["seconds"])
+                        times[k].append(timed(all[worker], p["scene"], p["method"], p["rtol"])["seconds"])
                 ratios.append(statistics.median(b / a for a, b in zip(*times)))
             for k, p in enumerate(pair):
                 if p:
