@@ -12,6 +12,8 @@ pub struct SortedLinks {
     pub others: Vec<usize>,
     /// Those of either kind with a valve that opens and shuts.
     pub valves: Vec<usize>,
+    /// Those of either kind from or to a port: no other leads out of its component of the network.
+    pub at_ports: Vec<usize>,
 }
 
 impl SortedLinks {
@@ -21,10 +23,16 @@ impl SortedLinks {
             link.number
                 .is_some_and(|number| network.links[number].opening.is_some())
         };
+        let ends = |link: &MeshLink| {
+            [link.from, link.to]
+                .into_iter()
+                .any(|place| matches!(place, Place::Port(_)))
+        };
         let mut sorted = Self {
             between_cells: vec![],
             others: vec![],
             valves: (0..links.len()).filter(|&k| opens(&links[k])).collect(),
+            at_ports: (0..links.len()).filter(|&k| ends(&links[k])).collect(),
         };
         for (k, link) in links.iter().enumerate() {
             match (link.from, link.to) {

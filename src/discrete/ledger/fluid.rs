@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{ENERGY_RATES, EnergyRate, add, compressed, tubes};
+use super::{ENERGY_RATES, EnergyRate, Rates, add, add_all, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{MeshBridge, Place};
 use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
@@ -10,7 +10,7 @@ use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace, let_in};
 use crate::model::bladder::{kink_curvature, kink_slope};
-use crate::model::network::{LinkKind, Network, Node};
+use crate::model::network::{LinkKind, Network};
 use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
 
 /// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
@@ -221,31 +221,9 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
             }
         }
     };
-    for (n, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
-        let q = w.fluid.flow[n];
-        let volume = w.fluid.at_mean_density(n, q);
-        let in_halves = volume * volume * link.half_cells;
-        if let Some(pump) = link.pump {
-            add(out, EnergyRate::Ports, volume * now.pump_pressure[pump]);
-        }
-        let [in_valve, in_bladders, rest] = match &link.flow {
-            None => {
-                let between = volume * driving(link, now, w, n) - in_halves;
-                tubes::creeping(link, [conductance, volume, between])
-            }
-            Some(flow) => tubes::dissipation(link, flow, [now.resistance[n], volume, driven(link, now, w, n)], n, w),
-        };
-        add(out, EnergyRate::Bladders, in_halves + in_bladders);
-        add(out, EnergyRate::Rectifiers, in_valve);
-        add(
-            out,
-            if matches!(link.kind, Some(LinkKind::Turbine(_))) {
-                EnergyRate::Turbines
-            } else {
-                EnergyRate::Tubes
-            },
-            rest,
-        );
+    add_all(out, along_links(fluid, now, w));
+    for &k in &fluid.sorted.at_ports {
+        let (link, q, conductance) = (&fluid.links[k], w.fluid.flow[k], now.conductance[k]);
         let surplus = beyond_stored(w, conductance, [component(link.from), component(link.to)]);
         let ends = [link.from, link.to].map(|place| wet.potential(pressure_at(place, now, w)).abs());
         let size = ends[0].max(ends[1]);
@@ -274,6 +252,33 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let q = through_bridge(wet, fluid, b, now, w);
         cross(from, to, [q, q, 0.0], out);
     }
+}
+
+/// What flow along links dissipates and harvests, and the power of pumps.
+fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
+    let mut rates = Rates::default();
+    for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
+        let volume = w.fluid.at_mean_density(k, w.fluid.flow[k]);
+        let in_halves = volume * volume * link.half_cells;
+        if let Some(pump) = link.pump {
+            add(&mut rates, EnergyRate::Ports, volume * now.pump_pressure[pump]);
+        }
+        let [in_valve, in_bladders, rest] = match &link.flow {
+            None => {
+                let between = volume * driving(link, now, w, k) - in_halves;
+                tubes::creeping(link, [conductance, volume, between])
+            }
+            Some(flow) => tubes::dissipation(link, flow, [now.resistance[k], volume, driven(link, now, w, k)], k, w),
+        };
+        add(&mut rates, EnergyRate::Bladders, in_halves + in_bladders);
+        add(&mut rates, EnergyRate::Rectifiers, in_valve);
+        let of_rest = match link.kind {
+            Some(LinkKind::Turbine(_)) => EnergyRate::Turbines,
+            _ => EnergyRate::Tubes,
+        };
+        add(&mut rates, of_rest, rest);
+    }
+    rates
 }
 
 /// Rate of what the bladders of a lumped network store [m^3/s].
@@ -361,16 +366,10 @@ fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     for (one, rate) in fluid.accumulators.iter().zip(&w.fluid.accumulated_rate) {
         w.fluid.volume_defect[one.component] -= rate;
     }
-    for (link, conductance) in fluid.links.iter().zip(&now.conductance) {
-        let Some(link) = link.number.map(|number| &network.links[number]) else {
-            continue;
-        };
-        let inside = match (link.from, link.to) {
-            (Node::Port(_), node) | (node, Node::Port(_)) => network.component_of(node),
-            _ => None,
-        };
-        if let Some(component) = inside {
-            w.fluid.port_conductance[component] += conductance;
+    for &k in &fluid.sorted.at_ports {
+        let ends = [fluid.links[k].from, fluid.links[k].to];
+        for inside in ends.into_iter().filter_map(|end| component(network, fluid, end)) {
+            w.fluid.port_conductance[inside] += now.conductance[k];
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
 
-use super::{EnergyRate, add, add_rates, fluid, ports, solid};
+use super::{EnergyRate, add, add_all, add_rates, fluid, ports, solid};
 use crate::discrete::kick::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
@@ -40,8 +40,8 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
 pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     add_rates(system, now, yp, w);
-    let rates = fluid::rates(system, w, out);
-    solid::flows(system, now, rates, w, out);
+    let curvature_rate = fluid::rates(system, w, out);
+    add_all(out, solid::flows(system, now, curvature_rate, w));
     fluid::lumped_jump(system, now, w, out);
     ports::lumped_jump(system, w, out);
     for flow in [

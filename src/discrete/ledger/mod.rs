@@ -69,6 +69,9 @@ pub const ENERGY_RATES: [EnergyRate; 13] = [
     EnergyRate::AngularImpulse,
 ];
 
+/// One of each.
+type Rates = [f64; ENERGY_RATES.len()];
+
 impl EnergyRate {
     /// Sign with which the flow enters the energy balance; 0 for impulses.
     pub fn energy_sign(self) -> f64 {
@@ -202,8 +205,8 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     add_rates(system, now, yp, w);
-    let rates = fluid::rates(system, w, out);
-    solid::flows(system, now, rates, w, out);
+    let curvature_rate = fluid::rates(system, w, out);
+    add_all(out, solid::flows(system, now, curvature_rate, w));
     fluid::flows(system, now, w, out);
     ports::rates(system, now, w, out);
 }
@@ -250,6 +253,13 @@ pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
         momentum: [momentum.x, momentum.z],
         angular_momentum,
         volumes: stored::volumes(system, &w),
+    }
+}
+
+/// Adds to all flows.
+fn add_all(out: &mut [f64], rates: Rates) {
+    for (out, rate) in out.iter_mut().zip(rates) {
+        *out += rate;
     }
 }
 

@@ -1,6 +1,6 @@
 //! The beam's part of the balances.
 
-use super::{Energies, EnergyRate, add};
+use super::{Energies, EnergyRate, Rates, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
@@ -15,9 +15,10 @@ pub fn flows(
     now: &TimeData,
     curvature_rate: impl Fn(&Workspace<f64>, usize) -> f64,
     w: &Workspace<f64>,
-    out: &mut [f64],
-) {
+) -> Rates {
     let (mesh, l) = (&system.mesh, &system.layout);
+    let mut rates = Rates::default();
+    let out = &mut rates;
     let last = mesh.nodes - 1;
     let published = system.model.published();
     for i in 0..=last {
@@ -30,7 +31,6 @@ pub fn flows(
             f += force;
         });
         let inertia = system.masses[i];
-        let missing = missing(system, w, i, f);
         if l.inertia && l.lines[1].v.is_none() {
             add(
                 out,
@@ -38,8 +38,10 @@ pub fn flows(
                 -inertia * a.z * (v.z - carried(system, now, w, i)),
             );
         }
-        for (axis, line) in l.lines.iter().enumerate() {
-            if !line.free.contains(&i) {
+        let held = l.lines.each_ref().map(|line| !line.free.contains(&i));
+        if held != [false; 2] {
+            let missing = missing(system, w, i, f);
+            for axis in (0..2).filter(|&axis| held[axis]) {
                 add(out, EnergyRate::Ends, missing[axis] * v[axis]);
                 f[axis] += missing[axis];
             }
@@ -61,10 +63,11 @@ pub fn flows(
     bodies(system, now, w, out);
     add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
     cells(system, now, w, published, out);
+    rates
 }
 
 /// Work and torque of bodies that turn with the beam, whose own momentum is no force from outside.
-fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
+fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) {
     for body in &system.bodies {
         add(out, EnergyRate::Loads, body.weight_power(system, now, w));
         let (force, torque) = body.outside(system, now, w);
@@ -104,7 +107,7 @@ fn bending(
     curvature_rate: &impl Fn(&Workspace<f64>, usize) -> f64,
     w: &Workspace<f64>,
     i: usize,
-    out: &mut [f64],
+    out: &mut Rates,
 ) {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let last = mesh.nodes - 1;
@@ -172,7 +175,7 @@ fn bending(
 }
 
 /// Distributed moments, viscous forces, and the published rotary term, over the cells.
-fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut [f64]) {
+fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut Rates) {
     let (h, section) = (system.mesh.h, &system.model.section);
     let rotary = section.mass_per_length * section.gyration_radius_squared;
     for c in 0..system.mesh.cells {
