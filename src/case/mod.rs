@@ -54,6 +54,6 @@ pub use presets::Preset;
 pub use render::render;
 pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
-pub use schema_json::schema_json;
+pub use schema_json::{schema_json, schema_of_resolved};
 pub use wording::{nearest, short};
 pub use written::{Written, is_table};

@@ -111,7 +111,12 @@ pub(super) fn section(of_case: bool) -> (Value, &'static str) {
     (schema, if of_case { "/section" } else { "" })
 }
 
-/// The schema of a case whose preset is filled in and whose remarks are gone, made once.
+/// The schema of a case whose preset is filled in and whose remarks are gone.
+pub fn schema_of_resolved() -> &'static Value {
+    &CASE
+}
+
+/// The same, made once.
 pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();

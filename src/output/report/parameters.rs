@@ -1,11 +1,8 @@
 //! The case as rows of a table: what each number is, by the descriptions of its schema.
 
-use std::collections::BTreeMap;
-
-use serde::Deserialize;
 use serde_json::{Value, json};
 
-use crate::case::schema_json;
+use crate::case::schema_of_resolved;
 use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Longest text of a value.
@@ -16,30 +13,26 @@ pub fn rows(text: &str) -> Vec<Value> {
     let Ok(case) = serde_json::from_str::<Value>(text) else {
         return vec![];
     };
-    // The program's own schema is one.
-    let schema: Schema = serde_json::from_value(schema_json()).unwrap_or_default();
+    let schema = Schema::of(schema_of_resolved());
     let mut out = vec![];
     if let Value::Object(all) = &case {
         for (key, value) in all {
             if !matches!(key.as_str(), "$schema" | "name" | "about") {
-                let own = schema.property(&schema, key);
-                walk(value, own, &schema, key, &format!("/{key}"), &mut out);
+                walk(value, schema.property(key), key, &format!("/{key}"), &mut out);
             }
         }
     }
     out
 }
 
-fn walk(value: &Value, schema: Option<&Schema>, root: &Schema, group: &str, pointer: &str, out: &mut Vec<Value>) {
-    let about = schema.map_or(String::new(), |s| s.described(root));
-    if let Value::Object(all) = value
+fn walk(value: &Value, schema: Option<Schema>, group: &str, pointer: &str, out: &mut Vec<Value>) {
+    let about = schema.map_or(String::new(), Schema::described);
+    if let (Value::Object(all), Some(schema)) = (value, schema)
         && !all.is_empty()
         && depth(value) <= 3
-        && schema.is_some()
     {
         for (key, inner) in all {
-            let own = schema.and_then(|s| s.property(root, key));
-            walk(inner, own, root, group, &format!("{pointer}/{key}"), out);
+            walk(inner, schema.property(key), group, &format!("{pointer}/{key}"), out);
         }
         return;
     }
@@ -88,45 +81,48 @@ fn number(x: f64, unit: &str) -> String {
     format!("{}{rest}", trimmed(digits))
 }
 
-/// What of a schema says what keys mean.
-#[derive(Default, Deserialize)]
-#[serde(default, rename_all = "camelCase")]
-struct Schema {
-    #[serde(rename = "$ref")]
-    reference: Option<String>,
-    #[serde(rename = "$defs")]
-    definitions: BTreeMap<String, Schema>,
-    description: Option<String>,
-    properties: BTreeMap<String, Schema>,
-    #[serde(rename = "else")]
-    otherwise: Option<Box<Schema>>,
-    any_of: Vec<Schema>,
-    one_of: Vec<Schema>,
-    all_of: Vec<Schema>,
+/// A part of a schema, as far as it says what keys mean.
+#[derive(Clone, Copy)]
+struct Schema<'a> {
+    part: &'a Value,
+    definitions: &'a Value,
 }
 
-impl Schema {
-    /// The schema behind a reference.
-    fn resolved<'a>(&'a self, root: &'a Self) -> &'a Self {
-        let name = self.reference.as_ref().and_then(|r| r.strip_prefix("#/$defs/"));
-        name.and_then(|name| root.definitions.get(name)).unwrap_or(self)
-    }
-
-    /// Schema of a key, in the object itself or in one of its alternatives.
-    fn property<'a>(&'a self, root: &'a Self, key: &str) -> Option<&'a Self> {
-        let schema = self.resolved(root);
-        // A resolved case names no preset: what holds without one comes first.
-        let whole = schema.otherwise.as_ref().and_then(|s| s.properties.get(key));
-        if let Some(own) = whole.or_else(|| schema.properties.get(key)) {
-            return Some(own);
+impl<'a> Schema<'a> {
+    fn of(whole: &'a Value) -> Self {
+        Self {
+            part: whole,
+            definitions: &whole["$defs"],
         }
-        let mut branches = [&schema.any_of, &schema.one_of, &schema.all_of].into_iter().flatten();
-        branches.find_map(|branch| branch.property(root, key))
     }
 
-    fn described(&self, root: &Self) -> String {
-        let own = self.description.as_ref().or(self.resolved(root).description.as_ref());
-        own.map_or(String::new(), |text| text.replace('`', ""))
+    /// The part behind a reference.
+    fn resolved(self) -> Self {
+        let name = self.part["$ref"].as_str().and_then(|r| r.strip_prefix("#/$defs/"));
+        let part = name.and_then(|name| self.definitions.get(name)).unwrap_or(self.part);
+        Self { part, ..self }
+    }
+
+    /// What a key is, in the object itself or in one of its alternatives.
+    fn property(self, key: &str) -> Option<Self> {
+        let own = self.resolved();
+        if let Some(part) = own.part["properties"].get(key) {
+            return Some(Self { part, ..own });
+        }
+        let alternatives = ["anyOf", "oneOf", "allOf"]
+            .into_iter()
+            .filter_map(|of| own.part[of].as_array());
+        alternatives
+            .flatten()
+            .find_map(|part| Self { part, ..own }.property(key))
+    }
+
+    fn described(self) -> String {
+        let text = |one: Self| one.part["description"].as_str();
+        text(self)
+            .or(text(self.resolved()))
+            .unwrap_or_default()
+            .replace('`', "")
     }
 }
 
