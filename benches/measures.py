@@ -115,28 +115,29 @@ def measure_runs(all, python):
 
 # Beams on which peers have a discretisation of their own: scene, its peer, elements, steps an output interval, accuracies, times wanted.
 RODS = {
-    "PyElastica": ("dry-cantilever-sheared", "elastica", [10, 20, 40, 80, 160], [4, 8, 16, 32, 64], [1e-2, 3e-3, 1e-3], 100.0),
-    "Exudyn": ("swing", "exudyn", [2, 4, 8, 16], [1, 2, 4, 8, 16], ACCURACIES, None),
+    "PyElastica": (
+        "dry-cantilever-sheared", "elastica", [10, 14, 20, 28, 40, 56, 80, 113, 160], [4, 8, 16, 32, 64], [1e-2, 3e-3, 1e-3], 100.0,
+    ),
+    "Exudyn": ("swing", "exudyn", [2, 3, 4, 6, 8, 12, 16], [1, 2, 4, 8, 16], ACCURACIES, None),
 }
-OWN_CELLS = ["1", "2", "4", "8", "16"]
-# Of fourth order.
-OWN_FOURTH = {"swing": ["1/4", "2/4", "4/4"], "dry-cantilever-sheared": ["1/4", "2/4", "4/4", "8/4"]}
+# Cells of slcbeam's meshes, the finest of which tell the limit; of fourth order.
+OWN_CELLS, OWN_FOURTH, LIMIT = [10, 20, 40, 80, 160], [10, 14, 20, 28, 40, 56, 80], [160, 320]
 
 
 def measure_rods(all):
     """Error in space and time against the limit to which slcbeam's finest meshes point."""
     out = {"points": {}, "ratios": [], "rows": [["beam", "error", "slcbeam", "peer", "peer / slcbeam"]], "limits": []}
     for name, (scene, peer, elements, steps, accuracies, wanted) in RODS.items():
-        fine = [run(all["peers"], f"{scene}:{k}", "esdirk57", 1e-7, 120.0)["histories"][0] for k in (16, 32)]
+        fine = [run(all["peers"], f"{scene}*{cells}", "esdirk57", 1e-7, 120.0)["histories"][0] for cells in LIMIT]
         limit = [[b + (b - a) / 3.0 for a, b in zip(*fine)], [0.0]]
         own, theirs = [], []
-        for k in OWN_CELLS + OWN_FOURTH.get(scene, []):
-            for method in ("esdirk34", "esdirk46", "ida2"):
-                for rtol in (1e-1, 10**-1.5, 1e-2, 10**-2.5, 1e-3, 1e-4, 1e-5):
-                    ran = run(all["peers"], f"{scene}:{k}", method, rtol)
+        for mesh in [f"{scene}*{cells}" for cells in OWN_CELLS] + [f"{scene}*{cells}/4" for cells in OWN_FOURTH]:
+            for method in PEER_GROUPS["slcbeam"][1]:
+                for rtol in TOLERANCES[:9]:
+                    ran = run(all["peers"], mesh, method, rtol)
                     if ran:
                         e = error(ran["histories"], limit, (0,))
-                        own.append(dict(scene=f"{scene}:{k}", method=method, rtol=rtol, error=e, seconds=ran["seconds"]))
+                        own.append(dict(scene=mesh, method=method, rtol=rtol, error=e, seconds=ran["seconds"]))
                         if ran["seconds"] > 0.3:
                             break
         for n in elements:
@@ -166,8 +167,8 @@ def measure_rods(all):
             for k, p in enumerate(pair):
                 if p:
                     seconds = statistics.median(times[k]) if times[k] else p["seconds"]
-                    mesh, _, order = p["scene"].partition(":")[2].partition("/")
-                    mesh = mesh and f"{mesh} cell{'s' if mesh != '1' else ''} a segment{order and ' of fourth order'}, "
+                    count, _, order = p["scene"].partition("*")[2].partition("/")
+                    mesh = count and f"{count} cells{order and ' of fourth order'}, "
                     cells[k] = f"{shown(seconds)} `{p['method']}`, {mesh}{p['rtol']:.0e}"
             ratio = f"{ratios[-1]:.3g}" if None not in pair else "–"
             out["rows"].append([f"{name}, `{scene}`", f"{accuracy:.0e}", *cells, ratio])

@@ -136,18 +136,17 @@ pub fn root() -> std::path::PathBuf {
 }
 
 /// The case of a scene. Rotary inertia is left out, so that `F(t, y, y') = M y' - f(t, y)` with a constant diagonal `M`, the form
-/// that most peers take. `name:cells` has another mesh, `name:cells/4` one of fourth order, `name@end`
-/// another end, `dry-cantilever-sheared` shear and rotary inertia, `swing` is the dry cantilever let fall.
+/// that most peers take. `name:cells` has so many cells a segment, `name*segments` so many segments of one cell, with `/4` behind either
+/// they are of fourth order; `name@end` has another end, `dry-cantilever-sheared` shear and rotary inertia, `swing` is the dry cantilever let fall.
 pub fn case_of(name: &str) -> Case {
     let cut = |name, at| match str::split_once(name, at) {
         Some((name, value)) => (name, Some(value)),
         None => (name, None),
     };
     let (name, end) = cut(name, '@');
+    let (name, order) = cut(name, '/');
+    let (name, segments) = cut(name, '*');
     let (name, cells) = cut(name, ':');
-    let (cells, order) = cells.map_or((None, None), |cells| match cut(cells, '/') {
-        (cells, order) => (Some(cells), order),
-    });
     let plain = r#"/effects={"rotary_inertia":"off","finite_rotation":"on","axial_stretch":"on","axial_inertia":"on"}"#;
     let (file, sets): (&str, Vec<&str>) = match name {
         "shaken-sealed" => ("shaken-sealed", vec![plain]),
@@ -177,6 +176,8 @@ pub fn case_of(name: &str) -> Case {
     };
     let mut sets: Vec<String> = sets.into_iter().map(str::to_owned).collect();
     sets.extend(cells.map(|cells| format!("/mesh/cells_per_segment={cells}")));
+    let of_one_cell = |segments| [format!("/mesh/segments={segments}"), "/mesh/cells_per_segment=1".to_owned()];
+    sets.extend(segments.into_iter().flat_map(of_one_cell));
     sets.extend(order.map(|order| format!("/mesh/order={order}")));
     let times = |end| [format!("/time/end_s={end}"), format!("/time/window_s={end}")];
     sets.extend(end.into_iter().flat_map(times));
