@@ -5,12 +5,12 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
+use std::io::{self, BufWriter, Seek, Write};
 use std::os::unix::fs::FileExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use npyz::WriterBuilder;
+use npyz::{DType, NpyWriter, WriterBuilder as _};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
@@ -173,11 +173,11 @@ impl ArraysWriter {
         let mut npz = ZipWriter::new(BufWriter::new(file));
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
-            write_array(&mut npz, axis.name, &shape, axis.values.iter().map(|&x| Ok(x)))?;
+            write_array(&mut npz, axis.name, &shape, axis.values.iter().copied())?;
         }
-        write_array(&mut npz, TIMES, &[self.instants], self.times.stream()?)?;
+        self.times.pack(&mut npz, TIMES, &[self.instants])?;
         for (field, raw) in self.fields.iter().zip(&self.raw) {
-            write_array(&mut npz, field.name, &[self.instants, field.len as u64], raw.stream()?)?;
+            raw.pack(&mut npz, field.name, &[self.instants, field.len as u64])?;
         }
         npz.finish()?.flush()
     }
@@ -188,8 +188,22 @@ pub(super) fn write_array<W: Write + Seek>(
     npz: &mut ZipWriter<W>,
     name: &str,
     shape: &[u64],
-    values: impl Iterator<Item = io::Result<f64>>,
+    values: impl IntoIterator<Item = f64>,
 ) -> io::Result<()> {
+    let mut blocks = start_array(npz, name, shape)?;
+    let mut array = begin(&mut blocks, shape)?;
+    for value in values {
+        array.push(&value)?;
+    }
+    array.finish()?;
+    blocks.flush()
+}
+
+fn start_array<'a, W: Write + Seek>(
+    npz: &'a mut ZipWriter<W>,
+    name: &str,
+    shape: &[u64],
+) -> io::Result<BufWriter<&'a mut ZipWriter<W>>> {
     // Beyond 4 GiB the format needs its larger headers.
     let large = shape.iter().product::<u64>() * 8 > u64::from(u32::MAX) / 2;
     let options = SimpleFileOptions::default()
@@ -198,14 +212,17 @@ pub(super) fn write_array<W: Write + Seek>(
         .last_modified_time(DateTime::default())
         .large_file(large);
     npz.start_file(format!("{name}.npy"), options)?;
-    let mut blocks = BufWriter::with_capacity(BLOCK, npz);
-    let array = npyz::WriteOptions::<f64>::new().default_dtype().shape(shape);
-    let mut array = array.writer(&mut blocks).begin_nd()?;
-    for value in values {
-        array.push(&value?)?;
-    }
-    array.finish()?;
-    blocks.flush()
+    Ok(BufWriter::with_capacity(BLOCK, npz))
+}
+
+/// Writes the header of little-endian doubles.
+fn begin<W: Write>(out: W, shape: &[u64]) -> io::Result<NpyWriter<f64, W>> {
+    let doubles = DType::Plain("<f8".parse().map_err(io::Error::other)?);
+    npyz::WriteOptions::new()
+        .dtype(doubles)
+        .shape(shape)
+        .writer(out)
+        .begin_nd()
 }
 
 /// Little-endian doubles in a file, appended and read back.
@@ -263,16 +280,18 @@ impl RawFile {
         get().map_err(|e| fault("read", &self.path, e))
     }
 
-    /// All values, one after the other.
-    fn stream(&self) -> io::Result<impl Iterator<Item = io::Result<f64>>> {
-        let mut input = BufReader::with_capacity(BLOCK, File::open(&self.path)?);
-        Ok(std::iter::from_fn(move || {
-            let mut bytes = [0; 8];
-            match input.read_exact(&mut bytes) {
-                Ok(()) => Some(Ok(f64::from_le_bytes(bytes))),
-                Err(e) if e.kind() == io::ErrorKind::UnexpectedEof => None,
-                Err(e) => Some(Err(e)),
-            }
-        }))
+    /// All of it as an array of a zip archive, once it is flushed.
+    fn pack<W: Write + Seek>(&self, npz: &mut ZipWriter<W>, name: &str, shape: &[u64]) -> io::Result<()> {
+        let mut blocks = start_array(npz, name, shape)?;
+        // the header alone: its numbers are bytes already
+        drop(begin(&mut blocks, shape)?);
+        let (numbers, bytes) = (
+            shape.iter().product::<u64>(),
+            io::copy(&mut File::open(&self.path)?, &mut blocks)?,
+        );
+        if bytes != 8 * numbers {
+            return Err(damaged(format!("it holds {bytes} bytes and not {numbers} doubles")));
+        }
+        blocks.flush()
     }
 }

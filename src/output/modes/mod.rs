@@ -269,9 +269,9 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
     let system = found.about.system();
     let count = found.modes.len() as u64;
-    let one = |f: fn(&Mode) -> f64| found.modes.iter().map(move |m| Ok(f(m)));
+    let one = |f: fn(&Mode) -> f64| found.modes.iter().map(f);
     let nodes = system.mesh.nodes;
-    let theta = (0..nodes).map(|i| Ok(system.mesh.node_coordinate(i)));
+    let theta = (0..nodes).map(|i| system.mesh.node_coordinate(i));
     write_array(&mut npz, "theta_m", &[nodes as u64], theta)?;
     write_array(&mut npz, "growth_per_s", &[count], one(|m| m.s.re))?;
     write_array(&mut npz, "angular_frequency_per_s", &[count], one(|m| m.s.im))?;
@@ -288,7 +288,7 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
         }
         let values = |part: fn(&Complex<f64>) -> f64| {
             let all = found.modes.iter().flat_map(field);
-            all.map(move |x| Ok(part(x)))
+            all.map(part)
         };
         let shape = [count, places];
         write_array(

@@ -45,7 +45,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Col
                 break;
             }
             for ((_, array), values) in group.iter().zip(held) {
-                write_array(&mut npz, array, &[values.len() as u64], values.into_iter().map(Ok))?;
+                write_array(&mut npz, array, &[values.len() as u64], values)?;
             }
         }
         npz.finish()?.flush()
