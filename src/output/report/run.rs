@@ -1,6 +1,6 @@
 //! The page of a run, or of a cycle of `periodic`.
 
-use std::io;
+use std::{io, panic, thread};
 
 use serde_json::{Value, json};
 
@@ -32,7 +32,25 @@ pub fn data(place: &Place) -> Result<Page> {
         .as_ref()
         .map(|s| s.case.clone())
         .or_else(|| place.case.as_ref().map(|c| c.name.clone()));
-    let history = History::read(Recorded::of(place.dir, place.history))?;
+    let frequency = place
+        .case
+        .as_ref()
+        .and_then(characteristic::forcing_period)
+        .map(f64::recip);
+    let fields = place.path(FIELDS);
+    // fields in a thread of their own
+    let (motion, told) = thread::scope(|scope| {
+        let motion = scope.spawn(|| frames::read(&fields, frequency));
+        let told = History::read(Recorded::of(place.dir, place.history)).map(|history| {
+            let columns = history.json(beside(place, &history, frequency));
+            (history, columns)
+        });
+        (
+            motion.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)),
+            told,
+        )
+    });
+    let (history, columns) = told?;
     let name = name.as_deref().unwrap_or("unnamed");
     let mut page = match &summary {
         Some(summary) => {
@@ -41,14 +59,8 @@ pub fn data(place: &Place) -> Result<Page> {
         }
         None => place.page(Kind::Run, name, head.as_ref()),
     };
-    let frequency = place
-        .case
-        .as_ref()
-        .and_then(characteristic::forcing_period)
-        .map(f64::recip);
-    let fields = place.path(FIELDS);
     let mut notes: Vec<String> = vec![];
-    let motion = match frames::read(&fields, frequency) {
+    let motion = match motion {
         Ok(motion) => motion,
         Err(e) if e.kind() == io::ErrorKind::NotFound => Value::Null,
         // A folder whose arrays are damaged still has a history worth showing.
@@ -60,7 +72,7 @@ pub fn data(place: &Place) -> Result<Page> {
         }
     };
     page.put("motion", motion);
-    page.put("history", history.json(beside(place, &history, frequency)));
+    page.put("history", columns);
     match &summary {
         Some(summary) => fill(&mut page, summary, &history),
         None => {
