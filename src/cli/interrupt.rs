@@ -3,6 +3,12 @@
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::{flag as raise, low_level};
 
 use super::embedded;
 use crate::error::{Error, Result};
@@ -11,6 +17,9 @@ use crate::run::stop::{INTERRUPTED, Stop};
 
 /// Exit codes of shells for a program that a signal ended begin here.
 const SIGNAL: i32 = 128;
+
+/// Signals that follow the first within this are the same request: `timeout` signals a program and then the group that it is in, schedulers each of its processes.
+const ONE_REQUEST: Duration = Duration::from_millis(300);
 
 /// What the first signal leaves.
 #[derive(Default)]
@@ -21,23 +30,33 @@ struct Asked {
 
 static ASKED: OnceLock<Asked> = OnceLock::new();
 
-/// A flag that the first interrupt (or a request to terminate) raises; a second one ends the program at once.
+/// A flag that the first interrupt (or request to terminate) raises; a second one ends the program at once.
 pub fn flag() -> Arc<AtomicBool> {
     if let Some(theirs) = embedded::stop() {
         return theirs;
     }
     let asked = ASKED.get_or_init(|| {
         let asked = Asked::default();
-        for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            // When a handler cannot be installed, the signal ends the program as it would without one.
-            let _ =
-                signal_hook::flag::register_conditional_shutdown(signal, SIGNAL + signal, Arc::clone(&asked.raised));
-            let _ = signal_hook::flag::register_usize(signal, Arc::clone(&asked.signal), signal as usize);
-            let _ = signal_hook::flag::register(signal, Arc::clone(&asked.raised));
+        // When a handler cannot be installed, the signal ends the program as it would without one.
+        for signal in [SIGINT, SIGTERM] {
+            let _ = raise::register_usize(signal, Arc::clone(&asked.signal), signal as usize);
+            let _ = raise::register(signal, Arc::clone(&asked.raised));
+        }
+        if let Ok(signals) = Signals::new([SIGINT, SIGTERM]) {
+            let _ = thread::Builder::new().spawn(move || end_at_the_second(signals));
         }
         asked
     });
     Arc::clone(&asked.raised)
+}
+
+fn end_at_the_second(mut signals: Signals) {
+    let mut first = None;
+    for signal in &mut signals {
+        if first.get_or_insert_with(Instant::now).elapsed() > ONE_REQUEST {
+            low_level::exit(SIGNAL + signal);
+        }
+    }
 }
 
 /// The same for work that listens on its way.
@@ -64,5 +83,5 @@ pub fn code() -> Option<ExitCode> {
 /// A limit on the size of files is told as a fault of writing, by the name of the file, and does not end the program.
 pub fn outlive_limits() {
     let told = Arc::new(AtomicBool::new(false));
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, told);
+    let _ = raise::register(signal_hook::consts::SIGXFSZ, told);
 }

@@ -380,3 +380,63 @@ fn too_many_steps_end_the_run_with_a_diagnosis() {
     assert!(fault.at.time_s().is_some_and(|t| t > 0.0) && fault.cause.is_some() && fault.hint.is_some());
     assert!(!recorded.rows.is_empty());
 }
+
+fn signal(process: u32, name: &str) {
+    Command::new("kill")
+        .args([name, &process.to_string()])
+        .status()
+        .unwrap();
+}
+
+/// Goal: two signals at once, as `timeout` and batch systems send them, are one request: the run has its page, and the end is told. Before, the second ended
+/// the program wherever it was, mostly where several threads compute.
+#[test]
+fn two_signals_at_once_are_one_request() {
+    let dir = tempfile::tempdir().unwrap();
+    for attempt in 0..5 {
+        let out = dir.path().join(attempt.to_string());
+        let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+        let sampled = [
+            "--uncertain",
+            "/beam/young_modulus_pa=normal:2e6:1e5",
+            "--samples",
+            "4096",
+        ];
+        command
+            .args(["run", "cases/two-bladders.json", "--quiet", "--out"])
+            .arg(&out)
+            .args(sampled);
+        let run = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        while !out.join("summary.json").exists() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        std::thread::sleep(Duration::from_millis(100));
+        for _ in 0..2 {
+            signal(run.id(), "-TERM");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        let ended = run.wait_with_output().unwrap();
+        assert_eq!(ended.status.code(), Some(143));
+        assert!(String::from_utf8_lossy(&ended.stderr).contains("interrupted"));
+        assert!(out.join("report.html").exists());
+    }
+}
+
+/// Goal: a second request ends a program that does not look at the first, here one that sets up a large beam.
+#[test]
+fn a_second_request_ends_the_program_at_once() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+    command
+        .args(["run", "cases/dry-cantilever.json", "--quiet", "--out"])
+        .arg(&out);
+    command.args(["--set", "/mesh/segments=80", "--set", "/mesh/cells_per_segment=1000"]);
+    let run = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    signal(run.id(), "-INT");
+    std::thread::sleep(Duration::from_millis(400));
+    signal(run.id(), "-INT");
+    assert_eq!(run.wait_with_output().unwrap().status.code(), Some(130));
+    assert!(!out.join("summary.json").exists());
+}
