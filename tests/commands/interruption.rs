@@ -24,7 +24,7 @@ const SETS: [&str; 5] = [
     "/mesh/cells_per_bladder=1",
 ];
 
-fn program() -> Command {
+pub(super) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
     command
         .arg("run")
@@ -38,7 +38,7 @@ fn program() -> Command {
     command
 }
 
-fn summary(dir: &Path) -> serde_json::Value {
+pub(super) fn summary(dir: &Path) -> serde_json::Value {
     serde_json::from_str(&fs::read_to_string(dir.join("summary.json")).unwrap()).unwrap()
 }
 
@@ -244,73 +244,6 @@ fn wall_time_limit_stops_with_everything_written_and_can_be_resumed() {
     );
 }
 
-#[cfg(unix)]
-#[test]
-fn interrupt_stops_with_everything_written() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("interrupted");
-    let mut child = program()
-        .args(["--set", "/time/end_s=1000", "--set", "/time/output_interval_s=0.1"])
-        .args(["--set", "/time/fields_interval_s=0.1"])
-        .arg("--out")
-        .arg(&out)
-        .spawn()
-        .unwrap();
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while !out.join("history.csv").exists() {
-        assert!(Instant::now() < deadline);
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &child.id().to_string()])
-            .status()
-            .unwrap()
-            .success()
-    );
-    assert_eq!(child.wait().unwrap().code(), Some(130), "as shells say it");
-    let summary = summary(&out);
-    assert_eq!(summary["status"], "stopped");
-    assert!(summary["reason"].as_str().unwrap().contains("interrupted"));
-    assert!(out.join("fields.npz").exists());
-}
-
-/// Goal: a request to terminate has the exit code that shells give it, in every command that ends in order; here a path of equilibria, of which
-/// nothing is left to look at.
-#[cfg(unix)]
-#[test]
-fn a_request_to_terminate_has_its_own_exit_code() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
-        .args([
-            "equilibrium",
-            "cases/curl.json",
-            "--points",
-            "1000000",
-            "--quiet",
-            "--out",
-        ])
-        .arg(folder.path().join("path"))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // long before a million points are found, and after the signal is listened to
-    let handled = |id: u32| {
-        let status = fs::read_to_string(format!("/proc/{id}/status")).unwrap_or_default();
-        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:"));
-        caught.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap_or(0) & (1 << 14) != 0)
-    };
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while !handled(child.id()) {
-        assert!(Instant::now() < deadline && child.try_wait().unwrap().is_none());
-        std::thread::sleep(Duration::from_millis(2));
-    }
-    let killed = Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
-    assert!(killed.unwrap().success());
-    assert_eq!(child.wait().unwrap().code(), Some(143));
-}
-
 /// Goal: on a terminal the bar is gone when the box is drawn: nothing but what clears a line stands between the last bar and the box, and none
 /// comes after. `script` (util-linux, part of every Debian) plays the terminal.
 #[cfg(unix)]
@@ -379,64 +312,4 @@ fn too_many_steps_end_the_run_with_a_diagnosis() {
     let fault = outcome.fault.expect("the run cannot finish in 500 steps");
     assert!(fault.at.time_s().is_some_and(|t| t > 0.0) && fault.cause.is_some() && fault.hint.is_some());
     assert!(!recorded.rows.is_empty());
-}
-
-fn signal(process: u32, name: &str) {
-    Command::new("kill")
-        .args([name, &process.to_string()])
-        .status()
-        .unwrap();
-}
-
-/// Goal: two signals at once, as `timeout` and batch systems send them, are one request: the run has its page, and the end is told. Before, the second ended
-/// the program wherever it was, mostly where several threads compute.
-#[test]
-fn two_signals_at_once_are_one_request() {
-    let dir = tempfile::tempdir().unwrap();
-    for attempt in 0..5 {
-        let out = dir.path().join(attempt.to_string());
-        let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
-        let sampled = [
-            "--uncertain",
-            "/beam/young_modulus_pa=normal:2e6:1e5",
-            "--samples",
-            "4096",
-        ];
-        command
-            .args(["run", "cases/two-bladders.json", "--quiet", "--out"])
-            .arg(&out)
-            .args(sampled);
-        let run = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-        while !out.join("summary.json").exists() {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        std::thread::sleep(Duration::from_millis(100));
-        for _ in 0..2 {
-            signal(run.id(), "-TERM");
-            std::thread::sleep(Duration::from_millis(10));
-        }
-        let ended = run.wait_with_output().unwrap();
-        assert_eq!(ended.status.code(), Some(143));
-        assert!(String::from_utf8_lossy(&ended.stderr).contains("interrupted"));
-        assert!(out.join("report.html").exists());
-    }
-}
-
-/// Goal: a second request ends a program that does not look at the first, here one that sets up a large beam.
-#[test]
-fn a_second_request_ends_the_program_at_once() {
-    let dir = tempfile::tempdir().unwrap();
-    let out = dir.path().join("out");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
-    command
-        .args(["run", "cases/dry-cantilever.json", "--quiet", "--out"])
-        .arg(&out);
-    command.args(["--set", "/mesh/segments=80", "--set", "/mesh/cells_per_segment=1000"]);
-    let run = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    std::thread::sleep(Duration::from_millis(100));
-    signal(run.id(), "-INT");
-    std::thread::sleep(Duration::from_millis(400));
-    signal(run.id(), "-INT");
-    assert_eq!(run.wait_with_output().unwrap().status.code(), Some(130));
-    assert!(!out.join("summary.json").exists());
 }

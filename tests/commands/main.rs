@@ -9,6 +9,7 @@ mod output;
 #[path = "../common/program.rs"]
 mod program;
 mod report;
+mod signals;
 mod study;
 mod sweep;
 mod swung;
