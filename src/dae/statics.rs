@@ -83,6 +83,7 @@ impl StaticBeam {
 
     fn of(system: System, start: &[f64], pumped: &[[f64; 2]], kept: bool) -> Self {
         let mut beam = BeamDae::new(system);
+        beam.find_turns(0.0, start, &vec![0.0; start.len()]);
         let mut closed = closed(&mut beam, start);
         if kept {
             let volumes = &beam.instant(0.0).1.source_volume;

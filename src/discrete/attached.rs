@@ -1,6 +1,7 @@
 //! What is attached to the beam, on a mesh.
 
 use super::residual::momentum;
+use super::turns::nearest;
 use super::{Mesh, System, TimeData, Workspace};
 use crate::model::{Attachment, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
@@ -130,22 +131,29 @@ impl Attached {
         Planar::new(v.x * -self.damping.x, v.z * -self.damping.z)
     }
 
-    /// Angle at its rotational spring.
+    /// The cell before its rotational spring, if it has one.
+    pub(super) fn turns_at(&self) -> Option<usize> {
+        (self.turning_stiffness > 0.0).then_some(self.cells[0].0)
+    }
+
+    /// Angle at its rotational spring, full turns counted.
     #[inline]
-    fn angle<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
+    fn angle<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> T {
         let sections = &w.shape.sections.angle;
+        let near = now.turns.attached.get(self.number).copied().unwrap_or(0.0);
+        let direction = |cell: usize| w.shape.tangent[cell].x.atan2(w.shape.tangent[cell].z);
         let [a, b] = self.cells.map(|(cell, weight)| match system.model.kinematics {
             _ if !sections.is_empty() => sections[cell] * weight,
             Kinematics::Bar => T::zero(),
-            Kinematics::FiniteRotation => w.shape.tangent[cell].x.atan2(w.shape.tangent[cell].z) * weight,
+            Kinematics::FiniteRotation => nearest(direction(cell), near) * weight,
             Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[cell].x * weight,
         });
         a + b
     }
 
     /// Energy of its springs [J].
-    pub fn energy(&self, system: &System, w: &Workspace<f64>) -> f64 {
-        let (u, angle) = (self.between(&w.motion.u), self.angle(system, w));
+    pub fn energy(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+        let (u, angle) = (self.between(&w.motion.u), self.angle(system, now, w));
         let turning = self.turning_stiffness * angle * angle;
         0.5 * (self.stiffness.x * u.x * u.x + self.stiffness.z * u.z * u.z + turning)
     }
@@ -168,10 +176,15 @@ pub fn at_node(attached: &[Attached], node: usize) -> impl Iterator<Item = (&Att
 
 /// Couples per length of rotational springs, cell by cell [N].
 #[inline]
-pub fn turning<T: Scalar>(system: &System, w: &mut Workspace<T>, mut add: impl FnMut(T, usize, &mut Workspace<T>)) {
+pub fn turning<T: Scalar>(
+    system: &System,
+    now: &TimeData,
+    w: &mut Workspace<T>,
+    mut add: impl FnMut(T, usize, &mut Workspace<T>),
+) {
     let inverse = 1.0 / system.mesh.h;
     for attached in system.attached.iter().filter(|a| a.turning_stiffness > 0.0) {
-        let couple = attached.angle(system, w) * (attached.turning_stiffness * inverse);
+        let couple = attached.angle(system, now, w) * (attached.turning_stiffness * inverse);
         for (cell, weight) in attached.cells {
             if weight > 0.0 {
                 add(couple * weight, cell, w);
@@ -181,7 +194,10 @@ pub fn turning<T: Scalar>(system: &System, w: &mut Workspace<T>, mut add: impl F
 }
 
 /// Torque of all rotational springs on the beam, in the sense of growing φ [N m].
-pub fn torque(system: &System, w: &Workspace<f64>) -> f64 {
-    let couples = system.attached.iter().map(|a| a.turning_stiffness * a.angle(system, w));
+pub fn torque(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+    let couples = system
+        .attached
+        .iter()
+        .map(|a| a.turning_stiffness * a.angle(system, now, w));
     -couples.sum::<f64>()
 }

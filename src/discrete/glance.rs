@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::quantities::look;
+use super::turns::tip_angle;
 use super::workspace::Motion;
 use super::{State, System, TimeData, Workspace, ledger, touching};
 use crate::discrete::residual::solid::node_stretch;
@@ -92,7 +93,7 @@ impl Glance {
         set(Watched::Tip3, [w.motion.u[last].z, w.motion.v[last].z]);
         set(
             Watched::Angle,
-            [look::tip_angle(system, w), tip_angle_rate(system, now, w)],
+            [tip_angle(system, now, w), tip_angle_rate(system, now, w)],
         );
         let (a, b) = (last / 2, last.div_ceil(2));
         set(

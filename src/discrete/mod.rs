@@ -21,6 +21,7 @@ pub mod straight;
 pub mod time_data;
 pub mod touching;
 pub mod turning;
+pub mod turns;
 pub mod waves;
 pub mod workspace;
 

@@ -1,5 +1,6 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
+use super::turns::Turns;
 use super::{Statics, System, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Profile;
@@ -147,6 +148,8 @@ pub struct TimeData {
     clock: Option<Clock>,
     /// `c_j` of the implicit step that is tried, [`crate::dae::Dae::approach`]; 0 before there is one [1/s].
     pub cj: f64,
+    /// How far the beam had turned.
+    pub turns: Turns,
     /// Root and tip.
     pub ends: [EndData; 2],
     /// Force per length at each node [N/m].
@@ -194,6 +197,7 @@ impl TimeData {
         Self {
             clock: None,
             cj: 0.0,
+            turns: Turns::default(),
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],

@@ -7,6 +7,7 @@ use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
 use crate::discrete::quantities::{self, Extremes, Look, Observable, Row, probes, stations};
+use crate::discrete::turns::Turns;
 use crate::discrete::{State, System, TimeData};
 use crate::error::Result;
 use crate::model::mapping::NetworkCoordinate;
@@ -69,6 +70,9 @@ pub struct Observed {
     pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
+    /// How far the beam has turned at the end of the last step.
+    #[serde(default)]
+    pub turns: Turns,
     /// The last sample.
     #[serde(default)]
     pub row: Row,
@@ -164,6 +168,7 @@ impl Observer {
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
         self.before = Some(glance);
+        self.keep_turns(dae);
         self.limits.beyond(&glance)
     }
 
@@ -187,7 +192,13 @@ impl Observer {
             self.look_between(&before, &glance);
         }
         self.before = Some(glance);
+        self.keep_turns(dae);
         None
+    }
+
+    fn keep_turns(&mut self, dae: &mut BeamDae) {
+        dae.keep_turns();
+        self.seen.turns.clone_from(dae.turns());
     }
 
     /// Times [s] inside the step that [`Observer::arrive`] has seen, in order, at which to look as well.
@@ -325,7 +336,7 @@ impl Observer {
             now,
             w,
             stored: balance.stored,
-            at: Extremes::of(system, &w),
+            at: Extremes::of(system, now, &w),
         };
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;

@@ -76,7 +76,7 @@ fn read(system: &System, now: &TimeData, w: State, out: &mut Vec<f64>) {
         now,
         w,
         stored: Energies::default(),
-        at: Extremes::of(system, &w),
+        at: Extremes::of(system, now, &w),
     };
     out.clear();
     out.extend(TIP.iter().filter_map(|one| match one.read() {

@@ -237,7 +237,11 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e.accumulators = walls;
     e.tubes = tubes::kinetic(system, &w);
     e.contacts = touching::energy(system, &w);
-    e.springs = system.attached.iter().map(|attached| attached.energy(system, &w)).sum();
+    e.springs = system
+        .attached
+        .iter()
+        .map(|attached| attached.energy(system, now, &w))
+        .sum();
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)

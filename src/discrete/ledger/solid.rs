@@ -59,7 +59,7 @@ pub fn flows(
             bending(system, now, &curvature_rate, w, i, out);
         }
     }
-    add(out, EnergyRate::AngularImpulse, attached::torque(system, w));
+    add(out, EnergyRate::AngularImpulse, attached::torque(system, now, w));
     bodies(system, now, w, out);
     add(out, EnergyRate::Damping, relaxation::energy_and_loss(system, now, w)[1]);
     cells(system, now, w, published, out);

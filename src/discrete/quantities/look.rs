@@ -5,8 +5,8 @@ use crate::discrete::glance::Moving;
 use crate::discrete::ledger::{self, Energies};
 use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
+use crate::discrete::turns::tip_angle;
 use crate::discrete::{State, System, TimeData, Workspace};
-use crate::model::Kinematics;
 use crate::model::network::LinkKind;
 
 /// Where the largest and smallest values of a state are, and its slope angle at the tip: what a derivative holds on to.
@@ -20,7 +20,7 @@ pub struct Extremes {
 
 impl Extremes {
     /// Of the state in the workspace.
-    pub fn of(system: &System, w: &Workspace<f64>) -> Self {
+    pub fn of(system: &System, now: &TimeData, w: &Workspace<f64>) -> Self {
         let place = |values: &[f64], sign: f64| {
             let all = values.iter().enumerate();
             all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
@@ -30,7 +30,7 @@ impl Extremes {
             high: place(&w.fluid.pressure, 1.0),
             low: place(&w.fluid.pressure, -1.0),
             closed: place(w.fluid.area_changes(), -1.0),
-            angle: tip_angle(system, w),
+            angle: tip_angle(system, now, w),
         }
     }
 }
@@ -66,7 +66,7 @@ impl Look<'_> {
     /// Without full turns between it and the angle that is held on to.
     pub(super) fn tip_angle(&self) -> f64 {
         let turn = std::f64::consts::TAU;
-        let angle = tip_angle(self.system, &self.w);
+        let angle = tip_angle(self.system, self.now, &self.w);
         angle - turn * ((angle - self.at.angle) / turn).round()
     }
 
@@ -104,24 +104,6 @@ impl Look<'_> {
             power += wet.network.turbines[turbine].conductance * drop * drop;
         }
         power
-    }
-}
-
-/// `φ` of the tip, followed along the beam so that full turns count.
-pub(in crate::discrete) fn tip_angle(system: &System, w: &Workspace<f64>) -> f64 {
-    let last = system.mesh.nodes - 1;
-    let interior: f64 = w.shape.kappa[1..last].iter().sum();
-    first_angle(system, w) - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
-}
-
-/// `φ` of the first cell, of sections that shear θ.
-pub(super) fn first_angle(system: &System, w: &Workspace<f64>) -> f64 {
-    if let Some(angle) = w.shape.sections.angle.first() {
-        return *angle;
-    }
-    match system.model.kinematics {
-        Kinematics::Bar | Kinematics::FiniteRotation => w.shape.tangent[0].x.atan2(w.shape.tangent[0].z),
-        Kinematics::Linear | Kinematics::SmallRotation => w.shape.d3[0].x,
     }
 }
 

@@ -1,7 +1,8 @@
 //! Quantities at places that the case names.
 
-use super::look::{Look, first_angle, tip_angle};
+use super::look::Look;
 use crate::case::schema::{Case, Probe as Written};
+use crate::discrete::turns::{first_angle, tip_angle};
 use crate::discrete::{Mesh, System};
 
 /// A place of the beam, on a mesh.
@@ -131,7 +132,7 @@ impl Probe {
     fn angle(&self, look: &Look) -> f64 {
         let (kappa, h) = (&look.w.shape.kappa, look.system.mesh.h);
         let (node, share) = self.node;
-        let turns = look.tip_angle() - tip_angle(look.system, &look.w);
+        let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
         // from the midpoint of the first cell: nodes that are passed, and half of that at an end
         let passed: f64 = kappa[1..=node].iter().sum();
         let rest = match (node, share) {
@@ -139,7 +140,7 @@ impl Probe {
             (_, share) if share < 0.5 => (share - 0.5) * kappa[node],
             _ => (share - 0.5) * kappa[node + 1],
         };
-        first_angle(look.system, &look.w) - h * (passed + rest) + turns
+        first_angle(look.system, look.now, &look.w) - h * (passed + rest) + turns
     }
 
     /// `λ - 1 ± κ h_s/2`, κ beyond that at rest.

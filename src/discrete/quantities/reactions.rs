@@ -6,6 +6,7 @@ use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
+use crate::discrete::turns::{first_angle, nearest};
 
 /// What is told of an end or an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +68,10 @@ pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> {
             Told::Angle(k) => (
                 format!("turned_{}", ENDS[k]),
                 "rad",
-                format!("slope angle phi of the {}, which turns", ENDS[k]),
+                format!(
+                    "slope angle phi of the {}, which turns, counted over full turns",
+                    ENDS[k]
+                ),
             ),
             Told::Attached(k, axis) => (
                 format!("reaction_attachment_{}_{}", k + 1, AXES[axis]),
@@ -99,7 +103,7 @@ pub fn values(look: &Look, put: &mut impl FnMut(f64)) {
             }
             Told::Angle(k) => {
                 let tangent = end_tangent(system, now, w, node(k));
-                tangent.x.atan2(tangent.z)
+                nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w))
             }
             Told::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);

@@ -154,7 +154,7 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
         }
         w.forces.turning[c] = total_moment_drop(system, w, c) - turning * h;
     }
-    attached::turning(system, w, |couple, c, w| w.forces.turning[c] += couple * -h);
+    attached::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
     bodies::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
 }
 

@@ -154,6 +154,6 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             w.forces.section[c].x += (w.motion.a[c + 1].x - w.motion.a[c].x) * (inverse * inertia);
         }
     }
-    attached::turning(system, w, |couple, c, w| w.forces.section[c].x += couple);
+    attached::turning(system, now, w, |couple, c, w| w.forces.section[c].x += couple);
     bodies::turning(system, now, w, |couple, c, w| w.forces.section[c].x += couple);
 }

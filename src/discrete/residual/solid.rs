@@ -267,7 +267,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             add_couple(couple, c, w);
         }
     }
-    attached::turning(system, w, add_couple);
+    attached::turning(system, now, w, add_couple);
     bodies::turning(system, now, w, add_couple);
     if system.model.effects.has(Effect::RotaryInertia) {
         rotary_inertia(system, w);

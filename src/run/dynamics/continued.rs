@@ -35,6 +35,7 @@ pub fn go_on(
     run.prepare(&dae);
     run.state.copy_from_slice(y);
     run.rates.copy_from_slice(yp);
+    dae.find_turns(0.0, y, yp);
     if let (Some(forward), Some(along)) = (&mut run.forward, along) {
         forward.begin_from(&mut dae, along.s);
         if let Err(fault) = forward.complete(&mut dae, 0.0, [y, yp]) {

@@ -243,10 +243,12 @@ impl Run<'_> {
                         Err(end) => return Ok(self.finish(end)),
                     }
                 }
+                dae.find_turns(0.0, &self.state, &self.rates);
                 (0.0, 0)
             }
             Some(checkpoint) => {
                 self.take_up(checkpoint);
+                dae.hold_turns(&checkpoint.observed.turns);
                 (checkpoint.t, checkpoint.stop + 1)
             }
         };

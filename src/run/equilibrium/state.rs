@@ -80,7 +80,7 @@ impl State {
             now,
             w,
             stored: ledger::energies(system, now, w),
-            at: Extremes::of(system, &w),
+            at: Extremes::of(system, now, &w),
         };
         let others = [stations::columns(system, true).len(), probes::columns(system).count()];
         let mut read = Row::new(at_rest(system), others);
@@ -88,13 +88,15 @@ impl State {
         let row = std::iter::once(stage as f64 + share)
             .chain(read.values().iter().copied())
             .collect();
+        let [u1, u3] = [0, 1].map(|axis| w.motion.u.iter().map(|u| u[axis]).collect());
+        statics.beam().keep_turns();
         Self {
             stage,
             share,
             y: y.to_vec(),
             row,
-            u1: w.motion.u.iter().map(|u| u.x).collect(),
-            u3: w.motion.u.iter().map(|u| u.z).collect(),
+            u1,
+            u3,
             stability: None,
         }
     }

@@ -71,7 +71,7 @@ impl Forward<'_> {
             now,
             w,
             stored: ledger::energies(system, now, w),
-            at: Extremes::of(system, &w),
+            at: Extremes::of(system, now, &w),
         };
         let own: Vec<f64> = reads.iter().map(|read| read(&look)).collect();
         let probed: Vec<f64> = probes::values(&look).collect();
@@ -119,8 +119,8 @@ impl Forward<'_> {
         let mut integrals = self.carried.clone();
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();
-        let (system, _, w) = dae.evaluate(t, y, yp);
-        let at = Extremes::of(system, &w);
+        let (system, now, w) = dae.evaluate(t, y, yp);
+        let at = Extremes::of(system, now, &w);
         let reads = self.reads();
         self.row.clear();
         self.row.push(t);
