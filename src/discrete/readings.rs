@@ -121,16 +121,29 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut R
     }
 }
 
+/// By how much of `N'h` by which N turns into V the strains of the first cells are above those of the beam: what is left of 1/8 and -1/24 by the rows of [E77], whose
+/// g beside an end expects N to change by loads alone, which [E78] weighs.
+const TURNED: [f64; 4] = [0.108_514_123, -0.023_372_891, -0.001_678_098, -0.000_120_482];
+
 fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
+    let last = normal.len() - 1;
     if system.model.effects.has(Effect::AxialStretch) {
         for (c, normal) in normal.iter_mut().enumerate() {
             *normal = system.model.section.axial_stiffness * fourth::elastic_stretch(system, w, c);
+        }
+        if system.model.kinematics == Kinematics::FiniteRotation && w.shape.sections.angle.is_empty() {
+            let (n, tangent) = (&w.forces.section, &w.shape.tangent);
+            let near = n[1].dot(tangent[1] - tangent[0]);
+            let far = n[last - 1].dot(tangent[last] - tangent[last - 1]);
+            for (c, share) in TURNED.into_iter().enumerate() {
+                normal[c] -= share * near;
+                normal[last - c] += share * far;
+            }
         }
         return;
     }
     // what statics sums over nodes up to the middle of a cell, less what that lacks beside an end
     normal.copy_from_slice(&w.forces.normal);
-    let last = normal.len() - 1;
     let [near, far] = [normal[3] - normal[2], normal[last - 2] - normal[last - 3]];
     normal[0] += near / 8.0;
     normal[1] -= near / 24.0;

@@ -170,7 +170,7 @@ impl ArraysWriter {
     }
 
     fn pack(&self, file: &mut File) -> io::Result<()> {
-        let mut npz = ZipWriter::new(BufWriter::new(file));
+        let mut npz = ZipWriter::new(BufWriter::new(Patient::new(file)));
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
             write_array(&mut npz, axis.name, &shape, axis.values.iter().copied())?;
@@ -180,6 +180,43 @@ impl ArraysWriter {
             raw.pack(&mut npz, field.name, &[self.instants, field.len as u64])?;
         }
         npz.finish()?.flush()
+    }
+}
+
+/// What, once something could not be written, takes whatever comes for written: an archive that is given up then has no words of its own for it.
+pub(super) struct Patient<W> {
+    out: W,
+    failed: bool,
+}
+
+impl<W> Patient<W> {
+    pub(super) fn new(out: W) -> Self {
+        Self { out, failed: false }
+    }
+
+    fn tell<T>(&mut self, done: io::Result<T>, instead: T) -> io::Result<T> {
+        let told = self.failed;
+        self.failed |= done.as_ref().is_err_and(|e| e.kind() != io::ErrorKind::Interrupted);
+        if told { done.or(Ok(instead)) } else { done }
+    }
+}
+
+impl<W: Write> Write for Patient<W> {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        let done = self.out.write(buffer);
+        self.tell(done, buffer.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let done = self.out.flush();
+        self.tell(done, ())
+    }
+}
+
+impl<W: Seek> Seek for Patient<W> {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        let done = self.out.seek(to);
+        self.tell(done, 0)
     }
 }
 

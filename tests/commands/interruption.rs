@@ -299,6 +299,37 @@ fn full_disk_is_an_output_error_and_what_was_written_stays() {
     assert!(fs::metadata(out.join("history.csv")).unwrap().len() > 1000);
 }
 
+/// Goal: one sentence, where the disk is full while fields are packed, too, and one that says what is wrong with a link to nothing.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_while_fields_are_packed_is_told_in_one_sentence() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("full");
+    // no field alone is as large as this, all of them are
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 900; exec {} run {CASE} --quiet --set /time/fields_interval_s=5e-4 --out {}",
+        env!("CARGO_BIN_EXE_slcbeam"),
+        out.display()
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(5), "{told}");
+    assert!(told.contains("fields.npz") && !told.contains("ZipWriter"), "{told}");
+
+    let link = folder.path().join("link");
+    std::os::unix::fs::symlink(folder.path().join("nothing"), &link).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+        .args(["run", CASE, "--out"])
+        .arg(&link)
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.code() == Some(5) && told.contains("a symbolic link to what is not there"),
+        "{told}"
+    );
+}
+
 #[test]
 fn too_many_steps_end_the_run_with_a_diagnosis() {
     let sets: Vec<String> = SETS

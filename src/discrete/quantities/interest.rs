@@ -65,7 +65,7 @@ interest! {
     MidspanU1: "midspan_u1_m" ["m"], "deflection in the middle", Always, Source::Motion(&[Watched::Middle1]), [];
     LargestU1: "largest_u1_m" ["m"], "largest deflection", Always, Source::Motion(&[Watched::Largest1]), [];
     LargestU3: "largest_u3_m" ["m"], "largest axial displacement", Always, Source::Motion(&[Watched::Largest3]), [];
-    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure", Wet, Source::Motion(&[Watched::High, Watched::Low]),
+    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure in size, above or below that around", Wet, Source::Motion(&[Watched::High, Watched::Low]),
         [Observable::MaxPressure, Observable::MinPressure];
     InputEnergy: "input_energy_j" ["J"], "energy put in", Always, Source::Energy(Group::PutIn), [];
     HarvestedEnergy: "harvested_energy_j" ["J"], "energy harvested", Turbines, Source::Energy(Group::Harvested), [];

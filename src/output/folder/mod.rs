@@ -87,6 +87,10 @@ impl ResultFolder {
     /// It holds something else and `force` is not given, another process writes into it, or it cannot be made.
     pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
         let made = !dir.exists();
+        if made && dir.is_symlink() {
+            let why = "it is a symbolic link to what is not there";
+            return Err(fault("use", dir, io::Error::new(io::ErrorKind::NotFound, why)));
+        }
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let lock = Lock::take(dir)?;
         let older = Kind::within(dir);

@@ -8,7 +8,7 @@ use zip::ZipWriter;
 use super::journal::Survey;
 use super::{ARRAYS, numeric};
 use crate::error::Result;
-use crate::output::arrays::write_array;
+use crate::output::arrays::{Patient, write_array};
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::results::sweep::{Column, Plan};
 use crate::run::summary::Status;
@@ -30,7 +30,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Col
     let at_once = (HELD / rows.max(1)).max(1);
     let mut reading = Ok(());
     put_whole(&folder.path(ARRAYS), |file| {
-        let mut npz = ZipWriter::new(BufWriter::new(file));
+        let mut npz = ZipWriter::new(BufWriter::new(Patient::new(file)));
         for group in named.chunks(at_once) {
             let mut held = vec![Vec::with_capacity(rows); group.len()];
             let read = survey.each(|row| {

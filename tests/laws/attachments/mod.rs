@@ -6,6 +6,7 @@
 mod followers;
 mod refused;
 mod solids;
+mod turns;
 
 use std::path::Path;
 
