@@ -55,8 +55,8 @@ impl Search<'_> {
                 .as_ref()
                 .map_or(String::new(), |g| format!(" (it grows at {:.2} 1/s)", g.rate_per_s));
             let lost = Code::Accuracy.warning(format!(
-                "accuracy: {lost}: the motion{grows} is one of many that start alike, and cannot be followed to the end. Judged are root \
-                 mean squares and increments over the window, not single values"
+                "accuracy: {lost}: the motion{grows} is one of many that start alike, or takes tighter tolerances and meshes than these to be \
+                 followed to the end. Judged are root mean squares and increments over the window, not single values"
             ));
             summary.warnings.push(lost);
         }
