@@ -65,3 +65,20 @@ pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, reje
         )
     })
 }
+
+/// Steps from which on it is told that too many were rejected, and the part of them that is too many.
+const MANY: u64 = 200;
+const TOO_MANY: f64 = 1.0 / 3.0;
+
+/// A sentence when BDF's error test has rejected more than a third of many steps: it is stuck at short steps of low order, and what it makes of
+/// errors is not known. `chosen`: by the program.
+pub fn stuck(steps: u64, rejected: u64, chosen: bool) -> Option<String> {
+    let often = steps >= MANY && rejected as f64 > TOO_MANY * steps as f64;
+    let instead = if chosen { "esdirk46" } else { "auto" };
+    often.then(|| {
+        format!(
+            "IDA is stuck: its error test rejected {rejected} steps beside {steps} that it took, so that steps are short, their order is low, \
+             and how large errors are is not known: set /solver/method to {instead}"
+        )
+    })
+}

@@ -1,6 +1,7 @@
 //! The end of a run: what it cost and what its summary says.
 
 use super::{End, Outcome, Run};
+use crate::case::schema::Method;
 use crate::dae::BeamDae;
 use crate::discrete::quantities::Group;
 use crate::error::Code;
@@ -24,7 +25,11 @@ impl Run<'_> {
                 self.summary.time_s,
                 s.steps,
                 s.error_test_failures,
-            ),
+            )
+            .or_else(|| {
+                let chosen = self.case.solver.method == Method::Auto;
+                order::stuck(s.steps, s.error_test_failures, chosen)
+            }),
         };
     }
 
