@@ -184,8 +184,11 @@ impl Observer {
             return beyond;
         }
         self.readings.arrive(t, false, system, now, w);
-        self.watch(system, now, w, &glance, integrals);
+        let (_, open) = self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
+            if let Some(turning) = &mut self.seen.estimate.turning {
+                turning.see(system, now, w, t - before.t, open);
+            }
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
             self.seen.residuals.follow(system, now, w, t - before.t);
@@ -256,7 +259,7 @@ impl Observer {
         self.limits.beyond(&glance)
     }
 
-    /// Balances, growth and largest values of a state, in whatever order of time.
+    /// Balances, growth and largest values of a state, in whatever order of time; with what the balance of angular momentum leaves open [N m s].
     fn watch(
         &mut self,
         system: &System,
@@ -264,7 +267,7 @@ impl Observer {
         w: State,
         glance: &Glance,
         integrals: &[f64],
-    ) -> EnergyBalance {
+    ) -> (EnergyBalance, f64) {
         let stored = ledger::energies(system, now, w);
         let invariants = ledger::invariants(system, now, w);
         let (at_start, first) = self
@@ -273,7 +276,7 @@ impl Observer {
             .get_or_insert_with(|| (stored.total(), invariants.clone()));
         let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
-        residuals.take(system, w, &balance, [first, &invariants], integrals);
+        let angular = residuals.take(system, w, &balance, [first, &invariants], integrals);
         let least_force = w.normals().iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
             now,
@@ -284,7 +287,7 @@ impl Observer {
         );
         self.seen.figures.see(glance);
         self.seen.energies.see(glance.t, balance.residual);
-        balance
+        (balance, angular)
     }
 
     /// Notes where the cubics through the step's ends turn, wherever that may be beyond all that has been seen.
@@ -324,7 +327,7 @@ impl Observer {
         if let Some(what) = self.limits.beyond(&glance).filter(|_| !last) {
             return Ok(Sampled::Beyond(what));
         }
-        let balance = self.watch(system, now, w, &glance, integrals);
+        let (balance, _) = self.watch(system, now, w, &glance, integrals);
         // The last step's end is later, but where the run ends within the step.
         let before = self.before.filter(|before| before.t < t);
         self.seen.range.take(&self.limits, before.as_ref(), &glance);

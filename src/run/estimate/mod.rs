@@ -6,6 +6,8 @@
 //! resonance  a drive that comes near one which the mesh misplaces
 //! coupled    what sealed fluid does to them
 //! tolerance  what steps make of their tolerance
+//! turning    how far they turn a beam wrongly that nothing turns back
+//! couple     a rotational spring at an end whose moment is given
 //! work       energies that were put in and harvested
 //! young      a wave that has only begun to run along the beam
 //! words      what is said of it
@@ -22,10 +24,12 @@
 //! It is an order of magnitude, by linear theory: waves in the fluid and large rotations do more than it sees. Two runs on
 //! two meshes measure; `slcbeam run --accuracy` does that.
 
+pub mod couple;
 pub mod coupled;
 pub mod off;
 pub mod resonance;
 pub mod tolerance;
+pub mod turning;
 pub mod vibration;
 pub mod words;
 pub mod work;
@@ -46,9 +50,11 @@ use crate::discrete::straight::meshed::{self, SmallMode};
 use crate::onestep::Method;
 use crate::sundials::Step;
 
+use couple::Couple;
 use off::Off;
 use resonance::Near;
 use tolerance::Tolerance;
+use turning::Turning;
 use vibration::{Known, Place, Vibration};
 pub use words::Estimated;
 use words::Row;
@@ -100,6 +106,12 @@ pub struct Estimator {
     /// One over the square of the first wave number times length, that of bending.
     first: f64,
     tolerance: Tolerance,
+    /// The beam as a whole, where it turns freely.
+    #[serde(default)]
+    pub turning: Option<Turning>,
+    /// Rotational springs at ends.
+    #[serde(default)]
+    couple: Couple,
     near: Option<Near>,
     /// Velocities across: first unknown, number, size [m/s]; largest acceleration seen [m/s^2].
     velocities: (usize, usize, f64),
@@ -185,6 +197,8 @@ impl Estimator {
             young: young::shorter(case, system, [0, 1].map(|k| units[k] * first[k].1)),
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
+            turning: Turning::of(system),
+            couple: Couple::of(system, case.time.end_s),
             near: resonance::nearest(system),
             velocities: (layout.lines[0].v.as_ref())
                 .map_or((0, 0, 0.0), |v| (v.start, v.len(), model.scales.transverse_rate)),
@@ -211,6 +225,9 @@ impl Estimator {
         for mode in self.bending.iter_mut().chain(&mut self.axial) {
             mode.step(tableau.as_ref(), step, values);
         }
+        if let Some(turning) = &mut self.turning {
+            turning.step(tableau.as_ref(), step);
+        }
     }
 
     /// Takes what the same step, of a size [s], is estimated to have added to the errors of the scaled unknowns; none where that is not known.
@@ -227,6 +244,10 @@ impl Estimator {
     ) -> (Option<Estimated>, Option<String>) {
         let rows = self.rows(quantities, unstable, work);
         let found = Estimated::of(&rows, unstable, self.near, self.young[0].max(self.young[1]));
+        let found = found.map(|found| Estimated {
+            turning: self.turning.as_ref().map(Turning::ended),
+            ..found
+        });
         let (cells, rtol) = self.settings;
         let warning = found.as_ref().and_then(|found| found.warning(&rows, cells, rtol));
         (found, warning)
@@ -301,8 +322,28 @@ impl Estimator {
             share[0] * (CURVED * bent + near + of_wide[2]) + share[1] * CURVED * stretched,
         ];
         row(Interest::MaxPressure, size, off, extra, 1.0);
-        self.energies(&mut rows, quantities, work, [wide, long, angle]);
+        self.couple.add(&mut rows, [angle, 2.0 * wide / length]);
+        // what is put into a beam that nothing pulls does not depend on where it has turned
+        if !self.turning.as_ref().is_some_and(Turning::pulled) {
+            self.energies(&mut rows, quantities, work, [wide, long, angle]);
+            self.turn(&mut rows, quantities);
+        } else {
+            self.turn(&mut rows, quantities);
+            self.energies(&mut rows, quantities, work, [wide, long, angle]);
+        }
+        self.couple.tell(&mut rows);
         rows
+    }
+
+    /// Adds what steps turn the beam wrongly, where it turns freely: a phase, of which largest values hardly know.
+    fn turn(&self, rows: &mut [Row], quantities: &BTreeMap<String, Quantity>) {
+        let Some(turning) = &self.turning else { return };
+        for row in rows {
+            let size = quantities.get(row.name.name()).and_then(|q| q.max_abs).unwrap_or(0.0);
+            let off = turning.changes(row.name, size, self.floors.length);
+            row.errors[0] += off;
+            row.phase += off;
+        }
     }
 
     /// Whether a quantity of a size is more than round-off, of what the case does and beside others.
@@ -335,6 +376,7 @@ impl Estimator {
             },
             vibrations: off.vibrations,
             shift: off.shift,
+            couple: 0.0,
         }
     }
 }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Unstable;
 use super::resonance::Near;
+use super::turning::Turned;
 use crate::discrete::quantities::Interest;
 use crate::discrete::resolution;
 use crate::error::Code;
@@ -49,6 +50,12 @@ pub struct Estimated {
     /// vibration; absent where the run is longer than that takes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub young: Option<f64>,
+    /// How far a beam has turned that nothing turns back, and by what angle steps may have turned it wrongly; absent where something does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub turning: Option<Turned>,
+    /// What a rotational spring at an end whose moment is given does to the figure, of first order in the cells; absent where the mesh does more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub couple: Option<f64>,
     /// A drive near a vibration that the mesh misplaces.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub near: Option<Near>,
@@ -69,6 +76,8 @@ pub struct Row {
     pub vibrations: f64,
     /// See above.
     pub shift: f64,
+    /// Of the error by the mesh, what is of first order in the cells: see [`Couple`](super::couple::Couple).
+    pub couple: f64,
 }
 
 impl Row {
@@ -77,6 +86,7 @@ impl Row {
         Self {
             errors: self.errors.map(|x| factor * x),
             phase: factor * self.phase,
+            couple: factor * self.couple,
             ..self
         }
     }
@@ -112,6 +122,8 @@ impl Estimated {
             softened: beyond_one(unstable.softened).filter(|x| *x > SOFT),
             crushed: beyond_one(unstable.crushed),
             young: beyond_one(young),
+            turning: None,
+            couple: (worst.couple > 0.5 * worst.errors[1]).then_some(worst.couple),
             near,
             quantities: rows.iter().map(one).collect(),
         })
@@ -129,8 +141,9 @@ impl Estimated {
         let phase = |row: &Row| row.total() - row.phase <= LARGE && row.phase > 0.5 * row.total();
         let by_phase = self.growth.or(self.softened).or(self.crushed).or(self.young).is_none();
         let only_phase = by_phase && large.iter().all(|row| phase(row));
-        let (figures, because) = match only_phase {
-            true => (
+        let (figures, because) = match (only_phase, self.turned()) {
+            (true, Some(turned)) => ("final values", format!("{turned}; largest values are hardly affected")),
+            (true, None) => (
                 "final values",
                 format!(
                     "after {:.0} vibrations mesh and steps have shifted the phase by {:.2} rad; largest values and root mean \
@@ -138,7 +151,7 @@ impl Estimated {
                     worst.vibrations, worst.shift
                 ),
             ),
-            false => ("values", self.because(large.iter().any(|row| row.name.unit() == "J"))),
+            (false, _) => ("values", self.because(large.iter().any(|row| row.name.unit() == "J"))),
         };
         let [time, space] = worst.errors;
         let (by, other) = match time > space {
@@ -151,7 +164,11 @@ impl Estimated {
                 format!(
                     "{} by steps), {}",
                     size(time),
-                    finer(space.max(if only_phase { worst.shift } else { 0.0 }), cells)
+                    finer(
+                        space.max(if only_phase { worst.shift } else { 0.0 }),
+                        self.couple.map_or(2.0, |_| 1.0),
+                        cells
+                    )
                 ),
             ),
         };
@@ -162,6 +179,19 @@ impl Estimated {
             size(time.max(space)),
             worst.name,
         )))
+    }
+
+    /// What steps make of a beam that turns freely, where that counts.
+    fn turned(&self) -> Option<String> {
+        let turned = self.turning.filter(|turned| turned.off_rad > LARGE)?;
+        Some(format!(
+            "nothing turns the beam back, so that errors of steps add up: it has turned {:.0} rad in all, and may be off by {}",
+            turned.turned_rad,
+            match turned.off_rad >= TAU {
+                true => "more than a turn".into(),
+                false => format!("{:.2} rad", turned.off_rad),
+            }
+        ))
     }
 
     fn because(&self, energies: bool) -> String {
@@ -191,7 +221,13 @@ impl Estimated {
             let shorter = times.sqrt();
             format!("what an end sends out is still a wave when the run ends, {shorter:.1} times as short as the first vibration")
         });
-        let all: Vec<String> = [near, growth, soft, crushed, young].into_iter().flatten().collect();
+        let couple = self.couple.map(|_| {
+            "a rotational spring acts at an end whose moment is given: half a cell of it is bent wrongly, an error of first order in the cells".into()
+        });
+        let all: Vec<String> = [near, growth, soft, crushed, young, self.turned(), couple]
+            .into_iter()
+            .flatten()
+            .collect();
         let why = match all.is_empty() {
             true => "the mesh is coarse, or the tolerance loose, for what the beam does".into(),
             false => all.join("; "),
@@ -214,9 +250,9 @@ fn size(x: f64) -> String {
     }
 }
 
-/// Cells a segment that leave half of what is warned of, of an error on fewer: of second order.
-fn finer(error: f64, cells: usize) -> String {
-    let doubled = (2.0 * error / LARGE).sqrt().log2().ceil().max(1.0);
+/// Cells a segment that leave half of what is warned of, of an error of an order on fewer.
+fn finer(error: f64, order: f64, cells: usize) -> String {
+    let doubled = ((2.0 * error / LARGE).log2() / order).ceil().max(1.0);
     let wanted = cells as f64 * doubled.exp2();
     match wanted <= FINEST {
         true => format!("/mesh/cells_per_segment={wanted:.0} in place of {cells}"),

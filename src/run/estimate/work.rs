@@ -120,6 +120,7 @@ impl Estimator {
                 name,
                 errors: [time.max(open), space + (CURVED - SQUARED) * at_rest],
                 phase: SQUARED * came_back * phase,
+                couple: SQUARED * moved * most.couple,
                 ..most
             });
         }
@@ -159,6 +160,7 @@ mod tests {
                 phase: 0.0,
                 vibrations: 0.0,
                 shift: 0.0,
+                couple: 0.0,
             }];
             estimator.energies(&mut rows, &quantities, &work, [1.0, 0.0, 0.0]);
             rows[1].errors[0]
