@@ -7,4 +7,5 @@ mod probes;
 mod scene;
 mod step_response;
 mod told;
+mod turning;
 mod watch;
