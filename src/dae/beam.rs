@@ -4,7 +4,6 @@ use super::chain::{self, Chain, LANES};
 use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
 use crate::discrete::residual::around::mean_direction;
-use crate::discrete::turns::Turns;
 use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
 use crate::model::Kinematics;
@@ -24,7 +23,7 @@ pub struct BeamDae {
     per_row: Vec<f64>,
     pub(super) plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
-    perturbed: Vec<PerturbedSystems>,
+    pub(super) perturbed: Vec<PerturbedSystems>,
     /// Time at which the workspace holds everything about a state, its integrands included.
     pub(super) held: Option<f64>,
 }
@@ -179,31 +178,6 @@ impl BeamDae {
             return self.evaluate(t, y, yp);
         }
         (&self.system, &self.now, State::still(&self.plain.workspace))
-    }
-
-    /// Counts full turns on from the state that was evaluated last.
-    pub fn keep_turns(&mut self) {
-        self.hold_turns(&Turns::of(&self.system, &self.now, &self.plain.workspace));
-    }
-
-    /// Counts full turns on from these angles.
-    pub fn hold_turns(&mut self, turns: &Turns) {
-        for beam in self.perturbed.iter_mut().flat_map(PerturbedSystems::beams_mut) {
-            beam.hold_turns(turns);
-        }
-        self.before.turns.clone_from(turns);
-        self.now.turns.clone_from(turns);
-    }
-
-    /// The angles from which full turns are counted.
-    pub fn turns(&self) -> &Turns {
-        &self.now.turns
-    }
-
-    /// Counts full turns along the beam, and at its root on from where they stand, at a scaled state.
-    pub fn find_turns(&mut self, t: f64, y: &[f64], yp: &[f64]) {
-        self.visit(t, y, yp, |_, _, _, _| ());
-        self.keep_turns();
     }
 
     /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.

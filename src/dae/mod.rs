@@ -8,6 +8,7 @@ mod jumps;
 pub mod perturbed;
 pub mod statics;
 pub mod trace;
+mod turns;
 
 pub use beam::BeamDae;
 pub use corotation::{Corotation, Vectors};

@@ -299,12 +299,8 @@ impl TimeData {
         }
         self.loads(system, clock);
         self.point_forces(system, clock);
-        let stream = system
-            .model
-            .surroundings
-            .as_ref()
-            .and_then(|around| around.stream.as_ref());
-        if let Some([x, z]) = stream {
+        let around = system.model.surroundings.as_ref();
+        if let Some([x, z]) = around.and_then(|around| around.stream.as_ref()) {
             let [x, z] = [x, z].map(|signal| signal.jet(clock));
             self.stream = Planar::new(x.value, z.value);
             self.stream_rate = Planar::new(x.rate, z.rate);

@@ -168,7 +168,7 @@ impl Observer {
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
         self.before = Some(glance);
-        self.keep_turns(dae);
+        self.seen.turns.clone_from(dae.keep_turns());
         self.limits.beyond(&glance)
     }
 
@@ -195,13 +195,8 @@ impl Observer {
             self.look_between(&before, &glance);
         }
         self.before = Some(glance);
-        self.keep_turns(dae);
+        self.seen.turns.clone_from(dae.keep_turns());
         None
-    }
-
-    fn keep_turns(&mut self, dae: &mut BeamDae) {
-        dae.keep_turns();
-        self.seen.turns.clone_from(dae.turns());
     }
 
     /// Times [s] inside the step that [`Observer::arrive`] has seen, in order, at which to look as well.
