@@ -82,7 +82,7 @@ fn calls_of_finishing(log: &str) -> Vec<(String, usize)> {
     let all = calls(log);
     let last = all
         .iter()
-        .rposition(|call| call.name == "rename" && call.rest.contains("/checkpoint.json\")"))
+        .rposition(|call| call.name == "rename" && call.rest.contains("/checkpoint.json\""))
         .expect("a checkpoint");
     let (before, finishing) = all.split_at(last + 1);
     let struck = |call: &&Call| before.iter().all(|b| b.name != call.name || b.count != call.count);
@@ -149,7 +149,7 @@ fn what_a_name_promises_is_on_the_disk() {
             "{path} is not brought to the disk between lines {after} and {before}"
         );
     };
-    let names = first("rename", "/summary.json\")").begins;
+    let names = first("rename", "/summary.json\"").begins;
     for file in ["/.slcbeam.case>", "/case.json>", "/.fields.npz.", "/.summary.json."] {
         secured(file, 0, names);
     }
@@ -157,7 +157,7 @@ fn what_a_name_promises_is_on_the_disk() {
         .iter()
         .rfind(|call| call.name == "write" && call.rest.contains("/history.csv>"));
     secured("/history.csv>", rows.expect("rows").ends, names);
-    assert!(first("rename", "/fields.npz\")").ends < names);
+    assert!(first("rename", "/fields.npz\"").ends < names);
     let gone = first("unlink", "/checkpoint.json\"").begins;
     secured("/whole>", names, gone);
     for file in [
@@ -167,7 +167,7 @@ fn what_a_name_promises_is_on_the_disk() {
         "energy.svg",
         "report.html",
     ] {
-        let named = first("rename", &format!("/{file}\")"));
+        let named = first("rename", &format!("/{file}\""));
         assert!(named.begins > names, "{file}");
         secured(&format!("/{file}>"), named.begins, gone);
         secured("/whole>", named.begins, gone);
