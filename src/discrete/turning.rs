@@ -1,7 +1,6 @@
 //! How sections that shear stand at the start: their moments balance in the beam's given shape.
 
-use std::f64::consts::TAU;
-
+use super::turns::nearest;
 use super::{System, TimeData, Workspace, residual};
 use crate::case::Rotation;
 use crate::model::Kinematics;
@@ -26,11 +25,7 @@ pub fn across(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<
         let d3 = w.shape.d3[c];
         let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * inverse;
         let (line, turning) = if finite {
-            let line = d3.x.atan2(d3.z);
-            (
-                line + TAU * ((before - line) / TAU).round(),
-                d3.cross(d3_t) / d3.squared(),
-            )
+            (nearest(d3.x.atan2(d3.z), before), d3.cross(d3_t) / d3.squared())
         } else {
             (d3.x, d3_t.x)
         };

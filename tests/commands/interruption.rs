@@ -277,25 +277,27 @@ fn the_bar_is_gone_before_the_box() {
     );
 }
 
-/// A full disk: `/dev/full` cannot be a folder, so a file-size limit plays its part.
+/// A full disk: `/dev/full` cannot be a folder, so a limit on the size of files plays its part [KiB].
+#[cfg(unix)]
+fn on_a_disk_of(size: u32, sets: &str, out: &Path) -> String {
+    let script = format!(
+        "trap '' XFSZ; ulimit -f {size}; exec {} run {CASE} --quiet {sets} --out {}",
+        env!("CARGO_BIN_EXE_slcbeam"),
+        out.display()
+    );
+    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(5), "{told}");
+    told
+}
+
 #[cfg(unix)]
 #[test]
 fn full_disk_is_an_output_error_and_what_was_written_stays() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("full");
-    let script = format!(
-        "trap '' XFSZ; ulimit -f 200; exec {} run {CASE} --quiet --set /time/end_s=5 --set /mesh/cells_per_segment=2 --out {}",
-        env!("CARGO_BIN_EXE_slcbeam"),
-        out.display()
-    );
-    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
-    assert_eq!(
-        output.status.code(),
-        Some(5),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    assert!(String::from_utf8_lossy(&output.stderr).contains("cannot write"));
+    let sets = "--set /time/end_s=5 --set /mesh/cells_per_segment=2";
+    assert!(on_a_disk_of(200, sets, &out).contains("cannot write"));
     assert!(fs::metadata(out.join("history.csv")).unwrap().len() > 1000);
 }
 
@@ -304,16 +306,8 @@ fn full_disk_is_an_output_error_and_what_was_written_stays() {
 #[test]
 fn a_disk_that_is_full_while_fields_are_packed_is_told_in_one_sentence() {
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("full");
     // no field alone is as large as this, all of them are
-    let script = format!(
-        "trap '' XFSZ; ulimit -f 900; exec {} run {CASE} --quiet --set /time/fields_interval_s=5e-4 --out {}",
-        env!("CARGO_BIN_EXE_slcbeam"),
-        out.display()
-    );
-    let output = Command::new("bash").args(["-c", &script]).output().unwrap();
-    let told = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(5), "{told}");
+    let told = on_a_disk_of(900, "--set /time/fields_interval_s=5e-4", &folder.path().join("full"));
     assert!(told.contains("fields.npz") && !told.contains("ZipWriter"), "{told}");
 
     let link = folder.path().join("link");

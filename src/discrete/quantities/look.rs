@@ -5,7 +5,7 @@ use crate::discrete::glance::Moving;
 use crate::discrete::ledger::{self, Energies};
 use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
-use crate::discrete::turns::tip_angle;
+use crate::discrete::turns::{nearest, tip_angle};
 use crate::discrete::{State, System, TimeData, Workspace};
 use crate::model::network::LinkKind;
 
@@ -65,9 +65,7 @@ impl Look<'_> {
 
     /// Without full turns between it and the angle that is held on to.
     pub(super) fn tip_angle(&self) -> f64 {
-        let turn = std::f64::consts::TAU;
-        let angle = tip_angle(self.system, self.now, &self.w);
-        angle - turn * ((angle - self.at.angle) / turn).round()
+        nearest(tip_angle(self.system, self.now, &self.w), self.at.angle)
     }
 
     pub(super) fn max_pressure(&self) -> f64 {

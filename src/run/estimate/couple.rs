@@ -36,15 +36,10 @@ impl Couple {
             let all = model.attachments.iter().filter(move |one| near(one.at));
             all.map(|one| one.turning_stiffness).sum::<f64>()
         };
-        let slopes = model
-            .ends
-            .iter()
-            .filter(|end| matches!(end.rotation, Rotation::Slope(_)));
-        let others = model
-            .attachments
-            .iter()
-            .filter(|one| one.turning_stiffness > 0.0)
-            .count();
+        // where something else holds the beam's angle it bends under the couple, otherwise the spring alone takes it
+        let slope = model.ends.iter().any(|end| matches!(end.rotation, Rotation::Slope(_)));
+        let turned_back = model.attachments.iter().filter(|one| one.turning_stiffness > 0.0);
+        let held = slope || turned_back.count() > 1;
         let mut all = Self::default();
         for (which, at) in model.ends.iter().enumerate() {
             let (stiffness, Rotation::Moment(moment)) = (springs(which), &at.rotation) else {
@@ -54,8 +49,6 @@ impl Couple {
                 continue;
             }
             let half = 0.5 * mesh.h * stiffness / bends;
-            // where something else holds the beam's angle it bends under the couple, otherwise the spring alone takes it
-            let held = slopes.clone().next().is_some() || others > 1;
             let eased = if held {
                 stiffness * model.length / (bends + stiffness * model.length)
             } else {

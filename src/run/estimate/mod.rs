@@ -324,12 +324,13 @@ impl Estimator {
         row(Interest::MaxPressure, size, off, extra, 1.0);
         self.couple.add(&mut rows, [angle, 2.0 * wide / length]);
         // what is put into a beam that nothing pulls does not depend on where it has turned
-        if !self.turning.as_ref().is_some_and(Turning::pulled) {
-            self.energies(&mut rows, quantities, work, [wide, long, angle]);
+        let pulled = self.turning.as_ref().is_some_and(Turning::pulled);
+        if pulled {
             self.turn(&mut rows, quantities);
-        } else {
+        }
+        self.energies(&mut rows, quantities, work, [wide, long, angle]);
+        if !pulled {
             self.turn(&mut rows, quantities);
-            self.energies(&mut rows, quantities, work, [wide, long, angle]);
         }
         self.couple.tell(&mut rows);
         rows
