@@ -77,7 +77,7 @@ pub struct Estimate {
     pub start: f64,
     /// The estimate.
     pub value: f64,
-    /// Its standard error; nothing at a bound, or where the data do not determine it.
+    /// Its standard error; nothing at a bound, or where the data determine it only together with a number at a bound, or not at all.
     pub standard_error: Option<f64>,
     /// The interval that holds the truth in 95 of 100 repetitions, cut at the bounds.
     pub interval_95: Option<[f64; 2]>,

@@ -6,7 +6,8 @@
 //!        p(x ± q √cov x_kk)          q of Student's distribution, of the normal one where noise is given
 //! ```
 //!
-//! Numbers at a bound are taken as known; what is not determined has no error.
+//! Numbers at a bound are taken as known; what is not determined has no error, nor has a number of which the data see only a
+//! combination with one at a bound: its value is the choice of that bound.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -49,7 +50,11 @@ impl Basis<'_> {
     /// Their errors.
     pub fn errors(&self) -> Errors {
         let m = self.spans.len();
-        let lost = |k: &usize| self.unseen.iter().any(|one| one.entirely && one.numbers.contains(k));
+        let lost = |k: &usize| {
+            let at_bound = |one: &Unseen| one.numbers.iter().any(|other| !self.free.contains(other));
+            let own = self.unseen.iter().filter(|one| one.numbers.contains(k));
+            own.into_iter().any(|one| one.entirely || at_bound(one))
+        };
         let own: Vec<usize> = self.free.iter().copied().filter(|k| !lost(k)).collect();
         let places = self.covariance_of_places(&own);
         let of = |i: usize, k: usize| {
@@ -100,5 +105,43 @@ impl Basis<'_> {
         DMatrix::from_fn(own.len(), own.len(), |i, k| {
             self.variance * whole[(i, k)] / (lengths[i] * lengths[k])
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::fit::identify::{Seen, unseen};
+
+    /// Goal: where the data see only a product and one factor ends at its bound, the other has no narrow interval.
+    #[test]
+    fn a_factor_beside_one_at_its_bound_has_no_interval() {
+        let spans = ["/a", "/b", "/c"].map(|pointer| Span {
+            pointer: pointer.into(),
+            low: 1.0,
+            high: 3.0,
+        });
+        let rows = [[10.0, 10.0, 1.0], [20.0, 20.0, -3.0], [5.0, 5.0, 20.0]];
+        let jacobian = DMatrix::from_fn(3, 3, |i, k| rows[i][k]);
+        let values = [2.0, 3.0, 2.0];
+        let seen = Seen {
+            spans: &spans,
+            values: &values,
+            jacobian: &jacobian,
+            spread: 1.0,
+            exact: 1e-8,
+        };
+        let basis = Basis {
+            spans: &spans,
+            values: &values,
+            free: &[0, 2],
+            unseen: &unseen(&seen),
+            jacobian: &jacobian,
+            variance: 1.0,
+            freedom: None,
+        };
+        let intervals = basis.errors().intervals;
+        assert!(intervals[0].is_none() && intervals[1].is_none(), "{intervals:?}");
+        assert!(intervals[2].is_some(), "{intervals:?}");
     }
 }
