@@ -98,7 +98,7 @@ pub fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell:
     if problem.differences.is_some() || places.is_empty() || at_an_end(problem, &values) {
         return None;
     }
-    let (figures, slopes) = match exact(problem, &values, stop) {
+    let (figures, slopes) = match exact(problem, &values, stop)? {
         Ok((figures, slopes)) => (Ok(figures), slopes),
         Err(reason) => (Err(reason), None),
     };
@@ -133,20 +133,28 @@ fn at_an_end(problem: &Problem, values: &[f64]) -> bool {
 /// Figures with their derivatives per unit of the numbers, where every figure has them.
 type Exact = (Vec<f64>, Option<Vec<Vec<f64>>>);
 
-fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Exact, String> {
+/// Figures with exact derivatives; `None` where derivatives by one of the numbers are refused, so that differences take over.
+fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> Option<std::result::Result<Exact, String>> {
     let found = problem.with(values).and_then(|case| {
         let parameters = problem.parameters(values);
         slopes::slopes(&case, problem.what, &parameters, problem.system.as_ref(), stop)
     });
-    let (found, slopes) = found.map_err(|error| why(&error))?;
-    let figures = wanted(problem, &found)?;
+    let (found, slopes) = match found {
+        Ok(found) => found,
+        Err(Error::Usage(_)) => return None,
+        Err(error) => return Some(Err(why(&error))),
+    };
+    let figures = match wanted(problem, &found) {
+        Ok(figures) => figures,
+        Err(reason) => return Some(Err(reason)),
+    };
     // derivatives of a root mean square are those of its samples, not of the integral that is told
     let own = |name: &&str| !name.ends_with("window_rms");
     let all = problem
         .figures()
         .into_iter()
         .map(|name| slopes.get(name).filter(|_| own(&name)).cloned());
-    Ok((figures, all.collect()))
+    Some(Ok((figures, all.collect())))
 }
 
 /// What the plain command tells of a design.
