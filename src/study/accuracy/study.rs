@@ -251,7 +251,9 @@ fn conclude(study: &mut Study) {
     let (totals, bounds) = (marks(|e| e.total.max), marks(|e| e.bound.max));
     let (of_totals, of_bounds) = (front::front(&totals), front::front(&bounds));
     study.answers = front::answers(&bounds, &of_bounds, &ACCURACIES);
+    // a setting that misses the loosest accuracy is not worth its time, however cheap
     study.front = of_totals;
+    study.front.retain(|&k| totals[k].error <= ACCURACIES[0]);
     let cost: Vec<f64> = all.clone().map(|k| study.points[k].trial.wall_min_s).collect();
     let work: Vec<f64> = all
         .map(|k| study.points[k].trial.counters.residual_evaluations as f64)
