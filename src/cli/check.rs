@@ -1,15 +1,18 @@
 //! `slcbeam check`: what a case is, before anything is run.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
+use textwrap::Options;
 
 use super::arguments::CheckArguments;
 use super::size;
 use crate::discrete::System;
 use crate::error::Result;
+use crate::model::effects::Cause;
 use crate::model::{audit, characteristic};
 use crate::output::columns::aligned;
 use crate::output::machine;
@@ -17,6 +20,22 @@ use crate::output::numbers::{duration, pretty_unit, significant};
 use crate::output::report::facts;
 use crate::run::needs::Needs;
 use crate::run::{known, method, slow};
+
+/// Characteristic numbers that `--verbose` adds: scales that others are made of.
+const DETAILS: [&str; 9] = [
+    "bladder_fill",
+    "f_u",
+    "force_scale_n",
+    "gyration_radius_squared_m2",
+    "mass_factor",
+    "self_weight_buckling_load_n_m",
+    "t_f_s",
+    "t_s_over_t_f",
+    "t_s_s",
+];
+
+/// Lines for networks of unlike times without `--verbose`.
+const NETWORKS: usize = 3;
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
@@ -65,15 +84,16 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let _ = write!(text, "\n{}", case.about);
     }
     text += "\n\ncharacteristic numbers\n";
-    text += &listed(numbers.iter().map(|(name, value)| {
-        let [unit, about] = facts::meaning(name).unwrap_or(["1", ""]);
-        [
-            name.to_string(),
-            significant(*value, 6),
-            pretty_unit(unit),
-            about.to_string(),
-        ]
-    }));
+    let shown = |name: &str| asked.verbose || !DETAILS.contains(&name);
+    let numbers: Vec<_> = numbers.iter().filter(|(name, _)| shown(name)).collect();
+    text += &listed(
+        grouped(&numbers, asked.verbose)
+            .into_iter()
+            .map(|(label, name, value)| {
+                let [unit, about] = facts::meaning(name).unwrap_or(["1", ""]);
+                [label, significant(value, 6), pretty_unit(unit), about.to_string()]
+            }),
+    );
     if !findings.is_empty() {
         text += "\ncoupling\n";
         text += &listed(findings.iter().map(|f| {
@@ -83,13 +103,37 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         }));
     }
     text += "\ncoefficients\n";
-    let origins = case.origins.words().into_iter();
-    text += &listed(origins.map(|(pointer, origin)| [pointer.to_string(), origin.to_string()]));
+    let mut origins: Vec<[String; 2]> = case.origins.words().into_iter().map(<[String; 2]>::from).collect();
+    if !asked.verbose {
+        let mut by_origin: BTreeMap<String, usize> = BTreeMap::new();
+        for [_, origin] in origins {
+            *by_origin.entry(origin).or_default() += 1;
+        }
+        origins = by_origin
+            .into_iter()
+            .map(|(origin, count)| [count.to_string(), origin])
+            .collect();
+    }
+    text += &listed(origins.into_iter());
     text += "\neffects\n";
-    text += &listed(system.model.effects.decisions.iter().map(|d| {
+    let by_case = |cause: &Cause| matches!(cause, Cause::Given(_)) && !asked.verbose;
+    let (given, decided): (Vec<_>, Vec<_>) = system.model.effects.decisions.iter().partition(|d| by_case(&d.cause));
+    text += &listed(decided.iter().map(|d| {
         let on = if d.on { "on" } else { "off" };
         [d.effect.to_string(), on.into(), d.cause.to_string()]
     }));
+    for (on, what) in [(true, "  given: "), (false, "  not given: ")] {
+        let names: Vec<_> = given
+            .iter()
+            .filter(|d| d.on == on)
+            .map(|d| d.effect.to_string())
+            .collect();
+        if !names.is_empty() {
+            let wrapped = Options::new(100).initial_indent(what).subsequent_indent("    ");
+            text += &textwrap::fill(&names.join(", "), wrapped);
+            text.push('\n');
+        }
+    }
     let _ = writeln!(
         text,
         "\nunknowns {}, method {} ({}), highest order {order} ({why})",
@@ -122,5 +166,43 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
 /// Lines under a heading, indented.
 fn listed<const N: usize>(lines: impl Iterator<Item = [String; N]>) -> String {
     let lines: Vec<_> = lines.map(|line| [&[String::new()], &line[..]].concat()).collect();
-    aligned(&lines, &[1, 2, 3])
+    aligned(&lines, &[1, 2, 3, 4])
+}
+
+/// Characteristic numbers as label, name and value. Networks with the same slowest time share a line, and only the slowest
+/// are listed, unless all are asked for.
+fn grouped<'n>(numbers: &[(&'n String, &f64)], all: bool) -> Vec<(String, &'n str, f64)> {
+    const OF_NETWORK: &str = "slowest_time_of_network_";
+    let number = |name: &str| name.strip_prefix(OF_NETWORK)?.strip_suffix("_s")?.parse::<usize>().ok();
+    let mut lines: Vec<(String, &str, f64)> = vec![];
+    let mut networks: Vec<(Vec<usize>, &str, f64)> = vec![];
+    for (name, value) in numbers {
+        let value = **value;
+        let Some(k) = number(name).filter(|_| !all) else {
+            lines.push((name.to_string(), name, value));
+            continue;
+        };
+        match networks
+            .iter_mut()
+            .find(|own| (own.2 - value).abs() <= 1e-6 * value.abs())
+        {
+            Some(same) => same.0.push(k),
+            None => networks.push((vec![k], name, value)),
+        }
+    }
+    networks.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let hidden = networks.len().saturating_sub(NETWORKS);
+    let listed = networks.into_iter().take(NETWORKS).enumerate();
+    lines.extend(listed.map(|(at, (own, name, value))| {
+        let more = match own.len() {
+            1 => String::new(),
+            n => format!(" and {} more alike", n - 1),
+        };
+        let faster = match hidden {
+            n if n > 0 && at + 1 == NETWORKS => format!(", {n} faster ones not listed"),
+            _ => String::new(),
+        };
+        (format!("{name}{more}{faster}"), name, value)
+    }));
+    lines
 }

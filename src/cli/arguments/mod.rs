@@ -147,6 +147,9 @@ pub struct CheckArguments {
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
+    /// Print every characteristic number, coefficient and effect
+    #[arg(long)]
+    pub verbose: bool,
 }
 
 /// `study`.
