@@ -254,6 +254,27 @@ pub fn told_by(pointer: &str) -> Suffix<'_> {
     ends.find(|end| *end != Suffix::None).unwrap_or(Suffix::None)
 }
 
+/// The name of a figure as people read it, without units: `harvested energy, final` for `harvested_energy_j.final`.
+pub fn readable(figure: &str) -> String {
+    let part = |part: &str| suffixed(part).map_or(part, |(name, _)| name).replace('_', " ");
+    figure.split('.').map(part).collect::<Vec<_>>().join(", ")
+}
+
+/// The name of a number of a case as people read it, without units: `fluid: viscosity` for `/fluid/viscosity_pa_s`.
+pub fn readable_pointer(pointer: &str) -> String {
+    let keys: Vec<&str> = pointer.split('/').skip(1).collect();
+    let Some((last, before)) = keys.split_last() else {
+        return pointer.into();
+    };
+    let index = |key: &str| !key.is_empty() && key.bytes().all(|b| b.is_ascii_digit());
+    let from = before.iter().rposition(|key| !index(key)).unwrap_or(0);
+    let parent = before[from..].join(" ").replace('_', " ");
+    match parent.is_empty() {
+        true => readable(last),
+        false => format!("{parent}: {}", readable(last)),
+    }
+}
+
 /// The unit in which the numbers below a JSON pointer are, as far as its keys tell.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
     match told_by(pointer) {
@@ -264,7 +285,23 @@ pub fn of_pointer(pointer: &str) -> Option<Unit> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Suffix, bracketed, of_pointer, suffix, suffixed};
+    use super::{Suffix, bracketed, of_pointer, readable, readable_pointer, suffix, suffixed};
+
+    /// Goal: axes and titles show names, not pointers and keys.
+    #[test]
+    fn names_are_read_without_units() {
+        assert_eq!(readable("harvested_energy_j.final"), "harvested energy, final");
+        assert_eq!(
+            readable("max_pressure_pa.window_max_abs"),
+            "max pressure, window max abs"
+        );
+        assert_eq!(readable_pointer("/fluid/viscosity_pa_s"), "fluid: viscosity");
+        assert_eq!(readable_pointer("/loads/0/force_n"), "loads 0: force");
+        assert_eq!(
+            readable_pointer("/network/permeability_factor"),
+            "network: permeability factor"
+        );
+    }
 
     #[test]
     fn headings_tell_their_units() {

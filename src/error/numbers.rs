@@ -7,7 +7,10 @@ const PLAIN: i32 = 4;
 
 /// Whether a unit takes an SI prefix in front of its first letter.
 fn takes_prefix(unit: &str) -> bool {
-    matches!(unit, "m" | "s" | "Pa" | "J" | "W" | "N" | "N m" | "Hz" | "rad" | "m/s")
+    matches!(
+        unit,
+        "m" | "s" | "Pa" | "J" | "W" | "N" | "N m" | "Hz" | "rad" | "m/s" | "Pa s" | "N/m"
+    )
 }
 
 /// Factor and prefixed unit in which a magnitude reads as 1 to 1000: `(1e-3, "mm")` for 0.012 m.

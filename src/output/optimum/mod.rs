@@ -6,12 +6,13 @@ use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
 use super::plot::optimum::{self, Dot, Optimum as Drawn, Part};
 use super::records;
-use crate::case::Written;
+use crate::case::{Written, units};
 use crate::error::{Result, visible};
 use crate::results;
 use crate::study::optimize::Optimised;
 use crate::study::optimize::found::Design;
 use crate::study::optimize::problem::Problem;
+use crate::study::sweep::unit::unit;
 
 pub use words::{by_values, place, ranked, searched, words};
 
@@ -93,12 +94,14 @@ fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
     let best = |x: f64| Some((x, optimum.value));
     let designs = Part {
         name: "design".into(),
+        unit: "1".into(),
         logarithmic: false,
         dots: dots(&|k, _| k as f64),
         best: None,
     };
     let numbers = problem.spans.iter().enumerate().map(|(i, span)| Part {
-        name: span.pointer.clone(),
+        name: units::readable_pointer(&span.pointer),
+        unit: units::of_pointer(&span.pointer).map_or("1", |unit| unit.si).into(),
         logarithmic: span.logarithmic() && span.low > 0.0,
         dots: dots(&|_, one| one.values[i]),
         best: best(optimum.variables[i].value),
@@ -110,7 +113,8 @@ fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
     Drawn {
         name: format!("{}, {}", optimum.case, optimum.goal.figure),
         about: numbers_told.collect::<Vec<_>>().join(", "),
-        figure: optimum.goal.figure.clone(),
+        figure: units::readable(&optimum.goal.figure),
+        unit: unit(&optimum.goal.figure).into(),
         parts: std::iter::once(designs).chain(numbers).collect(),
     }
 }

@@ -25,16 +25,39 @@ const TIME: [(f64, [u8; 3]); 7] = [
 
 /// Colour of a time, `s` from 0 (dark blue) to 1 (dark red).
 pub fn of_time(s: f64) -> Colour {
+    mixed(&TIME, s)
+}
+
+fn mixed(stops: &[(f64, [u8; 3])], s: f64) -> Colour {
     let s = s.clamp(0.0, 1.0);
-    let k = TIME
+    let k = stops
         .iter()
         .skip(1)
         .position(|(at, _)| s <= *at)
-        .unwrap_or(TIME.len() - 2);
-    let ((a, from), (b, to)) = (TIME[k], TIME[k + 1]);
+        .unwrap_or(stops.len() - 2);
+    let ((a, from), (b, to)) = (stops[k], stops[k + 1]);
     let w = (s - a) / (b - a);
     let mix = |i: usize| (f64::from(from[i]) * (1.0 - w) + f64::from(to[i]) * w).round() as u8;
     Colour(mix(0), mix(1), mix(2))
+}
+
+/// Light to dark blue, evenly in lightness; the light end still shows on white.
+const ONE_SIGN: [(f64, [u8; 3]); 4] = [
+    (0.0, [0xc3, 0xdc, 0xef]),
+    (0.35, [0x72, 0xb0, 0xd8]),
+    (0.7, [0x1f, 0x67, 0xad]),
+    (1.0, [0x08, 0x26, 0x5a]),
+];
+
+/// Colour of a value on a scale from `low` to `high`: light to dark where all values have one sign, blue to red about zero
+/// where both signs occur.
+pub fn of_value(value: f64, low: f64, high: f64) -> Colour {
+    if low < 0.0 && high > 0.0 {
+        return of_time(0.5 + 0.5 * value / high.max(-low));
+    }
+    let share = if high > low { (value - low) / (high - low) } else { 0.5 };
+    // of negative values the largest magnitude is the darkest
+    mixed(&ONE_SIGN, if high <= 0.0 { 1.0 - share } else { share })
 }
 
 /// Lines told apart by every eye: Okabe and Ito's colours without yellow, which white swallows, and three of Tol's.

@@ -20,6 +20,8 @@ pub struct Dot {
 pub struct Part {
     /// Name of the abscissa.
     pub name: String,
+    /// Its unit.
+    pub unit: String,
     /// Whether it goes by its logarithm.
     pub logarithmic: bool,
     /// Designs.
@@ -35,8 +37,10 @@ pub struct Optimum {
     pub name: String,
     /// What was found, in words.
     pub about: String,
-    /// The figure, unit included.
+    /// The figure.
     pub figure: String,
+    /// Its unit.
+    pub unit: String,
     /// Panels: designs in order, then numbers.
     pub parts: Vec<Part>,
 }
@@ -73,9 +77,9 @@ pub fn draw(data: &Optimum) -> Option<String> {
             };
             let x = match part.logarithmic {
                 true => Scale::logarithmic(range, 0.03, &[1.0, 2.0, 5.0], 8),
-                false => Scale::around(Some(range), 0.0, "1", 8),
+                false => Scale::around(Some(range), 0.0, &part.unit, 8),
             };
-            let panel = Panel::new(place, x, Scale::around(Some(y), 0.0, "1", 5));
+            let panel = Panel::new(place, x, Scale::around(Some(y), 0.0, &data.unit, 5));
             panel.grid(canvas);
             if k == 0 {
                 best_so_far(canvas, &panel, part);

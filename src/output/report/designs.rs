@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
+use super::{Found, Kind, MOST_ROWS, Page, Place, capital, pack};
 use crate::error::Result;
-use crate::output::folder::REPORT;
+use crate::output::folder::{CASE, REPORT};
 use crate::output::numbers::count;
 use crate::output::sweep::words::several;
-use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, table, warnings};
+use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, pictures, table, warnings};
 use crate::results::sweep::{Plan, Sweep};
 
 /// Columns of the page's table at most; the file has the rest.
@@ -16,7 +16,13 @@ const MOST_COLUMNS: usize = 40;
 /// `sweep`.
 pub fn data(place: &Place) -> Result<Page> {
     // one that was killed has no table yet
-    let Found { result: plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
+    let Found { result: mut plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
+    // commands on the page are for its own folder, which holds the case
+    if let [case] = &mut plan.cases[..]
+        && place.path(CASE).is_file()
+    {
+        case.file = CASE.into();
+    }
     let survey = Survey::of(&place.path(JOURNAL), &plan)?;
     let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &plan.title(), Some(&head));
@@ -59,8 +65,13 @@ pub fn data(place: &Place) -> Result<Page> {
             .map(|text| capital(&text))
             .collect::<Vec<_>>(),
     );
+    // a lean folder has no pictures of its own
+    let drawn = pictures::draw(&plan, &survey)?;
     let figure = |title: &str, file: &str, about: &str| {
-        let picture = place.picture(file)?;
+        let own = || drawn.iter().find(|(name, _)| *name == file);
+        let picture = place
+            .picture(file)
+            .or_else(|| Some(pack::image("image/svg+xml", own()?.1.as_bytes()).into()))?;
         Some(json!({"title": title, "picture": picture, "about": about}))
     };
     let figures = [

@@ -17,7 +17,10 @@ pub fn data(place: &Place) -> Result<Page> {
     page.warnings.clone_from(&found.warnings);
     let mut facts = vec![format!("{} bladders", count(found.bladders.len() as u64))];
     if !found.rows.is_empty() {
-        facts.push(format!("{} rows of measurements", count(found.rows.len() as u64)));
+        facts.push(match found.rows.len() {
+            1 => "1 row of measurements".into(),
+            rows => format!("{} rows of measurements", count(rows as u64)),
+        });
     }
     if let Some(sd) = found.noise.as_ref().and_then(|noise| noise.sd_pa) {
         facts.push(format!("noise {} Pa", significant(sd, 3)));

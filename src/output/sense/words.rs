@@ -28,8 +28,10 @@ pub fn words(found: &Sensed) -> String {
         lines.extend(rows.into_iter().step_by(every.max(1)).take(ROWS));
         let more = all + 1 - lines.len();
         text += &format!("\n{}", aligned(&lines, &[0]));
-        if more > 0 {
-            text += &format!("{} more rows in sense.csv\n", count(more as u64));
+        match more {
+            0 => {}
+            1 => text += "1 more row in sense.csv\n",
+            _ => text += &format!("{} more rows in sense.csv\n", count(more as u64)),
         }
         text += &format!("\n{}\n", about_noise(found));
     }

@@ -2,10 +2,10 @@
 
 use std::slice;
 
-use super::{Drawn, LEFT, Numbers, TOP, name, shade};
+use super::{Drawn, LEFT, Numbers, TOP, name};
 use crate::output::numbers::quantity;
 use crate::output::plot::canvas::{Anchor, Canvas, Words, picture};
-use crate::output::plot::colour::of_time;
+use crate::output::plot::colour::of_value;
 use crate::output::plot::extent;
 use crate::output::plot::panel::{Panel, Place, title};
 
@@ -60,13 +60,13 @@ pub fn over_two(data: &Drawn) -> Option<String> {
                         (to.0 + 0.4).min(place.right() + most),
                         (to.1 + 0.4).min(place.bottom() + most),
                     );
-                    let colour = shade(*value, low, high);
+                    let colour = of_value(*value, low, high);
                     data.thing(canvas, n, slice::from_ref(figure), |canvas| {
                         canvas.rectangle(from, to, colour)
                     });
                 }
-                panel.axes(canvas, Some(&x.name), &y.name);
-                name(canvas, place, &figure.name);
+                panel.axes(canvas, Some(&x.label), &y.label);
+                name(canvas, place, &figure.label);
                 bar(canvas, place, figure, low, high);
             }
         })
@@ -99,7 +99,8 @@ fn bar(canvas: &mut Canvas, beside: Place, figure: &Numbers, low: f64, high: f64
     for k in 0..PIECES {
         let bottom = beside.bottom() - k as f64 * height;
         let share = (k as f64 + 0.5) / PIECES as f64;
-        canvas.rectangle((left, bottom - height - 0.4), (left + 14.0, bottom), of_time(share));
+        let colour = of_value(low + share * (high - low), low, high);
+        canvas.rectangle((left, bottom - height - 0.4), (left + 14.0, bottom), colour);
     }
     for share in [0.0, 0.5, 1.0] {
         let at = (left + 20.0, beside.bottom() - beside.height * share);

@@ -6,7 +6,7 @@ mod parallel;
 use std::slice;
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
-use super::colour::{Colour, PALETTE, of_time};
+use super::colour::PALETTE;
 use super::extent;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
@@ -19,8 +19,10 @@ pub use parallel::beside;
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers {
-    /// What it is.
+    /// Its name in files: a JSON pointer or a figure.
     pub name: String,
+    /// Its name beside an axis, without unit.
+    pub label: String,
     /// Its unit.
     pub unit: String,
     /// Whether its axis is logarithmic.
@@ -69,7 +71,7 @@ impl Drawn {
         }
         let said = |one: &Numbers| {
             let unit = if one.unit.is_empty() { "1" } else { &one.unit };
-            format!("{} {}", one.name, quantity(one.values[n], unit, 4))
+            format!("{} {}", one.label, quantity(one.values[n], unit, 4))
         };
         let all: Vec<String> = self.varied.iter().chain(figures).map(said).collect();
         let number = self.designs[n];
@@ -95,8 +97,8 @@ const TOP: f64 = 78.0;
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 170.0;
 const GAP: f64 = 36.0;
-/// Designs whose numbers stand beside their rings at most.
-const NUMBERED: usize = 40;
+/// Width and height of the number of a design; numbers that would overlap one before them are left out.
+const ROOM: (f64, f64) = (17.0, 10.0);
 /// Points that say what they are at most: words are some 300 bytes each, and a page leaves pictures that are too large to their files.
 const SAID: usize = 1000;
 /// Curves told apart by colours.
@@ -146,7 +148,7 @@ pub fn along(data: &Drawn) -> Option<String> {
                 canvas,
                 16.0,
                 &data.case,
-                &data.about("a ring a design, its number beside it"),
+                &data.about("a ring a design, its number above it where there is room"),
             );
             for (k, figure) in data.figures.iter().enumerate() {
                 let place = Place::new(LEFT, TOP + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT);
@@ -172,6 +174,7 @@ pub fn along(data: &Drawn) -> Option<String> {
                         }
                     }
                 }
+                let mut numbered: Vec<(f64, f64)> = vec![];
                 for (n, ((point, curve), number)) in points.iter().zip(&data.curve).zip(&data.designs).enumerate() {
                     if !(point.0.is_finite() && point.1.is_finite()) {
                         continue;
@@ -181,14 +184,16 @@ pub fn along(data: &Drawn) -> Option<String> {
                     data.thing(canvas, n, slice::from_ref(figure), |canvas| {
                         canvas.ring(at, 3.0, stroke)
                     });
-                    if k == 0 && points.len() <= NUMBERED {
+                    let apart = |other: &(f64, f64)| (at.0 - other.0).abs() > ROOM.0 || (at.1 - other.1).abs() > ROOM.1;
+                    if k == 0 && numbered.iter().all(apart) {
+                        numbered.push(at);
                         let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
                         canvas.text((at.0, at.1 - 9.0), &number.to_string(), words);
                     }
                 }
                 let last = k + 1 == data.figures.len();
-                panel.axes(canvas, last.then_some(x.name.as_str()), "");
-                name(canvas, place, &figure.name);
+                panel.axes(canvas, last.then_some(x.label.as_str()), "");
+                name(canvas, place, &figure.label);
             }
             legend(canvas, data, height);
         })
@@ -225,10 +230,6 @@ fn legend(canvas: &mut Canvas, data: &Drawn, height: f64) {
     }
 }
 
-fn shade(value: f64, low: f64, high: f64) -> Colour {
-    of_time(if high > low { (value - low) / (high - low) } else { 0.5 })
-}
-
 #[cfg(test)]
 mod tests {
     use super::map::{around, edges};
@@ -239,6 +240,7 @@ mod tests {
     fn pictures_say_what_they_leave_out() {
         let numbers = |name: &str, values: [f64; 2]| Numbers {
             name: name.into(),
+            label: name.into(),
             unit: "m".into(),
             logarithmic: name == "/b",
             values: values.to_vec(),

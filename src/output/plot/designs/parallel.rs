@@ -1,8 +1,9 @@
 //! A line a design through all numbers.
 
-use super::{Drawn, Numbers, TOP, shade};
+use super::{Drawn, Numbers, TOP};
 use crate::output::numbers::quantity;
 use crate::output::plot::canvas::{Anchor, FAINT_INK, Stroke, Words, picture};
+use crate::output::plot::colour::of_value;
 use crate::output::plot::extent;
 use crate::output::plot::panel::title;
 
@@ -36,7 +37,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
                 .enumerate()
                 .map(|(k, one)| at(k, one.shown(one.values[n])))
                 .collect();
-            let stroke = Stroke::solid(shade(*value, low, high), 1.0);
+            let stroke = Stroke::solid(of_value(*value, low, high), 1.0);
             data.thing(canvas, n, &data.figures, |canvas| canvas.line(&points, stroke));
         }
         for (k, one) in all.iter().enumerate() {
@@ -53,8 +54,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
             let small = Words::new(10.0, Anchor::Centre);
             canvas.text((ends[0].0, top - 9.0), &quantity(raised(hi), unit, 3), small);
             canvas.text((ends[0].0, bottom + 11.0), &quantity(raised(lo), unit, 3), small);
-            let short = one.name.rsplit('/').next().unwrap_or(&one.name);
-            for (line, text) in broken(short).iter().enumerate() {
+            for (line, text) in broken(&one.label).iter().enumerate() {
                 let lower = 30.0 + 13.0 * line as f64;
                 canvas.text((ends[0].0, bottom + lower), text, small.coloured(FAINT_INK));
             }
@@ -66,7 +66,7 @@ pub fn beside(data: &Drawn) -> Option<String> {
 fn broken(name: &str) -> Vec<String> {
     const MOST: usize = 20;
     let mut lines: Vec<String> = vec![String::new()];
-    for part in name.split_inclusive(['_', '.']) {
+    for part in name.split_inclusive(' ') {
         match lines.last_mut() {
             Some(line) if line.len() + part.len() <= MOST || line.is_empty() => line.push_str(part),
             _ => lines.push(part.to_owned()),
