@@ -4,6 +4,7 @@
 //! stages   loads that follow one another: the whole path
 //! arclength  equilibrium with the load factor as one more unknown: the arc length
 //! natural  coordinates in which paths are nearly straight
+//! overdamped  motion without inertia to the next state at rest, where walls turn the path too sharply
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations
 //! sensitivity  derivatives by numbers of the case, or along any change of it
@@ -22,6 +23,7 @@ mod arclength;
 mod branch;
 mod judge;
 mod natural;
+mod overdamped;
 mod path;
 mod predict;
 mod resting;

@@ -2,7 +2,6 @@
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::glance::Glance;
-use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
@@ -119,13 +118,7 @@ impl Stability {
             .jacobian(share, y, &[], Seeds::Step { cj: 0.0 }, &mut values)
             .ok()?;
         let system = statics.system();
-        let l = &system.layout;
-        let mut mass = vec![0.0; l.len];
-        for (node, unknown, _) in l.lines.iter().flat_map(Line::unknowns) {
-            let of_node = system.masses[node];
-            mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
-        }
-        let found = spectral::lowest(statics.pattern(), &values, &mass).ok()?;
+        let found = spectral::lowest(statics.pattern(), &values, &system.nodal_masses()).ok()?;
         Some(Self {
             unstable: found.iter().filter(|mu| mu.re < 0.0).count(),
             softest: found.first().map(|mu| mu.re),
