@@ -99,6 +99,7 @@ codes! {
     Optimum = "W035", "A best that may be none.";
     FastLoad = "W036", "A load that may change faster than it is followed.";
     LateRest = "W037", "Fluid that comes to rest later than the run lasts.";
+    CrossTerm = "W041", "A cross term of the section that the model leaves out.";
 }
 
 impl Code {
