@@ -2,6 +2,7 @@
 
 pub mod attached;
 pub mod bodies;
+pub mod crossing;
 pub mod fluid_mesh;
 pub mod glance;
 pub mod kick;

@@ -38,6 +38,7 @@ use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
 use crate::run::range::{MACH, REYNOLDS};
 use crate::run::record::Control;
+use crate::run::unphysical::{Met, Unphysical};
 use crate::sundials::Solution;
 
 pub use resting::Resting;
@@ -114,6 +115,10 @@ pub struct Path {
     pub reynolds: [f64; 2],
     /// Likewise the largest Mach number.
     pub mach: [f64; 2],
+    /// States met that are not physical, by load factor.
+    unphysical: Met,
+    /// What such a state is.
+    limits: Unphysical,
     /// What is to be said of fluid behind valves that have shut before, where there is some.
     pub trapped: Option<String>,
 }
@@ -177,7 +182,10 @@ impl Path {
             ))
         });
         let trapped = self.trapped.clone();
-        trapped.into_iter().chain(beyond).chain(fast).chain(choked).collect()
+        let at = |factor: f64| format!("load factor {factor:.4}");
+        let unphysical = self.limits.warnings(&self.unphysical, &at);
+        let all = trapped.into_iter().chain(beyond).chain(unphysical);
+        all.chain(fast).chain(choked).collect()
     }
 
     /// The last state.

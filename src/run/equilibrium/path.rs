@@ -283,14 +283,16 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
-        let (beyond, [reynolds, mach]) =
-            state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
+        let factor = state.load_factor();
+        let (beyond, glance) = state::within(self.solver.dae_mut().statics(), x, &self.limits, factor);
+        self.path.unphysical.take(&self.limits.unphysical, &glance, factor);
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
+        let [reynolds, mach] = [self.limits.reynolds(&glance), self.limits.mach(&glance)];
         for (value, largest) in [(reynolds, &mut self.path.reynolds), (mach, &mut self.path.mach)] {
             if value > largest[0] {
-                *largest = [value, state.load_factor()];
+                *largest = [value, factor];
             }
         }
         let control = (self.watch)(&state);

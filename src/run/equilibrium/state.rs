@@ -101,13 +101,13 @@ impl State {
     }
 }
 
-/// What lies beyond the model in a state, if anything does, and the largest Reynolds and Mach number of its flows through tubes.
-pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, [f64; 2]) {
+/// What lies beyond the model in a state, if anything does, and what is watched of it.
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, Glance) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
     let glance = Glance::new(system, now, share, limits.half_height, w);
     let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
-    (beyond, [limits.reynolds(&glance), limits.mach(&glance)])
+    (beyond, glance)
 }
 
 impl Stability {
