@@ -109,6 +109,12 @@ impl NamedFluid {
         }
     }
 
+    /// Vapor pressure at a temperature [C] in [`Self::range_c`], absolute [Pa], where a formula is known: Buck 1981, J. Appl. Meteorol. 20, 1527,
+    /// of water, 0.5 % or better up to 50 C and 1 % up to 100 C.
+    pub fn vapor_pressure(self, t: f64) -> Option<f64> {
+        matches!(self, Self::Water).then(|| 611.21 * ((18.678 - t / 234.5) * t / (257.14 + t)).exp())
+    }
+
     /// Density and viscosity at a temperature [C] in [`Self::range_c`], at 101325 Pa.
     pub fn at(self, t: f64) -> Properties {
         let kelvin = t + ZERO_CELSIUS_K;

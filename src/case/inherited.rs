@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use serde_json::Value;
 
+use super::computed;
 use super::numbers::digits;
 use super::origins::Origin;
 use super::own_cell::OwnCell;
@@ -120,7 +121,31 @@ const PARTS: [Part; 3] = [
 pub fn warnings(case: &Case) -> Vec<String> {
     let mine = of_case(case);
     let parts = PARTS.iter().filter_map(|part| warning(case, &mine, part));
-    parts.chain(plane_cell(case)).collect()
+    parts.chain(plane_cell(case)).chain(cross_term(case)).collect()
+}
+
+/// Area of a row per pressure in the other row, over that per its own pressure, above which the model leaves out too much.
+const CROSS: f64 = 0.02;
+
+fn cross_term(case: &Case) -> Option<String> {
+    let pointer = "/bladders/area_per_pressure_m2_per_pa";
+    let computed = matches!(case.origins.get(pointer), Some(Origin::Section { .. }));
+    let section = case.section.as_ref().filter(|_| computed)?;
+    let numbers = computed::coefficients(section).ok()?.numbers;
+    let [own, other] = [
+        numbers.area_per_pressure_m2_per_pa,
+        numbers.area_per_other_pressure_m2_per_pa,
+    ];
+    let ratio = (other / own).abs();
+    (ratio > CROSS).then(|| {
+        Code::CrossTerm.warning(format!(
+            "The model leaves out the area of one row per pressure in the other: {other:.3e} m^2/Pa, {:.1} % of area_per_pressure_m2_per_pa (limit {:.0} \
+             %). Where both rows are under pressure, areas, and pressures of closed bladders, are off by up to this share of the larger pressure. \
+             Use larger fillets, or move the bladders away from the mid-plane, to make it smaller.",
+            100.0 * ratio,
+            100.0 * CROSS
+        ))
+    })
 }
 
 /// What the ends of bladders take off areas per moment, over their size over their length: measured with sections of the paper's and others.

@@ -15,7 +15,7 @@ use crate::numerics::sets::Sets;
 /// with V the volumes of accumulators and `V_port` what ports that prescribe a volume or a flow have let in; for these storage
 /// equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A network through which ports or turbines drive a steady flow is at rest too.
 /// Loads that go on from a state at rest ([`StaticBeam::from_state`]) keep the volumes of that state, whatever t. Forces on
-/// unknowns, constant in time, may be added (an imperfection).
+/// unknowns, constant in time, may be added (an imperfection), and a resistance to motion from a state ([`StaticBeam::resist`]).
 #[derive(Clone, Debug)]
 pub struct StaticBeam {
     beam: BeamDae,
@@ -34,6 +34,19 @@ pub struct StaticBeam {
     left: Vec<f64>,
     /// Added to the residual.
     pub imperfection: Vec<f64>,
+    /// Resistance to motion; absent: none.
+    resistance: Option<Resistance>,
+}
+
+/// Resistance `ρ D (y - y_0)` to motion away from a state, D the mass of each node at its momentum.
+#[derive(Clone, Debug)]
+struct Resistance {
+    /// `ρ D` by unknown.
+    weights: Vec<f64>,
+    /// `y_0`.
+    state: Vec<f64>,
+    /// Entry of the diagonal in each column with mass.
+    diagonal: Vec<(usize, usize)>,
 }
 
 /// An entry of the static Jacobian.
@@ -43,6 +56,8 @@ enum Entry {
     Own(usize),
     /// Volume by the unknown, over the scale of volumes.
     Volume(f64),
+    /// Diagonal that only a resistance to motion fills.
+    Empty,
 }
 
 /// Cells and accumulators that share a volume which ports of volume alone can change.
@@ -93,6 +108,11 @@ impl StaticBeam {
         }
         let inner = beam.pattern();
         let n = beam.len();
+        let masses = if beam.system().touching.is_empty() {
+            vec![0.0; n]
+        } else {
+            beam.system().nodal_masses()
+        };
         let replaced = |row: usize| closed.iter().position(|c| c.row == row);
         let mut starts = vec![0];
         let (mut rows, mut from) = (vec![], vec![]);
@@ -106,6 +126,9 @@ impl StaticBeam {
             };
             let volumes = closed.iter().filter_map(|c| Some((c.row as i64, weight(c)?)));
             entries.extend(volumes.map(|(row, weight)| (row, Entry::Volume(weight))));
+            if masses[column] > 0.0 && entries.iter().all(|(row, _)| *row != column as i64) {
+                entries.push((column as i64, Entry::Empty));
+            }
             entries.sort_unstable_by_key(|(row, _)| *row);
             rows.extend(entries.iter().map(|e| e.0));
             from.extend(entries.iter().map(|e| e.1));
@@ -124,7 +147,29 @@ impl StaticBeam {
             pumped: pumped.to_vec(),
             left: vec![],
             imperfection: vec![0.0; n],
+            resistance: None,
         }
+    }
+
+    /// Adds the resistance `ρ D (y - y_0)` to motion away from a state, `ρ` in 1/s^2 and D the mass of each node: one step of a motion
+    /// without inertia. A resistance of 0 removes it. Only systems with walls have room for it.
+    pub fn resist(&mut self, rho: f64, state: &[f64]) {
+        if rho == 0.0 {
+            self.resistance = None;
+            return;
+        }
+        let mut weights = self.system().nodal_masses();
+        weights.iter_mut().for_each(|w| *w *= rho);
+        let diagonal = (0..self.len()).filter_map(|column| {
+            let mut entries = self.pattern.column(column);
+            let own = entries.find(|&entry| self.pattern.rows[entry] == column as i64);
+            own.filter(|_| weights[column] > 0.0).map(|entry| (column, entry))
+        });
+        self.resistance = Some(Resistance {
+            diagonal: diagonal.collect(),
+            state: state.to_vec(),
+            weights,
+        });
     }
 
     /// Lets what a state leaves of the equations at t = 0 go in proportion: the state is the first one of a path that ends in
@@ -280,6 +325,11 @@ impl Dae for StaticBeam {
         for (r, more) in residual.iter_mut().zip(&self.imperfection) {
             *r += more;
         }
+        if let Some(against) = &self.resistance {
+            for &(k, _) in &against.diagonal {
+                residual[k] += against.weights[k] * (y[k] - against.state[k]);
+            }
+        }
         Ok(())
     }
 
@@ -297,7 +347,13 @@ impl Dae for StaticBeam {
             *value = match *from {
                 Entry::Own(entry) => self.beam_values[entry],
                 Entry::Volume(weight) => weight,
+                Entry::Empty => 0.0,
             };
+        }
+        if let Some(against) = &self.resistance {
+            for &(k, entry) in &against.diagonal {
+                values[entry] += against.weights[k];
+            }
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::quantities::look;
 use super::turns::tip_angle;
 use super::workspace::Motion;
-use super::{State, System, TimeData, Workspace, ledger, touching};
+use super::{State, System, TimeData, Workspace, crossing, ledger, touching};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::Kinematics;
@@ -27,8 +27,17 @@ pub struct Glance {
     pub tube: usize,
     /// Tube of the largest Mach number.
     pub fast: usize,
-    /// Least pressure of gas in junctions, vessels and where it is pumped [Pa].
+    /// Least pressure in junctions, vessels and where it is pumped [Pa].
     pub thinnest: f64,
+    /// Where that is: a junction, or behind these a port that gives flow or volume.
+    #[serde(default)]
+    pub thinnest_at: usize,
+    /// Bladder of the lowest pressure.
+    #[serde(default)]
+    pub lowest: usize,
+    /// Where the beam crosses itself: both places along the undeformed beam [m].
+    #[serde(default)]
+    pub crossing: Option<[f64; 2]>,
     /// Largest `|u1 - u1(root)|` [m].
     pub deflection: f64,
     /// Largest distance by which a node has moved against the root [m].
@@ -111,7 +120,8 @@ impl Glance {
         g.moving[Watched::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
         g.moving[Watched::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[Watched::Depth as usize] = touching::deepest(system, w);
-        g.thinnest = look::thinnest(system, now, w);
+        (g.thinnest, g.thinnest_at) = look::thinnest(system, now, w);
+        g.crossing = crossing::first(system, w);
         g.fluid(system, now, w);
         g
     }
@@ -124,6 +134,7 @@ impl Glance {
         let mut set = |which: Watched, moving: Moving| self.moving[which as usize] = moving;
         let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
         let (low, high) = extremes(&w.fluid.pressure);
+        self.lowest = low / fluid.cells_per_bladder;
         set(Watched::High, [w.fluid.pressure[high], rate(high)]);
         set(Watched::Low, [w.fluid.pressure[low], rate(low)]);
         let areas = w.fluid.area_changes();

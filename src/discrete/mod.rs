@@ -2,6 +2,7 @@
 
 pub mod attached;
 pub mod bodies;
+pub mod crossing;
 pub mod fluid_mesh;
 pub mod glance;
 pub mod kick;
@@ -113,6 +114,16 @@ impl System {
             system.layout.differential == self.layout.differential && system.layout.waves() == self.layout.waves();
         system.layout = self.layout.clone();
         Ok(same.then_some(system))
+    }
+
+    /// The mass of each node at its displacements, in the scales of unknowns and equations [s^2]; 0 at all other unknowns.
+    pub fn nodal_masses(&self) -> Vec<f64> {
+        let l = &self.layout;
+        let mut masses = vec![0.0; l.len];
+        for (node, unknown, _) in l.lines.iter().flat_map(layout::Line::unknowns) {
+            masses[unknown] = self.masses[node] * l.scales[unknown] / l.row_scales[unknown];
+        }
+        masses
     }
 
     /// Visits every signal that acts, always in the same order.

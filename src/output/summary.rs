@@ -27,6 +27,7 @@ pub fn to_json(summary: &Summary) -> String {
             max_abs: finite(q.max_abs),
             max_abs_at_s: finite(q.max_abs_at_s),
             extreme: finite(q.extreme),
+            window_extreme: finite(q.window_extreme),
             window_max_abs: finite(q.window_max_abs),
             window_rms: finite(q.window_rms),
             window: finite(q.window),

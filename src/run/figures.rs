@@ -57,7 +57,8 @@ impl Figures {
         let in_window = row.t() >= self.window_start;
         for (one, track) in self.each() {
             match one.source() {
-                Source::Motion(watched) => track.take(value(glance, watched), in_window),
+                Source::Motion(watched @ [_]) => track.take(value(glance, watched), in_window),
+                Source::Motion(watched) => track.take(value(glance, watched).abs(), in_window),
                 Source::Energy(group) => track.take(row.sum(group), in_window),
                 Source::Efficiency => {}
             }
@@ -147,8 +148,12 @@ impl Figures {
         let quantity = |one: Interest, t: &Track| match one.source() {
             Source::Motion(watched) => {
                 let swing = t.swing(reached, self.window_time);
-                let extreme = swing.extreme.filter(|_| has_sign(watched));
-                Quantity { extreme, ..swing }
+                let of_sign = |extreme: Option<f64>| extreme.filter(|_| has_sign(watched));
+                Quantity {
+                    extreme: of_sign(swing.extreme),
+                    window_extreme: of_sign(swing.window_extreme),
+                    ..swing
+                }
             }
             Source::Energy(_) => Quantity {
                 last: Some(t.last()),
@@ -171,16 +176,17 @@ impl Figures {
 /// Whether what is followed has a sign: what is largest anywhere is a size.
 fn has_sign(watched: &[Watched]) -> bool {
     let sizes = [Watched::Largest1, Watched::Largest3];
-    matches!(watched, [which] if !sizes.contains(which))
+    watched.iter().all(|which| !sizes.contains(which))
 }
 
 /// A value as its quantity has it: of several the larger in size.
 fn value(glance: &Glance, watched: &[Watched]) -> f64 {
     match watched {
         [which] => sized(glance, *which)[0],
-        _ => watched
-            .iter()
-            .fold(0.0, |most: f64, which| most.max(glance.of(*which)[0].abs())),
+        _ => {
+            let all = watched.iter().map(|which| glance.of(*which)[0]);
+            all.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most })
+        }
     }
 }
 

@@ -34,4 +34,5 @@ pub mod stretch;
 pub mod strides;
 pub mod summary;
 pub mod track;
+pub mod unphysical;
 pub mod wall;

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
+use super::unphysical::{Met, Unphysical};
 use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
@@ -26,7 +27,7 @@ const PRESSURE_ENDS: f64 = 10.0;
 const MOTION_ENDS: f64 = 1e3;
 
 /// Limits of a case.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Limits {
     /// Half of the beam's height [m].
     pub half_height: f64,
@@ -46,6 +47,8 @@ pub struct Limits {
     vacuum: f64,
     /// Whether the start is an equilibrium.
     at_rest: bool,
+    /// What is not physical.
+    pub unphysical: Unphysical,
 }
 
 /// A limit that was passed: the largest value with its time and place, and when it began.
@@ -70,6 +73,8 @@ pub struct Range {
     /// Depth behind a wall at the start, where no equilibrium has found it [m].
     #[serde(default)]
     begun: f64,
+    #[serde(default)]
+    unphysical: Met,
 }
 
 impl Passed {
@@ -131,6 +136,7 @@ impl Limits {
                 [false, true] => "friction and losses alone hold",
                 [true, true] => "friction, losses and inertia alone hold",
             },
+            unphysical: Unphysical::new(case, system),
             at_rest: case.start.equilibrium.is_some(),
             vacuum: wet
                 .and_then(|wet| wet.compression.as_ref())
@@ -262,6 +268,7 @@ impl Range {
             .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
         self.touched
             .take(Watched::Depth, 1.0, limits.half_height, before, now, 0);
+        self.unphysical.take(&limits.unphysical, now, now.t);
         if now.t == 0.0 && !limits.at_rest {
             self.begun = self.begun.max(now.of(Watched::Depth)[0]);
         }
@@ -269,7 +276,9 @@ impl Range {
 
     /// Limits that were passed.
     pub fn warnings(&self, limits: &Limits) -> Vec<String> {
-        let mut all = Vec::new();
+        let mut all = limits
+            .unphysical
+            .warnings(&self.unphysical, &|t| format!("t = {t:.4} s"));
         if let Some(told) = self.strain.told(2, format!(", node {}", self.strain.place), STRAIN) {
             all.push(Code::Strain.warning(format!(
                 "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 {told}; strains are meant to be small"

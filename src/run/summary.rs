@@ -45,6 +45,9 @@ pub struct Quantity {
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
+    /// The value there, with its sign, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_extreme: Option<f64>,
     /// Root mean square over the time in the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_rms: Option<f64>,

@@ -18,6 +18,9 @@ pub struct Track {
     /// When that was first reached [s].
     max_abs_at: f64,
     window_max_abs: f64,
+    /// Whether the value was negative there.
+    #[serde(default)]
+    window_negative: bool,
     /// When that was first reached [s]; asked for within its step alone.
     #[serde(skip)]
     window_max_abs_at: f64,
@@ -42,7 +45,7 @@ impl Track {
             (self.max_abs, self.max_abs_at, self.negative) = (size, t, value < 0.0);
         }
         if in_window && size > self.window_max_abs {
-            (self.window_max_abs, self.window_max_abs_at) = (size, t);
+            (self.window_max_abs, self.window_max_abs_at, self.window_negative) = (size, t, value < 0.0);
         }
     }
 
@@ -79,12 +82,14 @@ impl Track {
 
     /// What is told of a value that swings: `reached` when the run has come to its window, which it has followed for so long [s].
     pub fn swing(&self, reached: bool, window_time: f64) -> Quantity {
+        let signed = |size: f64, negative: bool| if negative { -size } else { size };
         Quantity {
             last: Some(self.last),
             max_abs: Some(self.max_abs),
             max_abs_at_s: (self.max_abs > 0.0).then_some(self.max_abs_at),
-            extreme: Some(if self.negative { -self.max_abs } else { self.max_abs }),
+            extreme: Some(signed(self.max_abs, self.negative)),
             window_max_abs: reached.then_some(self.window_max_abs),
+            window_extreme: reached.then(|| signed(self.window_max_abs, self.window_negative)),
             window_rms: (window_time > 0.0).then(|| (self.window_squares / window_time).sqrt()),
             ..Quantity::default()
         }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::case::fluids::NamedFluid;
+use crate::case::fluids::{NamedFluid, ROOM_C};
 
 /// Standard atmosphere [Pa].
 pub const ATMOSPHERE: f64 = 101_325.0;
@@ -57,6 +57,17 @@ impl Fluid {
             FluidKind::Gas => 1.0,
             FluidKind::Liquid => self.gas_fraction.unwrap_or(0.0),
         }
+    }
+
+    /// Vapor pressure, absolute [Pa], where it is known.
+    pub fn vapor_pressure(&self) -> Option<f64> {
+        self.preset?.vapor_pressure(self.temperature_c.unwrap_or(ROOM_C))
+    }
+
+    /// Pressure against ambient below which a liquid boils [Pa]: by its vapor pressure where that is known, else that of a vacuum; none of gas.
+    pub fn boils_below(&self) -> Option<f64> {
+        let vapor = self.vapor_pressure().unwrap_or(0.0);
+        (self.kind == FluidKind::Liquid).then(|| vapor - self.ambient_pressure())
     }
 
     /// Absolute pressure outside the beam [Pa].

@@ -238,9 +238,10 @@ fn tip(summary: &Summary) -> [Option<String>; 2] {
 
 fn pressure(summary: &Summary) -> Option<String> {
     let pressure = get(summary, Interest::MaxPressure)?;
-    let largest = shown(pressure.max_abs?, "Pa");
+    let largest = shown(pressure.largest()?, "Pa");
     let window = pressure
-        .window_max_abs
+        .window_extreme
+        .or(pressure.window_max_abs)
         .map_or(String::new(), |p| format!("{BETWEEN}in the window {}", shown(p, "Pa")));
     Some(format!("largest in a bladder: {largest}{window}"))
 }

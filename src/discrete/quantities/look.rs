@@ -121,22 +121,16 @@ pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
     })
 }
 
-/// Least pressure of junctions, vessels, and ports that give flow or volume, where fluid holds gas; 0 elsewhere [Pa].
-pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+/// Least pressure of junctions, vessels, and ports that give flow or volume [Pa], at most 0; and its place: junctions are counted first.
+pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
     let Some(wet) = system.model.wet.as_ref() else {
-        return 0.0;
+        return (0.0, 0);
     };
-    if wet
-        .compression
-        .as_ref()
-        .is_none_or(|compression| compression.lowest() == f64::NEG_INFINITY)
-    {
-        return 0.0;
-    }
     let ports = wet.network.ports.len();
     let sources = now.source_flow.iter().enumerate();
     let sources = sources.map(|(source, &flow)| ledger::ports::pressure(system, now, w, ports + source, flow));
-    sources.chain(w.fluid.junction.iter().copied()).fold(0.0, f64::min)
+    let all = w.fluid.junction.iter().copied().chain(sources).enumerate();
+    all.fold((0.0, 0), |least, (k, p)| if p < least.0 { (p, k) } else { least })
 }
 
 /// Flow times a factor of the tube, of its link and its radius, in the tube in which that is largest: its size, its rate as far as flow makes it and

@@ -244,7 +244,9 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             &format!("of u₁ at the tip, from 10 to 90 % of its way{settles}"),
         );
     }
-    let window = summary.quantity("max_pressure_pa").and_then(|q| q.window_max_abs);
+    let window = summary
+        .quantity("max_pressure_pa")
+        .and_then(|q| q.window_extreme.or(q.window_max_abs));
     let window = window.map_or("gauge, in any bladder".into(), |p| {
         format!("in any bladder; {} in the last part", quantity(p, "Pa", 3))
     });

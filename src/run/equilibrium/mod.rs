@@ -4,6 +4,7 @@
 //! stages   loads that follow one another: the whole path
 //! arclength  equilibrium with the load factor as one more unknown: the arc length
 //! natural  coordinates in which paths are nearly straight
+//! overdamped  motion without inertia to the next state at rest, where walls turn the path too sharply
 //! predict  where the next point probably is
 //! path     step by step along the path, as far as predictions hold; limit points, bifurcations
 //! sensitivity  derivatives by numbers of the case, or along any change of it
@@ -22,6 +23,7 @@ mod arclength;
 mod branch;
 mod judge;
 mod natural;
+mod overdamped;
 mod path;
 mod predict;
 mod resting;
@@ -36,6 +38,7 @@ use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
 use crate::run::range::{MACH, REYNOLDS};
 use crate::run::record::Control;
+use crate::run::unphysical::{Met, Unphysical};
 use crate::sundials::Solution;
 
 pub use resting::Resting;
@@ -112,6 +115,10 @@ pub struct Path {
     pub reynolds: [f64; 2],
     /// Likewise the largest Mach number.
     pub mach: [f64; 2],
+    /// States met that are not physical, by load factor.
+    unphysical: Met,
+    /// What such a state is.
+    limits: Unphysical,
     /// What is to be said of fluid behind valves that have shut before, where there is some.
     pub trapped: Option<String>,
 }
@@ -175,7 +182,10 @@ impl Path {
             ))
         });
         let trapped = self.trapped.clone();
-        trapped.into_iter().chain(beyond).chain(fast).chain(choked).collect()
+        let at = |factor: f64| format!("load factor {factor:.4}");
+        let unphysical = self.limits.warnings(&self.unphysical, &at);
+        let all = trapped.into_iter().chain(beyond).chain(unphysical);
+        all.chain(fast).chain(choked).collect()
     }
 
     /// The last state.

@@ -12,7 +12,7 @@ use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
 
 /// Longest step, in lengths of the beam and shares of the load.
-const LONGEST: f64 = 0.5;
+pub(super) const LONGEST: f64 = 0.5;
 /// Shortest step worth trying.
 const SHORTEST: f64 = 1e-7;
 /// How far a solution may lie from its prediction, in steps: further off it may be on another path.
@@ -38,8 +38,7 @@ const MOST_POINTS: usize = 5000;
 /// Shares beyond which a path has lost its way.
 const FURTHEST: f64 = 100.0;
 
-/// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean
-/// square over its nodes; the others follow from these.
+/// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean square.
 pub(super) fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
@@ -54,7 +53,7 @@ pub(super) fn weights(system: &System) -> Vec<f64> {
 pub(super) struct End(pub SolverError);
 
 /// What comes after a step.
-enum Next {
+pub(super) enum Next {
     /// Another one of this length.
     Step(f64),
     /// The path is crossed by another one before this share, where it is as stable as this.
@@ -111,28 +110,42 @@ impl Way {
 
 impl Follower<'_> {
     /// From a state at share 0 to the end of the stage; the state is kept where it is `new`.
-    pub(super) fn go(&mut self, mut x: Vec<f64>, new: bool) -> Result<(), End> {
+    pub(super) fn go(&mut self, start: Vec<f64>, new: bool) -> Result<(), End> {
         self.solver.dae_mut().at_share(0.0);
-        self.solve(&mut x, START_PATIENCE).map_err(|f| self.fail(&f, 0.0))?;
+        let mut x = start.clone();
+        if let Err(failure) = self.solve(&mut x, START_PATIENCE) {
+            x = self.first(start, failure).map_err(|f| self.fail(&f, 0.0))?;
+        }
         self.orientation = self.solver.determinant_sign() * self.options.share.signum() as i8;
         if new {
             self.keep(&x)?;
         }
         let longest = LONGEST.min(self.options.points.map_or(LONGEST, |points| 1.0 / points as f64));
-        let mut direction = self.by_share();
-        let mut step = (self.options.share.abs() * self.norm(&direction)).min(longest);
-        let unit = self.options.share.signum() / self.norm(&direction);
-        direction.iter_mut().for_each(|d| *d *= unit);
-        let behind = 1e-3 * step;
-        let before: Vec<f64> = x.iter().zip(&direction).map(|(x, d)| x - behind * d).collect();
-        let mut trail = Way::new(self, before, behind, x);
+        let (mut trail, mut step) = self.set_out(x, self.options.share, longest);
         loop {
-            step = match self.step(&mut trail, step)? {
+            let next = match self.step(&mut trail, step) {
+                Err(lost) => self.go_around(&mut trail, lost)?,
+                next => next?,
+            };
+            step = match next {
                 Next::Step(step) => step.min(longest),
                 Next::Branch(share, stability) => self.leave(&mut trail, (share, stability))?,
                 Next::Arrived => return Ok(()),
             };
         }
+    }
+
+    /// A way from a state just solved with the share prescribed, and the length of its first step: a change of the share, at most the `longest`.
+    pub(super) fn set_out(&mut self, x: Vec<f64>, by: f64, longest: f64) -> (Way, f64) {
+        let mut direction = vec![0.0; self.n + 1];
+        direction[self.n] = 1.0;
+        self.solver.apply_inverse(&mut direction);
+        let step = (by.abs() * self.norm(&direction)).min(longest);
+        let unit = by.signum() / self.norm(&direction);
+        direction.iter_mut().for_each(|d| *d *= unit);
+        let behind = 1e-3 * step;
+        let before = x.iter().zip(&direction).map(|(x, d)| x - behind * d).collect();
+        (Way::new(self, before, behind, x), step)
     }
 
     /// Takes one step, shortened until it succeeds.
@@ -256,14 +269,6 @@ impl Follower<'_> {
         along.direction = direction;
     }
 
-    /// `d(y, s)/ds` of the path at the last solution, found with s prescribed.
-    fn by_share(&mut self) -> Vec<f64> {
-        let mut direction = vec![0.0; self.n + 1];
-        direction[self.n] = 1.0;
-        self.solver.apply_inverse(&mut direction);
-        direction
-    }
-
     /// Solves from a guess; Newton steps done.
     pub(super) fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolError> {
         let options = KinsolOptions {
@@ -278,14 +283,16 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
-        let (beyond, [reynolds, mach]) =
-            state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
+        let factor = state.load_factor();
+        let (beyond, glance) = state::within(self.solver.dae_mut().statics(), x, &self.limits, factor);
+        self.path.unphysical.take(&self.limits.unphysical, &glance, factor);
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
+        let [reynolds, mach] = [self.limits.reynolds(&glance), self.limits.mach(&glance)];
         for (value, largest) in [(reynolds, &mut self.path.reynolds), (mach, &mut self.path.mach)] {
             if value > largest[0] {
-                *largest = [value, state.load_factor()];
+                *largest = [value, factor];
             }
         }
         let control = (self.watch)(&state);

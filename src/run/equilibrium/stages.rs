@@ -257,6 +257,7 @@ fn stretch(
     let wet = statics.system().model.wet.is_some();
     let weights = weights(statics.system());
     let limits = Limits::new(case, statics.system());
+    path.limits = limits.unphysical.clone();
     let natural = Natural::of(&statics);
     let solver = match Kinsol::new(Arclength::new(statics)) {
         Err(failure) => {

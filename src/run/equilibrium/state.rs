@@ -2,7 +2,6 @@
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::glance::Glance;
-use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
@@ -102,13 +101,13 @@ impl State {
     }
 }
 
-/// What lies beyond the model in a state, if anything does, and the largest Reynolds and Mach number of its flows through tubes.
-pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, [f64; 2]) {
+/// What lies beyond the model in a state, if anything does, and what is watched of it.
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, Glance) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
     let glance = Glance::new(system, now, share, limits.half_height, w);
     let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
-    (beyond, [limits.reynolds(&glance), limits.mach(&glance)])
+    (beyond, glance)
 }
 
 impl Stability {
@@ -119,13 +118,7 @@ impl Stability {
             .jacobian(share, y, &[], Seeds::Step { cj: 0.0 }, &mut values)
             .ok()?;
         let system = statics.system();
-        let l = &system.layout;
-        let mut mass = vec![0.0; l.len];
-        for (node, unknown, _) in l.lines.iter().flat_map(Line::unknowns) {
-            let of_node = system.masses[node];
-            mass[unknown] = of_node * l.scales[unknown] / l.row_scales[unknown];
-        }
-        let found = spectral::lowest(statics.pattern(), &values, &mass).ok()?;
+        let found = spectral::lowest(statics.pattern(), &values, &system.nodal_masses()).ok()?;
         Some(Self {
             unstable: found.iter().filter(|mu| mu.re < 0.0).count(),
             softest: found.first().map(|mu| mu.re),

@@ -1,0 +1,66 @@
+//! Where a beam crosses itself.
+
+use super::{System, Workspace};
+use crate::model::Kinematics;
+use crate::numerics::Planar;
+
+/// Two places along the undeformed beam [m] at which its line crosses itself, the first pair found; none where it does not. A line whose
+/// tangents all lie within a right angle of their mean cannot; of others, only cells near enough to each other are compared. Allocates nothing.
+pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
+    let cells = system.mesh.cells;
+    if system.model.kinematics != Kinematics::FiniteRotation {
+        return None;
+    }
+    let u = &w.motion.u[..=cells];
+    let h = system.mesh.h;
+    let at = |node: usize| Planar::new(u[node].x, u[node].z + h * node as f64);
+    let whole = at(cells) - at(0);
+    if (0..cells).all(|c| (at(c + 1) - at(c)).dot(whole) > 0.0) {
+        return None;
+    }
+    let longest = (0..cells).fold(0.0, |most: f64, c| most.max((at(c + 1) - at(c)).squared()));
+    let longest = longest.sqrt();
+    for first in 0..cells {
+        let (a, b) = (at(first), at(first + 1));
+        let mut second = first + 2;
+        while second < cells {
+            // cells between two that are apart by some distance are as many as their lengths need at least
+            let apart = (at(second) - a).squared().sqrt();
+            let near = apart <= 2.0 * longest;
+            if near && let Some([s, t]) = meet([a, b], [at(second), at(second + 1)]) {
+                return Some([(first as f64 + s) * h, (second as f64 + t) * h]);
+            }
+            second += if near {
+                1
+            } else {
+                ((apart / longest) as usize).saturating_sub(1).max(1)
+            };
+        }
+    }
+    None
+}
+
+/// Where two straight pieces meet, as parts of each from 0 to 1; none where they do not, or are parallel.
+fn meet([a, b]: [Planar<f64>; 2], [c, d]: [Planar<f64>; 2]) -> Option<[f64; 2]> {
+    let (along, other, between) = (b - a, d - c, c - a);
+    let cross = |p: Planar<f64>, q: Planar<f64>| p.x * q.z - p.z * q.x;
+    let area = cross(along, other);
+    let parts = [cross(between, other) / area, cross(between, along) / area];
+    parts.iter().all(|part| (0.0..=1.0).contains(part)).then_some(parts)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Goal: pieces that meet do so where they do, parallel and distant ones nowhere.
+    #[test]
+    fn pieces_meet_where_they_cross() {
+        let at = |x: f64, z: f64| Planar { x, z };
+        let first = [at(0.0, 0.0), at(2.0, 2.0)];
+        assert_eq!(meet(first, [at(0.0, 1.0), at(1.0, 0.0)]), Some([0.25, 0.5]));
+        assert_eq!(meet(first, [at(0.0, 1.0), at(2.0, 3.0)]), None);
+        assert_eq!(meet(first, [at(3.0, 2.0), at(2.0, 3.0)]), None);
+        assert_eq!(meet(first, first), None);
+    }
+}

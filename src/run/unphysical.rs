@@ -1,0 +1,107 @@
+//! States that the equations allow and nature does not: a beam that crosses itself, a liquid below its vapor pressure.
+
+use serde::{Deserialize, Serialize};
+
+use crate::case::schema::Case;
+use crate::case::wiring::bladder_label;
+use crate::discrete::System;
+use crate::discrete::glance::{Glance, Watched};
+use crate::error::Code;
+use crate::error::numbers::quantity;
+
+/// What is known of a case before its run.
+#[derive(Clone, Debug, Default)]
+pub struct Unphysical {
+    /// Pressure against ambient below which the liquid boils [Pa]; none of gas.
+    boils_below: Option<f64>,
+    /// Whether that is the vapor pressure, else it is a vacuum.
+    known: bool,
+    /// Bladders in a row.
+    per_row: usize,
+    /// Names of the junctions and, behind them, of the ports that give flow or volume.
+    places: Vec<String>,
+}
+
+/// Where and when such states were met: the instant or load factor of the first, and of a pressure the lowest.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Met {
+    /// The first crossing: both places along the undeformed beam [m], and when.
+    crossing: Option<([f64; 2], f64)>,
+    /// When the liquid first was below its limit.
+    boiled: Option<f64>,
+    /// Its lowest pressure [Pa], and when.
+    lowest: [f64; 2],
+    /// Whether that is in a bladder, and which bladder, junction or port.
+    place: (bool, usize),
+}
+
+impl Unphysical {
+    /// Of a case.
+    pub fn new(case: &Case, system: &System) -> Self {
+        let (Some(fluid), Some(wet)) = (&case.fluid, &system.model.wet) else {
+            return Self::default();
+        };
+        let junctions = wet.network.junctions.iter().map(|one| format!("junction \"{one}\""));
+        let sources = wet.network.sources.iter().map(|one| format!("port \"{}\"", one.name));
+        Self {
+            boils_below: fluid.boils_below(),
+            known: fluid.vapor_pressure().is_some(),
+            per_row: wet.per_row,
+            places: junctions.chain(sources).collect(),
+        }
+    }
+
+    fn place(&self, (in_bladder, place): (bool, usize)) -> String {
+        if in_bladder {
+            return format!("bladder {}", bladder_label(place, self.per_row));
+        }
+        self.places.get(place).cloned().unwrap_or_else(|| "the network".into())
+    }
+
+    /// What is to be said; `at` tells an instant or load factor.
+    pub fn warnings(&self, met: &Met, at: &dyn Fn(f64) -> String) -> Vec<String> {
+        let crossing = met.crossing.map(|(places, when)| {
+            let [first, second] = places.map(|place| quantity(place, "m", 4));
+            Code::CrossesItself.warning(format!(
+                "The beam crosses itself: {first} and {second} from the root meet at {} (first seen). The model has no contact between parts of a beam, so \
+                 that later states are not physical. Reduce the load that bends it, or end before that.",
+                at(when)
+            ))
+        });
+        let boiled = met.boiled.zip(self.boils_below).map(|(first, limit)| {
+            let of = if self.known { "vapor pressure" } else { "vacuum" };
+            let [lowest, when] = met.lowest;
+            Code::Boiling.warning(format!(
+                "The liquid is below its vapor pressure: {} gauge in {} at {} (limit {}, {of}; first below it at {}). A real liquid boils there, so that later states \
+                 are not physical. Reduce the suction, or raise /fluid/ambient_pressure_pa.",
+                quantity(lowest, "Pa", 4),
+                self.place(met.place),
+                at(when),
+                quantity(limit, "Pa", 4),
+                at(first)
+            ))
+        });
+        crossing.into_iter().chain(boiled).collect()
+    }
+}
+
+impl Met {
+    /// Takes a state, at an instant or load factor.
+    pub fn take(&mut self, of: &Unphysical, glance: &Glance, when: f64) {
+        if self.crossing.is_none() {
+            self.crossing = glance.crossing.map(|places| (places, when));
+        }
+        let Some(limit) = of.boils_below else { return };
+        let in_cells = glance.of(Watched::Low)[0];
+        let (lowest, place) = match in_cells <= glance.thinnest {
+            true => (in_cells, (true, glance.lowest)),
+            false => (glance.thinnest, (false, glance.thinnest_at)),
+        };
+        if lowest < limit {
+            self.boiled.get_or_insert(when);
+            if lowest < self.lowest[0] {
+                (self.lowest, self.place) = ([lowest, when], place);
+            }
+        }
+    }
+}
