@@ -46,7 +46,10 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         }
         None => start(&mut folder, asked, &plan)?,
     }
-    let survey = parts::join(&all, &folder, &plan)?;
+    let (survey, damage) = parts::join(&all, &folder, &plan)?;
+    for one in damage {
+        terminal::tell(&format!("slcbeam: {one}."));
+    }
     let told = files::summarize(&plan, &survey)?;
     let written = files::write(&folder, &plan, &survey, &told, asked.lean);
     let written = written.and_then(|()| match asked.lean {

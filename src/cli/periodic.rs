@@ -126,6 +126,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         meshes,
     };
     let finished = finished.and_then(|finished| {
+        outcome.summary.tables_crc32.clone_from(&finished.tables_crc32);
         finished.folder().write(files::CYCLE, results::text(&told).as_bytes())?;
         Ok(finished)
     });

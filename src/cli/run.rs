@@ -229,6 +229,7 @@ fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result
     if let Some(finished) = &finished {
         let wall = &mut outcome.summary.wall_s;
         (wall.pictures, wall.files) = (finished.spent.pictures, finished.spent.files);
+        outcome.summary.tables_crc32.clone_from(&finished.tables_crc32);
     }
     Ok(Recorded {
         outcome,

@@ -63,6 +63,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         Some(_) => Survey::of(&journal, plan)?,
         None => Survey::of(&PathBuf::new(), plan)?,
     };
+    if let Some(damage) = done.damage() {
+        terminal::tell(&format!("slcbeam: {damage}. Designs without a row are computed again."));
+    }
     let left: Vec<usize> = (0..plan.designs)
         .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
         .collect();
