@@ -135,8 +135,9 @@ pub struct State(Snapshot);
 impl State {
     #[staticmethod]
     fn read(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        let read = serde_json::from_slice(bytes).map(Self);
-        read.map_err(|error| raised(py, &Error::Usage(format!("no state of a simulator: {error}"))))
+        Snapshot::from_bytes(bytes)
+            .map(Self)
+            .map_err(|error| raised(py, &error))
     }
 
     #[getter]
@@ -153,7 +154,7 @@ impl State {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
-        let text = serde_json::to_vec(&self.0).map_err(|error| broken(&error.to_string()))?;
+        let text = self.0.to_bytes().map_err(|error| broken(&error.to_string()))?;
         Ok((py.get_type::<Self>().getattr("read")?, (PyBytes::new(py, &text),)))
     }
 }

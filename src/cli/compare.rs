@@ -67,32 +67,34 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         .map(|dir| recording(dir))
         .collect::<Result<Vec<_>>>()?;
     let found = Beside::of(&all, reference);
-    if let Some(path) = &asked.out {
+    let written = asked.out.as_ref().map_or(Ok(()), |path| {
         if picture(path) {
             let [one] = found.comparisons.as_slice() else {
-                return usage(format!(
+                return Err(Error::Usage(format!(
                     "--out {}: a picture is of two; name a folder for a page of all",
                     path.display()
-                ));
+                )));
             };
             let other = usize::from(reference == 0);
             let text = comparison::picture(&all[reference], &all[other], one)
                 .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
-            replace_alike(path, &text, &["<svg", "<?xml"])?;
+            replace_alike(path, &text, &["<svg", "<?xml"])
         } else {
             let place = report::compared(path, &all, reference, &found)?.path;
             if !asked.json {
                 terminal::tell(&format!("page: {}", place.display()));
             }
+            Ok(())
         }
-    }
+    });
+    let written = answerable(written)?;
     super::print(&match (found.comparisons.as_slice(), asked.json) {
         ([one], true) => results::text(one),
         ([one], false) => table(one),
         (_, true) => results::text(&found),
         (_, false) => several(&found),
     })?;
-    Ok(ExitCode::SUCCESS)
+    written.map(|()| ExitCode::SUCCESS)
 }
 
 /// The result of a run, or of a cycle, which is one of a period.
@@ -197,7 +199,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
     let case = case::load(&folder.join(CASE), &[]).ok();
     let name = data.display().to_string();
     let found = beside::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;
-    if let Some(path) = &asked.out {
+    let written = asked.out.as_ref().map_or(Ok(()), |path| {
         let curve = |name: &str| {
             let column = run.column(name).into_iter();
             column
@@ -206,19 +208,29 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         };
         let text = fit::picture(&found, curve).ok_or_else(|| Error::Usage("nothing to draw".into()))?;
         if picture(path) {
-            replace_alike(path, &text, &["<svg", "<?xml"])?;
+            replace_alike(path, &text, &["<svg", "<?xml"])
         } else {
             let place = report::over_data(path, &text, &found)?.path;
             if !asked.json {
                 terminal::tell(&format!("page: {}", place.display()));
             }
+            Ok(())
         }
-    }
+    });
+    let written = answerable(written)?;
     super::print(&match asked.json {
         true => results::text(&found),
         false => fit::comparison(&found),
     })?;
-    Ok(ExitCode::SUCCESS)
+    written.map(|()| ExitCode::SUCCESS)
+}
+
+/// Separates faults of writing, after which the answer is still printed, from others.
+fn answerable(written: Result<()>) -> Result<Result<()>> {
+    match written {
+        Err(error) if !matches!(error, Error::Output { .. }) => Err(error),
+        written => Ok(written),
+    }
 }
 
 fn table(found: &Comparison) -> String {

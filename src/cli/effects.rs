@@ -34,15 +34,20 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     drop(progress);
     let found = found?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
-    files::write(&mut folder, &found, &shown)?;
-    report::complete(&folder, &case)?;
-    let written = if asked.write { Some(write(&case, &found)?) } else { None };
+    let written = files::write(&mut folder, &found, &shown).map(|_| ());
+    let mut written = written.and(report::complete(&folder, &case));
+    let mut said = String::new();
+    if asked.write {
+        match write(&case, &found) {
+            Ok(words) => said = format!("\n{words}"),
+            Err(error) => written = written.and(Err(error)),
+        }
+    }
     let words = || {
-        let written = written.map_or(String::new(), |words| format!("\n{words}"));
         let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
-        format!("{table}\n{sentence}\n{written}")
+        format!("{table}\n{sentence}\n{said}")
     };
-    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
+    super::tell(asked.json, folder.dir(), written, || files::json(&found), words)?;
     Ok(ExitCode::from(if found.full.summary.is_none() { 4 } else { 0 }))
 }
 

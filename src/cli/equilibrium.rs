@@ -90,24 +90,23 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         meshes: meshes.as_ref(),
         bands: Bands::new(),
     };
-    let mut uncertainty = None;
+    let (mut uncertainty, mut written) = (None, Ok(()));
     if !path.states.is_empty() {
-        files::write(&mut folder, &found)?;
+        written = files::write(&mut folder, &found).map(|_| ());
         if path.fault.is_none() {
-            uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+            uncertainty = uncertain::compute(uncertain.as_ref())?;
             found.bands = uncertain::bands(uncertainty.as_ref());
         }
-        if uncertainty.is_some() {
-            folder.write(files::JSON, files::json(&found).as_bytes())?;
-        }
-        report::complete(&folder, case)?;
+        let json = || files::json(&found);
+        written = written.and(uncertain::write(uncertainty.as_ref(), &folder, &[(files::JSON, &json)]));
+        written = written.and(report::complete(&folder, case));
     }
     let (text, words) = (
         || files::json(&found),
         || files::words(&found) + &uncertainty.as_ref().map_or(String::new(), spread::words),
     );
     if asked.json || !path.states.is_empty() {
-        super::tell(asked.json, folder.dir(), text, words)?;
+        super::tell(asked.json, folder.dir(), written, text, words)?;
     }
     match path.fault {
         None => Ok(ExitCode::SUCCESS),

@@ -41,10 +41,10 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     bar.finish_and_clear();
     let mut found = found?;
     found.fit.left_alone = study::left_alone(&table, &wanted);
-    files::write(&mut folder, &problem, &found)?;
-    report::write(folder.dir(), None)?;
+    let written = files::write(&mut folder, &problem, &found);
+    let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));
-    super::tell(asked.json, folder.dir(), text, words)?;
+    super::tell(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -87,16 +87,19 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         accuracy,
         meshes,
     };
-    files::write(&mut folder, &found)?;
-    let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
-    if uncertainty.is_some() {
-        found.bands = uncertain::bands(uncertainty.as_ref());
-        folder.write(Kind::Floquet.sign(), results::text(&found).as_bytes())?;
-    }
-    report::complete(&folder, case)?;
-    let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
+    let written = files::write(&mut folder, &found).map(|_| ());
+    let uncertainty = uncertain::compute(uncertain.as_ref())?;
+    found.bands = uncertain::bands(uncertainty.as_ref());
     let text = || results::text(&found);
-    super::tell(asked.json, folder.dir(), text, words)?;
+    let written = written
+        .and(uncertain::write(
+            uncertainty.as_ref(),
+            &folder,
+            &[(Kind::Floquet.sign(), &text)],
+        ))
+        .and(report::complete(&folder, case));
+    let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
+    super::tell(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -116,10 +119,10 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     });
     bar.finish_and_clear();
     let found = found?;
-    files::write_map(&mut folder, &found)?;
-    report::complete(&folder, case)?;
+    let written = files::write_map(&mut folder, &found).map(|_| ());
+    let written = written.and(report::complete(&folder, case));
     let words = || files::map_words(&found) + &line::warnings(&found.warnings);
-    super::tell(asked.json, folder.dir(), || results::text(&found), words)?;
+    super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::SUCCESS)
 }
 

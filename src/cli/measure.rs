@@ -64,15 +64,15 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
         through_bladder: asked.through_bladder,
     };
     let found = fit(experiment, points, &case, options)?;
+    super::print(&match asked.json {
+        true => format!("{:#}\n", in_json(&found)),
+        false => in_words(&found),
+    })?;
     if let Some(path) = &asked.plot
         && let Some(text) = measured::draw(&picture(&found))
     {
         replace_alike(path, &text, &["<svg"])?;
     }
-    super::print(&match asked.json {
-        true => format!("{:#}\n", in_json(&found)),
-        false => in_words(&found),
-    })?;
     Ok(ExitCode::SUCCESS)
 }
 

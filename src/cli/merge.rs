@@ -46,14 +46,20 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         }
         None => start(&mut folder, asked, &plan)?,
     }
-    let survey = parts::join(&all, &folder, &plan)?;
-    let told = files::write(&folder, &plan, &survey, asked.lean)?;
-    if !asked.lean {
-        report::write(&dir, None)?;
+    let (survey, damage) = parts::join(&all, &folder, &plan)?;
+    for one in damage {
+        terminal::tell(&format!("slcbeam: {one}."));
     }
+    let told = files::summarize(&plan, &survey)?;
+    let written = files::write(&folder, &plan, &survey, &told, asked.lean);
+    let written = written.and_then(|()| match asked.lean {
+        true => Ok(()),
+        false => report::write(&dir, None).map(|_| ()),
+    });
     super::tell(
         asked.json,
         &dir,
+        written,
         || results::text(&told),
         || words::words(&told, &survey).unwrap_or_default(),
     )?;

@@ -39,12 +39,16 @@ mod verify;
 use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use clap::Parser;
 
 use crate::error::{Error, Result, visible};
 use arguments::{Arguments, Command};
+
+/// Whether standard output has an answer.
+static ANSWERED: AtomicBool = AtomicBool::new(false);
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
 pub fn main() -> ExitCode {
@@ -83,7 +87,8 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => interrupt::code().unwrap_or(code),
         Err(error) => {
             terminal::report(&error);
-            if arguments.command.json() {
+            // after an answer another document would make the output unreadable
+            if arguments.command.json() && !ANSWERED.load(Ordering::Relaxed) {
                 let _ = print(&format!("{:#}\n", terminal::json(&error)));
             }
             interrupt::code().unwrap_or(ExitCode::from(error.exit_code()))
@@ -125,13 +130,23 @@ fn print(text: &str) -> Result<()> {
     print_painted(&visible(text))
 }
 
-/// Prints a result: as JSON, or in words and where its files are.
-fn tell(json: bool, dir: &Path, text: impl FnOnce() -> String, words: impl FnOnce() -> String) -> Result<()> {
-    if json {
-        print(&text())
-    } else {
-        print(&format!("{}\nfiles in {}\n", words(), dir.display()))
-    }
+/// Prints a result as JSON, or in words and where its files are. A result whose files could not be `written` is printed all the same.
+///
+/// # Errors
+/// The fault of writing, or that of printing.
+fn tell(
+    json: bool,
+    dir: &Path,
+    written: Result<()>,
+    text: impl FnOnce() -> String,
+    words: impl FnOnce() -> String,
+) -> Result<()> {
+    let printed = match json {
+        true => print(&text()),
+        false if written.is_ok() => print(&format!("{}\nfiles in {}\n", words(), dir.display())),
+        false => print(&format!("{}\n", words())),
+    };
+    written.and(printed)
 }
 
 /// [`print`] for text with the program's own colours, in which all that is not the program's is visible already.
@@ -147,6 +162,9 @@ fn print_painted(text: &str) -> Result<()> {
             path: "standard output".into(),
             source: e,
         }),
-        _ => Ok(()),
+        _ => {
+            ANSWERED.store(true, Ordering::Relaxed);
+            Ok(())
+        }
     }
 }

@@ -88,19 +88,19 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         known: &known,
         bands: &Bands::new(),
     };
-    files::write(&mut folder, &report)?;
-    let uncertainty = uncertain::into(uncertain.as_ref(), &folder)?;
+    let written = files::write(&mut folder, &report).map(|_| ());
+    let uncertainty = uncertain::compute(uncertain.as_ref())?;
     let bands = &uncertain::bands(uncertainty.as_ref());
     let report = Report { bands, ..report };
-    if uncertainty.is_some() {
-        folder.write(files::JSON, files::json(&report).as_bytes())?;
-    }
-    report::complete(&folder, case)?;
+    let json = || files::json(&report);
+    let written = written
+        .and(uncertain::write(uncertainty.as_ref(), &folder, &[(files::JSON, &json)]))
+        .and(report::complete(&folder, case));
     let words = || {
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{}\n{}\n{spread}", files::table(&report), report.sentences())
     };
-    super::tell(asked.json, folder.dir(), || files::json(&report), words)?;
+    super::tell(asked.json, folder.dir(), written, json, words)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -47,11 +47,11 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     };
     bar.finish_and_clear();
     let found = found?;
-    files::write(&mut folder, &found.problem, &found)?;
-    report::write(folder.dir(), None)?;
+    let written = files::write(&mut folder, &found.problem, &found);
+    let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
-    super::tell(asked.json, folder.dir(), text, words)?;
+    super::tell(asked.json, folder.dir(), written, text, words)?;
     Ok(match optimum.beyond_limits() {
         true => ExitCode::from(NOTHING_HOLDS),
         false => ExitCode::SUCCESS,

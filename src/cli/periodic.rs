@@ -10,6 +10,7 @@ use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::output::floquet as stability;
+use crate::output::folder::SUMMARY;
 use crate::output::kind::Kind;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
@@ -112,7 +113,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     bar.finish_and_clear();
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
-    let finished = recorder.finish(&outcome.summary)?;
+    let finished = recorder.finish(&outcome.summary);
     let mut told = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
@@ -124,21 +125,25 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         accuracy: outcome.summary.accuracy.clone(),
         meshes,
     };
-    let mut text = results::text(&told);
-    finished.folder().write(files::CYCLE, text.as_bytes())?;
+    let finished = finished.and_then(|finished| {
+        outcome.summary.tables_crc32.clone_from(&finished.tables_crc32);
+        finished.folder().write(files::CYCLE, results::text(&told).as_bytes())?;
+        Ok(finished)
+    });
     let uncertainty = match ended {
-        true => uncertain::into(uncertain.as_ref(), finished.folder())?,
+        true => uncertain::compute(uncertain.as_ref())?,
         false => None,
     };
-    if uncertainty.is_some() {
-        told.bands = uncertain::bands(uncertainty.as_ref());
-        outcome.summary.bands.clone_from(&told.bands);
-        summary::write(finished.folder(), &outcome.summary)?;
-        text = results::text(&told);
-        finished.folder().write(files::CYCLE, text.as_bytes())?;
-    }
-    report::write(&out, None)?;
-    finished.close()?;
+    told.bands = uncertain::bands(uncertainty.as_ref());
+    outcome.summary.bands.clone_from(&told.bands);
+    let text = || results::text(&told);
+    let written = finished.and_then(|finished| {
+        let summed = || summary::to_json(&outcome.summary);
+        let with_bands: [(&str, &dyn Fn() -> String); 2] = [(SUMMARY, &summed), (files::CYCLE, &text)];
+        uncertain::write(uncertainty.as_ref(), finished.folder(), &with_bands)?;
+        report::write(&out, None)?;
+        finished.close().map(|_| ())
+    });
     let words = || {
         let figures = files::figures(&outcome.summary, told.floquet.period_s, &|name| told.error(name));
         let (search, words) = (files::search(&told.cycle), stability::words(&told));
@@ -146,7 +151,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{words}\n{figures}{slopes}{search}{spread}")
     };
-    super::tell(asked.json, &out, || text, words)?;
+    super::tell(asked.json, &out, written, text, words)?;
     Ok(match outcome.fault {
         None => ExitCode::SUCCESS,
         Some(fault) => {
@@ -175,10 +180,10 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     });
     bar.finish_and_clear();
     let found = found?;
-    files::write(&mut folder, &found)?;
-    report::complete(&folder, &first)?;
+    let written = files::write(&mut folder, &found).map(|_| ());
+    let written = written.and(report::complete(&folder, &first));
     let words = || files::words(&found) + &line::warnings(&found.warnings);
-    super::tell(asked.json, folder.dir(), || results::text(&found), words)?;
+    super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }
 

@@ -20,7 +20,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::output::checkpoint;
-use crate::output::folder::{CASE, FIELDS, HISTORY, ResultFolder, text_of};
+use crate::output::folder::{CASE, FIELDS, HISTORY, ResultFolder, SUMMARY, text_of};
 use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
@@ -69,6 +69,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         outcome: Outcome { mut summary, fault },
         finished,
         aside,
+        mut written,
     } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => {
             drop(system);
@@ -82,25 +83,28 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     laps.lap();
     let mut uncertainty = None;
     if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {
-        uncertainty = uncertain::into(Some(asked), finished.folder())?;
+        uncertainty = uncertain::compute(Some(asked))?;
         summary.bands = uncertain::bands(uncertainty.as_ref());
         summary.wall_s.samples = laps.lap();
         // the page is made of what the folder holds
-        if uncertainty.is_some() {
-            summary::write(finished.folder(), &summary)?;
-        }
+        let summed = || summary::to_json(&summary);
+        written = written.and(uncertain::write(
+            uncertainty.as_ref(),
+            finished.folder(),
+            &[(SUMMARY, &summed)],
+        ));
     }
-    let page = match &finished {
+    written = written.and_then(|()| match &finished {
         _ if asked.lean => Ok(()),
         Some(finished) => finished.page(),
         None => report::write(&out, None).map(|_| ()),
-    };
-    let written = laps.lap();
-    summary.wall_s.report = if asked.lean { 0.0 } else { written };
+    });
+    let lap = laps.lap();
+    summary.wall_s.report = if asked.lean { 0.0 } else { lap };
     // without a page all of this can be repeated
-    let closed = match finished {
-        Some(finished) if page.is_ok() => close(finished, &mut summary, &mut laps),
-        _ => Ok(()),
+    written = match finished {
+        Some(finished) if written.is_ok() => close(finished, &mut summary, &mut laps),
+        _ => written,
     };
     if asked.json {
         super::print(&summary::to_json(&summary))?;
@@ -109,8 +113,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         super::print_painted(&box_text)?;
         super::print(&uncertainty.as_ref().map_or(String::new(), files::words))?;
     }
-    page?;
-    closed?;
+    written?;
     if let Some(aside) = aside {
         terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
     }
@@ -180,11 +183,15 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
     };
     let folder = ResultFolder::claim(dir, Kind::Run, true)?;
     let Recorded {
-        mut outcome, finished, ..
+        mut outcome,
+        finished,
+        written,
+        ..
     } = match accuracy {
         Some(accuracy) => reach(case, accuracy, folder, &way)?,
         None => record(case, System::new(case)?, &[], folder, &way)?,
     };
+    written?;
     if let Some(finished) = finished {
         if !lean {
             finished.page()?;
@@ -202,6 +209,8 @@ struct Recorded {
     finished: Option<Finished>,
     /// Where an older result went.
     aside: Option<PathBuf>,
+    /// Whether its files could be written.
+    written: Result<()>,
 }
 
 fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
@@ -213,13 +222,20 @@ fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, w
 fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result<Recorded> {
     let wall = &mut outcome.summary.wall_s;
     wall.begin_with(&way.before);
-    let finished = recorder.finish(&outcome.summary)?;
-    let wall = &mut outcome.summary.wall_s;
-    (wall.pictures, wall.files) = (finished.spent.pictures, finished.spent.files);
+    let (finished, written) = match recorder.finish(&outcome.summary) {
+        Ok(finished) => (Some(finished), Ok(())),
+        Err(error) => (None, Err(error)),
+    };
+    if let Some(finished) = &finished {
+        let wall = &mut outcome.summary.wall_s;
+        (wall.pictures, wall.files) = (finished.spent.pictures, finished.spent.files);
+        outcome.summary.tables_crc32.clone_from(&finished.tables_crc32);
+    }
     Ok(Recorded {
         outcome,
-        aside: finished.aside.clone(),
-        finished: Some(finished),
+        aside: finished.as_ref().and_then(|finished| finished.aside.clone()),
+        finished,
+        written,
     })
 }
 
@@ -228,11 +244,20 @@ fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result
 fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
     let began = Instant::now();
     let ask = |progress: &Progress| way.hook.borrow_mut()(progress);
-    let (mut placed, mut aside) = (false, None);
+    let (mut placed, mut aside, mut unwritten) = (false, None, Ok(()));
     let mut candidate = |case: &Case| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let Recorded { outcome, finished, .. } = record(case, System::new(case)?, &[], folder, way)?;
+        let Recorded {
+            outcome,
+            finished,
+            written,
+            ..
+        } = record(case, System::new(case)?, &[], folder, way)?;
+        if written.is_err() {
+            unwritten = written;
+            return Ok(outcome);
+        }
         finished.map(Finished::close).transpose()?;
         if outcome.summary.status == Status::Finished || !placed {
             let tabled = inside.path().join(HISTORY).exists();
@@ -251,14 +276,15 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Res
     let wall = &mut outcome.summary.wall_s;
     let before = way.before.start_up + way.before.set_up;
     wall.pilots = before + began.elapsed().as_secs_f64() - wall.known() - wall.pictures - wall.files;
-    if placed {
-        summary::write(&result, &outcome.summary)?;
+    if placed && unwritten.is_ok() {
+        unwritten = summary::write(&result, &outcome.summary).map(|_| ());
     }
     let finished = placed.then(|| Finished::of(result));
     Ok(Recorded {
         outcome,
         finished,
         aside,
+        written: unwritten,
     })
 }
 
@@ -270,6 +296,7 @@ fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Wa
             outcome: ended(case, asked, &folder)?,
             finished: None,
             aside: None,
+            written: Ok(()),
         });
     };
     if saved.run.case != case.resolved_json() {

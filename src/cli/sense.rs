@@ -43,11 +43,12 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     if let Some(measured) = &measured {
         found.left_alone.clone_from(&measured.left_alone);
     }
-    files::write(&mut folder, &found)?;
-    report::complete(&folder, case)?;
+    let written = files::write(&mut folder, &found).map(|_| ());
+    let written = written.and(report::complete(&folder, case));
     super::tell(
         asked.json,
         folder.dir(),
+        written,
         || results::text(&found),
         || files::words(&found),
     )?;

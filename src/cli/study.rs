@@ -35,13 +35,13 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let progress = Progress::new(asked.quiet);
     let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
     drop(progress);
-    files::write(&mut folder, &found)?;
-    report::complete(&folder, case)?;
+    let written = files::write(&mut folder, &found).map(|_| ());
+    let written = written.and(report::complete(&folder, case));
     let words = || {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
         format!("{}\n{notes}{}\n", files::table(&found), files::sentence(&found))
     };
-    super::tell(asked.json, folder.dir(), || files::json(&found), words)?;
+    super::tell(asked.json, folder.dir(), written, || files::json(&found), words)?;
     Ok(ExitCode::from(if found.references.is_empty() { 4 } else { 0 }))
 }
 

@@ -194,20 +194,34 @@ impl Uncertain {
     }
 }
 
-/// Computes what was asked, where something was, and writes it into a folder.
+/// Computes what was asked, where something was.
 ///
 /// # Errors
-/// The case itself cannot be computed, the file cannot be written.
-pub fn into(asked: Option<&Uncertain>, folder: &ResultFolder) -> Result<Option<Uncertainty>> {
+/// The case itself cannot be computed.
+pub fn compute(asked: Option<&Uncertain>) -> Result<Option<Uncertainty>> {
     let Some(asked) = asked else {
         return Ok(None);
     };
     let found = asked.compute()?;
-    match &found {
-        Some(found) => files::write(folder, found)?,
-        None => terminal::tell("slcbeam: interrupted; there is no uncertainty"),
+    if found.is_none() {
+        terminal::tell("slcbeam: interrupted; there is no uncertainty");
     }
     Ok(found)
+}
+
+/// Writes an uncertainty, where there is one, and the files that contain its bands.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(
+    found: Option<&Uncertainty>,
+    folder: &ResultFolder,
+    with_bands: &[(&str, &dyn Fn() -> String)],
+) -> Result<()> {
+    let Some(found) = found else { return Ok(()) };
+    files::write(folder, found)?;
+    let mut all = with_bands.iter();
+    all.try_for_each(|(name, text)| folder.write(name, text().as_bytes()).map(|_| ()))
 }
 
 /// What of it stands in the result of the command itself.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::folder::fault;
+use super::folder::{fault, name_of};
 use super::numbers::shortest_in;
 use super::stream::{Mark, Stream};
 use crate::error::Result;
@@ -82,6 +82,11 @@ impl HistoryWriter {
             self.flush()?;
         }
         Ok(())
+    }
+
+    /// Name of the file, and CRC-32 of what was flushed.
+    pub fn checksum(&self) -> (String, u32) {
+        (name_of(&self.path), self.out.get_ref().mark().crc32)
     }
 
     /// Brings everything to the disk.

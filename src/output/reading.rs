@@ -21,6 +21,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
         results::parse(&text).map_err(wrong)?,
     );
     let summary = summary::read(dir)?;
+    summary::verify_table(dir, HISTORY, &summary)?;
     let path = dir.join(HISTORY);
     let mut columns = history(&path).map_err(|e| fault("read", &path, e))?;
     if columns.is_empty() {

@@ -1,5 +1,6 @@
 //! The recorder that fills a result folder.
 
+use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::panic;
 use std::path::{Path, PathBuf};
@@ -147,7 +148,11 @@ impl FolderRecorder {
             };
             let _ = summary::write(&self.folder, &failed);
         }
-        let Completed { drawn, history } = cased.and(completed)?;
+        let Completed {
+            drawn,
+            history,
+            tables_crc32,
+        } = cased.and(completed)?;
         self.folder.secure_behind()?;
         if self.lean {
             // of a run that is gone on with
@@ -167,6 +172,7 @@ impl FolderRecorder {
             folder: self.folder,
             history,
             aside,
+            tables_crc32,
         })
     }
 
@@ -180,7 +186,12 @@ impl FolderRecorder {
         let stay = !self.lean || summary.status != Status::Finished;
         let mut tables: Vec<_> = tables.into_iter().flatten().filter(|_| stay).collect();
         tables.iter_mut().try_for_each(HistoryWriter::flush)?;
-        let (laid, told) = (self.folder.laid(), summary::to_json(summary));
+        let tables_crc32: BTreeMap<_, _> = tables.iter().map(HistoryWriter::checksum).collect();
+        let checked = Summary {
+            tables_crc32: tables_crc32.clone(),
+            ..summary.clone()
+        };
+        let (laid, told) = (self.folder.laid(), summary::to_json(&checked));
         let [fields, summary] = [FIELDS, SUMMARY].map(|name| self.folder.path(name));
         spent.files += laps.lap();
         let (case, dir) = (&self.labels.case_name, self.folder.dir());
@@ -209,6 +220,7 @@ impl FolderRecorder {
         Ok(Completed {
             drawn,
             history: files.kept,
+            tables_crc32,
         })
     }
 }
@@ -220,6 +232,8 @@ struct Completed {
     drawn: Vec<Result<Vec<Picture>>>,
     /// The history, if it was kept.
     history: Option<Remembered>,
+    /// CRC-32 of its tables.
+    tables_crc32: BTreeMap<String, u32>,
 }
 
 /// Brings tables, laid files, arrays and summary to the disk itself, all at once; then arrays and summary take their names.
@@ -261,6 +275,8 @@ pub struct Finished {
     pub spent: Spent,
     /// Where an older result went.
     pub aside: Option<PathBuf>,
+    /// CRC-32 of its tables, for whoever writes the summary again.
+    pub tables_crc32: BTreeMap<String, u32>,
 }
 
 impl Finished {
@@ -273,6 +289,7 @@ impl Finished {
             history: None,
             spent: Spent::default(),
             aside: None,
+            tables_crc32: BTreeMap::new(),
         }
     }
 

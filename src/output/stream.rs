@@ -105,10 +105,15 @@ impl Stream {
     /// Brings what was written to the disk itself.
     pub fn secure(&self) -> Result<Mark> {
         self.file.sync_data().map_err(|e| fault("write", &self.path, e))?;
-        Ok(Mark {
+        Ok(self.mark())
+    }
+
+    /// All that was written.
+    pub fn mark(&self) -> Mark {
+        Mark {
             bytes: self.bytes,
             crc32: self.sum.clone().finalize(),
-        })
+        }
     }
 
     /// Where it is.

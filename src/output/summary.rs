@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::folder::{ResultFolder, SUMMARY};
+use super::folder::{ResultFolder, SUMMARY, damaged, fault, open};
+use super::stream::Mark;
 use crate::error::Result;
 use crate::results::run::{Quantity, Summary};
 use crate::results::{self, Found};
@@ -57,6 +58,23 @@ pub fn found(dir: &Path) -> Result<Found<Summary>> {
         wall.steps = wall.total - wall.known();
     }
     Ok(found)
+}
+
+/// Compares a table with the checksum that the summary of its folder has; results of earlier versions have none.
+///
+/// # Errors
+/// It cannot be read, or it was changed.
+pub fn verify_table(dir: &Path, name: &str, summary: &Summary) -> Result<()> {
+    let Some(expected) = summary.tables_crc32.get(name) else {
+        return Ok(());
+    };
+    let path = dir.join(name);
+    let found = open(&path).and_then(Mark::of).map_err(|e| fault("read", &path, e))?;
+    if found.crc32 != *expected {
+        let why = "it was changed or cut short after the run: its checksum is not that in summary.json";
+        return Err(fault("read", &path, damaged(why)));
+    }
+    Ok(())
 }
 
 fn finite(x: Option<f64>) -> Option<f64> {

@@ -271,6 +271,9 @@ pub struct Summary {
     /// Derivatives of the quantities, by the JSON pointers of the numbers asked for.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sensitivities: BTreeMap<String, Sensitivity>,
+    /// CRC-32 of the tables beside the summary, by file; absent where no table was written.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub tables_crc32: BTreeMap<String, u32>,
     /// Everything the user should know before trusting the result.
     pub warnings: Vec<String>,
 }

@@ -7,6 +7,7 @@ mod chance;
 mod finishing;
 mod flips;
 mod folders;
+mod full;
 mod fuzz;
 mod inputs;
 mod outputs;

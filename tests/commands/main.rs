@@ -1,5 +1,7 @@
 //! The program from outside: commands, streams, files and pages.
 
+#[path = "../common/chance.rs"]
+mod chance;
 mod cli;
 mod compare;
 mod effects;

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import shutil
 import tempfile
+import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -131,15 +133,31 @@ class Answer(Mapping[str, Any]):
     def tables(self) -> dict[str, Columns]:
         """Tables of the folder by the names of their files: ``answer.tables["path"]`` of ``path.csv``; read anew at every call."""
         found: dict[str, Columns] = Named()
+        sums = self._checksums()
         for path in sorted(self._folder().glob("*.csv")):
-            with path.open(newline="", encoding="utf-8") as file:
-                headings, *rows = csv.reader(file)
+            try:
+                content = path.read_bytes()
+                if path.name in sums and zlib.crc32(content) != sums[path.name]:
+                    raise FileError(f"cannot read {path}: it was changed or cut short, its checksum is not that in summary.json")
+                headings, *rows = csv.reader(io.StringIO(content.decode("utf-8"), newline=""), strict=True)
+                if any(len(row) != len(headings) for row in rows):
+                    raise ValueError(f"its rows do not have {len(headings)} cells each")
+            except (OSError, ValueError, csv.Error) as error:
+                raise FileError(f"cannot read {path}: {error}") from None
             table = found[path.stem] = Columns(headings, rows)
             about = path.with_suffix(".json")
             if path.stem == "sweep" and about.is_file():
                 # names of figures stand in that table without units
                 table.units |= {one["name"]: one["unit"] for one in json.loads(about.read_text(encoding="utf-8"))["columns"]}
         return found
+
+    def _checksums(self) -> dict[str, int]:
+        """Checksums of tables by file, of a run or a cycle; others have none."""
+        path = self._folder() / "summary.json"
+        try:
+            return json.loads(path.read_text(encoding="utf-8")).get("tables_crc32", {}) if path.is_file() else {}
+        except (OSError, ValueError, AttributeError) as error:
+            raise FileError(f"cannot read {path}: {error}") from None
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:

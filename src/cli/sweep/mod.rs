@@ -63,6 +63,9 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         Some(_) => Survey::of(&journal, plan)?,
         None => Survey::of(&PathBuf::new(), plan)?,
     };
+    if let Some(damage) = done.damage() {
+        terminal::tell(&format!("slcbeam: {damage}. Designs without a row are computed again."));
+    }
     let left: Vec<usize> = (0..plan.designs)
         .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
         .collect();
@@ -82,13 +85,16 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         keep_others(&source, &folder, &done)?;
     }
     let survey = Survey::of(&journal, plan)?;
-    let told = files::write(&folder, plan, &survey, asked.lean)?;
-    if !asked.lean {
-        report::write(folder.dir(), None)?;
-    }
+    let told = files::summarize(plan, &survey)?;
+    let written = files::write(&folder, plan, &survey, &told, asked.lean);
+    let written = written.and_then(|()| match asked.lean {
+        true => Ok(()),
+        false => report::write(folder.dir(), None).map(|_| ()),
+    });
     super::tell(
         asked.json,
         folder.dir(),
+        written,
         || results::text(&told),
         || words::words(&told, &survey).unwrap_or_default(),
     )?;
@@ -240,7 +246,11 @@ fn compute_all(
         if let Some(error) = unkept.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
             return Err(error);
         }
-        journal.append(&row)?;
+        if let Err(error) = journal.append(&row) {
+            // the disk has the others
+            super::print(&format!("{}\n", serde_json::to_string(&row).unwrap_or_default()))?;
+            return Err(error);
+        }
         counter.one(row.found.status != Status::Finished);
         Ok(())
     })?;

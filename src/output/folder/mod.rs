@@ -178,21 +178,25 @@ impl ResultFolder {
         Ok(files.iter().map(|(name, _)| self.path(name)).collect())
     }
 
-    /// Writes all files of a result that has no run, its sign last, in place of an older one. Returns their paths.
+    /// Writes all files of a result that has no run in place of an older one: its numbers, its sign, then its pictures. Returns their
+    /// paths. A picture that cannot be written costs no number, and the page and pictures of an older result never stay beside new numbers.
     pub fn fill<T: AsRef<[u8]>>(&mut self, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
         if self.older.is_some_and(|older| older != self.kind) {
             self.clear()?;
         }
-        let (last, first): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0 == self.kind.sign());
-        for name in self.kind.files() {
-            if first.iter().chain(&last).all(|f| f.0 != name) {
-                self.remove(name)?;
-            }
+        let (pictures, numbers): (Vec<_>, Vec<_>) = files.into_iter().partition(|f| f.0.ends_with(".svg"));
+        let (sign, tables): (Vec<_>, Vec<_>) = numbers.into_iter().partition(|f| f.0 == self.kind.sign());
+        let kept = |name: &str| tables.iter().chain(&sign).any(|f| f.0 == name);
+        for name in self.kind.files().into_iter().filter(|name| !kept(name)) {
+            self.remove(name)?;
         }
-        let mut written = self.write_all(&first)?;
-        written.extend(self.write_all(&last)?);
+        let mut written = self.write_all(&tables)?;
+        written.extend(self.write_all(&sign)?);
         self.secure()?;
         self.older = Some(self.kind);
+        self.remove(REPORT)?;
+        written.extend(self.write_all(&pictures)?);
+        self.secure()?;
         Ok(written)
     }
 

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::model::characteristic;
 use crate::output::bands;
 use crate::output::envelope::History as Recorded;
-use crate::output::folder::{CASE, FIELDS, SUMMARY};
+use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
 use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
@@ -27,6 +27,10 @@ pub fn data(place: &Place) -> Result<Page> {
         true => Some(summary::found(place.dir)?),
         false => None,
     };
+    if let (Some(found), None) = (&found, place.history) {
+        summary::verify_table(place.dir, HISTORY, &found.result)?;
+        summary::verify_table(place.dir, ENVELOPE, &found.result)?;
+    }
     let (summary, head) = found.map(|found| (found.result, found.head)).unzip();
     let name = summary
         .as_ref()

@@ -1,4 +1,5 @@
-//! `designs.jsonl`: a line a design. What a killed program leaves half written at its end is dropped.
+//! `designs.jsonl`: a line a design, each with a checksum of its row and of the plan. What a killed program leaves half written at its
+//! end is dropped; a row that was changed, or that belongs to another plan, is not used.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -14,11 +15,59 @@ use crate::study::sweep::{Plan, Row};
 /// No line of a row is longer [byte].
 const LONGEST: u64 = 16 << 20;
 
+/// What separates a row from its checksum.
+const SEAL: &[u8] = b",\"crc32\":";
+
+/// Lines of damaged rows that a message names.
+const NAMED: usize = 5;
+
 /// The lines of a sweep under way.
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
     file: File,
+    /// Checksum of the plan.
+    plan: u32,
+}
+
+/// The line of a row: its JSON object with the checksum as the last key.
+fn sealed(plan: u32, row: &Row) -> serde_json::Result<Vec<u8>> {
+    let mut line = serde_json::to_vec(row)?;
+    let sum = checksum(plan, &line);
+    line.pop();
+    line.extend_from_slice(SEAL);
+    line.extend_from_slice(format!("{sum}}}\n").as_bytes());
+    Ok(line)
+}
+
+fn checksum(plan: u32, row: &[u8]) -> u32 {
+    let mut sum = crc32fast::Hasher::new();
+    sum.update(&plan.to_le_bytes());
+    sum.update(row);
+    sum.finalize()
+}
+
+/// A line as it was read.
+enum Line {
+    Checked(Row),
+    /// A row as versions before checksums wrote it.
+    Unchecked(Row),
+    Damaged,
+}
+
+impl Line {
+    fn read(plan: u32, line: &[u8]) -> Self {
+        let Ok(row) = serde_json::from_slice::<Row>(line) else {
+            return Self::Damaged;
+        };
+        let sealed_line = line.windows(SEAL.len()).any(|part| part == SEAL);
+        // byte for byte: an unknown key or a space may be what is left of a checksum
+        match sealed_line {
+            true if sealed(plan, &row).is_ok_and(|own| own.strip_suffix(b"\n") == Some(line)) => Self::Checked(row),
+            false if serde_json::to_vec(&row).is_ok_and(|own| own == line) => Self::Unchecked(row),
+            _ => Self::Damaged,
+        }
+    }
 }
 
 impl Journal {
@@ -38,7 +87,8 @@ impl Journal {
         };
         let file = opened().map_err(|e| fault("write", &path, e))?;
         folder.secure()?;
-        Ok(Self { path, file })
+        let plan = survey.plan;
+        Ok(Self { path, file, plan })
     }
 
     /// Appends a row; it is on the disk when this returns.
@@ -55,8 +105,7 @@ impl Journal {
     /// # Errors
     /// It cannot be written.
     pub fn put(&mut self, row: &Row) -> Result<()> {
-        let mut line = serde_json::to_vec(row).map_err(|e| fault("write", &self.path, e.into()))?;
-        line.push(b'\n');
+        let line = sealed(self.plan, row).map_err(|e| fault("write", &self.path, e.into()))?;
         self.file.write_all(&line).map_err(|e| fault("write", &self.path, e))
     }
 
@@ -79,6 +128,10 @@ pub struct Survey {
     ended: Vec<Option<Status>>,
     /// Bytes of whole lines.
     whole: u64,
+    /// Checksum of the plan.
+    plan: u32,
+    /// Numbers of lines, from 1, whose rows were changed or belong to another plan.
+    damaged: Vec<usize>,
     /// Names of figures, in the order of the first row that has them.
     pub figures: Vec<String>,
     /// Rows by how they ended.
@@ -86,7 +139,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// Of a file; of none where there is none. A line that is no row of the plan is passed over; of two rows of a design the first
+    /// Of a file; of none where there is none. A damaged line is not used; of two rows of a design the first
     /// that finished counts, else the last.
     ///
     /// # Errors
@@ -96,6 +149,7 @@ impl Survey {
             path: path.to_path_buf(),
             begins: vec![0; plan.designs],
             ended: vec![None; plan.designs],
+            plan: plan.crc32(),
             ..Self::default()
         };
         if path.exists() {
@@ -109,7 +163,9 @@ impl Survey {
         let mut line = vec![];
         // by name, the first design that has it and its place there
         let mut names: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+        let (mut checked, mut number) = (false, 0);
         loop {
+            number += 1;
             line.clear();
             let begin = self.whole;
             let length = lines.by_ref().take(LONGEST).read_until(b'\n', &mut line)? as u64;
@@ -120,8 +176,17 @@ impl Survey {
                 break;
             }
             self.whole += length;
-            let Ok(row) = serde_json::from_slice::<Row>(&line) else {
-                continue;
+            let row = match Line::read(self.plan, &line) {
+                Line::Checked(row) => {
+                    checked = true;
+                    row
+                }
+                // those of an earlier version come before all others
+                Line::Unchecked(row) if !checked => row,
+                _ => {
+                    self.damaged.push(number);
+                    continue;
+                }
             };
             let fits = row.number < plan.designs && row.case < plan.cases.len() && row.values.len() == plan.axes.len();
             if !fits || !plan.has(row.number) || self.finished(row.number) {
@@ -142,6 +207,23 @@ impl Survey {
         all.sort_by_key(|(_, place)| *place);
         self.figures = all.into_iter().map(|(name, _)| name).collect();
         Ok(())
+    }
+
+    /// What is damaged, in words; nothing where nothing is.
+    pub fn damage(&self) -> Option<String> {
+        let count = self.damaged.len();
+        let named: Vec<String> = self.damaged.iter().take(NAMED).map(usize::to_string).collect();
+        let (rows, more) = (
+            if count == 1 { "row is" } else { "rows are" },
+            if count > NAMED { ", .." } else { "" },
+        );
+        (count > 0).then(|| {
+            format!(
+                "{}: {count} {rows} not used (line {}{more}): a checksum differs, so that the row was changed or belongs to another sweep",
+                self.path.display(),
+                named.join(", ")
+            )
+        })
     }
 
     /// Rows.

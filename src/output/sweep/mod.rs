@@ -135,18 +135,25 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
     replace(&dir.join(format!("{name}.json")), &case.json)
 }
 
-/// Writes table, arrays and what they are about, of all rows that are there; pictures too, unless it is to be lean.
+/// What the table of all rows that are there is about, with its warnings.
+///
+/// # Errors
+/// The journal cannot be read.
+pub fn summarize(plan: &Plan, survey: &Survey) -> Result<Sweep> {
+    Ok(Sweep {
+        warnings: warnings(plan, survey)?,
+        ..about(plan, survey)
+    })
+}
+
+/// Writes table, arrays and what they are about, of all rows that are there; then pictures, unless it is to be lean.
 ///
 /// # Errors
 /// Something cannot be read or written.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) -> Result<Sweep> {
-    let told = Sweep {
-        warnings: warnings(plan, survey)?,
-        ..about(plan, survey)
-    };
+pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, told: &Sweep, lean: bool) -> Result<()> {
     table::write(folder, plan, survey, &told.columns)?;
     arrays::write(folder, plan, survey, &told.columns)?;
-    folder.write(JSON, results::text(&told).as_bytes())?;
+    folder.write(JSON, results::text(told).as_bytes())?;
     let drawn = if lean { vec![] } else { pictures::draw(plan, survey)? };
     for name in PICTURES {
         match drawn.iter().find(|(own, _)| *own == name) {
@@ -157,8 +164,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, lean: bool) ->
     if lean {
         folder.remove(REPORT)?;
     }
-    folder.secure()?;
-    Ok(told)
+    folder.secure()
 }
 
 /// What is warned of: modes that change places between designs, and what designs were warned of.

@@ -62,17 +62,22 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
 }
 
 /// Puts the rows of all parts into the journal of a folder, which is none of theirs, each design once; rows that are there already stay, but
-/// for those that did not finish and now have.
+/// for those that did not finish and now have. Returns what is there, and which rows are damaged.
 ///
 /// # Errors
 /// Something cannot be read or written; [`Error::Usage`] where two rows of one design finished with other figures, before anything is written.
-pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey> {
+pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Survey, Vec<String>)> {
     let path = folder.path(JOURNAL);
     let mut there = Survey::of(&path, plan)?;
     let surveys = parts
         .iter()
         .map(|part| Survey::of(&part.dir.join(JOURNAL), &part.plan))
         .collect::<Result<Vec<_>>>()?;
+    let damage = [&there]
+        .into_iter()
+        .chain(&surveys)
+        .filter_map(Survey::damage)
+        .collect();
     let dirs = parts.iter().map(|part| part.dir.as_path());
     agree(
         &[(folder.dir(), &there)]
@@ -93,7 +98,7 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<Survey
         failed.map_or_else(|| journal.secure(), Err)?;
         there = Survey::of(&path, plan)?;
     }
-    Ok(there)
+    Ok((there, damage))
 }
 
 /// Refuses folders of which two have a design that finished with other figures.

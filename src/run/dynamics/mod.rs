@@ -9,6 +9,7 @@ mod pace;
 pub mod simulator;
 mod switch;
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 pub use continued::{Along, go_on};
@@ -192,6 +193,7 @@ impl<'a> Run<'a> {
                     ])
                     .collect(),
                 growth: None,
+                tables_crc32: BTreeMap::new(),
                 estimate: None,
                 accuracy: None,
                 sensitivities: Default::default(),

@@ -144,6 +144,16 @@ impl Plan {
         }
     }
 
+    /// CRC-32 of everything that decides the rows of all shards; files may have moved. Checksums of rows begin with it.
+    pub fn crc32(&self) -> u32 {
+        let mut plan = self.whole();
+        plan.cases.iter_mut().for_each(|case| case.file.clear());
+        if let Some((file, _)) = &mut plan.table {
+            file.clear();
+        }
+        crc32fast::hash(&serde_json::to_vec(&plan).unwrap_or_default())
+    }
+
     /// Where two plans differ, in words; files may have moved.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let told = |what: &str, here: String, there: String| {

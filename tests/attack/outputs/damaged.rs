@@ -160,6 +160,38 @@ fn outputs_that_changed_are_refused() {
     assert!(page.contains("fields.npz cannot be read"), "the page says so");
 }
 
+/// Each of 27 changes to the history of a run is detected by its checksum in the summary, wherever the history is read; without a checksum,
+/// as in results of earlier versions, it is read.
+#[test]
+fn a_history_that_was_changed_is_refused() {
+    let folder = tempfile::tempdir().expect("a place");
+    let (sound, bad) = (folder.path().join("sound"), folder.path().join("bad"));
+    assert!(run(&sound, &[]).status.success());
+    let mut random = Random(14);
+    for trial in 0..27 {
+        copy(&sound, &bad);
+        let path = bad.join("history.csv");
+        let mut bytes = fs::read(&path).expect("a history");
+        let at = random.below(bytes.len());
+        match random.below(4) {
+            0 => bytes[at] ^= 1 << random.below(8),
+            1 => bytes.truncate(at),
+            2 => bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' },
+            _ => drop(bytes.remove(at)),
+        }
+        fs::write(&path, bytes).expect("it is changed");
+        let [_, report, compare] = read_by_all(&bad, &sound, "a changed history");
+        assert_eq!([report, compare], [5, 5], "{trial}: byte {at}");
+    }
+    copy(&sound, &bad);
+    let summary = bad.join("summary.json");
+    let text = fs::read_to_string(&summary).expect("a summary");
+    let mut old: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    assert!(old.as_object_mut().expect("an object").remove("tables_crc32").is_some());
+    fs::write(&summary, old.to_string()).expect("it is changed");
+    assert_eq!(read_by_all(&bad, &sound, "an old summary"), [0, 0, 0]);
+}
+
 /// What is no file has no end.
 #[test]
 fn outputs_without_an_end_are_refused() {

@@ -188,7 +188,12 @@ fn parts_that_differ_are_not_merged() {
     let second = lines.iter_mut().find(|row| row["number"] == 1).expect("the second");
     let figure = second["figures"][0].clone();
     let put = |rows: &[serde_json::Value]| {
-        let text: String = rows.iter().map(|row| format!("{row}\n")).collect();
+        // rows of a version before checksums
+        let bare = rows.iter().cloned().map(|mut row| {
+            row.as_object_mut().expect("a row").shift_remove("crc32");
+            row
+        });
+        let text: String = bare.map(|row| format!("{row}\n")).collect();
         fs::write(&journal, text).expect("written");
     };
     second["figures"][0][1] = (1.01 * figure[1].as_f64().expect("a number") + 1.0).into();

@@ -194,3 +194,21 @@ fn ranges_are_refused_in_their_own_words() {
         assert!(error.contains(what) && !error.contains("table"), "{error}");
     }
 }
+
+/// Goal: a state as bytes comes back as it was, and none of 300 with a flipped bit or a cut does.
+#[test]
+fn a_state_that_was_changed_is_refused() {
+    let case = load("tour-actuator", &["/time/end_s=0.4", "/solver/method=\"esdirk46\""]);
+    let mut sim = simulator(&case, CHAIN, [0.0, 1.0]);
+    step(&mut sim, 0.01, 1.0);
+    let state = sim.save().unwrap();
+    let bytes = state.to_bytes().unwrap();
+    assert!(Snapshot::from_bytes(&bytes).unwrap() == state);
+    for k in 0..300 {
+        let at = k * (bytes.len() - 1) / 299;
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (k % 8);
+        assert!(Snapshot::from_bytes(&flipped).is_err(), "bit {} of byte {at}", k % 8);
+        assert!(Snapshot::from_bytes(&bytes[..at]).is_err(), "{at} bytes");
+    }
+}

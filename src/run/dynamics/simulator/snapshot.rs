@@ -29,6 +29,30 @@ pub struct Snapshot {
     swings: Vec<Swings>,
 }
 
+impl Snapshot {
+    /// The state as text: a checksum of eight hexadecimal digits, and JSON.
+    ///
+    /// # Errors
+    /// A number of it has no JSON.
+    pub fn to_bytes(&self) -> serde_json::Result<Vec<u8>> {
+        let json = serde_json::to_vec(self)?;
+        Ok([format!("{:08x}", crc32fast::hash(&json)).into_bytes(), json].concat())
+    }
+
+    /// The state of a text.
+    ///
+    /// # Errors
+    /// [`Error::Usage`]: it was changed, cut short, or is no state.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
+        let wrong = |why: &str| Error::Usage(format!("no state of a simulator: {why}"));
+        let (sum, json) = bytes.split_at_checked(8).ok_or_else(|| wrong("it is cut short"))?;
+        if sum != format!("{:08x}", crc32fast::hash(json)).as_bytes() {
+            return Err(wrong("it is changed or cut short: its checksum differs"));
+        }
+        serde_json::from_slice(json).map_err(|error| wrong(&error.to_string()))
+    }
+}
+
 impl Simulator {
     /// The present state. The simulator goes on from it as one that restores it does, bit for bit: it forgets what
     /// it knows besides.
