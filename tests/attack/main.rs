@@ -14,3 +14,4 @@ mod pipes;
 mod power;
 mod program;
 mod resuming;
+mod shortage;
