@@ -384,7 +384,7 @@ fn files_that_claim_to_be_empty_are_read_within_a_limit() {
     let output = check(&path, &[]);
     let told = stderr(&output);
     assert!(
-        output.status.code() == Some(3) && told.contains("is larger than 64 MB"),
+        output.status.code() == Some(3) && told.contains(ENDLESS),
         "{told}"
     );
     let result = dir.path().join("result");
@@ -392,7 +392,7 @@ fn files_that_claim_to_be_empty_are_read_within_a_limit() {
     std::os::unix::fs::symlink(ENDLESS, result.join("summary.json")).expect("a link");
     let output = slcbeam().arg("report").arg(&result).output().expect("it starts");
     assert!(
-        !output.status.success() && stderr(&output).contains("no file with an end"),
+        !output.status.success() && stderr(&output).contains("summary.json"),
         "{}",
         stderr(&output)
     );
