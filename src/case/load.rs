@@ -10,7 +10,7 @@ use super::faults::{Source, Violations, sort};
 use super::origins::Origins;
 use super::schema::Case;
 use super::wording::nearest;
-use super::{check, counts, fluids, parse as json, presets, schema_json, section, sets, tables, validate};
+use super::{check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, tables, validate};
 use crate::error::{Code, Error, Result, Violation};
 
 /// Largest case file that is read.
@@ -45,7 +45,8 @@ pub fn text(path: &Path) -> Result<String> {
         Error::Usage(format!("cannot read {}: {e}{meant}", path.display()))
     };
     let bytes = if path == Path::new(STANDARD_INPUT) {
-        bounded(std::io::stdin().lock()).map_err(unreadable)?
+        let bytes = bounded(std::io::stdin().lock()).map_err(unreadable)?;
+        (bytes.len() as u64 <= LARGEST).then_some(bytes)
     } else {
         let there = std::fs::metadata(path).map_err(unreadable)?;
         if !there.is_file() {
@@ -56,13 +57,13 @@ pub fn text(path: &Path) -> Result<String> {
             };
             return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidInput, what)));
         }
-        bounded(std::fs::File::open(path).map_err(unreadable)?).map_err(unreadable)?
+        reading::bytes(path, LARGEST).map_err(unreadable)?
     };
-    if bytes.len() as u64 > LARGEST {
+    let Some(bytes) = bytes else {
         let what = "the case is larger than 64 MB";
         let fault = Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB");
         return Err(Source::of(path, "").error(vec![fault]));
-    }
+    };
     String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
 

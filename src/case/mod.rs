@@ -24,6 +24,7 @@ pub mod parameter;
 mod parse;
 mod places;
 mod presets;
+pub mod reading;
 pub mod relaxation;
 mod render;
 mod rewrite;

@@ -8,10 +8,10 @@ use super::faults::Violations;
 use super::heading::Heading;
 use super::load::nearest_file;
 use super::locate::child;
-use super::units;
 use super::wording::nearest;
 use super::written::checksum;
-use crate::error::{Code, Violation};
+use super::{reading, units};
+use crate::error::{Code, Violation, listed, shown};
 
 /// Largest file of a table that is read.
 const LARGEST: u64 = 64 << 20;
@@ -65,19 +65,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         let fault = Violation::new(Code::Table, child(pointer, "csv"), "points given here and in a file");
         return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
     }
-    let there = std::fs::metadata(base.join(&name)).ok();
     let wanted = text("checksum");
     let largest = if wanted.is_some() { LARGEST_WRITTEN } else { LARGEST };
-    if let Some(there) = there.filter(|there| !there.is_file() || there.len() > largest) {
-        let why = if there.is_file() {
-            format!("larger than {} MB", largest >> 20)
-        } else {
-            "no file with an end".into()
-        };
-        return Err(at("csv", format!("{} is {why}", base.join(&name).display())));
-    }
-    let text_of = std::fs::read(base.join(&name)).map_err(|e| {
-        let path = base.join(&name);
+    let path = base.join(&name);
+    let text_of = reading::bytes(&path, largest).map_err(|e| {
         let fault = at("csv", format!("cannot read {}: {e}", path.display()));
         let ending = path
             .extension()
@@ -89,6 +80,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
             ..*fault
         })
     })?;
+    let Some(text_of) = text_of else {
+        let what = format!("{} is larger than {} MB", path.display(), largest >> 20);
+        return Err(at("csv", what));
+    };
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -111,7 +106,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
                 child(pointer, key),
                 format!("{name} has no column \"{wanted}\""),
             );
-            let fault = fault.allowed(headings.iter().collect::<Vec<_>>().join(", "));
+            let fault = fault.allowed(listed(&headings));
             Box::new(Violation {
                 nearest: nearest(&wanted, headings.iter()),
                 ..fault
@@ -140,7 +135,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
             let cell = record.get(*column).unwrap_or("");
             let number = cell.parse::<f64>().ok().filter(|n| n.is_finite());
             let number = number.ok_or_else(|| {
-                let fault = at("csv", format!("{name}, line {line}: \"{cell}\" is not a number"));
+                let fault = at(
+                    "csv",
+                    format!("{name}, line {line}: \"{}\" is not a number", shown(cell)),
+                );
                 match cell.contains(',') {
                     true => Box::new(fault.hint("decimals stand behind a point")),
                     false => fault,

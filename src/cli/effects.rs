@@ -9,7 +9,6 @@ use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::integrate::halt;
 use crate::output::effects as files;
 use crate::output::folder::replace;
 use crate::output::kind::Kind;
@@ -20,7 +19,6 @@ use crate::study::effects::{Ablation, Event, Plan, ablate};
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
-    halt::everywhere();
     let case = size::load(&asked.case)?;
     System::new(&case)?;
     System::new(&with(&case, Effects::Full))?;
@@ -61,7 +59,7 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
     if case.effects == wanted {
         return Ok(format!("{} says so already", path.display()));
     }
-    let now = std::fs::read_to_string(path).unwrap_or_default();
+    let now = case::text(path).unwrap_or_default();
     if now != case.source.text {
         let what = "changed while its effects were looked for; nothing is written";
         return Err(Error::Usage(format!("{} {what}", path.display())));

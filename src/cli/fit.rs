@@ -5,7 +5,6 @@ use std::process::ExitCode;
 use super::arguments::{FitArguments, FittedThrough};
 use super::{interrupt, line, size, sweep};
 use crate::error::{Error, Result};
-use crate::integrate::halt;
 use crate::output::fit as files;
 use crate::output::kind::Kind;
 use crate::output::numbers::significant;
@@ -18,7 +17,6 @@ use crate::study::span::Span;
 
 /// Reads, fits, writes the folder, prints.
 pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
-    halt::everywhere();
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let table = Table::read(&asked.data)?;
     let wanted = wanted(asked)?;

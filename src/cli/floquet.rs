@@ -7,7 +7,6 @@ use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::integrate::halt;
 use crate::output::floquet as files;
 use crate::output::kind::Kind;
 use crate::output::report;
@@ -27,7 +26,6 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the words.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
-    halt::everywhere();
     let case = &size::load(&asked.case)?;
     scene::system(case)?;
     match &asked.map.map {

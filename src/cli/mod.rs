@@ -37,6 +37,7 @@ mod uncertain;
 mod verify;
 
 use std::ffi::OsString;
+use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -45,6 +46,7 @@ use std::time::Instant;
 use clap::Parser;
 
 use crate::error::{Error, Result, visible};
+use crate::output::machine;
 use arguments::{Arguments, Command};
 
 /// Whether standard output has an answer.
@@ -58,6 +60,10 @@ pub fn main() -> ExitCode {
 /// [`main`] of words, the first of them the program's name.
 pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let began = Instant::now();
+    if let Err(error) = room() {
+        terminal::report(&error);
+        return ExitCode::from(error.exit_code());
+    }
     let words: Vec<OsString> = words.into_iter().collect();
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
@@ -93,6 +99,28 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
             }
             interrupt::code().unwrap_or(ExitCode::from(error.exit_code()))
         }
+    }
+}
+
+/// Memory without which not even a message can be made of a case [byte].
+const LEAST: f64 = 16e6;
+
+/// Refuses to begin where the process may have hardly any memory: an allocation that fails later ends it without a message.
+fn room() -> Result<()> {
+    match machine::address_space() {
+        Some(left) if left < LEAST => Err(Error::Output {
+            action: "begin",
+            path: "slcbeam".into(),
+            source: io::Error::new(
+                io::ErrorKind::OutOfMemory,
+                format!(
+                    "{:.0} MB of addresses are left (at least {:.0} MB); raise the limit (ulimit -v)",
+                    left / 1e6,
+                    LEAST / 1e6
+                ),
+            ),
+        }),
+        _ => Ok(()),
     }
 }
 

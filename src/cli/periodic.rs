@@ -8,7 +8,6 @@ use super::{interrupt, line, size, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
-use crate::integrate::halt;
 use crate::output::floquet as stability;
 use crate::output::folder::SUMMARY;
 use crate::output::kind::Kind;
@@ -34,7 +33,6 @@ const MOST_VALUES: usize = 10_000;
 
 /// Finds the cycle or the cycles, writes the folder, prints the words.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
-    halt::everywhere();
     match &asked.sweep {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
             "--uncertain goes with one cycle, not with --sweep; samples of it: slcbeam sweep CASE --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64"

@@ -8,7 +8,7 @@ use clap::Args;
 use super::terminal;
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK, fault, other_origin};
+use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK, fault, other_origin, text_of};
 use crate::output::kind::Kind;
 
 /// A folder for results.
@@ -80,6 +80,6 @@ fn overwritten(dir: &Path, case: &Case, kind: Kind) -> bool {
     }
     let name = path.file_name().unwrap_or_default();
     let written = kind.files().into_iter().chain([CASE, REPORT]).any(|file| name == file);
-    let same = || fs::read_to_string(&path).is_ok_and(|text| text == case.written().json);
+    let same = || text_of(&path).is_ok_and(|text| text == case.written().json);
     path.parent() == Some(&dir) && written && !(name == CASE && Kind::within(&dir) == Some(kind) && same())
 }

@@ -9,7 +9,7 @@ use super::line::Shown;
 use super::{size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::integrate::halt;
+use crate::numerics::threads;
 use crate::output::kind::Kind;
 use crate::output::numbers::duration;
 use crate::output::report;
@@ -19,7 +19,6 @@ use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
-    halt::everywhere();
     let case = &size::load(&asked.case)?;
     System::new(case)?;
     let plan = Plan {
@@ -74,7 +73,9 @@ struct Progress {
 impl Progress {
     fn new(quiet: bool) -> Self {
         let shown = Shown::new(quiet, "{pos}/{len} {wide_bar:.blue/dim} {msg}");
-        if let Some(bar) = &shown.bar {
+        if let Some(bar) = &shown.bar
+            && threads::granted()
+        {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
         let last = Mutex::new(None);

@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::arguments::VerifyArguments;
 use super::line;
 use crate::error::Result;
+use crate::numerics::threads;
 use crate::output::columns::{aligned, cells};
 use crate::output::numbers::significant;
 use crate::results;
@@ -26,7 +27,9 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
     };
     let bar = line::styled("{pos}/{len} {wide_bar} {msg}");
     bar.set_length(rows.len() as u64);
-    bar.enable_steady_tick(Duration::from_millis(200));
+    if threads::granted() {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
     let rows: Vec<Row> = rows
         .iter()
         .map(|row| {

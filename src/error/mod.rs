@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 mod code;
+mod listed;
 pub mod numbers;
 mod visible;
 
 pub use code::Code;
+pub use listed::{listed, shown};
 pub use visible::{is_hidden, visible};
 
 /// One fault in a case: what, where, what is allowed, what was probably meant.

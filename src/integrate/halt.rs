@@ -3,7 +3,10 @@
 
 use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// Why work ended that was asked to.
+pub const INTERRUPTED: &str = "interrupted";
 
 thread_local! {
     static HEARD: RefCell<Heard> = const { RefCell::new(Heard(None)) };
@@ -14,8 +17,11 @@ thread_local! {
 pub struct Halt {
     raised: Arc<AtomicBool>,
     seen: Arc<AtomicBool>,
-    /// Whether computations look for it by themselves.
-    everywhere: bool,
+    answered: Arc<AtomicBool>,
+    /// Threads that complete something now.
+    completing: Arc<AtomicUsize>,
+    /// Whether this thread does a part of the work of another one, which waits for it.
+    helps: bool,
 }
 
 /// What a thread listens to, for the threads that it begins.
@@ -36,6 +42,18 @@ impl Halt {
         self.seen.load(Ordering::Relaxed)
     }
 
+    /// Whether the thread that has begun the work ends it, or something is completed that is not to be cut.
+    pub fn is_answered(&self) -> bool {
+        self.answered.load(Ordering::Relaxed) || self.completing.load(Ordering::Relaxed) > 0
+    }
+
+    fn see(&self) {
+        self.seen.store(true, Ordering::Relaxed);
+        if !self.helps {
+            self.answered.store(true, Ordering::Relaxed);
+        }
+    }
+
     /// This thread listens to it from now on.
     pub fn listen(&self) {
         HEARD.replace(Heard(Some(self.clone())));
@@ -43,9 +61,16 @@ impl Halt {
 }
 
 impl Heard {
-    /// This thread listens to the same.
-    pub fn listen(&self) {
-        HEARD.replace(self.clone());
+    /// Does a part of the work of the thread that has listened so far: the part listens to the same.
+    pub fn during<T>(&self, work: impl FnOnce() -> T) -> T {
+        let mut heard = self.clone();
+        if let Some(halt) = &mut heard.0 {
+            halt.helps = true;
+        }
+        let before = HEARD.replace(heard);
+        let done = work();
+        HEARD.replace(before);
+        done
     }
 }
 
@@ -59,22 +84,26 @@ pub fn deaf() {
     HEARD.take();
 }
 
-/// The computations of this thread look for the request by themselves from now on.
-pub fn everywhere() {
-    HEARD.with_borrow_mut(|heard| {
-        if let Some(halt) = &mut heard.0 {
-            halt.everywhere = true;
-        }
-    });
-}
-
 /// Something ends for the request.
 pub fn see() {
     HEARD.with_borrow(|heard| {
         if let Some(halt) = &heard.0 {
-            halt.seen.store(true, Ordering::Relaxed);
+            halt.see();
         }
     });
+}
+
+/// Completes something that is not to be cut, such as the files of a result.
+pub fn complete<T>(work: impl FnOnce() -> T) -> T {
+    let completing = heard().0.map(|halt| halt.completing);
+    if let Some(count) = &completing {
+        count.fetch_add(1, Ordering::Relaxed);
+    }
+    let done = work();
+    if let Some(count) = &completing {
+        count.fetch_sub(1, Ordering::Relaxed);
+    }
+    done
 }
 
 /// Whether a flag is up; whoever asks is taken to end then.
@@ -88,12 +117,8 @@ pub fn raised(flag: &AtomicBool) -> bool {
 
 /// Whether a computation is to end; it is taken to do so.
 pub fn asked() -> bool {
-    let asked = HEARD.with_borrow(|heard| {
-        let everywhere = heard.0.as_ref().filter(|halt| halt.everywhere);
-        everywhere.is_some_and(|halt| halt.raised.load(Ordering::Relaxed))
-    });
-    if asked {
-        see();
-    }
-    asked
+    HEARD.with_borrow(|heard| {
+        let halt = heard.0.as_ref().filter(|halt| halt.raised.load(Ordering::Relaxed));
+        halt.inspect(|halt| halt.see()).is_some()
+    })
 }

@@ -7,7 +7,7 @@ use std::mem;
 use std::panic;
 use std::path::Path;
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
-use std::thread::{self, JoinHandle};
+use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use super::arrays::{ArraysWriter, Marks};
@@ -146,15 +146,19 @@ pub struct Behind {
 
 impl Behind {
     /// Takes over the files.
-    pub fn new(files: Growing) -> Self {
+    ///
+    /// # Errors
+    /// The system grants no thread.
+    pub fn new(files: Growing) -> Result<Self> {
         let batch = BATCH.max(files.arrays.numbers());
         let (work, todo) = mpsc::sync_channel((WAITING / batch).max(1));
-        Self {
+        let thread = Builder::new().spawn(move || write(files, &todo));
+        Ok(Self {
             batch: Batch::default(),
             handed: Instant::now(),
             work: Some(work),
-            thread: Some(thread::spawn(move || write(files, &todo))),
-        }
+            thread: Some(thread.map_err(|e| fault("begin a thread that writes", Path::new(HISTORY), e))?),
+        })
     }
 
     /// A row of the history.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::folder::{fault, name_of};
+use super::folder::{fault, name_of, open};
 use super::numbers::shortest_in;
 use super::stream::{Mark, Stream};
 use crate::error::Result;
@@ -50,7 +50,7 @@ impl HistoryWriter {
     /// Opens the file of an interrupted run, verified, and drops what came after the mark.
     pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
         let columns = || -> csv::Result<usize> {
-            let mut reader = csv::Reader::from_path(path)?;
+            let mut reader = csv::Reader::from_reader(open(path)?);
             Ok(reader.headers()?.len())
         };
         Ok(Self {

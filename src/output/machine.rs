@@ -39,8 +39,8 @@ fn group() -> Option<f64> {
     limits.reduce(f64::min)
 }
 
-/// What is left of the addresses that the process may have.
-fn address_space() -> Option<f64> {
+/// What is left of the addresses that the process may have [byte]. None without a limit.
+pub fn address_space() -> Option<f64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     let most: f64 = limit.split_whitespace().next()?.parse().ok()?;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::panic;
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Instant;
@@ -21,7 +20,9 @@ use super::stream::Stream;
 use super::{report, summary};
 use crate::case::{Case, Written};
 use crate::error::Result;
+use crate::integrate::halt;
 use crate::model::characteristic;
+use crate::numerics::threads::{Begun, begin};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
@@ -113,7 +114,7 @@ impl FolderRecorder {
             sensitivities: sensitivities?,
         };
         Ok(Self {
-            open: Some(Behind::new(files)),
+            open: Some(Behind::new(files)?),
             ..Self::new(folder, labels, hook)
         })
     }
@@ -135,7 +136,7 @@ impl FolderRecorder {
         };
         let cased = self.folder.write_case(&self.labels.case);
         let completed = match self.open.take() {
-            Some(open) => self.complete(open, summary, &mut laps, &mut spent),
+            Some(open) => halt::complete(|| self.complete(open, summary, &mut laps, &mut spent)),
             None => summary::write(&self.folder, summary).map(|_| Completed::default()),
         };
         if let Err(error) = &completed {
@@ -204,16 +205,13 @@ impl FolderRecorder {
             let drawing = match self.lean {
                 true => vec![],
                 false => vec![
-                    scope.spawn(over_time),
-                    scope.spawn(|| pictures::over_space(case, frequency, arrays)),
+                    begin(scope, over_time),
+                    begin(scope, || pictures::over_space(case, frequency, arrays)),
                 ],
             };
             let put = put(tables, &laid, (arrays, &fields), (&told, &summary));
             spent.files += laps.lap();
-            let drawn = drawing
-                .into_iter()
-                .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)))
-                .collect();
+            let drawn = drawing.into_iter().map(Begun::join).collect();
             spent.pictures += laps.lap();
             put.map(|()| drawn)
         })?;
@@ -348,7 +346,7 @@ impl Recorder for FolderRecorder {
             envelope: table(ENVELOPE, &header.envelope)?,
             sensitivities: table(SENSITIVITIES, &header.sensitivities)?,
         };
-        self.open = Some(Behind::new(files));
+        self.open = Some(Behind::new(files)?);
         Ok(())
     }
 

@@ -5,8 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::integrate::halt;
 
-/// Why work ended that was asked to.
-pub const INTERRUPTED: &str = "interrupted";
+pub use crate::integrate::halt::INTERRUPTED;
 
 /// A flag that somebody may raise, to whom work listens on its way; nobody where there is none.
 #[derive(Clone, Debug, Default)]

@@ -6,6 +6,7 @@ use slcbeam_dense::eigen;
 use super::SpectralError;
 use super::krylov::{FINITE, Vectors};
 use super::pencil::Shifted;
+use crate::integrate::halt;
 
 /// Eigenvalues and vectors, nearest the shift first.
 pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, SpectralError> {
@@ -13,6 +14,9 @@ pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, SpectralError> {
     let mut columns = vec![vec![Complex::default(); n]; n];
     let mut axis = vec![Complex::default(); n];
     for (j, column) in columns.iter_mut().enumerate() {
+        if halt::asked() {
+            return Err(SpectralError::Interrupted);
+        }
         axis[j] = Complex::new(1.0, 0.0);
         shifted.apply(&axis, column);
         axis[j] = Complex::default();

@@ -13,6 +13,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::pencil::Shifted;
 use super::{Options, SpectralError, schur};
+use crate::integrate::halt;
 
 type C = Complex<f64>;
 /// Eigenvalues with their vectors.
@@ -31,7 +32,7 @@ pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> R
     let mut space = Space::new(n, size);
     let mut known: Option<Vec<f64>> = None;
     for restarts in 0..=options.max_restarts {
-        space.expand(shifted);
+        space.expand(shifted)?;
         let slow = |converged| SpectralError::Slow { converged, restarts };
         let (q, t) = schur::ordered(space.h.view((0, 0), (size, size)).into_owned()).ok_or(slow(0))?;
         let last = space.h[(size, size - 1)];
@@ -86,9 +87,12 @@ impl Space {
     }
 
     /// Arnoldi's recursion from where the basis ends.
-    fn expand(&mut self, shifted: &mut Shifted) {
+    fn expand(&mut self, shifted: &mut Shifted) -> Result<(), SpectralError> {
         let n = self.u[0].len();
         while self.u.len() <= self.size {
+            if halt::asked() {
+                return Err(SpectralError::Interrupted);
+            }
             let j = self.u.len() - 1;
             let mut w = vec![C::default(); n];
             shifted.apply(&self.u[j], &mut w);
@@ -112,6 +116,7 @@ impl Space {
                 self.u.push(next);
             }
         }
+        Ok(())
     }
 
     /// Takes the basis out of `w`, twice, and returns its coefficients.

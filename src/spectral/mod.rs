@@ -34,6 +34,7 @@ use std::fmt;
 
 use nalgebra::Complex;
 
+use crate::integrate::halt::INTERRUPTED;
 pub use lowest::lowest;
 pub use pencil::Pencil;
 
@@ -133,6 +134,8 @@ pub enum SpectralError {
     },
     /// An entry is not finite.
     NotFinite,
+    /// Somebody asked for the end.
+    Interrupted,
 }
 
 impl fmt::Display for SpectralError {
@@ -144,6 +147,7 @@ impl fmt::Display for SpectralError {
                 write!(f, "only {converged} eigenvalues converged in {restarts} restarts")
             }
             Self::NotFinite => write!(f, "the linearised equations are not finite"),
+            Self::Interrupted => f.write_str(INTERRUPTED),
         }
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use super::SpectralError;
 use super::exchange::Exchanged;
+use crate::integrate::halt;
 use crate::sparse::KluError;
 use crate::sparse::Pattern;
 use crate::sparse::klu::complex::ComplexKlu;
@@ -104,6 +105,9 @@ impl<'a> Shifted<'a> {
         };
         let mut last = SpectralError::Singular { column: 0 };
         for by in MOVES {
+            if halt::asked() {
+                return Err(SpectralError::Interrupted);
+            }
             let moved = s + Complex::new(0.8, 0.6) * (by * size);
             for ((value, a), b) in self.values.iter_mut().zip(self.pencil.a).zip(self.pencil.b) {
                 *value = moved * *b + a;

@@ -12,6 +12,7 @@ use super::linear_solver::{LinearSolver, system_of};
 use super::shared::Shared;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, EvaluationError, Seeds};
+use crate::integrate::halt::{self, INTERRUPTED};
 use crate::integrate::not_finite;
 use crate::integrate::request;
 use crate::numerics::kernels;
@@ -350,6 +351,9 @@ unsafe extern "C" fn residual<D: Dae>(y: N_Vector, out: N_Vector, data: *mut c_v
     let (bridge, zeros, t) = (&mut fixed.bridge, &fixed.zeros, fixed.t);
     bridge.residuals += 1;
     bridge.call(|dae| {
+        if halt::asked() {
+            return Err(EvaluationError::Fatal(INTERRUPTED.into()));
+        }
         dae.residual(t, y, zeros, out)?;
         match kernels::first_not_finite(out) {
             None => Ok(()),

@@ -371,3 +371,29 @@ fn the_benchmark_is_locked() {
     let script = fs::read_to_string("scripts/bench").expect("the script");
     assert!(script.contains("--locked"));
 }
+
+/// Goal: a file of the system that claims a size of 0 is read within a limit, as a table of a case and as data.
+#[cfg(target_os = "linux")]
+#[test]
+fn files_that_claim_to_be_empty_are_read_within_a_limit() {
+    const ENDLESS: &str = "/proc/self/pagemap";
+    let dir = folder();
+    let mut case = beam();
+    case["loads"] = json!([{"force_x_n_m": {"signal": {"table": {"csv": ENDLESS}}}}]);
+    let path = put(dir.path(), &case);
+    let output = check(&path, &[]);
+    let told = stderr(&output);
+    assert!(
+        output.status.code() == Some(3) && told.contains(ENDLESS),
+        "{told}"
+    );
+    let result = dir.path().join("result");
+    fs::create_dir(&result).expect("a folder");
+    std::os::unix::fs::symlink(ENDLESS, result.join("summary.json")).expect("a link");
+    let output = slcbeam().arg("report").arg(&result).output().expect("it starts");
+    assert!(
+        !output.status.success() && stderr(&output).contains("summary.json"),
+        "{}",
+        stderr(&output)
+    );
+}

@@ -15,3 +15,4 @@ mod pipes;
 mod power;
 mod program;
 mod resuming;
+mod shortage;

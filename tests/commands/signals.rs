@@ -114,3 +114,82 @@ fn a_second_request_ends_the_program_at_once() {
     assert_eq!(run.wait_with_output().unwrap().status.code(), Some(130));
     assert!(!out.join("summary.json").exists());
 }
+
+/// State and CPU time [s] of a process that has not been waited for.
+#[cfg(target_os = "linux")]
+fn spent(process: u32) -> (String, f64) {
+    let stat = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    let parts: Vec<&str> = stat.rsplit_once(')').unwrap().1.split_whitespace().collect();
+    let ticks: f64 = [11, 12].map(|k: usize| parts[k].parse::<f64>().unwrap()).iter().sum();
+    (parts[0].into(), ticks / 100.0)
+}
+
+/// Commands that compute for minutes; what all of them have in common is left out.
+#[cfg(target_os = "linux")]
+const LONG: [&str; 25] = [
+    "run cases/bend-wet.json --set /time/end_s=1000 --out",
+    "run cases/dry-cantilever.json --set /mesh/segments=80 --set /mesh/cells_per_segment=400 --out",
+    "run cases/bend-wet.json --accuracy 1e-6 --set /time/end_s=100 --out",
+    "run cases/bend-wet.json --uncertain /beam/young_modulus_pa=normal:2e6:1e5 --samples 4000 --out",
+    "equilibrium cases/curl.json --points 1000000 --out",
+    "equilibrium cases/curl.json --set /mesh/cells_per_segment=200 --points 10000 --out",
+    "equilibrium cases/curl.json --accuracy 1e-6 --set /mesh/cells_per_segment=200 --out",
+    "modes cases/bend-wet.json --set /mesh/cells_per_segment=200 --count 200 --out",
+    "modes cases/bend-wet.json --uncertain /beam/young_modulus_pa=normal:2e6:1e5 --samples 4000 --out",
+    "modes cases/tour-harvester.json --map frequency,amplitude --points 100 --out",
+    "periodic cases/tour-harvester.json --set /mesh/cells_per_segment=200 --out",
+    "periodic cases/tour-harvester.json --sweep /beam/young_modulus_pa=1e6:2e6:100 --out",
+    "floquet cases/tour-harvester.json --set /mesh/cells_per_segment=200 --out",
+    "floquet cases/tour-harvester.json --map frequency,amplitude --points 100 --out",
+    "study cases/bend-wet.json --budget 300s --out",
+    "effects cases/bend-wet.json --budget 300s --repeats 100 --out",
+    "sweep cases/bend-wet.json --vary /beam/length_m=0.1,0.11,0.12 --set /time/end_s=1000 --out",
+    "sweep cases/bend-wet.json --command modes --vary /beam/length_m=0.1,0.11 --set /mesh/cells_per_segment=200 --jobs 1 --out",
+    "sweep cases/curl.json --command equilibrium --vary /beam/length_m=0.1,0.11 --set /mesh/cells_per_segment=200 --out",
+    "sweep cases/tour-harvester.json --command periodic --vary /beam/young_modulus_pa=1e6,1.1e6 --set /mesh/cells_per_segment=200 --out",
+    "optimize cases/bend-wet.json --vary /beam/length_m=0.09:0.12 --maximize tip_u1_m.max_abs --command run --set /time/end_s=1000 --out",
+    "optimize cases/bend-wet.json --vary /beam/length_m=0.09:0.12 --maximize tip_u1_m --command equilibrium --set /mesh/cells_per_segment=200 --out",
+    "optimize cases/bend-dry.json --vary /beam/length_m=0.09:0.12 --maximize mode_1.frequency_hz --command modes --set /mesh/cells_per_segment=200 --out",
+    "verify",
+    "coefficients cases/sections/honeycomb.json --three-d",
+];
+
+/// Goal: wherever it is, a command ends within 2 s of CPU time after one request.
+#[cfg(target_os = "linux")]
+#[test]
+fn every_long_command_ends_within_two_seconds_of_cpu() {
+    const SECONDS: f64 = 2.0;
+    let dir = tempfile::tempdir().unwrap();
+    let mut late = vec![];
+    for (number, words) in LONG.iter().enumerate() {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+        command
+            .args(words.split(' '))
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        if words.ends_with("--out") {
+            command.arg(dir.path().join(number.to_string())).arg("--quiet");
+        }
+        let mut child = command.spawn().unwrap();
+        let mut before = spent(child.id());
+        while before.0 != "Z" && before.1 < 0.4 {
+            std::thread::sleep(Duration::from_millis(10));
+            before = spent(child.id());
+        }
+        assert_ne!(before.0, "Z", "{words} is not long");
+        signal(child.id(), "-INT");
+        let mut after = spent(child.id());
+        while after.0 != "Z" && after.1 - before.1 < 2.0 * SECONDS {
+            std::thread::sleep(Duration::from_millis(10));
+            after = spent(child.id());
+        }
+        let _ = child.kill();
+        let status = child.wait().unwrap();
+        // what listens to no signal is ended by it
+        let told = std::os::unix::process::ExitStatusExt::signal(&status) == Some(2) || status.code() == Some(130);
+        if after.1 - before.1 > SECONDS || !told {
+            late.push(format!("{words}: {:.2} s, {status}", after.1 - before.1));
+        }
+    }
+    assert!(late.is_empty(), "{}", late.join("\n"));
+}

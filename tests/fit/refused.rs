@@ -242,3 +242,26 @@ fn columns_that_say_nothing_are_named() {
     let asked = by_squares(&[], &["u_mm=tip_u1", "v_um=tip_u3"]);
     assert_eq!(left_alone(&table, &asked), ["v_mm_sd"]);
 }
+
+/// Goal: values that no instrument gives are faults of their rows; a fit whose sums are not finite could not be read again.
+#[test]
+fn absurd_values_are_faults_of_their_rows() {
+    let text = "t_s,u_mm\n0.0005,1\n0.001,1e300\n0.0015,1\n";
+    let (code, told) = refused(text, &["--vary", VARY, "--match", "u_mm=tip_u1"]);
+    assert!(
+        code == 3 && told.contains("line 3, column u_mm: 1e300 is no measured value"),
+        "{code}: {told}"
+    );
+}
+
+/// Goal: very many columns, or very long headings, are no long message.
+#[test]
+fn messages_do_not_list_all_headings() {
+    let headings: Vec<String> = (0..20_000).map(|k| format!("column_{k}")).collect();
+    let text = format!("t_s,{}\n0.001{}\n", headings.join(","), ",1".repeat(headings.len()));
+    let long = format!("t_s,{}\n0.001,1\n", "u".repeat(60_000));
+    for text in [text, long] {
+        let (code, told) = refused(&text, &["--vary", VARY, "--match", "@@=tip_u1"]);
+        assert!(code == 2 && told.len() < 3000, "{code}: {} characters", told.len());
+    }
+}

@@ -41,7 +41,7 @@ from ._commands import (
     study,
     sweep,
 )
-from ._errors import CaseError, Error, Fault, FileError, SolverError, UsageError
+from ._errors import CaseError, Error, Fault, FileError, SolverError, UnknownError, UsageError
 from ._page import Report
 from ._result import Fields, Result, Table
 from ._run import run
@@ -68,6 +68,7 @@ __all__ = [
     "SolverError",
     "State",
     "Table",
+    "UnknownError",
     "UsageError",
     "check",
     "coefficients",

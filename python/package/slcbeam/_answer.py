@@ -17,7 +17,7 @@ import numpy as np
 from . import _page
 from ._errors import FileError, UsageError
 from ._page import Report
-from ._result import Named, split, unknown
+from ._result import Named, frozen, place, split, unknown
 
 if TYPE_CHECKING:
     import os
@@ -73,8 +73,7 @@ def _column(cells: list[str]) -> np.ndarray:
         column = np.array([float(cell) if cell else np.nan for cell in cells])
     except ValueError:
         column = np.array(cells)
-    column.flags.writeable = False
-    return column
+    return frozen(column)
 
 
 class Answer(Mapping[str, Any]):
@@ -165,16 +164,17 @@ class Answer(Mapping[str, Any]):
         found: dict[str, np.ndarray] = {}
         for path in sorted(self._folder().glob("*.npz")):
             with np.load(path) as arrays:
-                found |= {name: arrays[name] for name in arrays.files}
+                found |= {name: frozen(arrays[name]) for name in arrays.files}
         return found
 
     def save(self, dir: str | os.PathLike[str]) -> Path:
         """Copies the folder to another place that is not there yet; returns its path."""
+        target = place(dir)
         try:
-            shutil.copytree(self._folder(), dir)
+            shutil.copytree(self._folder(), target)
         except OSError as error:
-            raise FileError(f"cannot copy to {dir}: {error.strerror or error}") from None
-        return Path(dir)
+            raise FileError(f"cannot copy to {target}: {error.strerror or error}") from None
+        return target
 
     def report(self) -> Report:
         """The page of the answer; ``lean`` leaves it out."""
@@ -215,13 +215,16 @@ def read(dir: str | os.PathLike[str]) -> Answer:
 
     :raises FileError: it holds no result.
     """
-    folder = Path(dir)
+    folder = place(dir)
     found = [path for path in (folder / f"{name}.json" for name in MAIN) if path.is_file()]
     if not found:
         raise FileError(f"{folder} holds no result: none of {', '.join(f'{name}.json' for name in MAIN)}")
     try:
-        return Answer(json.loads(found[0].read_text(encoding="utf-8")), folder)
-    except (OSError, ValueError) as error:
+        told = json.loads(found[0].read_text(encoding="utf-8"))
+        if not isinstance(told, dict):
+            raise ValueError("it is no JSON object")
+        return Answer(told, folder)
+    except (OSError, ValueError, RecursionError) as error:
         raise FileError(f"cannot read {found[0]}: {error}") from None
 
 

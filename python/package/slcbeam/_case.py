@@ -6,11 +6,15 @@ import difflib
 import json
 import os
 from collections.abc import Iterator, Mapping
+from decimal import Decimal
+from numbers import Real
 from pathlib import Path
 from typing import Any, Union
 
+import numpy as np
+
 from . import _slcbeam
-from ._errors import UsageError
+from ._errors import UnknownError, UsageError
 
 #: Cases that come with the package.
 CASES = Path(__file__).parent / "cases"
@@ -26,11 +30,32 @@ def plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
-def _json(value: Any) -> str:
+def as_json(value: Any, what: str = "value of a case", **how: Any) -> str:
+    """A value as JSON.
+
+    :raises UsageError: it has none.
+    """
     try:
-        return json.dumps(value, default=plain, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise UsageError(f"no value of a case: {error}") from None
+        return json.dumps(value, default=plain, **how)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise UsageError(f"no {what}: {error}") from None
+
+
+def numbers(values: Any) -> np.ndarray:
+    """An array of floats from numbers, ``None`` for one that is missing (nan).
+
+    :raises UsageError: something is no real number, such as a text, a date or a complex number.
+    """
+    try:
+        given = np.asarray(values)
+        if given.dtype.kind == "O" and all(one is None or isinstance(one, (Real, Decimal)) for one in given.flat):
+            given = given.astype(float)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"no numbers: {error}") from None
+    if given.dtype.kind not in "biuf":
+        kinds = {"c": "complex numbers", "M": "dates", "m": "durations without a unit", "U": "text", "S": "text"}
+        raise UsageError(f"real numbers are wanted, not {kinds.get(given.dtype.kind, f'values of type {given.dtype}')}")
+    return given.astype(float, copy=False)
 
 
 class Case:
@@ -79,6 +104,8 @@ class Case:
 
     def __getitem__(self, pointer: str) -> Any:
         """The value at a JSON pointer, defaults included."""
+        if not isinstance(pointer, str):
+            raise UnknownError(f"{pointer!r} is no JSON pointer")
         if self._dict is None:
             self._dict = self.to_dict()
         value: Any = self._dict
@@ -87,7 +114,7 @@ class Case:
             try:
                 value = value[int(key)] if isinstance(value, list) else value[key]
             except (KeyError, IndexError, ValueError, TypeError):
-                raise KeyError(pointer) from None
+                raise UnknownError(pointer) from None
         return value
 
     def __repr__(self) -> str:
@@ -99,7 +126,7 @@ class Case:
 
 
 def _sets(changes: Mapping[str, Any], base: str) -> tuple[str, ...]:
-    return tuple(f"{pointer}={_json(_absolute(value, base))}" for pointer, value in changes.items())
+    return tuple(f"{pointer}={as_json(_absolute(value, base), allow_nan=False)}" for pointer, value in changes.items())
 
 
 def _absolute(value: Any, base: str) -> Any:
@@ -145,23 +172,25 @@ def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
     >>> load("wiring-2", set={"/time/end_s": 0.1})
     <slcbeam.Case 'wiring-2', 1 changed>
     """
+    if set is not None and not isinstance(set, Mapping):
+        raise UsageError(f"set is a dict of values by JSON pointer, not {type(set).__name__}")
     sets = _sets(set or {}, case._base if isinstance(case, Case) else os.getcwd())
     if isinstance(case, Case):
         return Case(case._text, case._path, case._base, case._sets + sets) if sets else case
     if isinstance(case, Mapping):
-        return Case(json.dumps(dict(case), default=plain, indent=2), "<dict>", os.getcwd(), sets)
+        return Case(as_json(dict(case), "case", indent=2), "<dict>", os.getcwd(), sets)
     if isinstance(case, str) and case.lstrip().startswith("{"):
         return Case(case, "<text>", os.getcwd(), sets)
     if not isinstance(case, (str, os.PathLike)):
         raise UsageError(f"a case is a file, a name, JSON text, a dict or a Case, not {type(case).__name__}")
     path = Path(os.fsdecode(case))
-    if not path.exists():
-        found = CASES / f"{str(case).removesuffix('.json')}.json"
-        if found.is_file() and CASES.resolve() in found.resolve().parents:
-            path = found
     try:
+        if not path.exists():
+            found = CASES / f"{str(case).removesuffix('.json')}.json"
+            if found.is_file() and CASES.resolve() in found.resolve().parents:
+                path = found
         text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeError) as error:
+    except (OSError, ValueError) as error:
         why = error.strerror if isinstance(error, OSError) else str(error)
         near = difflib.get_close_matches(path.stem, shipped(), 1)
         meant = f"; did you mean {near[0]!r}?" if near else ""

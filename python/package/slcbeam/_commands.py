@@ -15,8 +15,9 @@ import numpy as np
 
 from . import _slcbeam
 from ._answer import Answer
-from ._case import Case, CaseLike, load, plain
+from ._case import Case, CaseLike, as_json, load, numbers
 from ._errors import SolverError, UsageError
+from ._result import place
 
 #: A place for a result.
 Place = Union[str, "os.PathLike[str]", None]
@@ -25,7 +26,7 @@ Data = Union[str, "os.PathLike[str]", Mapping[str, Any], Any]
 
 
 def _text(value: Any) -> str:
-    return value if isinstance(value, str) else json.dumps(value, default=plain)
+    return value if isinstance(value, str) else as_json(value, "value of an option")
 
 
 def _words(options: Mapping[str, Any]) -> list[str]:
@@ -60,12 +61,21 @@ def _file(case: Case, folder: Path) -> str:
 def _table(data: Data, folder: Path, name: str = "data.csv") -> str:
     """A file that holds a table of numbers."""
     if isinstance(data, (str, os.PathLike)):
-        return os.fspath(data)
+        return str(place(data))
+    columns: dict[str, list[float]] = {}
     try:
         # iterating a frame of polars gives its columns, not their names
-        columns = {str(name): np.atleast_1d(np.asarray(data[name], dtype=float)).tolist() for name in getattr(data, "columns", data)}
+        for heading in getattr(data, "columns", data):
+            column = np.atleast_1d(numbers(data[heading]))
+            if column.ndim > 1:
+                raise UsageError("a list of numbers is wanted")
+            if str(heading) in columns:
+                raise UsageError("a second column of this name")
+            columns[str(heading)] = column.tolist()
         rows = list(zip(*columns.values(), strict=True))
-    except (TypeError, ValueError, IndexError) as error:
+    except UsageError as error:
+        raise UsageError(f"column {heading!r}: {error}") from None
+    except (TypeError, ValueError, IndexError, KeyError) as error:
         raise UsageError(f"a table is a CSV file, or columns of numbers of equal length by heading: {error}") from None
     folder.mkdir(exist_ok=True)
     path = folder / name
@@ -100,7 +110,7 @@ def _do(
     words += _words(options)
     folder = None
     if writes:
-        folder = Path(out) if out is not None else Path(temporary.name) / "result"
+        folder = place(out) if out is not None else Path(temporary.name) / "result"
         words.append(f"--out={folder}")
         if not progress:
             words.append("--quiet")
@@ -228,13 +238,13 @@ def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str
     """
     if isinstance(parts, (str, os.PathLike)):
         parts = [parts]
-    printed, _, interrupted = _slcbeam.command(["merge", *(os.fspath(part) for part in parts), f"--out={os.fspath(out)}", "--json"])
+    printed, _, interrupted = _slcbeam.command(["merge", *(str(place(part)) for part in parts), f"--out={place(out)}", "--json"])
     return Answer(json.loads(printed), Path(out), interrupted=interrupted)
 
 
 def _listed(values: Any) -> list[str]:
     each = values if isinstance(values, Iterable) else [values]
-    return [json.dumps(one, default=plain) for one in each]
+    return [as_json(one) for one in each]
 
 
 def _spans(vary: Mapping[str, tuple[float, float]]) -> dict[str, str]:
@@ -340,7 +350,7 @@ def compare(*results: str | os.PathLike[str], **options: Any) -> Answer:
     :param results: folders, two or more; or one and a CSV file, with ``match``.
     :param options: ``match={COLUMN: QUANTITY}``, ``time=COLUMN``, ``out=FOLDER`` for a page.
     """
-    words = ["compare", *(os.fspath(one) for one in results), *_words(options)]
+    words = ["compare", *(str(place(one)) for one in results), *_words(options)]
     printed, _, interrupted = _slcbeam.command([*words, "--json"])
     return Answer(json.loads(printed), None, interrupted=interrupted)
 
@@ -350,7 +360,7 @@ def export(folder: str | os.PathLike[str], **options: Any) -> None:
 
     :param options: ``format="csv"``, ``times="0.1,0.45:0.5"``, ``every=10``, ``out=FOLDER``.
     """
-    _slcbeam.command(["export", os.fspath(folder), *_words(options)])
+    _slcbeam.command(["export", str(place(folder)), *_words(options)])
 
 
 def explain(what: str) -> list[dict[str, Any]]:
@@ -360,6 +370,8 @@ def explain(what: str) -> list[dict[str, Any]]:
     >>> slcbeam.explain("tip_u1")[0]["meaning"]
     'transverse displacement of the tip [m], a column of history.csv'
     """
+    if not isinstance(what, str):
+        raise UsageError(f"explain takes a text, not {type(what).__name__}")
     printed, _, _ = _slcbeam.command(["explain", what, "--json"])
     told = json.loads(printed)
     return told if isinstance(told, list) else [told]

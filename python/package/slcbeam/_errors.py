@@ -31,6 +31,15 @@ class UsageError(Error, ValueError):
     _number = "E030"
 
 
+class UnknownError(Error, KeyError):
+    """A name that a table, an answer or a case does not have."""
+
+    _number = "E030"
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
 class FileError(Error, OSError):
     """A file or a folder that cannot be read or written."""
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _page, _slcbeam
 from ._case import Case
+from ._errors import UnknownError, UsageError
 from ._page import Report
 
 if TYPE_CHECKING:
@@ -21,12 +22,19 @@ if TYPE_CHECKING:
     import xarray
 
 
-def _frozen(array: np.ndarray) -> np.ndarray:
-    array.flags.writeable = False
-    return array
+def frozen(array: np.ndarray) -> np.ndarray:
+    """A view of an array through which nobody can write, nor make it writable again."""
+    whole: Any = array
+    while isinstance(whole, np.ndarray):
+        whole.flags.writeable = False
+        whole = whole.base
+    if array.size == 0:
+        return array
+    flat = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
+    return np.frombuffer(flat.data.toreadonly(), dtype=array.dtype).reshape(array.shape)
 
 
-def unknown(name: object, names: Iterable[str]) -> KeyError:
+def unknown(name: object, names: Iterable[str]) -> UnknownError:
     """That there is no such name, with the nearest that there is."""
     import difflib
 
@@ -34,7 +42,17 @@ def unknown(name: object, names: Iterable[str]) -> KeyError:
     # a name without its unit is one, too
     begins = [own for own in names if own.startswith(f"{name}_")]
     near = begins or difflib.get_close_matches(str(name), names, 1)
-    return KeyError(f"{name}; did you mean {near[0]!r}?" if near else name)
+    return UnknownError(f"{name}; did you mean {near[0]!r}?" if near else str(name))
+
+
+def place(dir: Any) -> Path:
+    """The path of a file or folder.
+
+    :raises UsageError: it is none.
+    """
+    if not isinstance(dir, (str, os.PathLike)) or "\0" in os.fspath(dir):
+        raise UsageError(f"{dir!r} is no path of a file or folder")
+    return Path(dir)
 
 
 class Named(dict[str, Any]):
@@ -61,7 +79,7 @@ class Table(Mapping[str, np.ndarray]):
         #: What each column is, by its name.
         self.about = dict(zip(names, about or [""] * len(names)))
         #: All values, of shape (rows, columns), read-only.
-        self.values_2d = _frozen(rows)
+        self.values_2d = frozen(rows)
         self._place = {name: k for k, name in enumerate(self.names)}
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -115,16 +133,16 @@ class Fields(Mapping[str, np.ndarray]):
         arrays: list[np.ndarray],
     ) -> None:
         #: Times of the arrays [s], of shape (times,).
-        self.t = _frozen(times)
+        self.t = frozen(times)
         #: Coordinates by name, unit included: ``theta_node_m``.
-        self.coordinates: dict[str, np.ndarray] = {name: _frozen(values) for name, _, _, values in axes}
+        self.coordinates: dict[str, np.ndarray] = {name: frozen(values) for name, _, _, values in axes}
         #: Name of the coordinate along which a field lies, by the field's name.
         self.axis = {name: axis for name, _, axis, _ in fields}
         #: Units by name, of fields and coordinates.
         self.units = {name: unit for name, unit, *_ in [*axes, *fields]} | {"t": "s"}
         #: What each is.
         self.about = {name: about for name, _, about, _ in axes} | {name: about for name, *_, about in fields}
-        self._arrays = {field[0]: _frozen(array) for field, array in zip(fields, arrays)}
+        self._arrays = {field[0]: frozen(array) for field, array in zip(fields, arrays)}
 
     def __getitem__(self, name: str) -> np.ndarray:
         found = self.coordinates.get(name, self._arrays.get(name))
@@ -221,8 +239,9 @@ class Result:
 
         :param force: take a folder that holds something else.
         """
-        self._recorded.save(Path(dir), force, self._arrays)
-        return Path(dir)
+        folder = place(dir)
+        self._recorded.save(folder, force, self._arrays)
+        return folder
 
     def report(self) -> Report:
         """The page of the result: pictures, figures, motion."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Sequence
-from pathlib import Path
+from collections.abc import Callable, Iterable, Sequence
 
 from . import _slcbeam
-from ._case import CaseLike, load
+from ._case import CaseLike, load, numbers
 from ._errors import FileError, SolverError, UsageError
-from ._result import Result
+from ._result import Result, place
 
 #: Called some 20 times a second with the simulated time [s], its end [s] and the steps so far.
 Progress = Callable[[float, float, int], None]
@@ -21,6 +20,13 @@ def _bar(t: float, end: float, steps: int) -> None:
     full = int(30 * share)
     sys.stderr.write(f"\r[{'#' * full}{'.' * (30 - full)}] {100 * share:3.0f} %  t = {t:.6g} of {end:.6g} s, {steps} steps ")
     sys.stderr.flush()
+
+
+def _accuracy(accuracy: float) -> float:
+    try:
+        return float(numbers(accuracy))
+    except (TypeError, ValueError):
+        raise UsageError(f"accuracy {accuracy!r}: a number is wanted, such as 0.01") from None
 
 
 def run(
@@ -49,12 +55,17 @@ def run(
     >>> result.status, result.history["t"][-1]
     ('finished', np.float64(0.01))
     """
+    if not isinstance(sensitivity, Iterable):
+        raise UsageError("sensitivity takes JSON pointers")
     sensitivity = [sensitivity] if isinstance(sensitivity, str) else list(sensitivity)
     if accuracy is not None and sensitivity:
         raise UsageError("accuracy and sensitivity do not go together; take the mesh and tolerance that an accuracy led to from the summary")
+    if not all(isinstance(pointer, str) for pointer in sensitivity):
+        raise UsageError("sensitivity takes JSON pointers")
+    accuracy = None if accuracy is None else _accuracy(accuracy)
     asked = load(case)
     if out is not None:
-        _slcbeam.claimable(Path(out))
+        _slcbeam.claimable(place(out))
     told = _bar if progress is True else (progress or None)
     recorded, arrays = _slcbeam.run(asked._own, accuracy, sensitivity, told)
     result = Result(asked, recorded, arrays)

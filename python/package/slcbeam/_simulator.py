@@ -8,8 +8,9 @@ from typing import Union
 import numpy as np
 
 from . import _slcbeam
-from ._case import CaseLike, load
+from ._case import CaseLike, load, numbers
 from ._errors import UsageError
+from ._result import frozen
 from ._slcbeam import State as State
 
 #: Values of the inputs: in their order, or some of them by pointer.
@@ -40,11 +41,11 @@ class Simulator:
         try:
             if not all(isinstance(pointer, str) for pointer in self.inputs):
                 raise TypeError
-            ranges = np.array([inputs[pointer] for pointer in self.inputs], dtype=float).reshape(len(self.inputs), 2)
+            ranges = numbers([inputs[pointer] for pointer in self.inputs]).reshape(len(self.inputs), 2)
         except (TypeError, ValueError):
             raise UsageError("inputs are a dict of (smallest, largest) by JSON pointer") from None
         #: Smallest and largest values of the inputs: an array of shape (inputs, 2).
-        self.ranges = ranges
+        self.ranges = frozen(ranges)
         self._own = _slcbeam.Simulator(self.case._own, [(one, *range_) for one, range_ in zip(self.inputs, ranges.tolist())])
         columns = self._own.columns()
         #: Names of the columns of :attr:`row`.
@@ -72,7 +73,9 @@ class Simulator:
 
     def _step(self, time: float, further: bool, values: Values) -> np.ndarray:
         try:
-            time = float(time)
+            time = float(numbers(time))
+            if np.isnan(time):
+                raise ValueError
         except (TypeError, ValueError):
             raise UsageError("times are numbers [s]") from None
         row, stopped = self._own.step(time, further, self._given(values))
@@ -89,10 +92,13 @@ class Simulator:
             for pointer, value in values.items():
                 if pointer not in self.inputs:
                     raise UsageError(f"{pointer} is no input; inputs are {', '.join(self.inputs)}")
-                given[self.inputs.index(pointer)] = value
+                try:
+                    given[self.inputs.index(pointer)] = float(numbers(value))
+                except (TypeError, ValueError):
+                    raise UsageError(f"{pointer}: a number is wanted") from None
             return given
         try:
-            given = np.atleast_1d(np.asarray(values, dtype=float))
+            given = np.atleast_1d(numbers(values))
         except (TypeError, ValueError):
             given = np.empty((0, 0))
         if given.ndim != 1:

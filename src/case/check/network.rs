@@ -10,7 +10,7 @@ use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
 use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
 use crate::case::wording::nearest;
-use crate::error::{Code, Violation};
+use crate::error::{Code, Violation, listed};
 use crate::functions::signals::Signal;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
@@ -159,7 +159,7 @@ impl<'a> Rules<'a, '_> {
         let fault = Violation::new(Code::Wiring, format!("{pointer}/junction"), what);
         self.faults.push(Violation {
             nearest: nearest(name, names.iter().copied()),
-            allowed: (!names.is_empty()).then(|| names.join(", ")),
+            allowed: (!names.is_empty()).then(|| listed(names)),
             ..fault.hint("declare it under /network/junctions")
         });
     }

@@ -308,11 +308,20 @@ fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Resul
         ));
     }
     let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
+    let out = asked.place.folder(&plan.case, Kind::Designs);
+    let files = asked.cases.iter().chain(&asked.designs);
+    for path in files.chain([&program, &out]) {
+        if path.to_str().is_none_or(|name| name.contains(char::is_control)) {
+            return Err(Error::Usage(format!(
+                "--script: {:?} cannot be named in a script: it holds control characters or is not UTF-8. Rename it.",
+                path.display()
+            )));
+        }
+    }
     let scheduler = match scheduler {
         Script::Slurm => Scheduler::Slurm,
         Script::Parallel => Scheduler::Parallel,
     };
-    let out = asked.place.folder(&plan.case, Kind::Designs);
     let more = [
         (asked.lean, "--lean"),
         (asked.keep_cases, "--keep-cases"),

@@ -1,6 +1,6 @@
 //! A fit, and a run over data, in words.
 
-use crate::error::visible;
+use crate::error::{listed, visible};
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, duration, percent, quantity, significant};
 use crate::study::fit::beside::Beside;
@@ -66,8 +66,8 @@ pub fn words(fit: &Fit) -> String {
         text += &format!("{worst}\n");
     }
     if !fit.left_alone.is_empty() {
-        let names: Vec<String> = fit.left_alone.iter().map(|name| visible(name).into_owned()).collect();
-        text += &format!("columns left alone: {}\n", names.join(", "));
+        let names = listed(fit.left_alone.iter().map(String::as_str));
+        text += &format!("columns left alone: {names}\n");
     }
     for warning in &fit.warnings {
         text += &format!("warning: {warning}\n");

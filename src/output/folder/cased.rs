@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use super::{CASE, ResultFolder, entries, name_of, remove};
+use super::{CASE, ResultFolder, entries, name_of, remove, text_of};
 use crate::case::{Written, is_table};
 use crate::error::Result;
 
@@ -28,7 +28,7 @@ impl ResultFolder {
     fn write_once(&self, name: &str, text: &str) -> Result<()> {
         let path = self.path(name);
         let own = fs::symlink_metadata(&path).is_ok_and(|there| there.is_file());
-        if own && fs::read(&path).ok().as_deref() == Some(text.as_bytes()) {
+        if own && text_of(&path).is_ok_and(|there| there == text) {
             return self.tell_origin();
         }
         self.lay(name, text.as_bytes()).map(|_| ())

@@ -3,8 +3,8 @@
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-use std::thread::{self, JoinHandle};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{Builder, JoinHandle};
 use std::{mem, panic};
 
 use super::whole::{Wait, Whole, at_once};
@@ -46,9 +46,13 @@ impl ResultFolder {
     pub fn secure_behind(&self) -> Result<()> {
         self.tell_origin()?;
         self.secured_behind()?;
-        let (files, dir) = (self.laid(), self.dir.clone());
-        let behind = thread::spawn(move || bring(&files, &dir));
-        held(&self.laid.behind, |place| *place = Some(behind));
+        let (files, dir) = (Arc::new(Mutex::new(self.laid())), self.dir.clone());
+        let there = Arc::clone(&files);
+        match Builder::new().spawn(move || bring(&held(&there, mem::take), &dir)) {
+            Ok(behind) => held(&self.laid.behind, |place| *place = Some(behind)),
+            // the system grants no thread
+            Err(_) => bring(&held(&files, mem::take), &self.dir)?,
+        }
         Ok(())
     }
 

@@ -45,7 +45,7 @@ impl Lock {
                     Ok(()) => {}
                     Err(TryLockError::WouldBlock) => {
                         let mut holder = String::new();
-                        let _ = file.read_to_string(&mut holder);
+                        let _ = file.take(1 << 10).read_to_string(&mut holder);
                         let holder = if holder.trim().is_empty() {
                             "another process"
                         } else {

@@ -6,7 +6,7 @@ mod lock;
 mod origin;
 mod whole;
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
@@ -356,7 +356,7 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
 fn history_begins_with_time(path: &Path) -> bool {
     // one that was killed at once has nothing in it yet
     let mut begin = vec![];
-    File::open(path)
+    open(path)
         .and_then(|file| file.take(5).read_to_end(&mut begin))
         .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{CASE, ResultFolder};
+use super::{CASE, ResultFolder, text_of};
 use crate::case::Case;
 use crate::error::Result;
 
@@ -44,9 +44,9 @@ impl ResultFolder {
 
 /// The other case file of which the result in a folder is; nothing where it is of this one or says the same, or where it is not known.
 pub fn other_origin(dir: &Path, case: &Case) -> Option<String> {
-    let there = fs::read_to_string(dir.join(ORIGIN)).ok()?;
+    let there = text_of(&dir.join(ORIGIN)).ok()?;
     let here = way(dir, &case.source.path)?;
-    let same = || fs::read_to_string(dir.join(CASE)).is_ok_and(|text| text == case.written().json);
+    let same = || text_of(&dir.join(CASE)).is_ok_and(|text| text == case.written().json);
     (there != here && !same()).then(|| shown(dir, &there))
 }
 

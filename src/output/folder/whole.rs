@@ -3,10 +3,12 @@
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::{panic, thread};
+use std::thread;
 
 use super::fault;
+use crate::case::reading;
 use crate::error::Result;
+use crate::numerics::threads::{Begun, begin};
 use crate::results::{self, Found, Kept};
 
 /// Writes a file that the user names, whole or not at all; one that is there keeps its permissions, and what a link points to is
@@ -121,11 +123,9 @@ pub(crate) type Wait<'a> = Box<dyn FnOnce() -> Result<()> + Send + 'a>;
 pub(crate) fn at_once(mut all: Vec<Wait>) -> Result<()> {
     let Some(last) = all.pop() else { return Ok(()) };
     thread::scope(|scope| {
-        let others: Vec<_> = all.into_iter().map(|one| scope.spawn(one)).collect();
+        let others: Vec<_> = all.into_iter().map(|one| begin(scope, one)).collect();
         let last = last();
-        let ended = others
-            .into_iter()
-            .map(|one| one.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)));
+        let ended = others.into_iter().map(Begun::join);
         ended.fold(Ok(()), Result::and).and(last)
     })
 }
@@ -156,11 +156,7 @@ const LARGEST: u64 = 64 << 20;
 
 /// Opens a file of a result to read it: a pipe or a device, which may never end, is none.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
-    if fs::metadata(path)?.is_file() {
-        return File::open(path);
-    }
-    let why = "it is no file with an end";
-    Err(io::Error::new(io::ErrorKind::InvalidInput, why))
+    reading::open(path)
 }
 
 /// What is wrong with a file that was read.
@@ -176,14 +172,14 @@ pub(crate) fn result<T: Kept>(path: &Path) -> Result<Found<T>> {
 /// The text of a file of a result.
 pub(crate) fn text_of(path: &Path) -> Result<String> {
     let read = || -> io::Result<String> {
-        let mut file = open(path)?;
+        let file = open(path)?;
         let there = file.metadata()?.len();
         if there > LARGEST {
             let why = format!("it has {there} bytes; no such file of a result has more than {LARGEST}");
             return Err(damaged(why));
         }
         let mut text = String::new();
-        file.read_to_string(&mut text)?;
+        io::Read::take(file, LARGEST).read_to_string(&mut text)?;
         Ok(text)
     };
     read().map_err(|e| fault("read", path, e))

@@ -8,7 +8,7 @@ use super::{Found, Kind, Page, Place, pack, sheet};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
-use crate::output::folder::CASE;
+use crate::output::folder::{CASE, open};
 use crate::output::numbers::{count, duration, quantity, significant, trimmed};
 use crate::results::equilibrium::Equilibrium;
 use crate::results::run::Status;
@@ -141,7 +141,7 @@ fn answer(found: &Equilibrium, share: f64) -> String {
 /// Positions of the nodes of some states, the last among them.
 fn shapes(path: &Path) -> Value {
     let read = || -> csv::Result<Vec<Vec<f64>>> {
-        let mut reader = csv::Reader::from_path(path)?;
+        let mut reader = csv::Reader::from_reader(open(path)?);
         let rows = reader
             .records()
             .map(|r| Ok(r?.iter().map(|x| x.parse().unwrap_or(f64::NAN)).collect()));

@@ -53,7 +53,7 @@ mod warnings;
 use std::fs;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
-use std::{panic, thread};
+use std::thread;
 
 use serde_json::{Map, Value, json};
 
@@ -65,6 +65,8 @@ use super::kind::Kind;
 use super::uncertainty::{self, UNCERTAINTY};
 use crate::case::{self, Case};
 use crate::error::Result;
+use crate::integrate::halt;
+use crate::numerics::threads::begin;
 use crate::results::uncertainty::Uncertainty;
 use crate::results::{Found, Head, Kept};
 
@@ -92,7 +94,7 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
     let kind = Kind::find(dir)?;
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
     let elsewhere = folder_of(&path) != fs::canonicalize(dir).ok();
-    let text = text(&Place::new(dir, None), kind, elsewhere)?;
+    let text = halt::complete(|| text(&Place::new(dir, None), kind, elsewhere))?;
     match out {
         Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
         None => replace(&path, &text)?,
@@ -117,7 +119,7 @@ pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
 /// As [`write`].
 pub fn lay(folder: &ResultFolder, history: Option<&Remembered>) -> Result<()> {
     let dir = folder.dir();
-    let text = text(&Place::new(dir, history), Kind::find(dir)?, false)?;
+    let text = halt::complete(|| text(&Place::new(dir, history), Kind::find(dir)?, false))?;
     folder.lay(REPORT, text.as_bytes()).map(|_| ())
 }
 
@@ -143,12 +145,9 @@ fn data(place: &Place, kind: Kind) -> Result<Page> {
 fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
     // the longest of what a case has to tell, in a thread of its own
     let (page, parameters) = thread::scope(|scope| {
-        let rows = scope.spawn(|| place.case_text.as_deref().map(parameters::rows));
+        let rows = begin(scope, || place.case_text.as_deref().map(parameters::rows));
         let page = data(place, kind);
-        (
-            page,
-            rows.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)),
-        )
+        (page, rows.join())
     });
     let mut page = page?;
     page.put("parameters", parameters.unwrap_or_default());

@@ -1,6 +1,6 @@
 //! The page of a run, or of a cycle of `periodic`.
 
-use std::{io, panic, thread};
+use std::{io, thread};
 
 use serde_json::{Value, json};
 
@@ -9,6 +9,7 @@ use super::{Kind, Page, Place, cycles, energy_balance, facts, frames, inputs, pe
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::characteristic;
+use crate::numerics::threads::begin;
 use crate::output::bands;
 use crate::output::envelope::History as Recorded;
 use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
@@ -44,15 +45,12 @@ pub fn data(place: &Place) -> Result<Page> {
     let fields = place.path(FIELDS);
     // fields in a thread of their own
     let (motion, told) = thread::scope(|scope| {
-        let motion = scope.spawn(|| frames::read(&fields, frequency));
+        let motion = begin(scope, || frames::read(&fields, frequency));
         let told = History::read(Recorded::of(place.dir, place.history)).map(|history| {
             let columns = history.json(beside(place, &history, frequency));
             (history, columns)
         });
-        (
-            motion.join().unwrap_or_else(|panicked| panic::resume_unwind(panicked)),
-            told,
-        )
+        (motion.join(), told)
     });
     let (history, columns) = told?;
     let name = name.as_deref().unwrap_or("unnamed");

@@ -1,5 +1,6 @@
 //! Loads from pressures in words.
 
+use crate::error;
 use crate::output::columns::aligned;
 use crate::output::numbers::{count, significant, trimmed};
 use crate::results::sense::{Banded, NoiseFrom, Sensed, Unknown};
@@ -39,7 +40,8 @@ pub fn words(found: &Sensed) -> String {
         text += &format!("\n{}", sensors(found));
     }
     if !found.left_alone.is_empty() {
-        text += &format!("columns left alone: {}\n", found.left_alone.join(", "));
+        let names = error::listed(found.left_alone.iter().map(String::as_str));
+        text += &format!("columns left alone: {names}\n");
     }
     for warning in found.warnings.iter().filter(|one| !found.doubts.contains(one)) {
         text += &format!("warning: {warning}\n");

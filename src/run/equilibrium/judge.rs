@@ -2,6 +2,7 @@
 
 use super::Stability;
 use super::path::Follower;
+use crate::integrate::halt;
 
 impl Follower<'_> {
     /// Says of every state whether it holds. Between events the determinant keeps its sign: where the first and the last state of
@@ -18,7 +19,11 @@ impl Follower<'_> {
             let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
             for state in first + 1..last {
                 let inherited = ends[0].map(|s| Stability { softest: None, ..s });
-                self.path.states[state].stability = if same { inherited } else { self.stability(state) };
+                self.path.states[state].stability = match same {
+                    true => inherited,
+                    false if halt::asked() => None,
+                    false => self.stability(state),
+                };
             }
             (self.path.states[first].stability, self.path.states[last].stability) = (ends[0], ends[1]);
         }

@@ -7,6 +7,7 @@ use super::state::{self, Stability, State};
 use super::{Event, Kind, Options, Path};
 use crate::discrete::System;
 use crate::error::{At, Code, SolverError};
+use crate::integrate::halt::{self, INTERRUPTED};
 use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
@@ -309,11 +310,7 @@ impl Follower<'_> {
         self.path.states.push(state);
         match control {
             Control::Continue => Ok(()),
-            Control::Stop(reason) => {
-                let mut fault = fault(self.stage as f64 + x[self.n], &reason);
-                fault.cause = None;
-                Err(End(fault))
-            }
+            Control::Stop(reason) => Err(stopped(self.stage as f64 + x[self.n], &reason)),
         }
     }
 
@@ -338,6 +335,9 @@ impl Follower<'_> {
     }
 
     pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> End {
+        if halt::asked() {
+            return stopped(self.stage as f64 + share, INTERRUPTED);
+        }
         End(SolverError {
             unknown: failure.worst.clone(),
             ..fault(
@@ -377,6 +377,15 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
         }),
         hint: Some("look at the states up to there; a small load across tells which way a symmetric beam bends".into()),
     }
+}
+
+/// The end of a path that somebody asked for.
+fn stopped(share: f64, reason: &str) -> End {
+    let cause = None;
+    End(SolverError {
+        cause,
+        ..fault(share, reason)
+    })
 }
 
 /// Where a function that changes sign between 0 and `end` is zero (bisection).

@@ -337,6 +337,9 @@ fn paired(
 }
 
 fn failed(about: &Linearised, failure: &SpectralError) -> Error {
+    if *failure == SpectralError::Interrupted {
+        return Error::Usage(format!("{failure} before modes were found; nothing is written"));
+    }
     let unknown = match failure {
         SpectralError::Singular { column } => Some(about.system().layout.name(*column)),
         _ => None,

@@ -12,6 +12,7 @@ use super::trial::{self, Allowance, Role, Trial};
 use crate::case::Case;
 use crate::error::Result;
 use crate::integrate::halt;
+use crate::numerics::threads::crew;
 
 /// Share of the budget that points may take; references need the rest.
 const POINTS: f64 = 0.5;
@@ -108,19 +109,21 @@ impl Sweep<'_> {
             return items.iter().try_for_each(work);
         }
         let (next, heard) = (AtomicUsize::new(0), halt::heard());
+        let ended = Mutex::new(Ok(()));
         let worker = || -> Result<()> {
-            heard.listen();
             while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
                 work(item)?;
             }
             Ok(())
         };
-        std::thread::scope(|scope| {
-            let threads: Vec<_> = (0..workers).map(|_| scope.spawn(worker)).collect();
-            threads
-                .into_iter()
-                .try_for_each(|thread| thread.join().unwrap_or_else(|cause| std::panic::resume_unwind(cause)))
-        })
+        crew(workers, || {
+            let own = heard.during(worker);
+            let mut all = ended.lock().unwrap_or_else(PoisonError::into_inner);
+            if all.is_ok() {
+                *all = own;
+            }
+        });
+        ended.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// What a line may spend: twice its share of what is left for points, since many need less.

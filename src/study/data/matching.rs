@@ -8,10 +8,7 @@ use crate::case::nearest;
 use crate::case::schema::Case;
 use crate::case::units::suffixed;
 use crate::discrete::quantities::probes;
-use crate::error::{Error, Result};
-
-/// Quantities that are listed at most.
-const LISTED: usize = 60;
+use crate::error::{Error, Result, listed};
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -151,16 +148,11 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
 
 /// What there is, where nothing is near; of very many the first.
 fn available(columns: &[Named]) -> String {
-    let names: Vec<&str> = columns
-        .iter()
-        .map(|(name, _)| name.as_str())
-        .filter(|name| !["t", "load_factor"].contains(name))
-        .collect();
-    let more = match names.len().saturating_sub(LISTED) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
-    format!("; there are {}{more}", names[..names.len().min(LISTED)].join(", "))
+    let names = columns.iter().map(|(name, _)| name.as_str());
+    format!(
+        "; there are {}",
+        listed(names.filter(|name| !["t", "load_factor"].contains(name)))
+    )
 }
 
 /// The column of a name, with or without its unit.

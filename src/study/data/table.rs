@@ -1,13 +1,17 @@
 //! A table of measurements: one line of headings, then a line a row; commas, semicolons or tabs between cells. Blank lines and those
 //! that begin with # count not; an empty cell was not measured.
 
+use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
 
 use crate::case::heading::Heading;
 use crate::case::{self, Source, nearest};
-use crate::error::{Code, Error, Result, Violation, visible};
+use crate::error::{Code, Error, Result, Violation, listed, shown};
 use crate::study::measure::table::{MOST, cells, fault, lines};
+
+/// Largest number that counts as measured, in the unit of its column and in SI units: its square is finite in any sum.
+const LARGEST: f64 = 1e30;
 
 /// A cell and where it stands in the text.
 type Cell = (String, Range<usize>);
@@ -53,11 +57,15 @@ impl Table {
         let separator = header.separator();
         let headings = cells(&header, separator);
         let mut faults = vec![];
+        let mut named = HashSet::new();
         for (k, (heading, span)) in headings.iter().enumerate() {
+            if faults.len() >= MOST {
+                break;
+            }
             if heading.is_empty() {
                 faults.push(fault(span.clone(), format!("column {} has no heading", k + 1)));
-            } else if headings[..k].iter().any(|(other, _)| other == heading) {
-                let what = format!("a second column named {}", visible(heading));
+            } else if !named.insert(heading) {
+                let what = format!("a second column named {}", shown(heading));
                 faults.push(fault(span.clone(), what));
             }
         }
@@ -143,11 +151,11 @@ impl Table {
         self.find(name).ok_or_else(|| {
             let headings = || self.columns.iter().map(|column| column.heading.as_str());
             let meant = match nearest(name, headings()) {
-                Some(meant) => format!("; nearest is {meant}"),
-                None => format!("; there are {}", headings().collect::<Vec<_>>().join(", ")),
+                Some(meant) => format!("; nearest is {}", shown(&meant)),
+                None => format!("; there are {}", listed(headings())),
             };
             let path = self.source.path.display();
-            Error::Usage(format!("{option}: {path} has no column {}{meant}", visible(name)))
+            Error::Usage(format!("{option}: {path} has no column {}{meant}", shown(name)))
         })
     }
 
@@ -161,11 +169,11 @@ impl Table {
         }
         let called = |column: &Heading| ["t", "time"].contains(&column.name.to_lowercase().as_str());
         self.columns.iter().position(called).ok_or_else(|| {
-            let headings: Vec<&str> = self.columns.iter().map(|column| column.heading.as_str()).collect();
+            let headings = self.columns.iter().map(|column| column.heading.as_str());
             Error::Usage(format!(
                 "{} has no column t_s or time_s; name that of time with --time, one of {}",
                 self.source.path.display(),
-                headings.join(", ")
+                listed(headings)
             ))
         })
     }
@@ -182,9 +190,18 @@ impl Table {
                 return None;
             }
             let number = cell.parse::<f64>().ok().filter(|x| x.is_finite());
+            if let Some(number) = number.filter(|x| (x * scale).abs() > LARGEST || x.abs() > LARGEST)
+                && faults.len() < MOST
+            {
+                let heading = shown(&self.columns[column].heading);
+                let what = format!(
+                    "line {}, column {heading}: {number:e} is no measured value: {LARGEST:e} at most",
+                    row.line
+                );
+                faults.push(fault(span.clone(), what).hint("correct it, or leave the cell empty"));
+            }
             if number.is_none() && faults.len() < MOST {
-                let heading = &self.columns[column].heading;
-                let (cell, heading) = (visible(cell), visible(heading));
+                let (cell, heading) = (shown(cell), shown(&self.columns[column].heading));
                 let what = format!("line {}, column {heading}: \"{cell}\" is no finite number", row.line);
                 let hint = match cell.contains(',') {
                     true => "decimals stand behind a point",
@@ -242,7 +259,7 @@ impl Table {
     /// A fault at a cell.
     pub fn fault(&self, row: usize, column: usize, what: &str) -> Violation {
         let Row { line, cells } = &self.rows[row];
-        let heading = visible(&self.columns[column].heading);
+        let heading = shown(&self.columns[column].heading);
         fault(
             cells[column].1.clone(),
             format!("line {line}, column {heading}: {what}"),

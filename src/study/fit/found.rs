@@ -112,9 +112,11 @@ pub struct Left {
     pub rms: f64,
     /// The largest.
     pub max: f64,
-    /// Both over the largest value of the data.
+    /// Both over the largest value of the data; not finite where all data are zero.
+    #[serde(deserialize_with = "null::number")]
     pub rms_relative: f64,
-    /// The largest over the largest value of the data.
+    /// The largest over the largest value of the data, likewise.
+    #[serde(deserialize_with = "null::number")]
     pub max_relative: f64,
     /// Mean of quantity less data.
     pub bias: f64,

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::case::schema::Case;
 use crate::case::wiring::{bladder_index, bladder_label};
-use crate::error::{Error, Result, visible};
+use crate::error::{Error, Result, listed, visible};
 use crate::study::data::Table;
 
 /// What was measured.
@@ -81,10 +81,10 @@ impl Measured {
             list.push((k, bladder));
         }
         if pressures.is_empty() {
-            let headings: Vec<_> = table.columns.iter().map(|column| visible(&column.heading)).collect();
+            let headings = table.columns.iter().map(|column| column.heading.as_str());
             return Err(wrong(format!(
                 "no column holds the pressure of a bladder, such as pressure_3_pa or pressure_-3_kpa; there are {}",
-                headings.join(", ")
+                listed(headings)
             )));
         }
         pressures.sort_by_key(|(_, bladder)| *bladder);

@@ -4,6 +4,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::integrate::halt;
+use crate::numerics::threads::crew;
 
 /// What `work` makes of every number below `count`, in order; each number is taken up by whoever is free.
 pub fn each<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
@@ -12,22 +13,19 @@ pub fn each<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let workers = std::thread::available_parallelism()
         .map_or(1, usize::from)
         .min(count.max(1));
-    std::thread::scope(|scope| {
-        for _ in 0..workers {
-            scope.spawn(|| {
-                heard.listen();
-                loop {
-                    let k = next.fetch_add(1, Ordering::Relaxed);
-                    if k >= count {
-                        break;
-                    }
-                    let made = work(k);
-                    if let Ok(mut done) = done.lock() {
-                        done.push((k, made));
-                    }
+    crew(workers, || {
+        heard.during(|| {
+            loop {
+                let k = next.fetch_add(1, Ordering::Relaxed);
+                if k >= count {
+                    break;
                 }
-            });
-        }
+                let made = work(k);
+                if let Ok(mut done) = done.lock() {
+                    done.push((k, made));
+                }
+            }
+        });
     });
     let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     done.sort_by_key(|(k, _)| *k);

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::Result;
 use crate::integrate::halt;
+use crate::numerics::threads::crew;
 
 /// Gives every number of a list to whoever of so many threads is free, and what `work` makes of it to `take`, one at a time. Ends
 /// early where `work` makes nothing, or `take` fails.
@@ -19,25 +20,22 @@ pub fn each<T: Send>(
 ) -> Result<()> {
     let (next, heard) = (AtomicUsize::new(0), halt::heard());
     let taken = Mutex::new((take, Ok(())));
-    std::thread::scope(|scope| {
-        for _ in 0..jobs.clamp(1, numbers.len().max(1)) {
-            scope.spawn(|| {
-                heard.listen();
-                while let Some(number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let made = work(*number);
-                    let mut taken = taken.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    let (take, so_far) = &mut *taken;
-                    let ends = made.is_none();
-                    match made {
-                        Some(made) if so_far.is_ok() => *so_far = take(made),
-                        _ => {}
-                    }
-                    if ends || so_far.is_err() {
-                        next.store(numbers.len(), Ordering::Relaxed);
-                    }
+    crew(jobs.clamp(1, numbers.len().max(1)), || {
+        heard.during(|| {
+            while let Some(number) = numbers.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let made = work(*number);
+                let mut taken = taken.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                let (take, so_far) = &mut *taken;
+                let ends = made.is_none();
+                match made {
+                    Some(made) if so_far.is_ok() => *so_far = take(made),
+                    _ => {}
                 }
-            });
-        }
+                if ends || so_far.is_err() {
+                    next.store(numbers.len(), Ordering::Relaxed);
+                }
+            }
+        });
     });
     taken.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).1
 }

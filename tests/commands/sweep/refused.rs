@@ -214,3 +214,26 @@ fn parts_that_differ_are_not_merged() {
     well(&say(&["merge", &two, &one, "--lean", "--out", &turned]));
     assert_eq!(table(&turned), table(&whole));
 }
+
+/// Goal: no name becomes a command of a job script, and none becomes that of another file.
+#[test]
+fn names_that_no_script_can_hold_are_refused() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let vary = "/beam/length_m=0.1,0.11";
+    for kind in ["slurm", "parallel"] {
+        for name in [&b"x\ntouch P\n#"[..], b"x\rtouch P", b"bad-\xff"] {
+            let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_slcbeam"));
+            command.args([
+                "sweep", CASE, "--vary", vary, "--script", kind, "--shards", "2", "--out",
+            ]);
+            let output = command.arg(OsStr::from_bytes(name)).output().expect("it starts");
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                output.status.code() == Some(2) && output.stdout.is_empty(),
+                "{name:?}: {told}"
+            );
+            assert!(told.contains("cannot be named in a script"), "{told}");
+        }
+    }
+}

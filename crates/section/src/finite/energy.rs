@@ -21,6 +21,7 @@ use crate::input::{Row, Section};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{Builder, ScopedJoinHandle};
 
 /// Largest strain of the outer fibre that is looked for.
 const LARGEST_STRAIN: f64 = 0.3;
@@ -240,7 +241,7 @@ impl<'a> Experiment<'a> {
         let own: Vec<&[f64; 4]> = rays.iter().filter(|ray| !spared(ray)).collect();
         let missed = AtomicBool::new(false);
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let some = |rays: &[&[f64; 4]]| -> Option<Vec<Sample>> {
+        let some = &|rays: &[&[f64; 4]]| -> Option<Vec<Sample>> {
             let mut samples = vec![];
             for ray in rays {
                 let found = self
@@ -253,11 +254,14 @@ impl<'a> Experiment<'a> {
         };
         let all = std::thread::scope(|scope| {
             let parts = own.chunks(own.len().div_ceil(threads).max(1));
-            let running: Vec<_> = parts.map(|part| scope.spawn(|| some(part))).collect();
-            running
-                .into_iter()
-                .map(|part| part.join().ok().flatten())
-                .collect::<Option<Vec<_>>>()
+            let begin = |part| (part, Builder::new().spawn_scoped(scope, move || some(part)).ok());
+            let running: Vec<_> = parts.map(begin).collect();
+            // this thread does what the system grants no thread for
+            let join = |(part, thread): (_, Option<ScopedJoinHandle<'_, _>>)| match thread {
+                Some(thread) => thread.join().ok().flatten(),
+                None => some(part),
+            };
+            running.into_iter().map(join).collect::<Option<Vec<_>>>()
         });
         all.map(|parts| parts.concat())
     }
