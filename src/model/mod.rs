@@ -13,6 +13,7 @@ pub mod contact;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
+mod hammer;
 mod held;
 pub mod kinematics;
 pub mod loads;
