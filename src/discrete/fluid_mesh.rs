@@ -6,7 +6,7 @@ use super::let_in::{self, Share};
 use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
 use crate::model::network::{AccumulatorLaw, CheckValve, FlowLaw, Link, LinkKind, Node};
-use crate::model::{Network, Storage, Wet};
+use crate::model::{Storage, Wet};
 
 /// Where a link ends, on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -252,7 +252,10 @@ impl FluidMesh {
                 number: Some(number),
                 junction,
                 component: network.component_of_junction[one.junction],
-                law: one.law,
+                law: match wet.compression {
+                    None => one.law,
+                    Some(_) => one.law.holding(network.halves_of_tubes(one.junction)),
+                },
             })
         });
         let mut accumulators: Vec<MeshAccumulator> = accumulators.collect();
@@ -266,7 +269,7 @@ impl FluidMesh {
                     junction: first,
                     component: network.component_of_junction[junctions[first]],
                     law: AccumulatorLaw::Rigid {
-                        holds: group.iter().map(|&j| halves_of_tubes(network, j)).sum(),
+                        holds: group.iter().map(|&j| network.halves_of_tubes(j)).sum(),
                     },
                 });
             } else {
@@ -355,17 +358,6 @@ impl FluidMesh {
     pub fn cells_of(&self, bladder: usize) -> Range<usize> {
         bladder * self.cells_per_bladder..(bladder + 1) * self.cells_per_bladder
     }
-}
-
-/// `[E65]` Volume of the halves of all tubes that meet at a junction, shut ones too [m^3]. Where these have inertia alone, and fluid is compressed, that
-/// is what stores there: the pressure follows from what has come together, and flows into it need not sum to zero.
-fn halves_of_tubes(network: &Network, junction: usize) -> f64 {
-    let here = Node::Junction(junction);
-    let volume = |link: &Link| {
-        let ends = usize::from(link.from == here) + usize::from(link.to == here);
-        0.5 * ends as f64 * link.tube.map_or(0.0, |tube| tube.volume)
-    };
-    network.links.iter().map(volume).sum()
 }
 
 /// Faces between cells of bladders, by the cells on either side.

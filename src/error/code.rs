@@ -99,6 +99,7 @@ codes! {
     Optimum = "W035", "A best that may be none.";
     FastLoad = "W036", "A load that may change faster than it is followed.";
     LateRest = "W037", "Fluid that comes to rest later than the run lasts.";
+    WaterHammer = "W038", "A valve that shuts faster than a pressure wave returns.";
     CrossesItself = "W039", "A beam that crosses itself.";
     Boiling = "W040", "A liquid below its vapor pressure.";
     CrossTerm = "W041", "A cross term of the section that the model leaves out.";

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Coupling, Model, Wet};
+use super::{Coupling, Model, Wet, hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
@@ -306,6 +306,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         ));
     }
     all.extend(stream(model));
+    all.extend(hammer::warnings(case, model));
     if let Some(&f) = numbers.get("forcing_frequency_hz") {
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {

@@ -13,6 +13,7 @@ pub mod contact;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
+mod hammer;
 mod held;
 pub mod kinematics;
 pub mod loads;
@@ -269,12 +270,16 @@ impl Model {
         Ok(Self::of(case, Section::new(case), network, effects))
     }
 
-    /// The same with inertia, and with Poiseuille's friction in tubes where unsteady friction is not named: its memory has ten decays a
-    /// tube, among which a search for modes would lose itself.
+    /// The same with inertia, and with Poiseuille's friction in tubes where unsteady friction is not named, unless fluid swings too fast for it
+    /// against a vessel: its memory has ten decays a tube, among which a search for modes would lose itself.
     pub fn of_modes(case: &Case) -> Result<Self> {
         let network = Network::of(case)?;
-        let effects = EffectSet::whole(case, network.as_ref()).forgetting();
-        Ok(Self::of(case, Section::new(case), network, effects))
+        let effects = EffectSet::whole(case, network.as_ref());
+        let whole = Self::of(case, Section::new(case), network.clone(), effects);
+        if whole.wet.as_ref().is_some_and(Wet::swings_fast) {
+            return Ok(whole);
+        }
+        Ok(Self::of(case, whole.section, network, whole.effects.forgetting()))
     }
 
     /// The model of a changed case with the effects and scales of this one.

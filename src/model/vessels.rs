@@ -1,8 +1,11 @@
 //! What vessels of the network hold, of fluid that is compressed or not.
 
 use super::Wet;
-use super::network::AccumulatorLaw;
+use super::network::{Accumulator, AccumulatorLaw};
 use crate::numerics::Scalar;
+
+/// Error of Poiseuille's profile in a mode from which on the memory of friction counts.
+const MEMORY: f64 = 1e-3;
 
 /// `[E67]` A vessel whose walls give way by V(p), [E60], of fluid of which it has V_0 at ambient pressure. What it holds is counted beyond that and at
 /// ambient density, as what cells hold is, [E54]:
@@ -42,6 +45,22 @@ impl Wet {
                 slope * (law.volume_at_rest() + law.volume(pressure)) + density * law.compliance(pressure)
             }
         }
+    }
+
+    /// Whether fluid in a tube swings against a vessel at its end so fast that Poiseuille's profile does not follow: `Wo⁴/1152` above
+    /// [`MEMORY`], `Wo² = r²/(ν √(I C))`.
+    pub(super) fn swings_fast(&self) -> bool {
+        let fast = |one: &Accumulator| {
+            let compliance = self.vessel_compliance(&one.law, 0.0);
+            self.network
+                .tubes_at(one.junction)
+                .filter_map(|link| link.tube)
+                .any(|tube| {
+                    let womersley_squared = 1.0 / (tube.viscous_rate * (tube.law.inertance * compliance).sqrt());
+                    womersley_squared * womersley_squared / 1152.0 > MEMORY
+                })
+        };
+        self.network.accumulators.iter().any(fast)
     }
 
     /// Energy of its walls, and of the compression of what it holds, at a pressure [J].

@@ -22,6 +22,7 @@ pub fn to_json(summary: &Summary) -> String {
         .values_mut()
         .flat_map(|s| s.quantities.values_mut().chain(s.probes.values_mut()));
     let own = summary.quantities.values_mut().chain(summary.probes.values_mut());
+    let own = own.chain(summary.ports.values_mut());
     for q in own.chain(derivatives) {
         *q = Quantity {
             last: finite(q.last),

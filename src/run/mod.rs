@@ -21,6 +21,7 @@ pub mod null;
 pub mod observe;
 pub mod order;
 pub mod periodic;
+pub mod ports;
 pub mod range;
 pub mod readings;
 pub mod record;

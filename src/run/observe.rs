@@ -339,7 +339,7 @@ impl Observer {
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;
         seen.figures.take(&seen.row, &glance);
-        seen.probes.take(t, seen.row.at_probes());
+        seen.probes.take(t, &seen.row);
         seen.energies.take(&seen.row);
         let Some(number) = output else {
             return Ok(Sampled::Taken);

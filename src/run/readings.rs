@@ -5,12 +5,13 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::cubic::{self, Cubic};
+use super::ports::PortFigures;
 use super::schedule::SAME;
 use super::summary::Quantity;
 use super::track::Track;
 use crate::case::schema::Case;
 use crate::discrete::ledger::Energies;
-use crate::discrete::quantities::{Extremes, Look, Observable, Read, probes};
+use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes};
 use crate::discrete::{State, System, TimeData};
 
 /// What is read of the tip.
@@ -94,6 +95,9 @@ pub struct ProbeFigures {
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
     tracks: Vec<Track>,
+    /// Those of ports and accumulators.
+    #[serde(default, skip_serializing_if = "PortFigures::is_empty")]
+    pub ports: PortFigures,
 }
 
 impl ProbeFigures {
@@ -105,13 +109,15 @@ impl ProbeFigures {
             names,
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             window_time: 0.0,
+            ports: PortFigures::new(system),
         }
     }
 
     /// Takes a sample.
-    pub fn take(&mut self, t: f64, values: &[f64]) {
+    pub fn take(&mut self, t: f64, row: &Row) {
         let in_window = t >= self.window_start;
-        for (track, value) in self.tracks.iter_mut().zip(values) {
+        self.ports.take(t, row.at_stations(), in_window);
+        for (track, value) in self.tracks.iter_mut().zip(row.at_probes()) {
             track.take(*value, in_window);
             track.see(*value, t, in_window);
         }

@@ -240,6 +240,9 @@ pub struct Summary {
     /// What is recorded at probes, by name and unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub probes: BTreeMap<String, Quantity>,
+    /// Flows and pressures of ports and pressures in accumulators at the output times, by name and unit.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub ports: BTreeMap<String, Quantity>,
     /// Step responses of tip and probes, by name and unit, where they are asked for.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub step_response: BTreeMap<String, StepResponse>,

@@ -3,7 +3,24 @@
 use crate::discrete::quantities::Interest;
 pub use crate::run::floors::Floors;
 use crate::run::floors::NOTHING;
+use crate::run::ports::unit;
 use crate::run::summary::{Quantity, Summary};
+
+/// Flows and pressures of ports and accumulators that are more than round-off, by name: beside others of their unit, pressures also beside what the
+/// case is expected to do.
+pub fn counted_of_ports<'a>(summary: &'a Summary, floors: &Floors) -> impl Iterator<Item = &'a String> {
+    let floor = floors.pressure;
+    let largest = move |of: &str| {
+        let alike = summary.ports.iter().filter(|(name, _)| unit(name) == of);
+        alike.map(|(_, q)| q.size()).fold(0.0, f64::max)
+    };
+    let counts = move |(name, q): &(&'a String, &'a Quantity)| {
+        let of = unit(name);
+        let least = if of == "Pa" { floor } else { 0.0 };
+        q.size() > (NOTHING * largest(of)).max(least) || q.figures().any(|(_, x)| !x.is_finite())
+    };
+    summary.ports.iter().filter(counts).map(|(name, _)| name)
+}
 
 /// The quantities that are more than round-off, by name: beside others of their unit, an angle beside displacements over the
 /// beam's length; beside what the case is expected to do; energies beside the largest one stored or passed. A ratio of

@@ -172,6 +172,7 @@ fn summary_of(status: Status) -> Summary {
         estimate: None,
         sensitivities: Default::default(),
         probes: Default::default(),
+        ports: Default::default(),
         step_response: Default::default(),
         bands: Default::default(),
         warnings: Vec::new(),

@@ -4,7 +4,9 @@
 mod chance;
 #[path = "../differences/mod.rs"]
 mod differences;
+mod hammer;
 mod hard;
+mod released;
 mod stores;
 mod valves;
 mod volumes;

@@ -45,6 +45,7 @@ fn finished(last: f64) -> Summary {
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
+        ports: Default::default(),
         probes: Default::default(),
         step_response: Default::default(),
         bands: Default::default(),

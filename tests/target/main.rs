@@ -48,7 +48,7 @@ fn figures(q: &Quantity, judged_by: Judged) -> Vec<f64> {
 
 /// Largest error of a quantity's figures, relative to the largest of them.
 fn error(name: &str, run: &Summary, reference: &Summary, judged_by: Judged) -> f64 {
-    let of = |s: &Summary| figures(&s.quantities[name], judged_by);
+    let of = |s: &Summary| figures(s.quantities.get(name).unwrap_or_else(|| &s.ports[name]), judged_by);
     let (a, b) = (of(run), of(reference));
     let size = b.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
     a.iter().zip(&b).fold(0.0_f64, |e, (x, y)| e.max((x - y).abs())) / size
@@ -297,7 +297,7 @@ impl Promises {
 
 /// Largest error of a quantity's figures against the limit to which two meshes point, relative to the largest of them.
 fn beyond(name: &str, run: &Summary, [coarse, fine]: [&Summary; 2], judged_by: Judged) -> f64 {
-    let of = |s: &Summary| figures(&s.quantities[name], judged_by);
+    let of = |s: &Summary| figures(s.quantities.get(name).unwrap_or_else(|| &s.ports[name]), judged_by);
     let limit = of(coarse).into_iter().zip(of(fine)).map(|(c, f)| f + (f - c) / 3.0);
     let limit: Vec<f64> = limit.collect();
     let size = limit.iter().fold(0.0_f64, |s, x| s.max(x.abs()));

@@ -64,7 +64,13 @@ impl ProbeColumn {
 pub fn key(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.into(),
-        unit => format!("{name}_{}", unit.to_lowercase().replace("1/", "per_").replace(' ', "_")),
+        unit => format!(
+            "{name}_{}",
+            unit.to_lowercase()
+                .replace("1/", "per_")
+                .replace([' ', '/'], "_")
+                .replace('^', "")
+        ),
     }
 }
 

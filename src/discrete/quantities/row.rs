@@ -62,6 +62,11 @@ impl Row {
         &self.values
     }
 
+    /// Its values at ports, accumulators and walls.
+    pub fn at_stations(&self) -> &[f64] {
+        &self.values[self.columns.len()..][..self.stations]
+    }
+
     /// Its values at probes.
     pub fn at_probes(&self) -> &[f64] {
         &self.values[self.columns.len() + self.stations..]

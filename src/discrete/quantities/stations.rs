@@ -98,6 +98,22 @@ pub fn integrated(system: &System) -> Vec<Option<usize>> {
     (0..columns(system, false).len()).map(volume).collect()
 }
 
+/// Columns of flows and pressures of ports and of pressures in accumulators, while something moves: their places among all, and their names
+/// with units.
+pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
+    let ports = 4 * system.model.wet.as_ref().map_or(0, ports::count);
+    let told = move |place: usize| {
+        if place < ports {
+            place % 4 < 2
+        } else {
+            (place - ports) % 2 == 0
+        }
+    };
+    let all = of_network(system, false).into_iter().enumerate();
+    all.filter(move |(place, _)| told(*place))
+        .map(|(place, one)| (place, one.key()))
+}
+
 /// Their values in a state; without integrals those of a state at rest.
 pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
     let mut out = out.iter_mut();

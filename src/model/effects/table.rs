@@ -136,7 +136,7 @@ pub fn about(effect: Effect) -> About {
         Effect::Compressibility => About {
             adds: "c = r(p) (A_0 + a1) - A_0 in place of a1, q = g (Ψ(p_a) - Ψ(p_b)), Ψ = ∫ r dp",
             brings: "stored gas; a root for the pressure of each cell",
-            number: "A_0/K over a_p, with (1 + χ ω T) of vibrations whose stiffness is fluid to the part χ; gas stays",
+            number: "A_0/K over a_p, with (1 + χ ω T) of vibrations whose stiffness is fluid to the part χ; at vessels and where tubes end its share of what stores, times the departure from rest at 1/√(I C); gas stays",
             cost: "arithmetic in every cell and link; an unknown stays one where tubes with inertia meet",
             needs: &[Fluid],
             presence: Presence::Chosen,

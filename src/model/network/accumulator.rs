@@ -51,6 +51,8 @@ pub enum AccumulatorLaw {
         ambient: f64,
         /// `n`.
         exponent: f64,
+        /// Fluid of tubes that end in it, at ambient pressure [m^3], which counts where that is compressed.
+        holds: f64,
     },
 }
 
@@ -73,6 +75,7 @@ impl AccumulatorLaw {
                 volume: volume_m3,
                 ambient,
                 exponent: polytropic_exponent,
+                holds: 0.0,
             },
         }
     }
@@ -80,9 +83,15 @@ impl AccumulatorLaw {
     /// Fluid in it at ambient pressure [m^3].
     pub fn volume_at_rest(&self) -> f64 {
         match *self {
-            Self::Elastic { holds, .. } | Self::Rigid { holds } => holds,
-            Self::Gas { .. } => 0.0,
+            Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. } => holds,
         }
+    }
+
+    /// The same with more fluid in it at ambient pressure [m^3].
+    pub fn holding(mut self, more: f64) -> Self {
+        let (Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. }) = &mut self;
+        *holds += more;
+        self
     }
 
     /// Gauge pressure [Pa] by the volume [m^3]; not a number where there is no gas left, and in a tank, whose volume says nothing of it.
@@ -95,6 +104,7 @@ impl AccumulatorLaw {
                 volume: of_gas,
                 ambient,
                 exponent,
+                ..
             } => volume.lift(|volume| {
                 let left = 1.0 - volume / of_gas;
                 if left <= 0.0 {
@@ -116,6 +126,7 @@ impl AccumulatorLaw {
                 volume,
                 ambient,
                 exponent,
+                ..
             } => -volume * (-(pressure / ambient).ln_1p() / exponent).exp_m1(),
         }
     }
@@ -129,6 +140,7 @@ impl AccumulatorLaw {
                 volume,
                 ambient,
                 exponent,
+                ..
             } => (volume - self.volume(pressure)) / (exponent * (ambient + pressure)),
         }
     }
@@ -142,6 +154,7 @@ impl AccumulatorLaw {
                 volume: of_gas,
                 ambient,
                 exponent,
+                ..
             } => {
                 let (share, logarithm) = (volume / of_gas, (-volume / of_gas).ln_1p());
                 let worked = if exponent == 1.0 {
@@ -167,6 +180,7 @@ mod tests {
             volume: 2e-6,
             ambient: 101_325.0,
             exponent,
+            holds: 0.0,
         };
         let elastic = AccumulatorLaw::Elastic {
             compliance: 1e-12,

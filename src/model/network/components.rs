@@ -105,7 +105,7 @@ pub fn adrift(network: &Network) -> Vec<Vec<usize>> {
     let links = network
         .links
         .iter()
-        .filter(|link| !link.is_shut() && !link.has_inertia());
+        .filter(|link| !link.is_shut() && link.inertance() == 0.0);
     let joined = links.map(|link| (link.from, link.to));
     for (from, to) in joined.chain(network.bridges.iter().map(|bridge| (bridge.from, bridge.to))) {
         sets.join(slot(from), slot(to));

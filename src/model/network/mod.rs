@@ -7,6 +7,7 @@
 //! along        what flow along a bladder does
 //! ladder       friction with a memory
 //! check_valve  valves that open by themselves
+//! ends         where tubes with inertia end and little else stores
 //! accumulator  vessels that take in fluid as their pressure rises
 //! ```
 
@@ -14,6 +15,7 @@ mod accumulator;
 mod along;
 mod check_valve;
 mod components;
+mod ends;
 mod graph;
 mod ladder;
 pub mod tube;
@@ -28,6 +30,7 @@ pub use accumulator::{Accumulator, AccumulatorLaw};
 pub use along::AlongBladder;
 pub use check_valve::CheckValve;
 pub use components::Component;
+pub use ends::TubeEnd;
 pub use ladder::{BRANCHES, Ladder};
 pub use tube::{FlowLaw, TubeFlow};
 
@@ -103,9 +106,9 @@ impl Link {
         self.opening.as_ref().is_some_and(shut)
     }
 
-    /// Whether it is a tube in which fluid has inertia.
-    fn has_inertia(&self) -> bool {
-        self.tube.is_some_and(|tube| tube.law.inertance > 0.0)
+    /// Inertance of the fluid in it [kg/m^4]; 0 where it has none.
+    pub fn inertance(&self) -> f64 {
+        self.tube.map_or(0.0, |tube| tube.law.inertance)
     }
 }
 

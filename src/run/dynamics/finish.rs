@@ -76,6 +76,7 @@ impl Run<'_> {
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
         s.probes = o.probes.quantities();
+        s.ports = o.probes.ports.quantities();
         let finished = s.status == Status::Finished;
         s.step_response = o.steps.as_ref().map(|steps| steps.judge(finished)).unwrap_or_default();
         o.energies.complete(&mut s.quantities);

@@ -158,6 +158,7 @@ impl<'a> Run<'a> {
                 unknowns: system.layout.len,
                 quantities: Default::default(),
                 probes: Default::default(),
+                ports: Default::default(),
                 step_response: Default::default(),
                 bands: Default::default(),
                 balances: Default::default(),

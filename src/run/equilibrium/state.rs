@@ -1,6 +1,7 @@
 //! One state of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
+use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::glance::Glance;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
@@ -130,12 +131,13 @@ impl Stability {
 /// displacements, areas, junction and turbine pressures; what is algebraic besides is a guess, velocities are zero.
 pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &TimeData) -> Vec<f64> {
     let zeros = vec![0.0; y.len()];
-    let (_, _, w) = from.evaluate(share, y, &zeros);
+    let (before, _, w) = from.evaluate(share, y, &zeros);
     let mut z = vec![0.0; to.layout.len];
     displacements(&w, to, now, &mut z);
     z[to.layout.turning.angle.clone()].copy_from_slice(&w.shape.sections.angle);
     relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
+    flows(before, &w, to, &mut z);
     let_in::count_from(to, now, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
         *z /= scale;
@@ -193,6 +195,32 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
         }
         if let Some(unknown) = l.lumped_volume[k] {
             z[unknown] = of_lumped().map(|c| w.fluid.area[c]).sum::<f64>() * wet.bladder_length / cells as f64;
+        }
+    }
+}
+
+/// Steady flows that are unknowns, with the memory of friction that has followed them: of tubes, and of faces between the same cells.
+fn flows(before: &System, w: &Workspace<f64>, to: &System, z: &mut [f64]) {
+    let (Some(from), Some(fluid)) = (&before.fluid, &to.fluid) else {
+        return;
+    };
+    let l = &to.layout.network;
+    let same = |a: &MeshLink, b: &MeshLink| match a.number {
+        Some(_) => a.number == b.number,
+        None => b.number.is_none() && (a.from, a.to) == (b.from, b.to),
+    };
+    for link in &fluid.links {
+        let Some(MeshFlow { number, branch, law }) = link.flow else {
+            continue;
+        };
+        let known = from.links.iter().position(|other| same(link, other));
+        let known = known.filter(|_| from.cells_per_bladder == fluid.cells_per_bladder || link.number.is_some());
+        let Some(k) = known else { continue };
+        let flow = w.fluid.flow[k];
+        let moving = w.fluid.root_of_density(k).map_or(flow, |root| flow / root);
+        z[l.flow.start + number] = moving;
+        for (at, _) in law.ladders(branch).into_iter().flatten() {
+            z[l.branch.start + at.start..l.branch.start + at.end].fill(moving);
         }
     }
 }

@@ -237,9 +237,9 @@ const BESIDE: f64 = 0.1;
 
 fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let (a, b) = about.with(fluid);
-    match about.system().model.relaxation.is_empty() {
-        true => near_to(about, fluid, [&a, &b], plan, tally),
-        false => relaxing::search(about, fluid, [&a, &b], plan, tally),
+    match relaxing::relaxes(about) {
+        false => near_to(about, fluid, [&a, &b], plan, tally),
+        true => relaxing::search(about, fluid, [&a, &b], plan, tally),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Modes of a solid that relaxes.
+//! Modes of a solid that relaxes, and of flow in tubes whose friction has a memory.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -6,13 +6,22 @@ use nalgebra::Complex;
 
 use super::{Fluid, Linearised, Mode, Plan, Shapes, Tally, likeness, mode, near_to};
 use crate::case::relaxation::{dynamic_modulus, vibration};
+use crate::case::schema::Effect;
 use crate::error::Result;
+use crate::model::effects::Cause;
 use crate::spectral::{self, Options, Pencil};
 
 /// Pairs looked at around the place where one is expected: that, then more.
 const AROUND: [usize; 2] = [1, 4];
 
-/// The branches of a solid that relaxes have a decay a node each, in clusters, among which a search would lose itself: modes are looked for
+/// Whether there are branches of a solid that relaxes, or of friction with a memory that is not asked for by name.
+pub fn relaxes(about: &Linearised) -> bool {
+    let system = about.system();
+    let asked = system.model.effects.decision(Effect::UnsteadyFriction).cause == Cause::Asked;
+    !system.model.relaxation.is_empty() || (!asked && !system.layout.network.branch.is_empty())
+}
+
+/// The branches of a solid that relaxes have a decay a node each, those of friction with a memory ten a tube, in clusters, among which a search would lose itself: modes are looked for
 /// with the stiffness of the long term, in which the branches follow at once, and each again in the whole pencil near to where it swings by
 /// [`vibration`]. Decays of the material alone are left out; a mode that is not found again is counted.
 ///
@@ -26,13 +35,14 @@ pub fn search(
     tally: &mut Tally,
 ) -> Result<Vec<Mode>> {
     let branches = &about.system().model.relaxation;
-    let own = &about.system().layout.relaxation;
+    let layout = &about.system().layout;
+    let own = &layout.relaxation;
     let pattern = about.pencil().pattern;
     let mut followed = b.to_vec();
     for column in 0..pattern.columns() {
         for entry in pattern.column(column) {
             let row = pattern.rows[entry] as usize;
-            if own.curvature.contains(&row) || own.stretch.contains(&row) {
+            if own.curvature.contains(&row) || own.stretch.contains(&row) || layout.network.branch.contains(&row) {
                 followed[entry] = 0.0;
             }
         }
@@ -63,7 +73,12 @@ pub fn search(
             tally.solves += found.solves;
             let mut shapes = Shapes::new(about);
             let modes = found.pairs.iter().filter_map(|pair| mode(about, &mut shapes, pair));
-            let alike = |found: &Mode| likeness(&found.shape, &expected.shape);
+            // of fluid that swings past bladders there is no shape, and the nearest counts
+            let unseen = expected.shape.displacement() == 0.0 && expected.shape.largest_pressure() == 0.0;
+            let alike = |found: &Mode| match unseen {
+                true => 1.0 / (1.0 + (found.s - shift).norm() / shift.norm()),
+                false => likeness(&found.shape, &expected.shape),
+            };
             modes
                 .filter(|found| found.kind.swings() == expected.kind.swings())
                 .max_by(|a, b| alike(a).total_cmp(&alike(b)))

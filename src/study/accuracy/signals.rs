@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::discrete::quantities::{Field, Interest, Observable, Role};
 use crate::error::Result;
+use crate::run::ports;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::Summary;
 
@@ -104,9 +105,11 @@ impl Keep {
 
 fn quantities(summary: &Summary) -> Vec<Signal> {
     let mut all = vec![];
-    for (name, q) in &summary.quantities {
+    let of_ports = summary.ports.iter().map(|(name, q)| (name, q, ports::unit(name)));
+    let own = summary.quantities.iter();
+    let own = own.map(|(name, q)| (name, q, Interest::named(name).map_or("1", Interest::unit)));
+    for (name, q, unit) in own.chain(of_ports) {
         let scale = q.size();
-        let unit = Interest::named(name).map_or("1", Interest::unit);
         all.extend(q.figures().map(|(figure, value)| Signal {
             name: format!("{name}.{figure}"),
             unit: unit.into(),

@@ -27,7 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::discrete::quantities::Interest;
 use crate::run::summary::{Estimate, Judged, Quantity, Summary};
-use crate::study::counted::{Floors, counted};
+use crate::study::counted::{Floors, counted, counted_of_ports};
 
 /// Expected ratio of one difference to the one before, where it is not seen: halved cells at second order, and a decade of
 /// tolerance between orders 2 and 4.
@@ -100,11 +100,13 @@ impl Runs {
 
     /// Takes in a run that finished.
     pub fn take(&mut self, way: Way, at: At, summary: &Summary) {
-        let looked = Looked {
+        let mut looked = Looked {
             quantities: summary.quantities.clone(),
             counted: counted(summary, &self.floors).map(|(name, _)| name.clone()).collect(),
             steps: summary.solver.steps,
         };
+        looked.counted.extend(counted_of_ports(summary, &self.floors).cloned());
+        looked.quantities.extend(summary.ports.clone());
         self.all.insert((way, at), looked);
     }
 

@@ -1,10 +1,12 @@
 //! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
 //! leaving one out makes.
 
+mod compression;
 mod least;
 mod pace;
 mod sections;
 mod stability;
+mod stored;
 mod tubes;
 
 use std::cell::OnceCell;
@@ -16,7 +18,7 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, Node};
 use crate::model::scales::Drive;
-use crate::model::{Attachment, Compression, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
+use crate::model::{Attachment, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
@@ -137,7 +139,7 @@ impl<'a> Scene<'a> {
     fn begins_displaced(&self) -> bool {
         let s = &self.case.start;
         let given = [&s.u1_m, &s.u3_m, &s.u1_rate_m_s, &s.u3_rate_m_s];
-        given.iter().any(|profile| profile.is_some()) || (!s.pressures.is_empty() && s.equilibrium.is_none())
+        given.iter().any(|profile| profile.is_some()) || self.begins_pressed(true)
     }
 
     /// Whether an end moves otherwise than at rest, which acts on the beam by its inertia.
@@ -326,19 +328,6 @@ impl<'a> Scene<'a> {
     /// A frequency of the beam with the stiffness that it has at once, where the solid relaxes [1/s].
     fn at_once(&self, frequency: f64) -> f64 {
         frequency * self.section.stiffening.sqrt()
-    }
-
-    /// `A_0 r'/(r a_p)`, at most: what compression stores over what the walls of bladders do; over the whole run where it changes the
-    /// stiffness of what vibrates.
-    pub fn compression_of_fluid(&self) -> f64 {
-        let Some(wet) = self.wet else { return 0.0 };
-        // whether or not the whole model has it, which takes inertia in tubes instead
-        let fluid = self.case.fluid.as_ref();
-        let compression = fluid.and_then(|fluid| Compression::new(fluid, wet.area_at_rest));
-        let stored = compression.map_or(0.0, |compression| compression.compliance(-self.scales.pressure));
-        let share = stored / wet.area.per_pressure;
-        let [bent, stretched] = self.stiffness_of_fluid(wet);
-        share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
 
     /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.

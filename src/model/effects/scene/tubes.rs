@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::Scene;
+use super::stored::Circuit;
 use crate::case::schema::BladderEnd;
 use crate::model::Wet;
 use crate::model::network::{Link, LinkKind, Node};
@@ -18,6 +19,9 @@ pub struct Tubes {
     pub losses: f64,
 }
 
+/// Angular frequency beyond which nothing is faster: of a tube beside which nothing stores [1/s].
+pub(super) const FASTEST: f64 = 1e100;
+
 /// Margin of flows: resonance and what comes at once make them larger than what acts at rest.
 const MARGIN: f64 = 3.0;
 
@@ -27,7 +31,11 @@ impl Scene<'_> {
     /// over the whole run T.
     pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
-        self.fastest(wet, tolerance) * self.compliances(wet)[1] * wet.bladder_length.powi(2)
+        let emptying = 1.0
+            / ((Self::least_resistance_between(wet) + 0.5 * self.bladder_resistance(wet))
+                * (self.compliances(wet)[0] * wet.bladder_length));
+        let released = if self.begins_pressed(true) { emptying } else { 0.0 };
+        self.fastest(wet, tolerance).max(released) * self.compliances(wet)[1] * wet.bladder_length.powi(2)
             / (PI * PI * wet.network.bladder_mobility)
     }
 
@@ -146,38 +154,42 @@ impl Scene<'_> {
             let end = self.case.time.end_s;
             let sources = wet.network.sources.iter();
             let pumped = sources.map(|source| source.feed.largest_flow(end)).sum();
+            let circuits = self.circuits(wet);
+            let circuit = |link: &Link| {
+                let mut ends = [link.from, link.to].into_iter();
+                let component = ends.find_map(|node| wet.network.component_of(node));
+                component.map_or(Circuit::BETWEEN_PORTS, |component| circuits[component])
+            };
             let links = wet.network.links.iter();
-            let all = links.map(|link| self.of(wet, link, [fastest, pumped], tolerance));
+            let all = links.map(|link| self.of(wet, (link, circuit(link)), [fastest, pumped], tolerance));
             all.fold(Tubes::default(), Tubes::larger)
         })
     }
 
-    fn of(&self, wet: &Wet, link: &Link, [fastest, pumped]: [f64; 2], tolerance: f64) -> Tubes {
+    fn of(&self, wet: &Wet, (link, circuit): (&Link, Circuit), [fastest, pumped]: [f64; 2], tolerance: f64) -> Tubes {
         let Some(tube) = &link.tube else {
             return Tubes::default();
         };
-        let compliance = wet.area.per_pressure * wet.bladder_length;
         let resistance = link.resistance;
-        let relaxation = 1.0 / (resistance * compliance);
-        let rate = if self.inertia_ratio(relaxation) > tolerance {
+        let relaxation = 1.0 / (resistance * circuit.least);
+        // the slowest swing of it against what stores: what comes in that time excites it
+        let swing = 1.0 / (tube.steady_inertance() * circuit.most).sqrt();
+        let rate = if self.departure_of_flow(relaxation.min(swing).min(FASTEST)) > tolerance {
             fastest.max(relaxation)
         } else {
             fastest
         };
-        let flow = self.largest_flow(wet, link, rate * compliance) + pumped;
+        let bladders = match circuit.through {
+            true => f64::INFINITY,
+            false => 2.0 * wet.per_row as f64 * rate * circuit.least,
+        };
+        let flow = MARGIN * self.scales.pressure * bladders.min(1.0 / resistance) + pumped;
         let womersley_squared = rate / tube.viscous_rate;
         Tubes {
             inertia: rate * tube.steady_inertance() / resistance,
             memory: womersley_squared * womersley_squared / 1152.0,
             losses: tube.law.loss(flow) / (resistance * flow).max(f64::MIN_POSITIVE),
         }
-    }
-
-    /// In a tube, at most [m^3/s]: what the largest pressure drives through it, or what all bladders give up at the fastest rate (C ω a
-    /// bladder, [m^3/(s Pa)]), if that is less; beside what is pumped.
-    fn largest_flow(&self, wet: &Wet, link: &Link, given_up: f64) -> f64 {
-        let bladders = 2.0 * wet.per_row as f64;
-        MARGIN * self.scales.pressure * (1.0 / link.resistance).min(bladders * given_up)
     }
 }
 

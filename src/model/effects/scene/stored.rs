@@ -1,0 +1,104 @@
+//! Fluid that moves by itself: stored pressure that a start releases, and flow that passes through a network.
+
+use super::Scene;
+use crate::model::network::{AccumulatorLaw, Node, PressurePort};
+use crate::model::{Network, Wet};
+
+/// What a component of the network stores, and whether flow passes through it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Circuit {
+    /// Least volume that one of its bladders and vessels takes in per pressure [m^3/Pa]; 0 where it has none.
+    pub least: f64,
+    /// Largest one [m^3/Pa].
+    pub most: f64,
+    /// Whether its bladders do not bound its flows: vessels, pumps or ports of different pressures drive them too.
+    pub through: bool,
+}
+
+impl Circuit {
+    /// Of a tube from port to port.
+    pub const BETWEEN_PORTS: Self = Self {
+        least: 0.0,
+        most: 0.0,
+        through: true,
+    };
+}
+
+impl Scene<'_> {
+    /// Whether the run begins with pressure in bladders or accumulators that no equilibrium balances; of accumulators, only of those
+    /// joined to bladders where that is asked.
+    pub(super) fn begins_pressed(&self, bladders: bool) -> bool {
+        if self.case.start.equilibrium.is_some() {
+            return false;
+        }
+        let joined = |n: &Network, junction: usize| n.component_of_bladder.contains(&n.component_of_junction[junction]);
+        let charged = |n: &Network| {
+            let mut vessels = n.accumulators.iter().filter(|one| one.start_pressure != 0.0);
+            vessels.any(|one| !bladders || joined(n, one.junction))
+        };
+        !self.case.start.pressures.is_empty() || self.network().is_some_and(charged)
+    }
+
+    /// Departure of flow of an angular frequency of `ω` [1/s] or more from a slow change, at most, relative to what drives it; 1 where stored
+    /// pressure is released.
+    pub(super) fn departure_of_flow(&self, omega: f64) -> f64 {
+        let signals = self.inertia_ratio(omega);
+        if self.begins_pressed(false) {
+            signals.max(1.0)
+        } else {
+            signals
+        }
+    }
+
+    /// Least volume that a vessel's walls take in per pressure, of the scene's pressures [m^3/Pa].
+    pub(super) fn stiffest(&self, law: &AccumulatorLaw) -> f64 {
+        law.compliance(self.scales.pressure).min(law.compliance(0.0))
+    }
+
+    /// Every component of the network.
+    pub(super) fn circuits(&self, wet: &Wet) -> Vec<Circuit> {
+        let network = &wet.network;
+        let none = Circuit {
+            least: f64::INFINITY,
+            most: 0.0,
+            through: false,
+        };
+        let mut all = vec![none; network.components];
+        let mut take = |component: usize, [least, most]: [f64; 2]| {
+            let own = &mut all[component];
+            (own.least, own.most) = (own.least.min(least), own.most.max(most));
+        };
+        let bladder = wet.area.per_pressure * wet.bladder_length;
+        for &component in &network.component_of_bladder {
+            take(component, [bladder; 2]);
+        }
+        let pressure = self.scales.pressure;
+        for one in &network.accumulators {
+            let at = [pressure, 0.0, -pressure].map(|p| wet.vessel_compliance(&one.law, p));
+            let known = || at.into_iter().filter(|c| c.is_finite() && *c > 0.0);
+            let sizes = [known().fold(f64::INFINITY, f64::min), known().fold(0.0, f64::max)];
+            take(network.component_of_junction[one.junction], sizes);
+        }
+        let mut reached: Vec<Option<&PressurePort>> = vec![None; network.components];
+        for link in &network.links {
+            for (here, other) in [(link.from, link.to), (link.to, link.from)] {
+                let Some(component) = network.component_of(here) else {
+                    continue;
+                };
+                all[component].through |= link.pump.is_some();
+                if let Node::Port(port) = other {
+                    let port = &network.ports[port];
+                    let before = reached[component].get_or_insert(port);
+                    all[component].through |= before.pressure != port.pressure;
+                }
+            }
+        }
+        for one in &network.accumulators {
+            all[network.component_of_junction[one.junction]].through = true;
+        }
+        for own in all.iter_mut().filter(|own| own.least.is_infinite()) {
+            own.least = 0.0;
+        }
+        all
+    }
+}

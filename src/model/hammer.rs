@@ -1,0 +1,244 @@
+//! Water hammer: valves that shut faster than a pressure wave returns.
+
+use std::f64::consts::PI;
+
+use super::network::{Link, Node, TubeEnd};
+use super::{Compression, Model, Network};
+use crate::case::schema::{Case, Effect};
+use crate::error::Code;
+use crate::error::numbers::quantity;
+use crate::functions::Signal;
+use crate::functions::signals::Clock;
+
+/// Bulk modulus of water [Pa], for liquids without one.
+const WATER: f64 = 2.2e9;
+/// Closing times over the time of a wave along one part of a tube, from which on the parts follow the wave.
+const RESOLVES: f64 = 3.0;
+/// Parts of a tube at most that are proposed.
+const MOST_PARTS: f64 = 100.0;
+/// Resistance of a valve over the impedance of waves in front of it, `ρ c/A`, from which on it stops the flow: three times that lets a quarter through.
+const THROTTLES: f64 = 3.0;
+/// Share of the pressure that drives flow below which the rise is not told.
+const SMALL: f64 = 0.05;
+/// Opening over the largest one at which a valve is shut.
+const SHUT: f64 = 0.01;
+/// Instants between two switching times at which a valve is looked at.
+const LOOKS: usize = 64;
+
+/// Tubes in a row in front of a valve.
+struct Column<'a> {
+    tubes: Vec<&'a Link>,
+}
+
+impl Column<'_> {
+    fn length(&self) -> f64 {
+        self.tubes.iter().map(|tube| length(tube)).sum()
+    }
+
+    fn longest(&self) -> f64 {
+        self.tubes.iter().map(|tube| length(tube)).fold(0.0, f64::max)
+    }
+}
+
+/// Cross-section of a tube [m^2].
+fn area(tube: &Link) -> f64 {
+    PI * tube.radius * tube.radius
+}
+
+/// Length of a tube with inertia [m].
+fn length(tube: &Link) -> f64 {
+    tube.tube.map_or(0.0, |flow| flow.volume / area(tube))
+}
+
+/// A warning for every valve that shuts in less than `2 l/c` where the tubes in front of it do not follow the wave: its pressure rises by
+/// `ρ c Δv` (Joukowsky 1898), `c = 1/√(ρ κ)`.
+pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
+    let (Some(wet), Some(fluid)) = (&model.wet, &case.fluid) else {
+        return vec![];
+    };
+    let network = &wet.network;
+    let softness = Compression::new(fluid, 1.0).map_or(1.0 / WATER, |own| own.compliance(0.0));
+    let c = 1.0 / (fluid.density_kg_m3 * softness).sqrt();
+    let stiff = |end: &TubeEnd| {
+        let walls = end
+            .vessel
+            .map_or(0.0, |law| law.compliance(0.0) + law.volume_at_rest() * softness);
+        walls < end.in_tubes * softness
+    };
+    let ends: Vec<TubeEnd> = network.tube_ends().into_iter().filter(stiff).collect();
+    let of = |valve: &Link| {
+        let shuts = shuts_in(
+            valve.opening.as_ref().filter(|_| valve.inertance() > 0.0)?,
+            case.time.end_s,
+        )?;
+        let sides = [valve.from, valve.to].map(|node| column(network, &ends, valve, node));
+        let column = sides.into_iter().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+        let l = column.length() + length(valve);
+        let drive = driving(case, network);
+        let tubes = || column.tubes.iter().copied().chain([valve]);
+        let flow = steady_flow(tubes(), drive) + network.fed_tubes(case.time.end_s);
+        let narrowest = tubes().map(area).fold(f64::INFINITY, f64::min);
+        let impedance = fluid.density_kg_m3 * c / column.tubes.first().map_or(narrowest, |tube| area(tube));
+        // a valve stops flow only where it resists more than waves do
+        let resists = valve.resistance
+            + valve
+                .tube
+                .map_or(0.0, |tube| tube.law.loss(flow) / flow.max(f64::MIN_POSITIVE));
+        let hammer = Hammer {
+            valve,
+            parts: column.tubes.len().max(1),
+            shuts,
+            stops: shuts * (THROTTLES * resists / impedance).min(1.0),
+            l,
+            c,
+            rise: impedance * flow,
+            velocity: flow * impedance / (fluid.density_kg_m3 * c),
+            compressed: model.effects.has(Effect::Compressibility),
+        };
+        let longest = column.longest().max(length(valve));
+        let follows = hammer.compressed && RESOLVES * longest <= c * hammer.stops;
+        (hammer.stops < 2.0 * l / c && hammer.rise > SMALL * drive && !follows).then(|| hammer.describe(network))
+    };
+    network
+        .links
+        .iter()
+        .filter_map(of)
+        .map(|what| Code::WaterHammer.warning(what))
+        .collect()
+}
+
+/// A valve that shuts faster than a pressure wave returns.
+struct Hammer<'a> {
+    valve: &'a Link,
+    /// Tubes in a row in front of it.
+    parts: usize,
+    /// Time in which it shuts, and in which it stops the flow [s].
+    shuts: f64,
+    stops: f64,
+    /// Length of the tubes in front of it [m].
+    l: f64,
+    /// Velocity of sound [m/s].
+    c: f64,
+    /// Rise of pressure [Pa].
+    rise: f64,
+    /// Velocity that is stopped [m/s].
+    velocity: f64,
+    /// Whether the model has compressed fluid.
+    compressed: bool,
+}
+
+impl Hammer<'_> {
+    fn describe(&self, network: &Network) -> String {
+        let own = network.links.iter().position(|link| std::ptr::eq(link, self.valve));
+        let tube = own.map_or(0, |own| network.tube(own)) + 1;
+        let needed = RESOLVES * self.l / (self.c * self.stops);
+        let consequence = match (self.compressed, needed <= MOST_PARTS) {
+            (false, _) => "No fluid is compressed in this model: pressures at the valve are those of a rigid column and grow as it shuts faster. Give \
+                           /fluid/bulk_modulus_pa (water: 2.2e9)"
+                .into(),
+            (true, true) => format!(
+                "{} part(s) of tube do not follow the wave: pressures at the valve overshoot by up to a half. Split the tubes in front of it by \
+                 junctions into {} parts of equal length",
+                self.parts,
+                needed.ceil()
+            ),
+            (true, false) => format!(
+                "{} part(s) of tube do not follow the wave, nor do {MOST_PARTS}: pressures at the valve overshoot by up to a half. Take this value, \
+                 or let the valve stop the flow in {} or more and split the tubes in front of it into {MOST_PARTS} parts",
+                self.parts,
+                quantity(RESOLVES * self.l / (self.c * MOST_PARTS), "s", 2)
+            ),
+        };
+        format!(
+            "water hammer: the valve of tube {tube} shuts in {} and stops the flow in {} (limit {}, the return of a pressure wave, 2 l/c with l = {}, \
+             c = {}). By Joukowsky the pressure rises by up to {} (rho c v, v = {}). {consequence}",
+            quantity(self.shuts, "s", 3),
+            quantity(self.stops, "s", 3),
+            quantity(2.0 * self.l / self.c, "s", 3),
+            quantity(self.l, "m", 3),
+            quantity(self.c, "m/s", 3),
+            quantity(self.rise, "Pa", 3),
+            quantity(self.velocity, "m/s", 3),
+        )
+    }
+}
+
+/// The time in which a valve shuts from its largest opening at its fastest until `end` [s]; none where it does not shut.
+fn shuts_in(opening: &Signal, end: f64) -> Option<f64> {
+    let most = opening.largest(end).value;
+    let mut before: Option<f64> = None;
+    // rate of the fall that goes on, and of the steepest one that ended shut
+    let (mut falling, mut steepest) = (0.0_f64, 0.0_f64);
+    for (from, to) in opening.smooth_intervals(end) {
+        let within = 0.5 * (from + to);
+        for k in 0..=LOOKS {
+            let t = from + (to - from) * k as f64 / LOOKS as f64;
+            let jet = opening.jet(Clock { t, within });
+            let jumped = k == 0 && before.is_some_and(|before| jet.value < before - SHUT * most);
+            let rate = if jumped { f64::INFINITY } else { -jet.rate };
+            falling = if rate > 0.0 {
+                falling.max(rate)
+            } else if jet.rate > 0.0 {
+                0.0
+            } else {
+                falling
+            };
+            if jet.value <= SHUT * most {
+                steepest = steepest.max(falling);
+            }
+            before = Some(jet.value);
+        }
+    }
+    (steepest > 0.0).then(|| most / steepest)
+}
+
+/// Tubes in a row from a side of a valve on, as far as nothing but their own fluid stores between them.
+fn column<'a>(network: &'a Network, ends: &[TubeEnd], valve: &'a Link, side: Node) -> Column<'a> {
+    let (mut tubes, mut last, mut here): (Vec<&Link>, &Link, Node) = (vec![], valve, side);
+    while let Node::Junction(junction) = here {
+        if tubes.len() >= network.links.len() || !ends.iter().any(|end| end.junctions.contains(&junction)) {
+            break;
+        }
+        let onward = network.tubes_at(junction).filter(|tube| !std::ptr::eq(*tube, last));
+        let Some(next) = onward.max_by(|a, b| length(a).total_cmp(&length(b))) else {
+            break;
+        };
+        tubes.push(next);
+        here = if next.from == here { next.to } else { next.from };
+        last = next;
+    }
+    Column { tubes }
+}
+
+/// The largest pressure difference that may drive flow [Pa]: of ports, vessels, bladders at ambient pressure, and pumps.
+fn driving(case: &Case, network: &Network) -> f64 {
+    let end = case.time.end_s;
+    let ports = network.ports.iter().map(|port| port.pressure.range(0.0, end));
+    let given = ports.flat_map(|range| [range.low, range.high]);
+    let stored = network.accumulators.iter().map(|one| one.start_pressure);
+    let (low, high) = given
+        .chain(stored)
+        .fold((0.0_f64, 0.0_f64), |(low, high), p| (low.min(p), high.max(p)));
+    let pumps = network.links.iter().filter_map(|link| link.pump.as_ref());
+    high - low + pumps.map(|pump| pump.pressure.largest(end).value).sum::<f64>()
+}
+
+/// Steady flow through tubes in a row under a pressure difference [m^3/s].
+fn steady_flow<'a>(tubes: impl Iterator<Item = &'a Link> + Clone, drive: f64) -> f64 {
+    let resistance: f64 = tubes.clone().map(|tube| tube.resistance).sum();
+    let (mut low, mut high) = (0.0, drive / resistance);
+    for _ in 0..60 {
+        let flow = 0.5 * (low + high);
+        let losses: f64 = tubes
+            .clone()
+            .filter_map(|tube| tube.tube)
+            .map(|tube| tube.law.loss(flow))
+            .sum();
+        if resistance * flow + losses > drive {
+            high = flow;
+        } else {
+            low = flow;
+        }
+    }
+    low
+}

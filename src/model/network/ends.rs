@@ -1,0 +1,56 @@
+//! Places where tubes with inertia end and little else stores: their own fluid, compressed, decides the pressure there.
+
+use super::{AccumulatorLaw, Link, Network, Node};
+
+/// A group of junctions where tubes with inertia alone meet, or a vessel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TubeEnd {
+    /// Its junctions.
+    pub junctions: Vec<usize>,
+    /// Volume of the halves of tubes with inertia that end here [m^3].
+    pub in_tubes: f64,
+    /// Largest inertance of these tubes [kg/m^4]; 0 without one.
+    pub inertance: f64,
+    /// Whether a check valve may shut one of them.
+    pub check_valve: bool,
+    /// The law of the vessel; none of a group of junctions.
+    pub vessel: Option<AccumulatorLaw>,
+}
+
+impl Network {
+    /// Every such place.
+    pub fn tube_ends(&self) -> Vec<TubeEnd> {
+        let groups = self.adrift().into_iter().map(|group| (group, None));
+        let vessels = self.accumulators.iter().map(|one| (vec![one.junction], Some(one.law)));
+        let end = |(junctions, vessel): (Vec<usize>, _)| {
+            let links = || junctions.iter().flat_map(|&junction| self.tubes_at(junction));
+            TubeEnd {
+                in_tubes: junctions.iter().map(|&junction| self.halves_of_tubes(junction)).sum(),
+                inertance: links().map(Link::inertance).fold(0.0, f64::max),
+                check_valve: links().any(|link| link.check_valve.is_some()),
+                vessel,
+                junctions,
+            }
+        };
+        groups.chain(vessels).map(end).collect()
+    }
+
+    /// Tubes with inertia that end at a junction, shut ones too.
+    pub fn tubes_at(&self, junction: usize) -> impl Iterator<Item = &Link> {
+        let here = Node::Junction(junction);
+        self.links
+            .iter()
+            .filter(move |link| link.inertance() > 0.0 && (link.from == here || link.to == here))
+    }
+
+    /// `[E65]` Volume of the halves of all tubes with inertia that meet at a junction, shut ones too [m^3]. Where fluid is compressed, that stores there:
+    /// alone, so that the pressure follows from what has come together, or beside the walls of a vessel.
+    pub fn halves_of_tubes(&self, junction: usize) -> f64 {
+        let here = Node::Junction(junction);
+        let volume = |link: &Link| {
+            let ends = usize::from(link.from == here) + usize::from(link.to == here);
+            0.5 * ends as f64 * link.tube.map_or(0.0, |tube| tube.volume)
+        };
+        self.tubes_at(junction).map(volume).sum()
+    }
+}
