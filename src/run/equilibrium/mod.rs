@@ -34,7 +34,7 @@ use crate::case::schema::{Case, EquilibriumStart};
 use crate::dae::BeamDae;
 use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
-use crate::run::range::{MACH, REYNOLDS};
+use crate::run::range::{MACH, REYNOLDS, STRAIN};
 use crate::run::record::Control;
 use crate::sundials::Solution;
 
@@ -112,6 +112,8 @@ pub struct Path {
     pub reynolds: [f64; 2],
     /// Likewise the largest Mach number.
     pub mach: [f64; 2],
+    /// Likewise the largest strain of a fibre.
+    pub strain: [f64; 2],
     /// What is to be said of fluid behind valves that have shut before, where there is some.
     pub trapped: Option<String>,
 }
@@ -174,8 +176,16 @@ impl Path {
                  passes no more than at 1, so that real flow is slower than this"
             ))
         });
+        let [strain, share] = self.strain;
+        let strained = (strain > STRAIN).then(|| {
+            Code::Strain.warning(format!(
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at load factor {share:.4} (above \
+                 {STRAIN}); strains are meant to be small"
+            ))
+        });
         let trapped = self.trapped.clone();
-        trapped.into_iter().chain(beyond).chain(fast).chain(choked).collect()
+        let told = trapped.into_iter().chain(beyond).chain(strained);
+        told.chain(fast).chain(choked).collect()
     }
 
     /// The last state.

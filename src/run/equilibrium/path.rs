@@ -278,12 +278,18 @@ impl Follower<'_> {
     /// Keeps a state and shows it.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
-        let (beyond, [reynolds, mach]) =
+        let (beyond, [reynolds, mach, strain]) =
             state::within(self.solver.dae_mut().statics(), x, &self.limits, state.load_factor());
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
-        for (value, largest) in [(reynolds, &mut self.path.reynolds), (mach, &mut self.path.mach)] {
+        let path = &mut self.path;
+        let all = [
+            (reynolds, &mut path.reynolds),
+            (mach, &mut path.mach),
+            (strain, &mut path.strain),
+        ];
+        for (value, largest) in all {
             if value > largest[0] {
                 *largest = [value, state.load_factor()];
             }

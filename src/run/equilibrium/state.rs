@@ -1,7 +1,7 @@
 //! One state of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
-use crate::discrete::glance::Glance;
+use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
@@ -102,13 +102,14 @@ impl State {
     }
 }
 
-/// What lies beyond the model in a state, if anything does, and the largest Reynolds and Mach number of its flows through tubes.
-pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, [f64; 2]) {
+/// What lies beyond the model in a state, if anything does, the largest Reynolds and Mach number of its flows through tubes, and its largest strain.
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, [f64; 3]) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
     let glance = Glance::new(system, now, share, limits.half_height, w);
     let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
-    (beyond, [limits.reynolds(&glance), limits.mach(&glance)])
+    let strain = glance.of(Watched::Strain)[0];
+    (beyond, [limits.reynolds(&glance), limits.mach(&glance), strain])
 }
 
 impl Stability {
