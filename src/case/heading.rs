@@ -45,6 +45,11 @@ impl Heading {
         }
     }
 
+    /// Whether a line of cells has numbers alone, which are no headings.
+    pub fn are_numbers<'c>(mut cells: impl Iterator<Item = &'c str> + Clone) -> bool {
+        cells.clone().next().is_some() && cells.all(|cell| cell.trim().parse::<f64>().is_ok())
+    }
+
     /// How many SI units of a dimension its numbers are; those without a unit are taken for SI units. `what` is what they are.
     ///
     /// # Errors
@@ -103,6 +108,9 @@ mod tests {
             ("m_n_mm", "N m", 1e-3),
             ("opening (%)", "1", 0.01),
             ("opening_percent", "1", 0.01),
+            ("p_torr", "Pa", 101_325.0 / 760.0),
+            ("p [mmHg]", "Pa", 133.322_387_415),
+            ("time (in ms)", "s", 1e-3),
             ("flow_ml_h", "m^3/s", 1e-6 / 3600.0),
         ] {
             assert_eq!(scale(heading, si), Ok(factor), "{heading}");
@@ -114,7 +122,7 @@ mod tests {
                 "the unit in at the end of tip_in is not known; for it there are m, cm, mm, um",
             ),
             ("tip [in]", "m", "the unit [in] of the column tip [in] is not known"),
-            ("p_torr", "Pa", "the unit torr at the end"),
+            ("p_inhg", "Pa", "the unit inhg at the end"),
             (
                 "flow_ml_s",
                 "Pa",

@@ -49,6 +49,18 @@ pub fn hint(key: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Op
             {
                 return Some(format!("a single number stands without brackets: write {one}"));
             }
+            if items.len() > 1 && kinds("object") {
+                return Some(
+                    "values in time are a table: {\"table\": {\"times_s\": [..], \"values\": [..]}}".to_owned(),
+                );
+            }
+            if items.len() > 1 {
+                return Some(
+                    "one number is wanted: beam, bladders and fluid are the same all along, so take a mean value; a load may change along the \
+                     beam by its \"profile\""
+                        .to_owned(),
+                );
+            }
         }
         _ => {}
     }

@@ -229,6 +229,32 @@ const INSTEAD: &[(&[&str], &str)] = &[
         "it follows from /beam/height_m and width_m; /beam/bending_stiffness_factor multiplies it",
     ),
     (
+        &["cosine", "cos"],
+        "a cosine in time is a sine with \"phase_rad\": 1.5707963 (a quarter of a turn)",
+    ),
+    (
+        &["repeats", "periodic", "loop", "cyclic"],
+        "\"repeat\": true in a table repeats it for ever, with the time from its first point to its last as period",
+    ),
+    (
+        &["beams", "rods"],
+        "a case has one beam, /beam: give each beam a case of its own; what another body does to it is a load, an end or an attachment",
+    ),
+    (
+        &[
+            "taper",
+            "tapered",
+            "graded",
+            "grading",
+            "functionally_graded",
+            "layers",
+            "sections",
+            "stations",
+        ],
+        "a beam is uniform, with one section and one material all along: take mean values; \
+         /attachments add masses and springs at places, and a load may change along the beam by its profile",
+    ),
+    (
         &["atol", "abstol", "absolute_tolerance"],
         "there is one tolerance, /solver/rtol, relative to the scale of each unknown",
     ),

@@ -8,7 +8,7 @@ use super::faults::Violations;
 use super::heading::Heading;
 use super::load::nearest_file;
 use super::locate::child;
-use super::wording::nearest;
+use super::wording::{nearest, short};
 use super::written::checksum;
 use super::{reading, units};
 use crate::error::{Code, Violation, listed, shown};
@@ -93,6 +93,12 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         .headers()
         .map_err(|e| at("csv", format!("cannot read {name}: {e}")))?
         .clone();
+    if Heading::are_numbers(headings.iter()) {
+        let line = headings.iter().collect::<Vec<_>>().join(",");
+        let what = format!("{name}: numbers where headings are wanted: {}", short(&line));
+        let hint = "name the columns in the first line, such as t_s,pressure_kpa: else the first point would be lost";
+        return Err(Box::new(at("csv", what).hint(hint)));
+    }
     let column = |key: &str, default: usize| -> Read<usize> {
         let Some(wanted) = text(key) else {
             return match headings.len() > default {

@@ -28,7 +28,7 @@ impl Unit {
 }
 
 /// SI unit, unit, how many of the one the other is.
-const TABLE: [(&str, &str, f64); 76] = [
+const TABLE: [(&str, &str, f64); 79] = [
     ("m", "m", 1.0),
     ("m", "cm", 1e-2),
     ("m", "mm", 1e-3),
@@ -51,6 +51,9 @@ const TABLE: [(&str, &str, f64); 76] = [
     ("Pa", "hPa", 1e2),
     ("Pa", "bar", 1e5),
     ("Pa", "psi", 6_894.757_293_168_36),
+    ("Pa", "mmHg", 133.322_387_415),
+    ("Pa", "torr", 101_325.0 / 760.0),
+    ("Pa", "cmH2O", 98.066_5),
     ("rad", "rad", 1.0),
     ("rad", "mrad", 1e-3),
     ("rad", "deg", PI / 180.0),
@@ -109,10 +112,10 @@ const TABLE: [(&str, &str, f64); 76] = [
 
 /// Words that are plainly units, of which the table has none: a name that ends with one is no name without a unit.
 #[rustfmt::skip]
-const FOREIGN: [&str; 79] = [
+const FOREIGN: [&str; 76] = [
     "inch", "inches", "ft", "yd", "mils", "thou", "nm", "km", "dm", "meter", "meters", "metre", "metres",
     "millimeter", "millimeters", "millimetre", "millimetres", "micron", "microns", "sec", "secs", "msec",
-    "usec", "minute", "minutes", "hour", "hours", "hr", "hrs", "ns", "atm", "mmhg", "cmhg", "inhg", "torr", "mtorr", "cmh2o",
+    "usec", "minute", "minutes", "hour", "hours", "hr", "hrs", "ns", "atm", "cmhg", "inhg", "mtorr",
     "mmh2o", "inh2o", "mh2o", "ksi", "psf", "psia", "psig", "barg", "bara", "pascal", "pascals", "degree", "degrees", "radian",
     "radians", "arcmin", "lbf", "lb", "lbs", "kgf", "gf", "ozf", "oz", "dyn", "dyne", "newton", "newtons", "liter", "liters",
     "litre", "litres", "cc", "nl", "dl", "lpm", "slpm", "sccm", "gpm", "cst", "poise", "mg", "kj",
@@ -153,7 +156,9 @@ pub fn bracketed(text: &str) -> Option<Unit> {
     let plain = match plain.as_str() {
         "°" => "deg",
         "" | "-" | "–" => "1",
-        other => other,
+        "Torr" => "torr",
+        // "in ms" is ms, an inch alone is none
+        other => other.strip_prefix("in ").unwrap_or(other).trim_start(),
     };
     all().find(|unit| unit.is_written(plain))
 }
@@ -325,6 +330,16 @@ mod tests {
         assert_eq!(bracketed("°").map(|unit| unit.si), Some("rad"));
         assert_eq!(bracketed("mm3").map(|unit| unit.scale), Some(1e-9));
         assert_eq!(bracketed("furlong"), None);
+        assert_eq!(bracketed("in"), None);
+        for (text, scale) in [
+            ("mmHg", 133.322_387_415),
+            ("Torr", 133.322_368),
+            ("in ms", 1e-3),
+            ("in cmH2O", 98.0665),
+        ] {
+            let found = bracketed(text).map_or(0.0, |unit| unit.scale);
+            assert!((found - scale).abs() < 1e-6 * scale, "{text} {found}");
+        }
         assert_eq!(
             of_pointer("/network/chains/0/ends/0/pressure_pa").map(|u| u.si),
             Some("Pa")
@@ -349,8 +364,8 @@ mod tests {
         for (name, rest, unit) in [
             ("tip_in", "tip", "in"),
             ("tip_inch", "tip", "inch"),
-            ("p_mmHg", "p", "mmHg"),
-            ("pressure_1_torr", "pressure_1", "torr"),
+            ("p_inHg", "p", "inHg"),
+            ("pressure_1_mtorr", "pressure_1", "mtorr"),
             ("angle_degrees", "angle", "degrees"),
             ("rate_kpa_s", "rate", "kpa_s"),
             ("damping_n_s_m", "damping", "n_s_m"),

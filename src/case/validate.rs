@@ -13,6 +13,7 @@ use super::locate::child;
 use super::mistyped;
 use super::numbers;
 use super::slips;
+use super::synonyms;
 use super::unknown::{self, Meant};
 use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::{Code, Violation};
@@ -171,7 +172,10 @@ impl<'a> Walk<'a> {
         let (nearest, hint) = match slip {
             _ if word => (None, Some(format!("write \"{key}\" without braces"))),
             Some((meant, hint)) => (Some(meant), Some(hint)),
-            None => (nearest(key, tags), None),
+            None => match synonyms::instead(key) {
+                Some(hint) => (None, Some(hint.to_owned())),
+                None => (nearest(key, tags), None),
+            },
         };
         self.faults.push_at_key(Violation { nearest, hint, ..fault });
         None

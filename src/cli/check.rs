@@ -18,6 +18,7 @@ use crate::output::columns::aligned;
 use crate::output::machine;
 use crate::output::numbers::{duration, pretty_unit, significant};
 use crate::output::report::facts;
+use crate::run::drive::comes_to_rest;
 use crate::run::needs::Needs;
 use crate::run::{known, method, slow};
 
@@ -44,7 +45,10 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
     let mut warnings = known::warnings(case, &system);
-    warnings.extend(slow::warning(case, &system, case.time.end_s));
+    // what goes on for ever has no state of rest that the fluid could be late for
+    if comes_to_rest(&system.model) {
+        warnings.extend(slow::warning(case, &system, case.time.end_s));
+    }
     let chosen = method::choose(case, &system);
     let (order, why) = (chosen.order.order, &chosen.order.reason);
     let needs = Needs::of(case, 0);

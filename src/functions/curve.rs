@@ -24,7 +24,12 @@ pub struct Curve {
     at: Vec<f64>,
     values: Vec<f64>,
     second: Vec<[f64; 2]>,
+    /// Places at which the value jumps.
+    jumps: Vec<f64>,
 }
+
+/// Points beyond each end of a period that its curve is computed with: their influence falls at least by half from point to point.
+const BEYOND: usize = 64;
 
 impl Curve {
     /// Curve through `(at, values)`; none unless `at` ascends strictly and both have the same length of at least 1.
@@ -34,19 +39,66 @@ impl Curve {
         if at.is_empty() || at.len() != values.len() || !ascending || !finite {
             return None;
         }
-        let second = match interpolation {
-            Interpolation::Linear => vec![[0.0; 2]; at.len() - 1],
-            Interpolation::Monotone => monotone_second_derivatives(at, values),
-            Interpolation::Cubic => {
-                let second = natural_second_derivatives(at, values);
-                second.windows(2).map(|m| [m[0], m[1]]).collect()
-            }
-        };
         Some(Self {
             at: at.to_vec(),
             values: values.to_vec(),
-            second,
+            second: second_derivatives(at, values, interpolation),
+            jumps: vec![],
         })
+    }
+
+    /// The same, but two points at one place are a jump between them: a curve of its own ends and begins there.
+    pub fn with_jumps(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
+        let ascending = at.windows(2).all(|w| w[0] <= w[1]) && at.windows(3).all(|w| w[0] < w[2]);
+        let finite = at.iter().chain(values).all(|v| v.is_finite());
+        if at.is_empty() || at.len() != values.len() || !ascending || !finite {
+            return None;
+        }
+        Some(Self {
+            at: at.to_vec(),
+            values: values.to_vec(),
+            second: second_between_jumps(at, values, interpolation),
+            jumps: at.windows(2).filter(|w| w[0] == w[1]).map(|w| w[0]).collect(),
+        })
+    }
+
+    /// One period of a curve that repeats itself, which is as long as its points reach. It goes on smoothly from its last point to its first
+    /// where both have the same value, else it jumps there.
+    pub fn repeated(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
+        let mut curve = Self::with_jumps(at, values, interpolation)?;
+        let (Some(&[first, last]), pieces) = (curve.ends().as_ref(), at.len() - 1) else {
+            return None;
+        };
+        if last <= first {
+            return None;
+        }
+        if curve.joins() {
+            let copies = BEYOND.div_ceil(pieces);
+            let shift = |k: usize| (k as f64 - copies as f64) * (last - first);
+            let copy = |k: usize| (0..pieces).map(move |i| (at[i] + shift(k), values[i]));
+            let all = (0..=2 * copies)
+                .flat_map(copy)
+                .chain([(last + shift(2 * copies), values[0])]);
+            let (at, values): (Vec<f64>, Vec<f64>) = all.unzip();
+            let second = second_between_jumps(&at, &values, interpolation);
+            curve.second = second[copies * pieces..(copies + 1) * pieces].to_vec();
+        }
+        Some(curve)
+    }
+
+    /// First and last place.
+    pub fn ends(&self) -> Option<[f64; 2]> {
+        Some([*self.at.first()?, *self.at.last()?])
+    }
+
+    /// Whether it ends at the value at which it begins.
+    pub fn joins(&self) -> bool {
+        self.values.first() == self.values.last()
+    }
+
+    /// Places at which the value jumps.
+    pub fn jumps(&self) -> &[f64] {
+        &self.jumps
     }
 
     /// Value and derivatives at `x`, on the branch (before, along, after) that holds at `within`.
@@ -54,19 +106,29 @@ impl Curve {
         let (Some(&first), Some(&last)) = (self.at.first(), self.at.last()) else {
             return Jet::default();
         };
-        if within <= first || self.at.len() == 1 {
+        let jumps_at_once = self.jumps.first() == Some(&first);
+        if within < first || self.at.len() == 1 || (within == first && !jumps_at_once) {
             return Jet::constant(self.values[0]);
         }
         if within >= last {
             return Jet::constant(self.values[self.at.len() - 1]);
         }
-        // Every knot of another table ends a smooth interval; a spline is C2 across its inner knots.
-        let place = if interpolation == Interpolation::Cubic {
-            x
-        } else {
-            within
-        };
-        self.piece(self.piece_of(place), x)
+        self.inside(x, within, interpolation)
+    }
+
+    /// The same between its ends.
+    pub fn inside(&self, x: f64, within: f64, interpolation: Interpolation) -> Jet {
+        // Every knot of another table ends a smooth interval; a spline is C2 across its inner knots, but not across a jump.
+        if interpolation != Interpolation::Cubic {
+            return self.piece(self.piece_of(within), x);
+        }
+        let next = self.jumps.partition_point(|jump| *jump <= within);
+        let from = next.checked_sub(1).map_or(0, |k| self.piece_of(self.jumps[k]));
+        let to = self
+            .jumps
+            .get(next)
+            .map_or(self.at.len() - 1, |jump| self.at.partition_point(|knot| knot < jump));
+        self.piece(self.piece_of(x).clamp(from, to.max(from + 1) - 1), x)
     }
 
     /// Value and derivatives at `x`; at the ends those of the curve, not of the constant beyond.
@@ -131,7 +193,8 @@ impl Curve {
             })
         };
         let [low, high] = bounds(&mut self.values.iter().copied());
-        let [least, most] = bounds(&mut (0..self.second.len()).flat_map(|i| {
+        let smooth = (0..self.second.len()).filter(|i| self.at[*i] < self.at[i + 1]);
+        let [least, most] = bounds(&mut smooth.flat_map(|i| {
             let within = move |x: &f64| (self.at[i]..=self.at[i + 1]).contains(x);
             let turns = self.extremes(i).into_iter().filter(within);
             turns.map(move |x| self.piece(i, x).value)
@@ -140,15 +203,43 @@ impl Curve {
         if high > low { beyond / (high - low) } else { 0.0 }
     }
 
-    /// Smallest distance between two points.
+    /// Smallest distance between two points that are not at one place.
     pub fn smallest_spacing(&self) -> Option<f64> {
-        self.at.windows(2).map(|w| w[1] - w[0]).reduce(f64::min)
+        let spacings = self.at.windows(2).map(|w| w[1] - w[0]);
+        spacings.filter(|spacing| *spacing > 0.0).reduce(f64::min)
     }
 
     /// All values equal.
     pub fn is_constant(&self) -> bool {
         self.values.windows(2).all(|w| w[0] == w[1])
     }
+}
+
+/// Second derivatives at both ends of each piece of a curve without jumps.
+fn second_derivatives(at: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 2]> {
+    match interpolation {
+        Interpolation::Linear => vec![[0.0; 2]; at.len() - 1],
+        Interpolation::Monotone => monotone_second_derivatives(at, values),
+        Interpolation::Cubic => {
+            let second = natural_second_derivatives(at, values);
+            second.windows(2).map(|m| [m[0], m[1]]).collect()
+        }
+    }
+}
+
+/// The same of one with jumps, whose pieces have no length and no derivatives.
+fn second_between_jumps(at: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 2]> {
+    let mut second = Vec::with_capacity(at.len());
+    let mut begin = 0;
+    for stretch in at.chunk_by(|a, b| a < b) {
+        let end = begin + stretch.len();
+        second.extend(second_derivatives(stretch, &values[begin..end], interpolation));
+        if end < at.len() {
+            second.push([0.0; 2]);
+        }
+        begin = end;
+    }
+    second
 }
 
 /// Second derivatives of the natural cubic spline: zero at both ends, tridiagonal in between (Thomas' algorithm).

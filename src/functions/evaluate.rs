@@ -3,7 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::curve::Interpolation;
-use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine};
+use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
+
+/// Switching times of a table that repeats, at most; checks of a case refuse more.
+pub const MOST_KNOTS: usize = 1_000_000;
 
 impl Signal {
     /// Value with first and second derivative; does not allocate.
@@ -14,7 +17,7 @@ impl Signal {
             Self::Sigmoid(sigmoid) => sigmoid.jet(clock.t),
             Self::Ramp(ramp) => ramp.jet(clock),
             Self::Polynomial(polynomial) => polynomial.jet(clock.t),
-            Self::Table(table) => table.curve.jet(clock.t, clock.within, table.interpolation),
+            Self::Table(table) => table.jet(clock),
             Self::Sum(terms) => terms.iter().fold(Jet::default(), |sum, term| sum + term.jet(clock)),
             Self::Product(factors) => factors
                 .iter()
@@ -27,18 +30,17 @@ impl Signal {
         self.jet(Clock { t, within: t }).value
     }
 
-    /// Appends the times [s] at which the signal or one of its first three derivatives jumps. Left out are joins
-    /// that are twice continuously differentiable and of no harm to an integrator: inner knots of splines,
+    /// Appends the times [s] at which the signal or one of its first three derivatives jumps, of what repeats those up to `until`. Left out
+    /// are joins that are twice continuously differentiable and of no harm to an integrator: inner knots of splines,
     /// the end of a sine's smooth start.
-    pub fn breaks(&self, out: &mut Vec<f64>) {
+    pub fn breaks(&self, until: f64, out: &mut Vec<f64>) {
         match self {
             Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) => {}
             Self::Ramp(ramp) if ramp.duration_s > 0.0 => out.extend([ramp.start_s, ramp.start_s + ramp.duration_s]),
             Self::Ramp(ramp) => out.push(ramp.start_s),
             Self::Table(table) if table.times_s.len() < 2 => {}
-            Self::Table(table) if table.interpolation != Interpolation::Cubic => out.extend(&table.times_s),
-            Self::Table(table) => out.extend(table.times_s.first().into_iter().chain(table.times_s.last())),
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.breaks(out)),
+            Self::Table(table) => table.breaks(until, out),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.breaks(until, out)),
         }
     }
 
@@ -54,7 +56,7 @@ impl Signal {
     /// The intervals of `[0, end]` between switching times, in order; at least one.
     pub fn smooth_intervals(&self, end: f64) -> Vec<(f64, f64)> {
         let mut times = vec![0.0, end];
-        self.breaks(&mut times);
+        self.breaks(end, &mut times);
         times.retain(|t| (0.0..=end).contains(t));
         times.sort_by(f64::total_cmp);
         times.dedup();
@@ -200,6 +202,50 @@ impl Ramp {
             },
         };
         Jet::constant(self.from) + part.scaled(self.to - self.from)
+    }
+}
+
+impl Table {
+    /// That of the period in which it is looked at.
+    fn jet(&self, clock: Clock) -> Jet {
+        let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
+            return self.curve.jet(clock.t, clock.within, self.interpolation);
+        };
+        // without switching times an interval may be longer than a period
+        let within = if self.is_smooth() { clock.t } else { clock.within };
+        let before = period * ((within - first) / period).floor();
+        let [x, within] = [clock.t - before, (within - before).clamp(first, last)];
+        self.curve.inside(x, within, self.interpolation)
+    }
+
+    /// Whether it repeats itself as a curve that is twice continuously differentiable.
+    pub fn is_smooth(&self) -> bool {
+        self.repeat && self.interpolation == Interpolation::Cubic && self.curve.jumps().is_empty() && self.curve.joins()
+    }
+
+    fn breaks(&self, until: f64, out: &mut Vec<f64>) {
+        if self.is_smooth() {
+            return;
+        }
+        match (self.interpolation, self.curve.ends()) {
+            (Interpolation::Cubic, Some(ends)) => {
+                self.knots_until(until, &ends, out);
+                self.knots_until(until, self.curve.jumps(), out);
+            }
+            _ => self.knots_until(until, self.curve.knots(), out),
+        }
+    }
+
+    /// Appends times of the table [s], of one that repeats in every period until `until`.
+    pub(super) fn knots_until(&self, until: f64, times: &[f64], out: &mut Vec<f64>) {
+        let (Some(period), Some([first, _])) = (self.period_s(), self.curve.ends()) else {
+            return out.extend(times);
+        };
+        let mut k = (-first / period).floor().min(0.0);
+        while first + k * period <= until && out.len() < MOST_KNOTS {
+            out.extend(times.iter().map(|t| t + k * period));
+            k += 1.0;
+        }
     }
 }
 

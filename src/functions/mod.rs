@@ -20,5 +20,6 @@ pub mod profile;
 pub mod signals;
 
 pub use curve::{Curve, Interpolation};
+pub use evaluate::MOST_KNOTS;
 pub use profile::Profile;
 pub use signals::{Clock, Jet, Ramp, RampShape, Signal};

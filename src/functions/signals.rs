@@ -118,18 +118,20 @@ pub struct Polynomial {
     pub coefficients: Vec<f64>,
 }
 
-/// A curve through points, given here or in a CSV file; constant beyond its ends.
+/// A curve through points, given here or in a CSV file; constant beyond its ends, or repeated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "TableText", into = "TableText")]
 #[schemars(!try_from, !into, with = "TableText")]
 pub struct Table {
-    /// Times, ascending [s].
+    /// Times, ascending [s]; a time that stands twice is a jump.
     pub times_s: Vec<f64>,
     /// Values at these times.
     pub values: Vec<f64>,
     /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
+    /// Whether it repeats itself, for ever and in both directions.
+    pub repeat: bool,
     pub(super) curve: Curve,
 }
 
@@ -138,7 +140,7 @@ pub struct Table {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Table")]
 pub(super) struct TableText {
-    /// Times, ascending [s].
+    /// Times, ascending [s]. A time that stands twice is a jump from the first of its values to the second.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     times_s: Vec<f64>,
     /// Values at these times.
@@ -162,6 +164,10 @@ pub(super) struct TableText {
     /// smoother and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
+    /// Repeats the table for ever, with the time from its first point to its last as period. Where the last value is not the first, it jumps
+    /// from one to the other.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    repeat: bool,
 }
 
 impl TryFrom<TableText> for Table {
@@ -169,7 +175,12 @@ impl TryFrom<TableText> for Table {
     fn try_from(text: TableText) -> Result<Self, Self::Error> {
         // Files are read with the case, see `tables`.
         match (text.csv, text.time_column, text.value_column, text.checksum) {
-            (None, None, None, None) => Ok(Self::new(text.times_s, text.values, text.interpolation)),
+            (None, None, None, None) => Ok(Self::repeated(
+                text.times_s,
+                text.values,
+                text.interpolation,
+                text.repeat,
+            )),
             _ => Err("a table whose CSV file has not been read"),
         }
     }
@@ -181,12 +192,14 @@ impl From<Table> for TableText {
             times_s,
             values,
             interpolation,
+            repeat,
             ..
         } = table;
         Self {
             times_s,
             values,
             interpolation,
+            repeat,
             ..Self::default()
         }
     }
@@ -196,13 +209,27 @@ impl Table {
     /// Points that do not make a curve (not ascending, not as many values as times) make a signal that is zero;
     /// [`super::check`] refuses them.
     pub fn new(times_s: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
-        let curve = Curve::through(&times_s, &values, interpolation).unwrap_or_default();
+        Self::repeated(times_s, values, interpolation, false)
+    }
+
+    fn repeated(times_s: Vec<f64>, values: Vec<f64>, interpolation: Interpolation, repeat: bool) -> Self {
+        let curve = match repeat {
+            true => Curve::repeated(&times_s, &values, interpolation),
+            false => Curve::with_jumps(&times_s, &values, interpolation),
+        };
         Self {
             times_s,
             values,
             interpolation,
-            curve,
+            repeat,
+            curve: curve.unwrap_or_default(),
         }
+    }
+
+    /// Its period [s], where it repeats itself.
+    pub fn period_s(&self) -> Option<f64> {
+        let [first, last] = self.curve.ends().filter(|_| self.repeat)?;
+        Some(last - first)
     }
 
     /// Whether the points make a curve.

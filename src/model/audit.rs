@@ -108,9 +108,25 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
         good: (0.9..=1.1).contains(&value),
         consequence: format!(
             "pressure and {what} do not share one potential: over a periodic cycle {what} returns {value:.4} times the \
-             work that the fluid takes, so energies and efficiencies are wrong by that factor; use \"reciprocal\""
+             work that the fluid takes, so energies and efficiencies are wrong by that factor"
         ),
     }
+}
+
+/// One warning of all numbers that say that the coupling is not reciprocal.
+fn not_reciprocal(findings: &[&Finding]) -> Option<String> {
+    let first = findings.first()?;
+    let numbers: Vec<String> = findings
+        .iter()
+        .map(|f| format!("{} = {:.4}", f.name, f.value))
+        .collect();
+    let consequences: Vec<&str> = findings.iter().map(|f| f.consequence.as_str()).collect();
+    Some(first.code.warning(format!(
+        "coupling: {}, wanted {}: {}",
+        numbers.join(" and "),
+        first.wanted,
+        format_args!("{}; use \"reciprocal\"", consequences.join(", and "))
+    )))
 }
 
 fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, found: &mut Vec<Finding>) {
@@ -277,16 +293,18 @@ pub fn derivatives(case: &Case) -> Option<String> {
 
 /// Warnings of a case whatever a run finds: bad findings, and characteristic numbers out of the model's range.
 pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
-    let mut all: Vec<String> = coupling(case, model)
-        .into_iter()
+    let findings = coupling(case, model);
+    let (twofold, others): (Vec<_>, Vec<_>) = findings
+        .iter()
         .filter(|f| !f.good)
-        .map(|f| {
-            f.code.warning(format!(
-                "coupling: {} = {:.4}, wanted {}: {}",
-                f.name, f.value, f.wanted, f.consequence
-            ))
-        })
-        .collect();
+        .partition(|f| f.code == Code::Reciprocity);
+    let mut all: Vec<String> = not_reciprocal(&twofold).into_iter().collect();
+    all.extend(others.into_iter().map(|f| {
+        f.code.warning(format!(
+            "coupling: {} = {:.4}, wanted {}: {}",
+            f.name, f.value, f.wanted, f.consequence
+        ))
+    }));
     all.extend(inherited::warnings(case));
     for (at, by) in overshoots(case) {
         all.push(Code::Overshoot.warning(format!(

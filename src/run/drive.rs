@@ -41,6 +41,15 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     });
     let name = &case.name;
     if let Some(signal) = endless {
+        let mut kinks = None;
+        kinked_period(&signal, &mut kinks);
+        if let Some(period) = kinks {
+            return Err(Error::Usage(format!(
+                "a table that repeats every {period} s has kinks or jumps, which the search for a cycle does not stop at: {name}. \
+                 Give the table \"interpolation\": \"cubic\" and a last value that equals its first, or extend the run by `slcbeam run` \
+                 until its cycles repeat"
+            )));
+        }
         return Err(Error::Usage(format!(
             "{name} has no period: the signal {} goes on without repeating itself; sines, their sums and products, and whatever \
              comes to rest are periodic",
@@ -73,7 +82,14 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     }
 }
 
-/// What a signal becomes in the long run: sines without their smooth start, ramps and tables at their last value.
+/// Whether everything that acts comes to rest in the long run.
+pub fn comes_to_rest(model: &Model) -> bool {
+    let mut rests = true;
+    model.each_signal(|signal| rests &= settled(signal).is_constant());
+    rests
+}
+
+/// What a signal becomes in the long run: sines without their smooth start, ramps and tables at their last value, unless these repeat.
 ///
 /// Polynomials of degree one and more stay what they are: they come to no rest.
 pub fn settled(signal: &Signal) -> Signal {
@@ -87,6 +103,7 @@ pub fn settled(signal: &Signal) -> Signal {
         Signal::Sigmoid(s) => Signal::Constant(if s.steepness_per_s > 0.0 { s.amplitude } else { 0.0 }),
         Signal::Ramp(ramp) => Signal::Constant(ramp.to),
         Signal::Polynomial(polynomial) => Signal::Polynomial(polynomial.clone()),
+        Signal::Table(table) if table.repeat => Signal::Table(table.clone()),
         Signal::Table(table) => Signal::Constant(table.values.last().copied().unwrap_or(0.0)),
         Signal::Sum(terms) => Signal::Sum(terms.iter().map(settled).collect()),
         Signal::Product(factors) => Signal::Product(factors.iter().map(settled).collect()),
@@ -110,24 +127,36 @@ pub fn settles_at(signal: &Signal) -> f64 {
         Signal::Sine(sine) => sine.ramp_cycles / sine.frequency_hz,
         Signal::Sigmoid(s) => (s.midpoint_s + ROUND_OFF / s.steepness_per_s.abs()).max(0.0),
         Signal::Ramp(ramp) => (ramp.start_s + ramp.duration_s).max(0.0),
+        Signal::Table(table) if table.repeat => 0.0,
         Signal::Table(table) => latest(&mut table.times_s.last().copied().into_iter()),
         Signal::Sum(parts) | Signal::Product(parts) => latest(&mut parts.iter().map(settles_at)),
     }
 }
 
-/// A settled signal repeats itself, if its frequencies do.
+/// Period of the first table that repeats with kinks or jumps [s].
+fn kinked_period(signal: &Signal, found: &mut Option<f64>) {
+    match signal {
+        Signal::Table(table) if table.repeat && !table.is_smooth() => *found = found.or(table.period_s()),
+        Signal::Sum(parts) | Signal::Product(parts) => parts.iter().for_each(|part| kinked_period(part, found)),
+        _ => {}
+    }
+}
+
+/// A settled signal repeats itself, if its frequencies do, and has no kinks or jumps, at which no step of a cycle ends.
 fn is_periodic(signal: &Signal) -> bool {
     match signal {
         Signal::Polynomial(_) => false,
+        Signal::Table(table) => !table.repeat || table.is_smooth(),
         Signal::Sum(parts) | Signal::Product(parts) => parts.iter().all(is_periodic),
         _ => true,
     }
 }
 
-/// Frequencies of the sines in a settled signal [Hz].
+/// Frequencies of sines and of tables that repeat in a settled signal [Hz].
 fn collect(signal: &Signal, out: &mut Vec<f64>) {
     match signal {
         Signal::Sine(sine) if !signal.is_constant() => out.push(sine.frequency_hz),
+        Signal::Table(table) if !signal.is_constant() => out.extend(table.period_s().map(f64::recip)),
         Signal::Sum(parts) | Signal::Product(parts) => parts.iter().for_each(|part| collect(part, out)),
         _ => {}
     }

@@ -36,11 +36,16 @@ pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
 }
 
 /// The same of a state at rest, and of what swings about it by as little as one likes: numbers of motions that the case expects say
-/// nothing of its flows.
+/// nothing of its flows and strains, which the state itself has.
 pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     let mut all = without_outputs(case, system);
     let late = told(seldom::late(case));
-    all.retain(|warning| !warning.starts_with(Code::FastFlow.id()) && !late.contains(warning));
+    let of_motion = |warning: &String| {
+        [Code::FastFlow, Code::Strain]
+            .iter()
+            .any(|code| warning.starts_with(code.id()))
+    };
+    all.retain(|warning| !of_motion(warning) && !late.contains(warning));
     all
 }
 

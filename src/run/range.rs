@@ -12,7 +12,7 @@ use crate::error::numbers::quantity;
 use crate::model::audit;
 
 /// Fibre strain above which a run warns.
-const STRAIN: f64 = 0.5;
+pub const STRAIN: f64 = 0.5;
 /// Reynolds number above which a run warns.
 pub const REYNOLDS: f64 = 100.0;
 /// Mach number above which a run warns.

@@ -21,7 +21,7 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     let end = case.time.end_s;
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
-    model.each_signal(|s| s.breaks(&mut switches));
+    model.each_signal(|s| s.breaks(end, &mut switches));
     let stop = |t, [switches, checkpoint]: [bool; 2]| Stop {
         t,
         switches,
@@ -62,7 +62,7 @@ pub struct Due {
     pub output: Option<u64>,
 }
 
-/// Output times `k interval`, up to and including the end, and the ends of the window.
+/// Output times `k interval`, the end of the run, whether the interval divides it or not, and the ends of the window.
 #[derive(Clone, Debug)]
 pub struct Outputs {
     interval: f64,
@@ -82,8 +82,8 @@ impl Outputs {
     /// Times of a case, from zero.
     pub fn new(case: &Case) -> Self {
         let (interval, end, window) = (case.time.output_interval(), case.time.end_s, case.time.window());
-        let last = (end / interval * (1.0 + 1e-12)).floor();
-        let apart = |t: f64| (t - (t / interval).round().min(last) * interval).abs() > SAME * window;
+        let last = (end / interval * (1.0 - 1e-12)).ceil();
+        let apart = |t: f64| t < end && (t - (t / interval).round() * interval).abs() > SAME * window;
         Self {
             interval,
             end,

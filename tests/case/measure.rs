@@ -242,14 +242,14 @@ fn tables_are_read_in_their_units() {
         rows[0].starts_with("line 3: one cell") && rows[1].starts_with("line 4:") && rows[2].starts_with("line 5:"),
         "{rows:?}"
     );
-    let units = faults("pressure [torr],volume\n1,1\n");
+    let units = faults("pressure [inhg],volume\n1,1\n");
     assert!(
-        units[0].contains("torr") && units[0].contains("kPa") && units[1].contains("no unit"),
+        units[0].contains("inhg") && units[0].contains("kPa") && units[1].contains("no unit"),
         "{units:?}"
     );
-    let ends = faults("pressure_torr,volume_ml\n1,1\n");
+    let ends = faults("pressure_inhg,volume_ml\n1,1\n");
     assert!(
-        ends[0].contains("the unit torr at the end of pressure_torr is not known"),
+        ends[0].contains("the unit inhg at the end of pressure_inhg is not known"),
         "{ends:?}"
     );
     assert!(faults("p [kPa],volume [ml]\n1,1\n")[0].contains("no column is named pressure"));

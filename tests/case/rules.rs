@@ -231,7 +231,7 @@ fn motions_do_not_jump_and_agree_with_the_start() {
     let step = "{\"ramp\": {\"to\": 0.01, \"start_s\": 0.1, \"duration_s\": 0}}";
     assert_fault(one(&[(u3, step)]), at, step, "jumps from 0 to 0.01 at 0.1 s");
     assert_fault(one(&[(u3, "0.01")]), at, "0.01", "but the start has 0 m");
-    let table = "{\"table\": {\"times_s\": [0, 1, 1], \"values\": [0, 1, 2]}}";
+    let table = "{\"table\": {\"times_s\": [0, 2, 1], \"values\": [0, 1, 2]}}";
     let (pointer, marked, _) = one(&[(u3, table)]);
     assert_eq!((pointer, marked), (format!("{at}/table/times_s/2"), "1".to_owned()));
     let table = "{\"table\": {\"times_s\": [0, 1, 2], \"values\": [0, 1]}}";

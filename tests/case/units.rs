@@ -83,8 +83,8 @@ fn tables_from_files_are_in_the_units_of_their_headings() {
         ),
         (
             pump,
-            "t_s,p_torr\n0,0\n1,1\n",
-            "the unit torr at the end of p_torr is not known",
+            "t_s,p_inhg\n0,0\n1,1\n",
+            "the unit inhg at the end of p_inhg is not known",
             "",
         ),
         (pump, "t_s,p [atm]\n0,0\n1,1\n", "the unit [atm] of the column", ""),

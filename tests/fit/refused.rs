@@ -190,10 +190,10 @@ fn data_and_options_that_do_not_go_together() {
             "the unit inch at the end of u_sd_inch is not known",
         ),
         (
-            "p_torr,u_mm\n1,1\n2,1\n3,1\n",
-            with(&["--drive", "p_torr=/start/pressures/0/pressure_pa"]),
+            "p_inhg,u_mm\n1,1\n2,1\n3,1\n",
+            with(&["--drive", "p_inhg=/start/pressures/0/pressure_pa"]),
             2,
-            "the unit torr at the end of p_torr is not known",
+            "the unit inhg at the end of p_inhg is not known",
         ),
         (
             "l_mm,u_mm\n1,1\n2,1\n3,1\n",

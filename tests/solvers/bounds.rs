@@ -167,7 +167,7 @@ fn departure(signal: &Signal, w: f64, held: f64) -> f64 {
     let mut at: Vec<f64> = (0..=20_000).map(|k| END * f64::from(k) / 20_000.0).collect();
     places(signal, &mut at);
     let mut breaks = vec![];
-    signal.breaks(&mut breaks);
+    signal.breaks(END, &mut breaks);
     at.extend(breaks);
     at.retain(|t| (0.0..=END).contains(t));
     at.sort_by(f64::total_cmp);

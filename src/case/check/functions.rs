@@ -6,8 +6,9 @@ use crate::case::locate::child;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, ChainEnd, Formulation};
 use crate::error::{Code, Violation};
+use crate::functions::MOST_KNOTS;
 use crate::functions::profile::Profile;
-use crate::functions::signals::Signal;
+use crate::functions::signals::{Signal, Table};
 
 /// Beyond this a beam does not move [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;
@@ -61,7 +62,7 @@ pub fn controls(case: &Case) -> Vec<(String, bool, &Signal)> {
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();
-        signal_parts(&pointer, signal, faults);
+        signal_parts(&pointer, signal, case.time.end_s, faults);
         if faults.count() == known && faults.are_sound(&[END, &pointer]) {
             values(&pointer, role, signal, case.time.end_s, faults);
         }
@@ -179,7 +180,7 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
     all
 }
 
-fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Violations) {
+fn signal_parts(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
@@ -194,23 +195,42 @@ fn signal_parts(pointer: &str, signal: &Signal, faults: &mut Violations) {
         }
         Signal::Table(table) if !table.is_sound() => {
             let at = child(pointer, "table");
-            table_fault(&at, "times_s", &table.times_s, &table.values, faults);
+            let jumps = Some(table.repeat);
+            table_fault(&at, "times_s", jumps, &table.times_s, &table.values, faults);
+        }
+        Signal::Table(table)
+            if table
+                .period_s()
+                .is_some_and(|period| repeats_too_often(table, period, end)) =>
+        {
+            let count = plain(end / table.period_s().unwrap_or(f64::INFINITY));
+            let what = format!(
+                "{} points are repeated {count} times until the end of the run",
+                table.times_s.len()
+            );
+            let fault = Violation::new(Code::Table, format!("{pointer}/table/repeat"), what);
+            let fault = fault.allowed(format!("up to {MOST_KNOTS} points in the run"));
+            faults.push(fault.hint("thin out the table, or write a sine"));
         }
         Signal::Sum(parts) | Signal::Product(parts) => {
             let name = sum_or_product(matches!(signal, Signal::Sum(_)));
             for (i, part) in parts.iter().enumerate() {
-                signal_parts(&format!("{pointer}/{name}/{i}"), part, faults);
+                signal_parts(&format!("{pointer}/{name}/{i}"), part, end, faults);
             }
         }
         _ => {}
     }
 }
 
+fn repeats_too_often(table: &Table, period: f64, end: f64) -> bool {
+    end / period * table.times_s.len() as f64 > MOST_KNOTS as f64
+}
+
 fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Violations) {
     match profile {
         Profile::Table(table) if !table.is_sound() => {
             let at = child(pointer, "table");
-            table_fault(&at, "positions", &table.positions, &table.values, faults);
+            table_fault(&at, "positions", None, &table.positions, &table.values, faults);
         }
         Profile::Sum(parts) | Profile::Product(parts) => {
             let name = sum_or_product(matches!(profile, Profile::Sum(_)));
@@ -222,20 +242,36 @@ fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Violations) {
     }
 }
 
-fn sum_or_product(sum: bool) -> &'static str {
+pub(super) fn sum_or_product(sum: bool) -> &'static str {
     if sum { "sum" } else { "product" }
 }
 
-fn table_fault(pointer: &str, key: &str, at: &[f64], values: &[f64], faults: &mut Violations) {
+/// Faults of the points of a table; `jumps` is none where two points at one place are none, else whether the table repeats.
+fn table_fault(pointer: &str, key: &str, jumps: Option<bool>, at: &[f64], values: &[f64], faults: &mut Violations) {
     let fault = if at.is_empty() {
         Violation::new(Code::Table, pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
     } else if at.len() != values.len() {
         let what = format!("{} {key} but {} values", at.len(), values.len());
         Violation::new(Code::Table, child(pointer, "values"), what)
             .allowed(format!("{} values, one for each of {key}", at.len()))
-    } else if let Some(i) = at.windows(2).position(|w| w[0] >= w[1]) {
+    } else if let Some(i) = at
+        .windows(2)
+        .position(|w| w[0] > w[1] || (jumps.is_none() && w[0] == w[1]))
+    {
         let what = format!("{} comes after {}", at[i + 1], at[i]);
-        Violation::new(Code::Table, format!("{pointer}/{key}/{}", i + 1), what).allowed("strictly ascending order")
+        let fault = Violation::new(Code::Table, format!("{pointer}/{key}/{}", i + 1), what);
+        match jumps {
+            Some(_) => fault.allowed("ascending order"),
+            None => fault.allowed("strictly ascending order"),
+        }
+    } else if let Some(i) = at.windows(3).position(|w| w[0] == w[2]) {
+        let what = format!("{} s stands more than twice", at[i]);
+        let fault = Violation::new(Code::Table, format!("{pointer}/{key}/{}", i + 2), what);
+        fault.hint("for a jump write the time twice, with the values before and after it")
+    } else if jumps == Some(true) && at.first() == at.last() {
+        let what = "a table that repeats and has no length in time";
+        Violation::new(Code::Table, child(pointer, "repeat"), what)
+            .allowed("two times at least; the period is the time between the first and the last")
     } else {
         Violation::new(Code::Table, pointer, "a table with numbers that are not finite")
     };

@@ -1,11 +1,17 @@
 //! What a case may have and is seldom meant: told, not refused.
 
-use super::functions::controls;
+use std::f64::consts::TAU;
+
+use super::functions::{controls, sum_or_product};
+use super::strength::inlets;
 use crate::case::locate::child;
 use crate::case::numbers::{digits, plain};
-use crate::case::schema::Case;
-use crate::case::schema::Load;
+use crate::case::schema::{Case, FluidKind, Load};
+use crate::functions::Profile;
 use crate::functions::signals::Signal;
+
+/// Key of the softness of bladders.
+const PER_PRESSURE: &str = "/bladders/area_per_pressure_m2_per_pa";
 
 /// Density of the solid below which grams per cubic centimetre are suspected [kg/m^3]; silicones and rubbers have a thousand.
 const LIGHT: f64 = 100.0;
@@ -15,6 +21,22 @@ const THICK: f64 = 100.0;
 
 /// Gravity beyond which millimetres are suspected [m/s^2]; that of the earth is 9.81.
 const HEAVY: f64 = 100.0;
+
+/// Density of a liquid below which grams per cubic centimetre are suspected [kg/m^3]; oils have 700 and more.
+const THIN: f64 = 100.0;
+
+/// Pressure of the atmosphere [Pa], the standard and as it is often rounded.
+const ATMOSPHERE: [f64; 2] = [101_325.0, 101_300.0];
+
+/// Step of the pressures that are round [Pa].
+const ROUND_PRESSURE: f64 = 500.0;
+
+/// Pressures of the air at places where people live [Pa]: a recording that begins there is one of absolute pressure.
+const AMBIENT: std::ops::Range<f64> = 95e3..106e3;
+
+/// Area per pressure times Young's modulus over the section of a bladder above which another unit is suspected: cells of thick walls have 1
+/// to 10, and one with a wall of a fifth of its width has 100.
+const SOFT: f64 = 100.0;
 
 /// Numbers of a unit that is seldom meant, each with its pointer and what there is to say.
 pub fn sizes(case: &Case) -> Vec<(String, String)> {
@@ -37,6 +59,31 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
         );
         all.push(("/fluid/viscosity_pa_s".to_owned(), what));
     }
+    if let Some(fluid) = case.fluid.as_ref()
+        && fluid.kind == FluidKind::Liquid
+        && (f64::MIN_POSITIVE..THIN).contains(&fluid.density_kg_m3)
+    {
+        let what = format!(
+            "a liquid of {} kg/m^3 is lighter than any liquid at room temperature; water has 1000: is this in g/cm^3? A gas has \"kind\": \"gas\"",
+            plain(fluid.density_kg_m3)
+        );
+        all.push(("/fluid/density_kg_m3".to_owned(), what));
+    }
+    if let Some(bladders) = &case.bladders {
+        let section = bladders.height_m * bladders.width_m;
+        let soft = bladders.area_per_pressure_m2_per_pa * case.beam.young_modulus_pa / section;
+        if soft > SOFT {
+            let what = format!(
+                "an area per pressure of {} m^2/Pa is {} times the section of a bladder over Young's modulus; 1 to 10 times is usual: is this per kPa, \
+                 or in mm^2?",
+                plain(bladders.area_per_pressure_m2_per_pa),
+                digits(soft)
+            );
+            all.push((PER_PRESSURE.to_owned(), what));
+        }
+    }
+    pressures(case, &mut all);
+    angles(case, &mut all);
     for (k, load) in case.loads.iter().enumerate() {
         let Load::Gravity { x_m_s2, z_m_s2 } = load else {
             continue;
@@ -66,6 +113,114 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
         }
     }
     all
+}
+
+/// Pressures that are absolute by their digits.
+fn pressures(case: &Case, all: &mut Vec<(String, String)>) {
+    let mut given: Vec<(String, f64)> = vec![];
+    for (pointer, signal) in inlets(case).pressures {
+        each_value(&pointer, signal, &mut |at, value| given.push((at, value)));
+    }
+    for (k, vessel) in case
+        .network
+        .iter()
+        .flat_map(|network| &network.accumulators)
+        .enumerate()
+    {
+        given.push((
+            format!("/network/accumulators/{k}/start_pressure_pa"),
+            vessel.start_pressure_pa,
+        ));
+    }
+    for (k, some) in case.start.pressures.iter().enumerate() {
+        if let Profile::Constant(value) = some.pressure_pa {
+            given.push((format!("/start/pressures/{k}/pressure_pa"), value));
+        }
+    }
+    for (pointer, value) in given.into_iter().filter(|(at, value)| is_absolute(at, *value)) {
+        let what = format!(
+            "a pressure of {} Pa seems to be absolute, {} Pa above the atmosphere: pressures of a case are relative to the surroundings",
+            plain(value),
+            plain(value - ATMOSPHERE[0])
+        );
+        all.push((pointer, what));
+    }
+}
+
+/// Whether a pressure is that of the atmosphere and something round more, or the first of a recording at ambient pressure.
+fn is_absolute(pointer: &str, value: f64) -> bool {
+    let above = value - ATMOSPHERE[0];
+    let round = |x: f64| (x / ROUND_PRESSURE - (x / ROUND_PRESSURE).round()).abs() < 1e-9;
+    let recorded = pointer.ends_with("/values/0") && AMBIENT.contains(&value) && !round(value);
+    (above >= 0.0 && round(above)) || ATMOSPHERE.contains(&value) || recorded
+}
+
+/// Angles that are degrees by their digits: more than a turn, and whole or half numbers.
+fn angles(case: &Case, all: &mut Vec<(String, String)>) {
+    let is_degrees = |angle: f64| angle.abs() > TAU && (2.0 * angle).fract() == 0.0;
+    let mut tell = |pointer: String, angle: f64| {
+        let (turns, meant) = (digits(angle.abs() / TAU), digits(angle.to_radians()));
+        let what = format!(
+            "{} rad is {turns} turns; {} degrees are {meant} rad: is this in degrees?",
+            plain(angle),
+            plain(angle)
+        );
+        all.push((pointer, what));
+    };
+    for (pointer, _, signal) in controls(case) {
+        if pointer.ends_with("/slope_rad") {
+            each_value(&pointer, signal, &mut |at, value| {
+                if is_degrees(value) {
+                    tell(at, value);
+                }
+            });
+        }
+        each_phase(&pointer, signal, &mut |at, phase| {
+            if is_degrees(phase) {
+                tell(at, phase);
+            }
+        });
+    }
+}
+
+/// Numbers of a signal that are values of its own: constants, ends of ramps, amplitudes, the first and the last of a table.
+fn each_value(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
+    match signal {
+        Signal::Constant(value) => tell(pointer.to_owned(), *value),
+        Signal::Ramp(ramp) => {
+            tell(format!("{pointer}/ramp/from"), ramp.from);
+            tell(format!("{pointer}/ramp/to"), ramp.to);
+        }
+        Signal::Sine(sine) => tell(format!("{pointer}/sine/amplitude"), sine.amplitude),
+        Signal::Sigmoid(sigmoid) => tell(format!("{pointer}/sigmoid/amplitude"), sigmoid.amplitude),
+        Signal::Table(table) => {
+            for k in [Some(0), table.values.len().checked_sub(1)].into_iter().flatten() {
+                if let Some(value) = table.values.get(k) {
+                    tell(format!("{pointer}/table/values/{k}"), *value);
+                }
+            }
+        }
+        Signal::Sum(parts) => {
+            for (k, part) in parts.iter().enumerate() {
+                each_value(&format!("{pointer}/sum/{k}"), part, tell);
+            }
+        }
+        Signal::Product(_) | Signal::Polynomial(_) => {}
+    }
+}
+
+/// Phases of all sines of a signal.
+fn each_phase(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
+    match signal {
+        Signal::Sine(sine) => tell(format!("{pointer}/sine/phase_rad"), sine.phase_rad),
+        Signal::Sum(parts) | Signal::Product(parts) => {
+            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
+            for (k, part) in parts.iter().enumerate() {
+                each_phase(&format!("{pointer}/{name}/{k}"), part, tell);
+            }
+        }
+        _ => {}
+    }
 }
 
 /// Damping times that are longer than the period of the first bending mode of this frequency [Hz]: nothing swings.
@@ -141,7 +296,7 @@ pub fn late(case: &Case) -> Vec<(String, String)> {
 fn begins(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
     match signal {
         Signal::Ramp(ramp) if ramp.from != ramp.to => tell(child(pointer, "ramp"), ramp.start_s),
-        Signal::Table(table) => {
+        Signal::Table(table) if !table.repeat => {
             let changes = table.values.windows(2).position(|pair| pair[0] != pair[1]);
             let first = changes.and_then(|k| table.times_s.get(k));
             if let Some(start) = first {
@@ -149,11 +304,7 @@ fn begins(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
             }
         }
         Signal::Sum(parts) | Signal::Product(parts) => {
-            let name = if matches!(signal, Signal::Sum(_)) {
-                "sum"
-            } else {
-                "product"
-            };
+            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
             for (k, part) in parts.iter().enumerate() {
                 begins(&format!("{pointer}/{name}/{k}"), part, tell);
             }

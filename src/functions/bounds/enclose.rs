@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use super::interval::{Bounded, Interval, Span};
 use crate::functions::curve::Interpolation;
 use crate::functions::jet::{Clock, Jet};
-use crate::functions::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine};
+use crate::functions::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
 
 impl Bounded for Signal {
     fn exactly(&self, t: f64, within: f64) -> Jet {
@@ -19,7 +19,7 @@ impl Bounded for Signal {
             Self::Sigmoid(sigmoid) => sigmoid.span(from, to),
             Self::Ramp(ramp) => ramp.span(from, to),
             Self::Polynomial(polynomial) => polynomial.span(from, to),
-            Self::Table(table) => table.curve.span(from, to),
+            Self::Table(table) => table.span(from, to),
             Self::Sum(terms) => Span::sum(terms.iter().map(|term| term.span(from, to))),
             Self::Product(factors) => Span::product(factors.iter().map(|factor| factor.span(from, to))),
         }
@@ -34,18 +34,18 @@ impl Bounded for Signal {
         }
     }
 
-    fn parted(&self, out: &mut Vec<f64>) {
-        self.breaks(out);
+    fn parted(&self, to: f64, out: &mut Vec<f64>) {
+        self.breaks(to, out);
     }
 
-    fn joined(&self, out: &mut Vec<f64>) {
+    fn joined(&self, to: f64, out: &mut Vec<f64>) {
         match self {
-            Self::Table(table) => out.extend(&table.times_s),
+            Self::Table(table) => table.knots_until(to, table.curve.knots(), out),
             Self::Sine(sine) if sine.ramp_cycles > 0.0 && sine.frequency_hz > 0.0 => {
                 out.push(sine.ramp_cycles / sine.frequency_hz);
             }
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.joined(out)),
-            other => other.breaks(out),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.joined(to, out)),
+            other => other.breaks(to, out),
         }
     }
 
@@ -218,6 +218,25 @@ impl Polynomial {
     }
 }
 
+impl Table {
+    /// All that it does in `[from, to]`; of one that repeats itself by the parts of a period that this meets.
+    fn span(&self, from: f64, to: f64) -> Span {
+        let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
+            return self.curve.span(from, to);
+        };
+        if to - from >= period {
+            return self.curve.span(first, last);
+        }
+        let begin = from - period * ((from - first) / period).floor();
+        let end = begin + (to - from);
+        let all = self.curve.span(begin.clamp(first, last), end.min(last));
+        if end <= last {
+            return all;
+        }
+        all.hull(self.curve.span(first, end - period))
+    }
+}
+
 impl crate::functions::curve::Curve {
     /// All that the curve does in `[from, to]`, piece by piece.
     pub(super) fn span(&self, from: f64, to: f64) -> Span {
@@ -232,7 +251,7 @@ impl crate::functions::curve::Curve {
         if to > last {
             all = all.hull(Span::at(self.jet(last, last, Interpolation::Cubic)));
         }
-        for i in self.pieces(from, to) {
+        for i in self.pieces(from, to).filter(|i| knots[*i] < knots[i + 1]) {
             let at = |x: f64| self.piece(i, x);
             let (a, b) = (knots[i].max(from), knots[i + 1].min(to));
             all = all.hull(hull(at, a, b, self.extremes(i)));

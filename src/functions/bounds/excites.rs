@@ -44,7 +44,7 @@ impl Excitation {
     /// Of a signal until `end` [s], with the value `held` before.
     pub fn of(signal: &Signal, end: f64, held: f64) -> Self {
         let mut breaks = vec![];
-        signal.breaks(&mut breaks);
+        signal.breaks(end, &mut breaks);
         let first = breaks.into_iter().filter(|t| *t > 0.0).fold(end, f64::min);
         let jet = signal.exactly(0.0, 0.5 * first);
         let part = |tone: Tone| Part {

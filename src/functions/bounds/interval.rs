@@ -193,12 +193,12 @@ pub trait Bounded {
     /// Whether [`Self::span`] is as narrow as it can be.
     fn is_elementary(&self) -> bool;
 
-    /// Appends breaks in any order.
-    fn parted(&self, out: &mut Vec<f64>);
+    /// Appends breaks in any order, at least those up to `to`.
+    fn parted(&self, to: f64, out: &mut Vec<f64>);
 
     /// Appends breaks, and joins at which only the third derivative jumps.
-    fn joined(&self, out: &mut Vec<f64>) {
-        self.parted(out);
+    fn joined(&self, to: f64, out: &mut Vec<f64>) {
+        self.parted(to, out);
     }
 
     /// Calls for places in `[from, to]` where the function may be large.

@@ -31,7 +31,7 @@ impl Signal {
         common.map_or(to, |n| (rest + f64::from(n) / slowest * (1.0 + 1e-9)).min(to))
     }
 
-    /// From when on nothing but sines changes, and their frequencies [Hz].
+    /// From when on nothing changes but sines and tables that repeat, and their frequencies [Hz].
     fn settles(&self, end: f64, rest: &mut f64, frequencies: &mut Vec<f64>) {
         match self {
             _ if self.is_constant() => {}
@@ -42,6 +42,7 @@ impl Signal {
             }
             Self::Sigmoid(step) => *rest = rest.max(step.midpoint_s + AT_REST / step.steepness_per_s.abs()),
             Self::Ramp(ramp) => *rest = rest.max(ramp.start_s + ramp.duration_s),
+            Self::Table(table) if table.repeat => frequencies.extend(table.period_s().map(f64::recip)),
             Self::Table(table) => *rest = rest.max(table.times_s.last().copied().unwrap_or(0.0)),
             Self::Polynomial(_) => *rest = end,
             Self::Sum(parts) | Self::Product(parts) => {

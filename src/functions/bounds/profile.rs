@@ -80,10 +80,10 @@ impl Bounded for Profile {
         }
     }
 
-    fn parted(&self, out: &mut Vec<f64>) {
+    fn parted(&self, to: f64, out: &mut Vec<f64>) {
         match self {
             Self::Table(table) => out.extend(&table.positions),
-            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.parted(out)),
+            Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.parted(to, out)),
             _ => {}
         }
     }

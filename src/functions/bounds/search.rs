@@ -73,14 +73,14 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
     /// Over `[from, to]`, which is not empty.
     pub fn new(function: &'f F, from: f64, to: f64) -> Self {
         let mut breaks = vec![];
-        function.parted(&mut breaks);
+        function.parted(to, &mut breaks);
         Self::at(function, from, to, breaks)
     }
 
     /// Over `[from, to]`, with pieces that end at joins, too.
     pub fn joined(function: &'f F, from: f64, to: f64) -> Self {
         let mut breaks = vec![];
-        function.joined(&mut breaks);
+        function.joined(to, &mut breaks);
         Self::at(function, from, to, breaks)
     }
 

@@ -40,7 +40,7 @@ impl Signal {
             Self::Sine(sine) => up_to(end, sine.scales()),
             Self::Sigmoid(sigmoid) => up_to(end, sigmoid.scales()),
             Self::Polynomial(polynomial) => polynomial.stretches(end),
-            Self::Table(table) if table.interpolation == Interpolation::Cubic => {
+            Self::Table(table) if table.interpolation == Interpolation::Cubic && !table.repeat => {
                 let knots = table.curve.knots();
                 let first = knots.first().map(|first| (*first, f64::INFINITY));
                 up_to(
@@ -61,7 +61,7 @@ impl Signal {
     /// Time scales of a product, but none where a factor keeps it at rest, before and after a burst.
     fn without_rests(&self, end: f64, all: &[Stretch]) -> Vec<Stretch> {
         let mut ends: Vec<f64> = all.iter().map(|stretch| stretch.to).collect();
-        self.breaks(&mut ends);
+        self.breaks(end, &mut ends);
         ends.retain(|to| *to > 0.0 && *to <= end);
         ends.sort_by(f64::total_cmp);
         ends.dedup();

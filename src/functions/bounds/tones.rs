@@ -192,19 +192,19 @@ impl Bounded for Envelope<'_> {
         }
     }
 
-    fn parted(&self, out: &mut Vec<f64>) {
+    fn parted(&self, to: f64, out: &mut Vec<f64>) {
         for factor in &self.0 {
             match factor {
-                Factor::Given(signal) => signal.breaks(out),
+                Factor::Given(signal) => signal.breaks(to, out),
                 Factor::Start(ramp) => out.push(ramp.duration_s),
             }
         }
     }
 
-    fn joined(&self, out: &mut Vec<f64>) {
+    fn joined(&self, to: f64, out: &mut Vec<f64>) {
         for factor in &self.0 {
             match factor {
-                Factor::Given(signal) => signal.joined(out),
+                Factor::Given(signal) => signal.joined(to, out),
                 Factor::Start(ramp) => out.push(ramp.duration_s),
             }
         }

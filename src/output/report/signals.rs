@@ -45,6 +45,11 @@ pub fn words(signal: &Signal, unit: &str) -> String {
             short(start_s + duration_s, "s")
         ),
         Signal::Polynomial(_) => "polynomial in time".into(),
+        Signal::Table(table) if table.repeat => format!(
+            "curve through {} points, repeated every {}",
+            table.times_s.len(),
+            short(table.period_s().unwrap_or_default(), "s")
+        ),
         Signal::Table(table) => format!("curve through {} points", table.times_s.len()),
         Signal::Sum(parts) => brief(all(parts, unit).join(" + ")),
         Signal::Product(parts) => brief(all(parts, "1").join(" × ")),

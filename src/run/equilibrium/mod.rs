@@ -36,7 +36,7 @@ use crate::case::schema::{Case, EquilibriumStart};
 use crate::dae::BeamDae;
 use crate::discrete::System;
 use crate::error::{self, At, Code, SolverError};
-use crate::run::range::{MACH, REYNOLDS};
+use crate::run::range::{MACH, REYNOLDS, STRAIN};
 use crate::run::record::Control;
 use crate::run::unphysical::{Met, Unphysical};
 use crate::sundials::Solution;
@@ -115,6 +115,8 @@ pub struct Path {
     pub reynolds: [f64; 2],
     /// Likewise the largest Mach number.
     pub mach: [f64; 2],
+    /// Likewise the largest strain of a fibre.
+    pub strain: [f64; 2],
     /// States met that are not physical, by load factor.
     unphysical: Met,
     /// What such a state is.
@@ -181,10 +183,17 @@ impl Path {
                  passes no more than at 1, so that real flow is slower than this"
             ))
         });
+        let [strain, share] = self.strain;
+        let strained = (strain > STRAIN).then(|| {
+            Code::Strain.warning(format!(
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at load factor {share:.4} (above \
+                 {STRAIN}); strains are meant to be small"
+            ))
+        });
         let trapped = self.trapped.clone();
         let at = |factor: f64| format!("load factor {factor:.4}");
         let unphysical = self.limits.warnings(&self.unphysical, &at);
-        let all = trapped.into_iter().chain(beyond).chain(unphysical);
+        let all = trapped.into_iter().chain(beyond).chain(unphysical).chain(strained);
         all.chain(fast).chain(choked).collect()
     }
 

@@ -290,8 +290,13 @@ impl Follower<'_> {
         if self.path.beyond.is_none() {
             self.path.beyond = beyond;
         }
-        let [reynolds, mach] = [self.limits.reynolds(&glance), self.limits.mach(&glance)];
-        for (value, largest) in [(reynolds, &mut self.path.reynolds), (mach, &mut self.path.mach)] {
+        let path = &mut self.path;
+        let all = [
+            (self.limits.reynolds(&glance), &mut path.reynolds),
+            (self.limits.mach(&glance), &mut path.mach),
+            (glance.of(Watched::Strain)[0], &mut path.strain),
+        ];
+        for (value, largest) in all {
             if value > largest[0] {
                 *largest = [value, factor];
             }

@@ -347,7 +347,7 @@ fn switches(opening: &Signal, begin: f64, end: f64) -> Vec<f64> {
         return vec![];
     }
     let mut breaks = vec![begin, end];
-    opening.breaks(&mut breaks);
+    opening.breaks(end, &mut breaks);
     breaks.retain(|t| (begin..=end).contains(t));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();

@@ -40,14 +40,22 @@ impl Sort {
 /// Modes among which those of a sort are looked for, at most.
 const MOST: usize = 1000;
 
+/// The same over those that are told, where no sort is asked for.
+const AMONG: usize = 8;
+
 /// Modes of a linearisation, as many of a sort as planned where there are so many among the nearest thousand, with the plan by which all of
 /// them are found: others are among them until [`arrange`] takes them out.
 ///
 /// # Errors
 /// As [`of`].
 pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Modes, Plan)> {
-    let Some(sort) = sort else {
-        return Ok((of(about, plan)?, *plan));
+    // beside what swings and grows, which is told first, hundreds of decays of the fluid may lie nearer to zero
+    let (sort, most) = match sort {
+        Some(sort) => (sort, MOST),
+        None if about.system().layout.inertia && plan.near_hz == 0.0 => {
+            (Sort::Oscillation, (AMONG * plan.count).clamp(plan.count, MOST))
+        }
+        None => return Ok((of(about, plan)?, *plan)),
     };
     let mut wider = Plan { limits: false, ..*plan };
     let mut about = about;
@@ -55,7 +63,7 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
         let found = of(about, &wider)?;
         let own = found.modes.iter().filter(|mode| sort.has(mode.kind)).count();
         let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
-        let more = own < plan.count && moving >= wider.count && wider.count < MOST;
+        let more = own < plan.count && moving >= wider.count && wider.count < most;
         if !more {
             let plan = Plan {
                 limits: plan.limits,
@@ -66,17 +74,16 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
                 false => Ok((found, plan)),
             };
         }
-        wider.count = (2 * wider.count).min(MOST);
+        wider.count = (2 * wider.count).min(most);
         about = found.about;
     }
 }
 
 /// Puts modes into the order in which they are told: what grows, what swings, what decays, what stays as it is, each in the order in which they
-/// were found; of a sort so many alone.
+/// were found; so many alone, of a sort where one is asked for.
 pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
     if let Some(sort) = sort {
         modes.retain(|mode| sort.has(mode.kind));
-        modes.truncate(count);
     }
     modes.sort_by_key(|mode| match mode.kind {
         Kind::Flutter | Kind::Divergence => 0,
@@ -84,5 +91,11 @@ pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
         Kind::Decay => 2,
         Kind::Rigid => 3,
         Kind::Volume => 4,
+    });
+    let mut left = count;
+    modes.retain(|mode| {
+        let kept = left > 0 || (sort.is_none() && mode.kind.stays());
+        left -= usize::from(kept && (sort.is_some() || !mode.kind.stays()));
+        kept
     });
 }

@@ -69,7 +69,7 @@ impl Table {
                 faults.push(fault(span.clone(), what));
             }
         }
-        if !headings.is_empty() && headings.iter().all(|(heading, _)| heading.parse::<f64>().is_ok()) {
+        if Heading::are_numbers(headings.iter().map(|(heading, _)| *heading)) {
             let span = header.start..header.start + header.text.len();
             let what = "numbers where headings are wanted; the first line names the columns, such as t_s, angle_deg";
             faults.push(fault(span, what.into()));

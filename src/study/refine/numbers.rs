@@ -65,6 +65,8 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         "N m" => (model.section.bending_stiffness / length * STRAIN).min(NOTHING * model.scales.moment),
         "J" => model.section.axial_stiffness * length * STRAIN * STRAIN,
         "m^3/s" => conductance * even,
+        // of probes: strain that is round-off beside what moves
+        "1" => floors.displacement.max(STRAIN * largest("m")) / length,
         "W" if largest("Pa") <= floors.pressure => f64::INFINITY,
         "W" => conductance * even * even,
         _ => 0.0,
