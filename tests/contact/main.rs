@@ -5,6 +5,7 @@ mod bodies;
 mod chance;
 #[path = "../differences/mod.rs"]
 mod differences;
+mod resting;
 mod strikes;
 
 use std::path::Path;

@@ -8,4 +8,5 @@ mod scene;
 mod step_response;
 mod told;
 mod turning;
+mod unphysical;
 mod watch;

@@ -6,6 +6,7 @@ use super::predict::Trail;
 use super::state::{self, Stability, State};
 use super::{Event, Kind, Options, Path};
 use crate::discrete::System;
+use crate::discrete::glance::Watched;
 use crate::error::{At, Code, SolverError};
 use crate::integrate::halt::{self, INTERRUPTED};
 use crate::run::range::Limits;

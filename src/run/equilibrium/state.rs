@@ -3,7 +3,6 @@
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::glance::Glance;
-use crate::discrete::layout::Line;
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
