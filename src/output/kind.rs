@@ -117,6 +117,11 @@ impl Kind {
         [self.sign()].into_iter().chain(own.iter().copied()).collect()
     }
 
+    /// Whether a command writes a file of this name.
+    pub fn owns(name: &str) -> bool {
+        Self::ALL.into_iter().any(|kind| kind.files().contains(&name))
+    }
+
     /// Whose result a folder holds; that of a run that was killed has a history, but no summary.
     pub fn within(dir: &Path) -> Option<Self> {
         let found = Self::ALL.into_iter().find(|kind| dir.join(kind.sign()).is_file());

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::folder::{damaged, fault, open};
+use super::folder::{create, damaged, fault, open};
 use crate::error::Result;
 
 /// Bytes read at once.
@@ -52,7 +52,7 @@ impl Mark {
 impl Stream {
     /// Makes the file, empty.
     pub fn create(path: &Path) -> Result<Self> {
-        let file = File::create(path).map_err(|e| fault("create", path, e))?;
+        let file = create(path).map_err(|e| fault("create", path, e))?;
         Ok(Self {
             path: path.to_path_buf(),
             file,

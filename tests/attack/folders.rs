@@ -266,3 +266,67 @@ fn a_file_in_place_of_the_folder_stays() {
     assert_eq!(output.status.code(), Some(5));
     assert_eq!(fs::read(file.path()).expect("it is read"), b"mine");
 }
+
+/// Goal: nothing is written through a symbolic link that lies in place of a file of a result, and files that a kill left half written are
+/// removed by the next command in the folder, those of other commands and of pages too.
+#[test]
+fn links_are_replaced_and_leftovers_removed() {
+    use slcbeam::output::folder::{ResultFolder, replace};
+    use slcbeam::output::kind::Kind;
+    let place = tempfile::tempdir().expect("a place");
+    let (out, outside) = (place.path().join("out"), place.path().join("outside"));
+    fs::create_dir(&outside).expect("a folder");
+    fs::create_dir(&out).expect("a folder");
+    let links = [
+        "history.csv",
+        "summary.json",
+        "case.json",
+        "fields.npz",
+        "report.html",
+        ".slcbeam.lock",
+        "history.svg",
+    ];
+    for name in links {
+        fs::write(
+            outside.join(name),
+            if name == "history.csv" {
+                "t [s]\n"
+            } else {
+                "{\"case\": \"x\"}"
+            },
+        )
+        .expect("a file");
+        std::os::unix::fs::symlink(outside.join(name), out.join(name)).expect("a link");
+    }
+    for name in [
+        ".report.html.4000001.part",
+        ".optimum.json.4000002.part",
+        ".history.csv.7.part",
+        ".origin.7.part",
+    ] {
+        fs::write(out.join(name), "half").expect("a file");
+    }
+    let before = contents(&outside);
+    let output = run(&out, &[]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    unchanged(&outside, &before, "what links point to");
+    for name in links.into_iter().filter(|name| *name != ".slcbeam.lock") {
+        assert!(
+            fs::symlink_metadata(out.join(name)).expect("a file").is_file(),
+            "{name}"
+        );
+    }
+    let left: Vec<String> = contents(&out).into_iter().map(|file| file.0).collect();
+    // a file that no command writes under this name is somebody else's
+    assert_eq!(
+        left.iter().filter(|name| name.ends_with(".part")).collect::<Vec<_>>(),
+        [".origin.7.part"]
+    );
+    drop(ResultFolder::claim(&out, Kind::Run, false).expect("a folder"));
+    // a file that the user names is written through a link, on purpose
+    let (link, target) = (place.path().join("link.json"), place.path().join("target.json"));
+    fs::write(&target, "old").expect("a file");
+    std::os::unix::fs::symlink(&target, &link).expect("a link");
+    replace(&link, "new").expect("written");
+    assert_eq!(fs::read_to_string(&target).expect("a file"), "new");
+}

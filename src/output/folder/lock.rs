@@ -5,7 +5,7 @@ use std::io::{self, Read as _, Seek as _, Write as _};
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
-use super::fault;
+use super::{fault, unlink};
 use crate::error::Result;
 
 /// The file that is locked; it says who holds it and goes with the lock.
@@ -35,6 +35,7 @@ impl Lock {
         let path = dir.join(LOCK);
         let take = || -> io::Result<Option<File>> {
             for _ in 0..ATTEMPTS {
+                unlink(&path)?;
                 let mut file = OpenOptions::new()
                     .read(true)
                     .write(true)

@@ -12,13 +12,15 @@ use std::path::{Path, PathBuf};
 
 use super::kind::Kind;
 use super::uncertainty::UNCERTAINTY;
-use crate::case::Written;
+use crate::case::{Written, is_table};
 use crate::error::{Error, Result};
 use crate::results;
 use lock::Lock;
 use origin::ORIGIN;
 pub use origin::other_origin;
-pub(crate) use whole::{Wait, Whole, at_once, damaged, entries, name_of, open, put_whole, result, text_of};
+pub(crate) use whole::{
+    Wait, Whole, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
+};
 pub use whole::{replace, replace_alike};
 
 /// The case as resolved.
@@ -123,11 +125,14 @@ impl ResultFolder {
 
     /// Removes what a killed process had half written here, which is hidden; what cannot be removed does no harm.
     fn sweep(&self) {
-        let own: Vec<&str> = self.kind.files().into_iter().chain([CASE, ORIGIN]).collect();
+        let own = |half: &str| {
+            let name = half.rsplit_once('.').map_or(half, |(name, _)| name);
+            Kind::owns(name) || [CASE, ORIGIN, REPORT].contains(&name) || is_table(name)
+        };
         for path in entries(&self.dir).unwrap_or_default() {
             let name = name_of(&path);
             let half = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
-            if half.is_some_and(|half| own.iter().any(|own| half.starts_with(&format!("{own}.")))) {
+            if half.is_some_and(own) {
                 let _ = fs::remove_file(&path);
             } else if name.starts_with(CANDIDATE) && path.is_dir() {
                 let _ = fs::remove_dir_all(&path);

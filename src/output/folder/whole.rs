@@ -73,7 +73,7 @@ impl Whole {
     /// Makes and fills it.
     pub(crate) fn fill(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Self> {
         let part = part_of(target);
-        let file = File::create(&part).map_err(|e| fault("write", target, e))?;
+        let file = create(&part).map_err(|e| fault("write", target, e))?;
         let mut made = Self {
             target: target.to_path_buf(),
             part: Some(part),
@@ -153,6 +153,20 @@ fn part_of(target: &Path) -> PathBuf {
 
 /// Largest text of a result that is read whole [byte]; tables and arrays are read piece by piece.
 const LARGEST: u64 = 64 << 20;
+
+/// Creates a file of a result, empty. A symbolic link in its place is removed, so that nothing is written through it.
+pub(crate) fn create(path: &Path) -> io::Result<File> {
+    unlink(path)?;
+    File::create(path)
+}
+
+/// Removes a symbolic link; anything else stays.
+pub(crate) fn unlink(path: &Path) -> io::Result<()> {
+    match fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink()) {
+        true => fs::remove_file(path),
+        false => Ok(()),
+    }
+}
 
 /// Opens a file of a result to read it: a pipe or a device, which may never end, is none.
 pub(crate) fn open(path: &Path) -> io::Result<File> {

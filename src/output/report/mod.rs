@@ -51,7 +51,7 @@ mod studies;
 mod warnings;
 
 use std::fs;
-use std::io::Read as _;
+use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::thread;
 
@@ -60,7 +60,7 @@ use serde_json::{Map, Value, json};
 pub use compared::{compared, over_data};
 
 use super::envelope::Remembered;
-use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, replace, replace_alike, text_of};
+use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, put_whole, replace_alike, text_of};
 use super::kind::Kind;
 use super::uncertainty::{self, UNCERTAINTY};
 use crate::case::{self, Case};
@@ -97,7 +97,7 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
     let text = halt::complete(|| text(&Place::new(dir, None), kind, elsewhere))?;
     match out {
         Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
-        None => replace(&path, &text)?,
+        None => put_whole(&path, |file| file.write_all(text.as_bytes()))?,
     }
     Ok(Written {
         path,

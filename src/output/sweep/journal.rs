@@ -78,6 +78,11 @@ impl Journal {
     pub fn go_on(folder: &ResultFolder, survey: &Survey) -> Result<Self> {
         let path = folder.path(JOURNAL);
         let opened = || -> io::Result<File> {
+            if path.is_symlink() {
+                let why =
+                    "it is a symbolic link, and rows are not written through one; put the file itself in its place";
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+            }
             let file = OpenOptions::new().append(true).create(true).open(&path)?;
             if file.metadata()?.len() > survey.whole {
                 file.set_len(survey.whole)?;

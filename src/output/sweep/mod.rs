@@ -25,11 +25,12 @@ pub mod warned;
 pub mod words;
 
 use std::fs;
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use serde_json::Value;
 
-use super::folder::{REPORT, ResultFolder, entries, fault, name_of, replace, result};
+use super::folder::{REPORT, ResultFolder, entries, fault, name_of, put_whole, result};
 use super::kind::Kind;
 use crate::case::Written;
 use crate::error::Result;
@@ -129,10 +130,12 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
         let path = dir.join(table);
         // designs share tables, and a name has the check sum of its own
         if !path.exists() {
-            replace(&path, text)?;
+            put_whole(&path, |file| file.write_all(text.as_bytes()))?;
         }
     }
-    replace(&dir.join(format!("{name}.json")), &case.json)
+    put_whole(&dir.join(format!("{name}.json")), |file| {
+        file.write_all(case.json.as_bytes())
+    })
 }
 
 /// What the table of all rows that are there is about, with its warnings.

@@ -10,6 +10,7 @@ use super::journal::Survey;
 use crate::error::Result;
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::output::numbers::shortest;
+use crate::output::records;
 use crate::results::sweep::{Column, Plan};
 use crate::study::sweep::Row;
 use crate::study::sweep::row::word;
@@ -23,7 +24,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Col
     put_whole(&folder.path(TABLE), |file| {
         let mut table = csv::Writer::from_writer(BufWriter::new(file));
         table.write_record(columns.iter().map(|column| &column.name))?;
-        reading = survey.each(|row| Ok(table.write_record(cells(plan, survey, &row))?));
+        reading = survey.each(|row| Ok(table.write_record(cells(plan, survey, &row).into_iter().map(records::cell))?));
         table.into_inner().map_err(|e| e.into_error())?.flush()
     })?;
     reading
