@@ -177,7 +177,8 @@ impl BeamDae {
         if self.held != Some(t) {
             return self.evaluate(t, y, yp);
         }
-        (&self.system, &self.now, State::still(&self.plain.workspace))
+        let state = ledger::complete_after_flows(&self.system, &self.now, &mut self.plain.workspace);
+        (&self.system, &self.now, state)
     }
 
     /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.

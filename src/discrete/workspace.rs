@@ -209,16 +209,9 @@ pub struct Fluid<T> {
 }
 
 /// A workspace that holds everything about a state, rates that no equation takes included: what balances and samples read.
-/// [`super::ledger::complete`] alone makes one.
+/// [`super::ledger::complete`] and [`super::ledger::complete_after_flows`] alone make one.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'w>(pub(super) &'w Workspace<f64>);
-
-impl<'w> State<'w> {
-    /// Of a workspace that [`super::ledger::flows`] has left and nobody has touched since.
-    pub(crate) fn still(w: &'w Workspace<f64>) -> Self {
-        Self(w)
-    }
-}
 
 impl std::ops::Deref for State<'_> {
     type Target = Workspace<f64>;

@@ -221,6 +221,34 @@ fn figures_at_probes_are_those_of_the_motion() {
     }
 }
 
+/// Source: the history of the same run, a motion that creeps for seconds. Goal: on a mesh of fourth order, whose forces and strains are read off by
+/// [E77], figures of the window are those of the history too. Tolerance: the history's trapezoids, and the cubics over long steps.
+#[test]
+fn figures_on_a_mesh_of_fourth_order_are_those_of_the_motion() {
+    let sets = ["/mesh/order=4", "/time/output_interval_s=0.01"].map(String::from);
+    let case = case::load(Path::new("cases/air-actuator.json"), &sets).unwrap();
+    let mut memory = Memory::default();
+    let summary = dynamics::run(&case, &mut memory).unwrap().summary;
+    let times = memory.column("t").unwrap();
+    for (figure, column) in [
+        ("far_strain_upper", "far_strain_upper"),
+        ("far_curvature_per_m", "far_curvature"),
+        ("far_normal_force_n", "far_normal_force"),
+        ("far_moment_n_m", "far_moment"),
+    ] {
+        let values = memory.column(column).unwrap();
+        let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let window = || times.iter().zip(&values).filter(|(t, _)| **t >= 4.8 - 1e-9);
+        let pairs = window().zip(window().skip(1));
+        let squares: f64 = pairs.map(|((a, v), (b, w))| 0.5 * (b - a) * (v * v + w * w)).sum();
+        let told = &summary.probes[figure];
+        for (told, own) in [(told.max_abs, largest), (told.window_rms, (squares / 0.2).sqrt())] {
+            let told = told.unwrap_or(f64::NAN);
+            assert!((told - own).abs() <= 2e-3 * largest, "{figure}: {told:e} {own:e}");
+        }
+    }
+}
+
 /// Goal: derivatives of probes, of their columns and figures, are differences of runs.
 #[test]
 fn derivatives_at_probes_are_differences_of_runs() {

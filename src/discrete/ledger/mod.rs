@@ -219,6 +219,12 @@ pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Work
     State(w)
 }
 
+/// The same of a workspace that [`flows`] has left and nobody has touched since: what is read off is all that is missing.
+pub fn complete_after_flows<'w>(system: &System, now: &TimeData, w: &'w mut Workspace<f64>) -> State<'w> {
+    readings::read(system, now, w);
+    State(w)
+}
+
 /// What balances need: all of [`complete`] but what is read off.
 fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     residual::complete(system, now, yp, w);
