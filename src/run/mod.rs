@@ -4,6 +4,7 @@ pub mod band;
 pub mod checkpoint;
 pub mod cubic;
 pub mod drive;
+mod drives;
 pub mod dynamics;
 pub mod energies;
 pub mod equilibrium;
