@@ -184,11 +184,9 @@ impl Observer {
             return beyond;
         }
         self.readings.arrive(t, false, system, now, w);
-        let (_, open) = self.watch(system, now, w, &glance, integrals);
+        let (balance, open) = self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
-            if let Some(turning) = &mut self.seen.estimate.turning {
-                turning.see(system, now, w, t - before.t, open);
-            }
+            self.seen.estimate.see(system, now, w, t - before.t, (&balance, open));
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
             self.seen.residuals.follow(system, now, w, t - before.t);
