@@ -36,3 +36,4 @@ pub mod strides;
 pub mod summary;
 pub mod track;
 pub mod wall;
+pub mod waves;

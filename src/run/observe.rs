@@ -70,6 +70,9 @@ pub struct Observed {
     pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
+    /// Waves that grow in the linearised equations.
+    #[serde(default, skip_serializing_if = "super::waves::Seen::is_empty")]
+    pub waves: super::waves::Seen,
     /// How far the beam has turned at the end of the last step.
     #[serde(default)]
     pub turns: Turns,

@@ -9,3 +9,4 @@ mod step_response;
 mod told;
 mod turning;
 mod watch;
+mod waves;
