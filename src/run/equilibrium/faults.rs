@@ -1,8 +1,8 @@
 //! Why a path ends before the load that is asked for.
 
-use super::Kind;
 use super::path::{End, Follower};
 use super::state::State;
+use super::{Event, Kind};
 use crate::error::{At, Code, SolverError};
 use crate::sundials::KinsolError;
 
@@ -15,18 +15,23 @@ impl Follower<'_> {
     }
 
     /// The load turns back beyond the range of the model: what follows describes no beam.
-    pub(super) fn beyond(&self) -> End {
+    pub(super) fn beyond(&mut self) -> End {
         let states = self.path.states.iter().filter(|state| state.stage == self.stage);
         let shares = states.map(|state| state.share);
         let asked = self.options.share.signum();
         let largest = asked * shares.map(|share| asked * share).fold(f64::NEG_INFINITY, f64::max);
         let beyond = self.path.beyond.as_deref().unwrap_or_default();
-        let kind = match self.path.events.last().map(|event| event.kind) {
-            Some(Kind::Bifurcation) => "bifurcation",
-            _ => "limit point",
-        };
+        // a path that crosses may lead down at once
+        let seen = self.path.events.last().map(|event| (event.stage, event.kind));
+        if seen != Some((self.stage, Kind::LimitPoint)) {
+            self.path.events.push(Event {
+                stage: self.stage,
+                share: largest,
+                kind: Kind::LimitPoint,
+            });
+        }
         let what = format!(
-            "the load turns back at {} ({kind}) after the range of the model has been left: {beyond}",
+            "the load turns back at {} (limit point) after the range of the model has been left: {beyond}",
             self.options.place(self.stage, &format!("{largest:.4}"))
         );
         End(SolverError {
