@@ -2,14 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::drives::{self, KINDS};
 use super::fit;
 use crate::discrete::TimeData;
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::time_data::PointForces;
 use crate::error::numbers::quantity;
 use crate::model::Model;
 use crate::model::characteristic::Mathieu;
-use crate::numerics::Planar;
 
 /// Windows into which a run is divided.
 const WINDOWS: usize = 16;
@@ -19,6 +18,9 @@ const OUTGROWN: f64 = 2.0;
 /// Factor over the later part of a run from which on growth is worth a word.
 const GROWN: f64 = 3.0;
 
+/// Share of a deflection to which it falls before it counts as one that turns.
+const FALLEN: f64 = 0.5;
+
 /// Compression in `EI/l²` that is beyond what any column stands, `4 π²` with both ends clamped.
 const STOCKY: f64 = 40.0;
 /// Growth of the fastest waves under a compression from which on they count.
@@ -26,10 +28,6 @@ const LASTED: f64 = 3.0;
 
 /// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
 const STRAIGHT: f64 = 0.6;
-
-/// Kinds of what drives a beam: loads along x and z and their moments, forces and followers of ends and places, moments of ends, their motions
-/// and slopes, pressures and flows of ports.
-const KINDS: usize = 10;
 
 /// The largest values in one window of the run, and cumulated works at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -123,7 +121,7 @@ impl Growth {
         let Some(w) = self.windows.get_mut(k) else { return };
         w.deflection = w.deflection.max(deflection);
         w.bending_energy = w.bending_energy.max(bending);
-        for (seen, size) in w.drive.iter_mut().zip(drives(now)) {
+        for (seen, size) in w.drive.iter_mut().zip(drives::sizes(now)) {
             *seen = seen.max(size);
         }
         w.samples += 1;
@@ -175,7 +173,7 @@ impl Growth {
         if seen.len() < WINDOWS / 2 {
             return None;
         }
-        let late = &seen[seen.len() / 4..];
+        let late = rising(&seen[seen.len() / 4..]);
         let last = late.last()?;
         if last.deflection < 1e-9 * length {
             return None;
@@ -196,6 +194,10 @@ impl Growth {
             largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
         // A factor over the span, along a straight line in the logarithm, and still going on.
         if factor < GROWN || straight < STRAIGHT || still < 1.2 || rate <= 0.0 {
+            return None;
+        }
+        // What swings up by itself is strained more and more; a beam that moves away as a load falls is not.
+        if last.bending_energy < OUTGROWN * late[0].bending_energy {
             return None;
         }
         // What a straight line or a power of time explains as well is no instability, nor is what follows its drive.
@@ -340,31 +342,12 @@ impl Growth {
     }
 }
 
-/// Sizes of what drives the beam at an instant, by kind.
-fn drives(now: &TimeData) -> [f64; KINDS] {
-    let size = |most: f64, v: &f64| most.max(v.abs());
-    let largest = |values: &[f64]| values.iter().fold(0.0, size);
-    let component = |values: &[Planar<f64>], axis: usize| values.iter().fold(0.0, |most, v| size(most, &v[axis]));
-    let end = |f: &dyn Fn(usize) -> f64| f(0).abs().max(f(1).abs());
-    let point = |f: &dyn Fn(&PointForces) -> f64| now.point_force.iter().map(f).fold(0.0, |most, v| size(most, &v));
-    let ends = &now.ends;
-    [
-        component(&now.force, 0),
-        component(&now.force, 1),
-        component(&now.moment, 0).max(component(&now.moment, 1)),
-        end(&|k| ends[k].force.x).max(point(&|p| p.dead.x)),
-        end(&|k| ends[k].force.z).max(point(&|p| p.dead.z)),
-        end(&|k| {
-            ends[k]
-                .follower
-                .map_or(0.0, |(normal, shear)| normal.abs().max(shear.abs()))
-        })
-        .max(point(&|p| p.follower.x.abs().max(p.follower.z.abs()))),
-        end(&|k| ends[k].moment.value).max(end(&|k| ends[k].slope.map_or(0.0, |s| s.value))),
-        end(&|k| ends[k].u[0].map_or(0.0, |u| u.value)),
-        end(&|k| ends[k].u[1].map_or(0.0, |u| u.value)),
-        largest(&now.port_pressure).max(largest(&now.source_flow)),
-    ]
+/// The windows from that of the least deflection on, where the deflection fell before: it passes through zero where a load falls, and only
+/// what follows can be growth.
+fn rising<'a>(late: &'a [&'a Window]) -> &'a [&'a Window] {
+    let least = (0..late.len()).min_by(|a, b| late[*a].deflection.total_cmp(&late[*b].deflection));
+    let least = least.filter(|least| late[*least].deflection < FALLEN * late[0].deflection);
+    &late[least.unwrap_or(0)..]
 }
 
 /// Whether some drive explains the growth: from the first window in which it acts, the response does not outgrow it.

@@ -70,6 +70,9 @@ pub struct Observed {
     pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
+    /// Waves that grow in the linearised equations.
+    #[serde(default, skip_serializing_if = "super::waves::Seen::is_empty")]
+    pub waves: super::waves::Seen,
     /// How far the beam has turned at the end of the last step.
     #[serde(default)]
     pub turns: Turns,
@@ -184,11 +187,9 @@ impl Observer {
             return beyond;
         }
         self.readings.arrive(t, false, system, now, w);
-        let (_, open) = self.watch(system, now, w, &glance, integrals);
+        let (balance, open) = self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
-            if let Some(turning) = &mut self.seen.estimate.turning {
-                turning.see(system, now, w, t - before.t, open);
-            }
+            self.seen.estimate.see(system, now, w, t - before.t, (&balance, open));
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
             self.seen.residuals.follow(system, now, w, t - before.t);

@@ -84,7 +84,7 @@ impl Strides {
 }
 
 /// Shortest time scales of all signals that no stop marks.
-fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
+pub(super) fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
     let mut all = vec![Stretch {
         to: end,
         scale: f64::INFINITY,

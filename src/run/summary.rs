@@ -11,6 +11,7 @@ use super::null;
 use super::sensitivity::figures::Sensitivity;
 use super::step_response::StepResponse;
 pub use super::wall::WallTimes;
+use super::waves::GrowingWave;
 pub use crate::integrate::Counters;
 
 /// How a run ended.
@@ -265,6 +266,9 @@ pub struct Summary {
     /// Growth of the response and what drives it, when it grows.
     #[serde(default)]
     pub growth: Option<Growing>,
+    /// A wave that grows in the equations linearised about states of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub growing_wave: Option<GrowingWave>,
     /// A rough estimate of the errors of final values, made from the run itself.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<Estimated>,

@@ -8,6 +8,7 @@
 //! | `dense` | all finite eigenvalues of a small pencil |
 //! | `krylov` | those nearest a shift, of a large one |
 //! | `lowest` | lowest eigenvalues of a static tangent |
+//! | `growing` | oscillations that grow, of a pencil that is not large |
 //! | `refine` | each pair improved by itself, with the bound of its error |
 //!
 //! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are
@@ -24,6 +25,7 @@
 
 mod dense;
 mod exchange;
+mod growing;
 mod krylov;
 mod lowest;
 pub mod pencil;
@@ -35,6 +37,8 @@ use std::fmt;
 use nalgebra::Complex;
 
 use crate::integrate::halt::INTERRUPTED;
+
+pub use growing::{Bounds, growing};
 pub use lowest::lowest;
 pub use pencil::Pencil;
 

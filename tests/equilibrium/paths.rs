@@ -114,3 +114,36 @@ fn a_path_stops_where_a_step_passes_its_end() {
     assert!(path.fault.is_none(), "{:?}", path.fault);
     assert!(path.states.iter().all(|state| state.share <= 1.0) && path.last().share == 1.0);
 }
+
+/// Goal: a neo-Hookean section with 60 kPa in both rows leaves the range of its energy at 0.31 of them, and the load turns back later: the path ends
+/// there and says where. It went on through 1435 states, to -1.7 times the load.
+#[test]
+fn a_path_that_turns_back_beyond_the_range_ends() {
+    let row = |sign: i32| {
+        let bladders: Vec<i32> = (1..=10).map(|k| sign * k).collect();
+        json!({"bladders": bladders, "ends": [{"pressure_pa": 60000}, "sealed"]})
+    };
+    let case = parse(&json!({
+        "name": "section",
+        "section": {
+            "height_m": 0.0216, "width_m": 0.05, "pitch_m": 0.01, "three_d": false,
+            "material": {"young_modulus_pa": 5e5, "poisson_ratio": 0.49, "density_kg_m3": 950, "law": "neo_hookean"},
+            "bladders": {"length_m": 0.046, "lower": "mirrored", "upper": {"center_m": 0.0049,
+                "shape": {"rounded_rectangle": {"along_m": 0.0078, "high_m": 0.0078, "fillet_m": 0.0025}}}}
+        },
+        "beam": {"length_m": 0.1}, "fluid": {"density_kg_m3": 950, "viscosity_pa_s": 0.1}, "tubes": {"length_m": 0.02, "radius_m": 0.001},
+        "network": {"chains": [row(1), row(-1)]}, "ends": {"root": "clamped", "tip": "free"},
+        "effects": {"nonlinear_section": "on"}, "mesh": {"cells_per_segment": 2}, "time": {"end_s": 4}
+    }));
+    let path = path_of(&case, &Options::at(4.0));
+    let fault = path.fault.as_ref().expect("a fault");
+    assert!(
+        fault.what.contains("turns back at 0.8") && fault.what.contains("0.31"),
+        "{}",
+        fault.what
+    );
+    assert!(path.states.len() < 200, "{}", path.states.len());
+    assert_eq!(path.events.last().expect("an event").kind, Kind::LimitPoint);
+    let shares = path.states.iter().map(|state| state.share);
+    assert!(shares.clone().all(|share| share >= 0.0) && path.last().share < shares.fold(0.0, f64::max));
+}

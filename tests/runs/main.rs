@@ -10,3 +10,4 @@ mod told;
 mod turning;
 mod unphysical;
 mod watch;
+mod waves;

@@ -18,3 +18,8 @@ pub fn eigen(n: usize, entry: &dyn Fn(usize, usize) -> c64) -> Option<Vec<(c64, 
     all.sort_by(|a, b| b.0.norm().total_cmp(&a.0.norm()));
     Some(all)
 }
+
+/// Eigenvalues of a real n × n matrix, without vectors and in no order; every copy of a repeated one counts. None as for [`eigen`].
+pub fn real_eigenvalues(n: usize, entry: &dyn Fn(usize, usize) -> f64) -> Option<Vec<c64>> {
+    Mat::from_fn(n, n, entry).eigenvalues().ok()
+}

@@ -85,5 +85,8 @@ impl Run<'_> {
         self.earlier.clone_from(&checkpoint.counters);
         self.observer.seen.clone_from(&checkpoint.observed);
         self.outputs.go_on(checkpoint.next_output, checkpoint.t);
+        if let Some(watch) = &mut self.waves {
+            watch.skip(checkpoint.t);
+        }
     }
 }

@@ -103,6 +103,9 @@ impl Run<'_> {
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
         s.warnings
             .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning())));
+        s.growing_wave = self.waves.as_ref().and_then(|watch| watch.judge(&o.waves));
+        s.warnings
+            .extend(s.growing_wave.as_ref().map(|wave| Code::Growth.warning(wave.warning())));
         if !self.inertia {
             let buckled = o.growth.straight_beyond_buckling(self.case.beam.length_m, &self.linear);
             s.warnings.extend(buckled.map(|w| Code::Buckling.warning(w)));

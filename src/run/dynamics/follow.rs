@@ -98,6 +98,23 @@ impl Run<'_> {
         }
     }
 
+    /// Examines the end of a step [s] for growing waves, where one of the states for that is due.
+    pub(super) fn examine(&mut self, solver: &Integrator<BeamDae>, step: f64) {
+        if let Some(watch) = &mut self.waves
+            && watch.due(solver.time())
+        {
+            let state = [solver.y(), solver.yp()];
+            watch.examine(
+                self.case,
+                solver.dae(),
+                solver.time(),
+                step,
+                state,
+                &mut self.observer.seen.waves,
+            );
+        }
+    }
+
     /// Reads derivatives of what has become largest since a time [s], at the instants within the step at which it did.
     fn largest(&mut self, solver: &mut Integrator<BeamDae>, from: f64) -> Option<End> {
         self.forward.as_ref()?;

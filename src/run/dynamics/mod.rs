@@ -27,6 +27,7 @@ use super::sensitivity::forward::{By, Forward};
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use super::wall::Laps;
+use super::waves;
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
@@ -92,6 +93,8 @@ struct Run<'a> {
     outputs: Outputs,
     stops: Vec<Stop>,
     strides: Strides,
+    /// Examination for growing waves, where there may be any.
+    waves: Option<waves::Watch>,
     summary: Summary,
     options: Options,
     linear: Linear,
@@ -150,6 +153,7 @@ impl<'a> Run<'a> {
             outputs: Outputs::new(case),
             stops: schedule::stops(case, &system.model),
             strides,
+            waves: waves::Watch::new(&system.model, case.time.end_s),
             summary: Summary {
                 case: case.name.clone(),
                 status: Status::Failed,
@@ -195,6 +199,7 @@ impl<'a> Run<'a> {
                     .collect(),
                 growth: None,
                 tables_crc32: BTreeMap::new(),
+                growing_wave: None,
                 estimate: None,
                 accuracy: None,
                 sensitivities: Default::default(),
@@ -356,6 +361,7 @@ impl Run<'_> {
                 if let Some(end) = self.follow(solver, from, recorder)? {
                     return Ok(end);
                 }
+                self.examine(solver, step.size);
                 if let Control::Stop(reason) = recorder.progress(&progress)? {
                     return self.stop(solver, reason, recorder);
                 }

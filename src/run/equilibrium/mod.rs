@@ -10,6 +10,7 @@
 //! sensitivity  derivatives by numbers of the case, or along any change of it
 //! trapped  stages that valves ask for which shut before: what is behind them
 //! resting  states under loads that differ a little from those of a known one
+//! faults   why a path ends before its loads are reached
 //! branch   from one path onto another that crosses it
 //! state    what is read off a state; one state as the unknowns of another system
 //! ```
@@ -21,6 +22,7 @@
 
 mod arclength;
 mod branch;
+mod faults;
 mod judge;
 mod natural;
 mod overdamped;
@@ -235,11 +237,11 @@ pub fn at_start_watched(
 ) -> Result<Vec<f64>, SolverError> {
     let options = &options
         .resolved(case)
-        .map_err(|error| path::fault(0.0, &error.to_string()))?;
+        .map_err(|error| faults::fault(0.0, &error.to_string()))?;
     let model = dae.system().model.clone();
     let grow = |stage: &stages::Stage| stages::growing(case, model.at_rest(case)?, stage);
     let path = stages::follow_of(case, &grow, options, false, &mut |_| ask());
-    let path = path.map_err(|error| path::fault(0.0, &error.to_string()))?;
+    let path = path.map_err(|error| faults::fault(0.0, &error.to_string()))?;
     if let Some(fault) = path.fault {
         return Err(SolverError {
             at: At::Time(0.0),
@@ -252,7 +254,7 @@ pub fn at_start_watched(
     let grown = stages
         .last()
         .map_or_else(|| stages::Stage::from_nothing(options.at_s), |stage| *stage);
-    let grown = grow(&grown).map_err(|error| path::fault(0.0, &error.to_string()))?;
+    let grown = grow(&grown).map_err(|error| faults::fault(0.0, &error.to_string()))?;
     let mut from = BeamDae::new(grown.system);
     let (system, now) = dae.instant(0.0);
     let mut z = restate(&mut from, last.share, &last.y, system, now);

@@ -1,14 +1,14 @@
 //! Along the path of equilibria.
 
 use super::arclength::Arclength;
+use super::faults::{fault, stopped};
 use super::natural::Natural;
 use super::predict::Trail;
 use super::state::{self, Stability, State};
 use super::{Event, Kind, Options, Path};
 use crate::discrete::System;
 use crate::discrete::glance::Watched;
-use crate::error::{At, Code, SolverError};
-use crate::integrate::halt::{self, INTERRUPTED};
+use crate::error::SolverError;
 use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
@@ -313,8 +313,10 @@ impl Follower<'_> {
             });
             self.bounds.push(self.path.states.len() - 1);
         }
+        let turns = self.turns(&state);
         self.path.states.push(state);
         match control {
+            Control::Continue if turns && self.path.beyond.is_some() => Err(self.beyond()),
             Control::Continue => Ok(()),
             Control::Stop(reason) => Err(stopped(self.stage as f64 + x[self.n], &reason)),
         }
@@ -331,67 +333,6 @@ impl Follower<'_> {
     pub(super) fn norm(&self, x: &[f64]) -> f64 {
         x.iter().zip(&self.weights).map(|(x, w)| w * x * x).sum::<f64>().sqrt()
     }
-
-    fn lost(&self, share: f64) -> End {
-        let points = self.path.states.len();
-        let factor = self.stage as f64 + share;
-        let what =
-            format!("the path does not come to the load factor that is asked for: {points} points end at {factor:.4}");
-        End(fault(factor, &what))
-    }
-
-    pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> End {
-        if halt::asked() {
-            return stopped(self.stage as f64 + share, INTERRUPTED);
-        }
-        End(SolverError {
-            unknown: failure.worst.clone(),
-            ..fault(
-                self.stage as f64 + share,
-                &format!(
-                    "no equilibrium is found beyond {}: {}",
-                    self.options.place(self.stage, &format!("{share:.6}")),
-                    failure.what
-                ),
-            )
-        })
-    }
-}
-
-/// What probably ends a path, and what of a beam without fluid.
-const CAUSE: &str = "two paths that meet, a coupling that is not convex, a bladder that closes";
-const DRY_CAUSE: &str = "two paths that meet or pass close by each other, or loads beyond those that the beam can bear";
-
-/// The same fault of a beam without fluid: neither bladders nor a coupling are a cause.
-pub(super) fn dry(mut fault: SolverError) -> SolverError {
-    if fault.cause.as_deref() == Some(CAUSE) {
-        fault.cause = Some(DRY_CAUSE.into());
-    }
-    fault
-}
-
-pub(super) fn fault(share: f64, what: &str) -> SolverError {
-    SolverError {
-        code: Code::NoEquilibrium,
-        at: At::LoadFactor(share),
-        what: what.into(),
-        unknown: None,
-        cause: Some(if share == 0.0 {
-            "nothing holds the beam, or a part of the network has neither bladder nor pressure".into()
-        } else {
-            CAUSE.into()
-        }),
-        hint: Some("look at the states up to there; a small load across tells which way a symmetric beam bends".into()),
-    }
-}
-
-/// The end of a path that somebody asked for.
-fn stopped(share: f64, reason: &str) -> End {
-    let cause = None;
-    End(SolverError {
-        cause,
-        ..fault(share, reason)
-    })
 }
 
 /// Where a function that changes sign between 0 and `end` is zero (bisection).

@@ -1,8 +1,9 @@
 //! Loads that follow one another: a path of several stages, each with the state in which the one before ended.
 
 use super::arclength::Arclength;
+use super::faults::{dry, fault};
 use super::natural::Natural;
-use super::path::{End, Follower, dry, fault, weights};
+use super::path::{End, Follower, weights};
 use super::state::State;
 use super::trapped::{self, TIGHT};
 use super::{Options, Path};

@@ -7,7 +7,9 @@
 //! coupled    what sealed fluid does to them
 //! tolerance  what steps make of their tolerance
 //! turning    how far they turn a beam wrongly that nothing turns back
+//! strikes    what steps leave of a motion that strikes walls
 //! couple     a rotational spring at an end whose moment is given
+//! unstable   growth of the deflection and compression
 //! work       energies that were put in and harvested
 //! young      a wave that has only begun to run along the beam
 //! words      what is said of it
@@ -28,8 +30,10 @@ pub mod couple;
 pub mod coupled;
 pub mod off;
 pub mod resonance;
+pub mod strikes;
 pub mod tolerance;
 pub mod turning;
+mod unstable;
 pub mod vibration;
 pub mod words;
 pub mod work;
@@ -40,21 +44,23 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::floors::Floors;
-use super::growth::{Growth, Linear};
 use super::summary::Quantity;
 use crate::case::relaxation;
 use crate::case::schema::{Case, Effect};
-use crate::discrete::System;
+use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::quantities::Interest;
 use crate::discrete::straight::meshed::{self, SmallMode};
+use crate::discrete::{State, System, TimeData};
 use crate::onestep::Method;
 use crate::sundials::Step;
 
 use couple::Couple;
 use off::Off;
 use resonance::Near;
+use strikes::Strikes;
 use tolerance::Tolerance;
 use turning::Turning;
+pub use unstable::Unstable;
 use vibration::{Known, Place, Vibration};
 pub use words::Estimated;
 use words::Row;
@@ -72,28 +78,6 @@ const CANCELS: f64 = 0.02;
 /// Figures below this part of others are nothing to be accurate about.
 const NOTHING: f64 = 1e-6;
 
-/// What makes errors larger than those of a vibration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unstable {
-    /// The factor by which the deflection has grown by itself, at least 1.
-    pub grown: f64,
-    /// How many times as much as a part of Euler's load a deflection changes, at least 1.
-    pub softened: f64,
-    /// `N l²/(EI)` of compressions under which short waves grow, 0 where there was none.
-    pub crushed: f64,
-}
-
-impl Unstable {
-    /// Of what was followed in a run of a beam of a length [m].
-    pub fn of(growth: &Growth, length: f64, linear: &Linear) -> Self {
-        Self {
-            grown: growth.amplification(length, linear),
-            softened: growth.softened(linear),
-            crushed: growth.crushed(),
-        }
-    }
-}
-
 /// Follows the first modes of bending and of stretch.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimator {
@@ -108,7 +92,10 @@ pub struct Estimator {
     tolerance: Tolerance,
     /// The beam as a whole, where it turns freely.
     #[serde(default)]
-    pub turning: Option<Turning>,
+    turning: Option<Turning>,
+    /// Swings between walls, where there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    strikes: Option<Strikes>,
     /// Rotational springs at ends.
     #[serde(default)]
     couple: Couple,
@@ -198,6 +185,7 @@ impl Estimator {
             first: if first[0].1 > 0.0 { first[0].1.recip() } else { 0.0 },
             tolerance: Tolerance::new(case.solver.rtol, &model.scales, layout),
             turning: Turning::of(system),
+            strikes: Strikes::of(system),
             couple: Couple::of(system, case.time.end_s),
             near: resonance::nearest(system),
             velocities: (layout.lines[0].v.as_ref())
@@ -227,6 +215,23 @@ impl Estimator {
         }
         if let Some(turning) = &mut self.turning {
             turning.step(tableau.as_ref(), step);
+        }
+    }
+
+    /// Takes the state at the end of a step of a size [s], with the balance of energy and what that of angular momentum leaves open [N m s].
+    pub fn see(
+        &mut self,
+        system: &System,
+        now: &TimeData,
+        w: State,
+        size: f64,
+        (energy, angular): (&EnergyBalance, f64),
+    ) {
+        if let Some(turning) = &mut self.turning {
+            turning.see(system, now, w, size, angular);
+        }
+        if let Some(strikes) = &mut self.strikes {
+            strikes.see(system, w, energy);
         }
     }
 
@@ -331,6 +336,12 @@ impl Estimator {
         self.energies(&mut rows, quantities, work, [wide, long, angle]);
         if !pulled {
             self.turn(&mut rows, quantities);
+        }
+        if let Some(strikes) = &self.strikes {
+            let displacements = rows
+                .iter_mut()
+                .filter(|row| row.name.unit() != "J" && row.name.unit() != "Pa");
+            displacements.for_each(|row| row.errors[0] += strikes.off());
         }
         self.couple.tell(&mut rows);
         rows
