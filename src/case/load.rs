@@ -240,7 +240,7 @@ fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec
 fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: &[Step]) -> Given {
     let mut given = Given::default();
     let now = Sizes::of(whole);
-    let mut all = LAWS.iter().map(|law| law.pointer);
+    let all = LAWS.iter().map(|law| law.pointer);
     for (k, step) in steps.iter().enumerate() {
         let sizes = step.sizes.unwrap_or(now);
         match k {
@@ -255,7 +255,7 @@ fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: 
     let preset = own
         .get("preset")
         .and_then(|_| Sizes::of(&Preset::MatiaGatBeam.values()));
-    for pointer in all.by_ref() {
+    for pointer in all {
         match whole.pointer(pointer) {
             None => given.note([pointer].into_iter(), None),
             Some(_) if of_section(pointer) => given.note([pointer].into_iter(), now),

@@ -80,9 +80,10 @@ impl Sizes {
         Some(self.area_per_force()? / self.section[0])
     }
 
-    /// `l_b E` times an area per force or moment: a strain of one segment under p/E.
-    fn strain(&self, area: Option<f64>) -> Option<f64> {
-        Some(self.bladders?.length * self.modulus * area?)
+    /// `l_b h_b w_b/(w_s h_s)`, to which the length of a segment per p/E is proportional [m].
+    fn length_per_pressure(&self) -> Option<f64> {
+        let [h, w] = self.section;
+        Some(self.bladders?.length * self.bladder_area()? / (w * h))
     }
 
     /// Proportions of the plane cell.
@@ -169,12 +170,12 @@ pub(super) const LAWS: [Law; 17] = [
     ),
     law(
         "/bladders/coupling/published/slope_per_pressure_rad",
-        |s| s.strain(s.area_per_moment()),
+        |s| Some(s.length_per_pressure()? / s.section[0]),
         Sizes::whole,
     ),
     law(
         "/bladders/coupling/published/length_per_pressure_m",
-        |s| s.strain(s.area_per_force()),
+        Sizes::length_per_pressure,
         Sizes::whole,
     ),
     law(
