@@ -1,6 +1,5 @@
-//! Coefficients of a preset in a case whose beam is another one, and of a plane cell where bladders are short.
-
-use std::f64::consts::PI;
+//! Coefficients that follow modulus and sizes to another shape of section, where their scaling laws are not exact, and those of a plane cell
+//! where bladders are short.
 
 use serde_json::Value;
 
@@ -8,120 +7,82 @@ use super::computed;
 use super::numbers::digits;
 use super::origins::Origin;
 use super::own_cell::OwnCell;
-use super::presets::Preset;
+use super::scaling::{LAWS, Law, Sizes};
 use super::schema::Case;
 use crate::error::Code;
 
-/// Relative change of a size beyond which it is another beam's.
-const SAME: f64 = 1e-3;
+/// A coefficient: its pointer, and its value where it is a number.
+type Coefficient = (&'static str, Option<f64>);
 
-/// What coefficients belong to [m, Pa].
-#[derive(Clone, Copy)]
-struct Sizes {
-    modulus: f64,
-    /// Height and width of the beam's section.
-    section: [f64; 2],
-    bladders: Option<InBeam>,
-    radius: Option<f64>,
-}
+/// The pointer of the permeability of bladders, which belongs to their cross-section alone.
+const DUCT: &str = "/bladders/permeability_m4";
 
-/// Bladders in the beam [m].
-#[derive(Clone, Copy)]
-struct InBeam {
-    /// Length of beam to each bladder of a row.
-    pitch: f64,
-    length: f64,
-    height: f64,
-    width: f64,
-}
+const EXACT: &str = "They follow by scaling laws, which are exact for similar sections of one material only.";
 
-/// Coefficients and what they belong to.
-struct Group {
-    coefficients: &'static [&'static str],
-    sizes: fn(&Sizes) -> Option<Vec<f64>>,
-}
-
-/// Groups that are told together: how what they belong to is called, and what to do.
-struct Part {
-    groups: &'static [Group],
-    words: fn(&Sizes) -> String,
-    advice: &'static str,
-    own: fn(&Case, &[Inherited]) -> Option<String>,
-}
-
-/// A coefficient of the preset: where it stands, and its value.
-type Inherited = (&'static str, f64);
-
-const OWN_OR_NULL: &str = "give your own, or null to have it computed from the cross-section";
-
-/// Which coefficients belong to which sizes. Stiffness factors are ratios: they stay when everything is scaled alike, and
-/// whatever the modulus is. Areas go with `1/E`.
-const PARTS: [Part; 3] = [
-    Part {
-        groups: &[
-            Group {
-                coefficients: &["/beam/axial_stiffness_factor", "/beam/bending_stiffness_factor"],
-                sizes: |s| {
-                    let [h, w] = s.section;
-                    // a beam without bladders has only its section to be told by
-                    Some(s.bladders.map_or(vec![h, w], |b| {
-                        vec![b.height / h, b.width / b.pitch, b.length / w, b.pitch / h]
-                    }))
-                },
-            },
-            Group {
-                coefficients: &["/bladders/area_per_pressure_m2_per_pa"],
-                sizes: |s| {
-                    let b = s.bladders?;
-                    Some(vec![s.modulus, s.section[0], b.pitch, b.height, b.width])
-                },
-            },
-            Group {
-                coefficients: &[
-                    "/bladders/area_per_moment_m2_per_n_m/opening",
-                    "/bladders/area_per_moment_m2_per_n_m/closing",
-                    "/bladders/area_per_force_m2_per_n/tension",
-                    "/bladders/area_per_force_m2_per_n/compression",
-                ],
-                sizes: |s| {
-                    let b = s.bladders?;
-                    let [h, w] = s.section;
-                    Some(vec![s.modulus, h, w, b.pitch, b.height, b.width, b.length])
-                },
-            },
-        ],
-        words: section,
-        advice: "give those of your own beam",
-        own: of_cell,
-    },
-    Part {
-        groups: &[Group {
-            coefficients: &["/bladders/permeability_m4"],
-            sizes: |s| s.bladders.map(|b| vec![b.height, b.width]),
-        }],
-        words: |s| {
-            let sides = s.bladders.map_or([0.0; 2], |b| [b.height, b.width]);
-            format!("a bladder of {} mm", millimetres(&sides))
-        },
-        advice: OWN_OR_NULL,
-        own: of_cell,
-    },
-    Part {
-        groups: &[Group {
-            coefficients: &["/tubes/permeability_m4"],
-            sizes: |s| s.radius.map(|r| vec![r]),
-        }],
-        words: |s| format!("a tube of radius {} mm", millimetres(&[s.radius.unwrap_or_default()])),
-        advice: OWN_OR_NULL,
-        own: of_tube,
-    },
-];
-
-/// Warnings about coefficients that the case takes from its preset while it changes what they belong to, and about those of a plane cell.
+/// Warnings about coefficients that follow the case's sizes to another shape of section, and about those of a plane cell.
 pub fn warnings(case: &Case) -> Vec<String> {
-    let mine = of_case(case);
-    let parts = PARTS.iter().filter_map(|part| warning(case, &mine, part));
-    parts.chain(plane_cell(case)).chain(cross_term(case)).collect()
+    let given = &case.origins.given;
+    let moved = |law: &&Law| given.pair(law).is_some_and(|(now, then)| !law.is_exact(now, then));
+    let mut moved: Vec<&Law> = LAWS.iter().filter(moved).collect();
+    let resolved = match moved.is_empty() {
+        true => Value::Null,
+        false => serde_json::to_value(case).unwrap_or_default(),
+    };
+    moved.retain(|law| belongs(&resolved, law));
+    // what is told together has one advice and one origin
+    let mut groups: Vec<((bool, Option<Origin>), Vec<&Law>)> = vec![];
+    for law in moved {
+        let key = (law.pointer == DUCT, case.origins.get(law.pointer));
+        match groups.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, laws)) => laws.push(law),
+            None => groups.push((key, vec![law])),
+        }
+    }
+    let told = groups.iter().filter_map(|(_, laws)| warning(case, &resolved, laws));
+    told.chain(plane_cell(case)).chain(cross_term(case)).collect()
+}
+
+/// Warning about numbers that are varied, or by which results are differentiated, and which change the shape of the section by themselves.
+pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
+    let resolved = serde_json::to_value(case).unwrap_or_default();
+    let now = Sizes::of(&resolved)?;
+    let (mut shaping, mut names) = (vec![], vec![]);
+    for pointer in pointers.clone() {
+        let mut other = resolved.clone();
+        let number = other.pointer(pointer).and_then(Value::as_f64);
+        let (Some(number), Some(place)) = (number, other.pointer_mut(pointer)) else {
+            continue;
+        };
+        *place = (ASIDE * number).into();
+        let Some(aside) = Sizes::of(&other) else { continue };
+        let moved = |law: &&Law| !law.is_exact(&aside, &now) && !pointers.clone().any(|p| p == law.pointer);
+        let moved = LAWS.iter().filter(moved).filter(|law| belongs(&resolved, law));
+        let before = names.len();
+        names.extend(moved.map(|law| law.pointer));
+        if names.len() > before {
+            shaping.push(pointer);
+        }
+    }
+    names.sort_unstable();
+    names.dedup();
+    (!names.is_empty()).then(|| {
+        Code::Inherited.warning(format!(
+            "coefficients of another shape of section: {} changes the shape to which {} belong. {EXACT} Give the section by its geometry \
+             in /section, or take what is found as an estimate.",
+            shaping.join(", "),
+            names.join(", ")
+        ))
+    })
+}
+
+/// A number that is varied over what it is.
+const ASIDE: f64 = 1.01;
+
+/// Whether a case has the coefficient of a law, and it is none of a full section, which has the same in every shape.
+fn belongs(resolved: &Value, law: &Law) -> bool {
+    let value = resolved.pointer(law.pointer);
+    let full = resolved.get("bladders").is_none() && value.and_then(Value::as_f64) == Some(1.0);
+    value.is_some() && !full
 }
 
 /// Area of a row per pressure in the other row, over that per its own pressure, above which the model leaves out too much.
@@ -174,40 +135,52 @@ fn plane_cell(case: &Case) -> Option<String> {
     })
 }
 
-fn warning(case: &Case, mine: &Sizes, part: &Part) -> Option<String> {
-    let (mut names, mut of) = (vec![], None);
-    let mut inherited: Vec<Inherited> = vec![];
-    for group in part.groups {
-        for pointer in group.coefficients {
-            let Some(Origin::Preset(preset)) = case.origins.get(pointer) else {
-                continue;
-            };
-            let theirs = of_preset(preset, mine.bladders.is_some())?;
-            if !same((group.sizes)(mine), (group.sizes)(&theirs)) {
-                names.push(*pointer);
-                let value = preset.values().pointer(pointer).and_then(Value::as_f64);
-                inherited.extend(value.map(|value| (*pointer, value)));
-                of = Some((preset, theirs));
-            }
-        }
-    }
-    let (preset, theirs) = of?;
+/// Warning about the coefficients of laws that are not exact here.
+fn warning(case: &Case, resolved: &Value, laws: &[&Law]) -> Option<String> {
+    let first = laws.first()?;
+    let (mine, theirs) = case.origins.given.pair(first)?;
+    let origin = case.origins.get(first.pointer);
+    let value = |law: &&Law| (law.pointer, resolved.pointer(law.pointer).and_then(Value::as_f64));
+    let all: Vec<Coefficient> = laws.iter().map(value).collect();
+    let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
     let verb = if names.len() == 1 { "belongs" } else { "belong" };
+    let (words, advice): (fn(&Sizes) -> String, _) = match first.pointer == DUCT {
+        true => (
+            bladder,
+            "Give your own, or null to have it computed from the cross-section",
+        ),
+        false => (
+            section,
+            "Give those of your own beam, or its section by its geometry in /section",
+        ),
+    };
+    let of_preset = matches!(origin, Some(Origin::Preset(_)));
+    let by = origin
+        .filter(|_| of_preset)
+        .map_or_else(String::new, |origin| format!(" of {origin}"));
+    // the cell has the shape of the preset's
+    let own = of_preset.then(|| of_cell(case, &all)).flatten();
+    let own = own.map_or_else(String::new, |own| format!(": {own}"));
     Some(Code::Inherited.warning(format!(
-        "coefficients of preset {}: {} {verb} to {}, here it is {}: {}{}",
-        preset.name(),
+        "coefficients of another shape of section: {}{by} {verb} to {}, here it is {}. {EXACT} {advice}{own}.",
         names.join(", "),
-        (part.words)(&theirs),
-        (part.words)(mine),
-        part.advice,
-        (part.own)(case, &inherited).map_or_else(String::new, |own| format!("; {own}"))
+        words(theirs),
+        words(mine),
     )))
 }
 
+fn bladder(sizes: &Sizes) -> String {
+    let sides = sizes.bladders.map_or([0.0; 2], |b| [b.height, b.width]);
+    format!("a bladder of {} mm", millimetres(&sides))
+}
+
 /// What the cell of the case's own sizes would give in place of what is inherited; nothing for a beam without bladders.
-fn of_cell(case: &Case, inherited: &[Inherited]) -> Option<String> {
+fn of_cell(case: &Case, inherited: &[Coefficient]) -> Option<String> {
     let cell = OwnCell::of(case)?;
-    let beside = |&(pointer, value): &Inherited| Ok(cell.coefficient(pointer)?.map(|own| instead(pointer, own, value)));
+    let beside = |&(pointer, value): &Coefficient| {
+        let own = cell.coefficient(pointer)?;
+        Ok(own.zip(value).map(|(own, value)| instead(pointer, own, value)))
+    };
     let all: Result<Vec<_>, &str> = inherited.iter().map(beside).collect();
     Some(match all {
         Ok(all) => {
@@ -216,17 +189,6 @@ fn of_cell(case: &Case, inherited: &[Inherited]) -> Option<String> {
         }
         Err(why) => format!("{} gives nothing to compare with: {why}", cell.assumed),
     })
-}
-
-/// Hagen and Poiseuille's permeability of a round tube.
-fn of_tube(case: &Case, inherited: &[Inherited]) -> Option<String> {
-    let radius = case.tubes.as_ref()?.radius_m;
-    let own = PI / 8.0 * radius.powi(4);
-    let all: Vec<String> = inherited
-        .iter()
-        .map(|&(pointer, value)| instead(pointer, own, value))
-        .collect();
-    Some(format!("a round tube has {}", all.join(", ")))
 }
 
 /// A coefficient beside the one that is inherited, and how many times as large it is.
@@ -238,48 +200,6 @@ fn instead(pointer: &str, own: f64, inherited: f64) -> String {
         digits(own),
         digits(inherited)
     )
-}
-
-fn same(mine: Option<Vec<f64>>, theirs: Option<Vec<f64>>) -> bool {
-    let (Some(mine), Some(theirs)) = (mine, theirs) else {
-        return true;
-    };
-    mine.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= SAME * b.abs())
-}
-
-fn of_case(case: &Case) -> Sizes {
-    let beam = &case.beam;
-    Sizes {
-        modulus: beam.young_modulus_pa,
-        section: [beam.height_m, beam.width_m],
-        bladders: case.bladders.as_ref().map(|b| InBeam {
-            pitch: beam.length_m / b.per_row.max(1) as f64,
-            length: b.length_m,
-            height: b.height_m,
-            width: b.width_m,
-        }),
-        radius: case.tubes.as_ref().map(|t| t.radius_m),
-    }
-}
-
-/// Sizes of the preset, with its bladders or without.
-fn of_preset(preset: Preset, wet: bool) -> Option<Sizes> {
-    let values = preset.values();
-    let number = |pointer: &str| values.pointer(pointer).and_then(Value::as_f64);
-    Some(Sizes {
-        modulus: number("/beam/young_modulus_pa")?,
-        section: [number("/beam/height_m")?, number("/beam/width_m")?],
-        bladders: match wet {
-            true => Some(InBeam {
-                pitch: number("/beam/length_m")? / number("/bladders/per_row")?,
-                length: number("/bladders/length_m")?,
-                height: number("/bladders/height_m")?,
-                width: number("/bladders/width_m")?,
-            }),
-            false => None,
-        },
-        radius: number("/tubes/radius_m"),
-    })
 }
 
 /// The beam with its bladders in words.

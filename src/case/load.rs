@@ -6,8 +6,10 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::faults::{Source, Violations, sort};
+use super::faults::{SetValue, Source, Violations, sort};
 use super::origins::Origins;
+use super::presets::Preset;
+use super::scaling::{Given, LAWS, Sizes, may_change_sizes};
 use super::schema::Case;
 use super::wording::nearest;
 use super::{check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, tables, validate};
@@ -82,11 +84,20 @@ pub(super) fn nearest_file(path: &Path, ending: &str) -> Option<PathBuf> {
     Some(path.with_file_name(meant))
 }
 
-/// Reads and checks a case from text; files that it names are looked for in `base`.
+/// Reads and checks a case from text; files that it names are looked for in `base`. A coefficient belongs to the modulus and the sizes of the
+/// file, or where an argument gives it to those of all arguments.
 ///
 /// # Errors
 /// As [`load`].
 pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Case> {
+    parse_varied(text, path, base, sets, &[])
+}
+
+/// The same with further arguments `varied` after these, which the coefficients that these give follow too.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varied: &[String]) -> Result<Case> {
     let source = Source::of(path, text);
     let (file, mut violations) = json::parse(text);
     let Some(file) = file else {
@@ -108,20 +119,20 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     if section::is_one(&value) {
         return Err(source.error(vec![section::no_case()]));
     }
-    let sets = sets::apply(&mut value, sets)?;
-    if section::changes(&sets) {
-        section::release(&mut value, &file.to_value());
-    }
+    let (sets, steps) = steps(&mut value, &file.to_value(), [sets, varied])?;
     let source = Source {
         sets,
         file: Some(file),
         ..source
     };
     let own = value.clone();
-    let section = section::of(&value);
-    let fluid = fluids::of(&value);
-    let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
-    presets::apply(&mut value, &source.sets, brought.into_iter().flatten().cloned());
+    let Filled {
+        whole: mut value,
+        section,
+        fluid,
+    } = Filled::new(value, &source.sets);
+    let mut given = given(&own, &value, section.as_ref(), &steps);
+    given.scale(&mut value);
     // Numbers that are none have their fault already; `null` stands for them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
@@ -151,7 +162,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
         None => fluids::tell_unnamed(&own, &mut faults),
     }
     let case = case.map(|case| Case {
-        origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref()),
+        origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref(), given),
         ..case
     });
     violations.extend(faults.placed(&source));
@@ -165,6 +176,95 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
             Err(source.error(violations))
         }
     }
+}
+
+/// A case with what its section, its fluid and its preset bring.
+struct Filled {
+    whole: Value,
+    section: Option<section::Brought>,
+    fluid: Option<fluids::Brought>,
+}
+
+impl Filled {
+    fn new(own: Value, sets: &[SetValue]) -> Self {
+        let (section, fluid) = (section::of(&own), fluids::of(&own));
+        let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
+        let mut whole = own;
+        presets::apply(&mut whole, sets, brought.into_iter().flatten().cloned());
+        Self { whole, section, fluid }
+    }
+}
+
+/// Arguments that were put into a case together, and the sizes that it has with them; nothing where these are the last ones.
+struct Step {
+    pointers: Vec<String>,
+    sizes: Option<Option<Sizes>>,
+}
+
+/// Puts groups of arguments into a case, one after the other; returns them all, and the steps with the file as it is as the first.
+fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec<SetValue>, Vec<Step>)> {
+    let mut all: Vec<SetValue> = vec![];
+    let mut steps = vec![Step {
+        pointers: vec![],
+        sizes: None,
+    }];
+    for group in groups.into_iter().filter(|group| !group.is_empty()) {
+        if let Some(before) = steps.last_mut()
+            && group.iter().any(|set| may_change_sizes(set))
+        {
+            before.sizes = Some(Sizes::of(&Filled::new(value.clone(), &all).whole));
+        }
+        let sets = sets::apply(value, group)?;
+        if section::changes(&sets) {
+            section::release(value, file);
+        }
+        let pointers = sets
+            .iter()
+            .filter(|set| set.node.is_some())
+            .map(|set| set.pointer.clone());
+        steps.push(Step {
+            pointers: pointers.collect(),
+            sizes: None,
+        });
+        all.extend(sets);
+    }
+    // a step without sizes of its own has those of the next
+    for k in (1..steps.len()).rev() {
+        let next = steps[k].sizes;
+        let before = &mut steps[k - 1].sizes;
+        *before = before.or(next);
+    }
+    Ok((all, steps))
+}
+
+/// The sizes that the coefficients of a case `own` are given with, `whole` with what its section and its preset bring.
+fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: &[Step]) -> Given {
+    let mut given = Given::default();
+    let now = Sizes::of(whole);
+    let all = LAWS.iter().map(|law| law.pointer);
+    for (k, step) in steps.iter().enumerate() {
+        let sizes = step.sizes.unwrap_or(now);
+        match k {
+            0 => given.note(all.clone(), sizes),
+            _ => given.note(step.pointers.iter().map(String::as_str), sizes),
+        }
+    }
+    let of_section = |pointer: &str| {
+        let brought = section.filter(|section| section.values.pointer(pointer).is_some());
+        brought.is_some_and(|section| own.pointer(pointer).is_none_or(|own| section.gives(pointer, own)))
+    };
+    let preset = own
+        .get("preset")
+        .and_then(|_| Sizes::of(&Preset::MatiaGatBeam.values()));
+    for pointer in all {
+        match whole.pointer(pointer) {
+            None => given.note([pointer].into_iter(), None),
+            Some(_) if of_section(pointer) => given.note([pointer].into_iter(), now),
+            Some(_) if own.pointer(pointer).is_none() => given.note([pointer].into_iter(), preset),
+            Some(_) => {}
+        }
+    }
+    given
 }
 
 /// The fault that a file is one of a result, which says by what program it was made.

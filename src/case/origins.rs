@@ -9,7 +9,9 @@ use slcbeam_section::materials::Preset as Elastomer;
 
 use super::faults::{SetValue, is_below};
 use super::fluids;
+use super::numbers::digits;
 use super::presets::Preset;
+use super::scaling::Given;
 use super::section::Brought;
 
 /// Where a coefficient comes from.
@@ -55,7 +57,11 @@ impl fmt::Display for Origin {
 /// Origins of coefficients by their JSON pointers. They are no part of what a case is: two cases with the same numbers are
 /// equal wherever the numbers come from.
 #[derive(Clone, Debug, Default)]
-pub struct Origins(BTreeMap<String, Origin>);
+pub struct Origins {
+    known: BTreeMap<String, Origin>,
+    /// The sizes that coefficients are given with.
+    pub(super) given: Given,
+}
 
 impl PartialEq for Origins {
     fn eq(&self, _: &Self) -> bool {
@@ -88,6 +94,7 @@ impl Origins {
         sets: &[SetValue],
         preset: Option<Preset>,
         of_section: Option<&Brought>,
+        given: Given,
     ) -> Self {
         let single = whole.pointer("/network/tubes").and_then(Value::as_array);
         let single = (0..single.map_or(0, Vec::len)).map(|i| format!("/network/tubes/{i}/permeability_m4"));
@@ -108,23 +115,33 @@ impl Origins {
             };
             Some((pointer, origin))
         });
-        Self(known.chain(named(own)).collect())
+        Self {
+            known: known.chain(named(own)).collect(),
+            given,
+        }
     }
 
     /// That the coefficient at a pointer has another value now.
     pub(super) fn forget(&mut self, pointer: &str) {
-        self.0.remove(pointer);
+        self.known.remove(pointer);
     }
 
     /// The origin of the coefficient at a pointer; none where there is no such coefficient.
     pub fn get(&self, pointer: &str) -> Option<Origin> {
-        self.0.get(pointer).copied()
+        self.known.get(pointer).copied()
     }
 
     /// All of them in words.
     pub fn words(&self) -> BTreeMap<String, String> {
-        let words = |(pointer, origin): (&String, &Origin)| (pointer.clone(), origin.to_string());
-        self.0.iter().map(words).collect()
+        let words = |(pointer, origin): (&String, &Origin)| {
+            let factor = self.given.factor(pointer);
+            let scaled = match (factor - 1.0).abs() > 1e-9 {
+                true => format!(", x {} to follow modulus and sizes", digits(factor)),
+                false => String::new(),
+            };
+            (pointer.clone(), format!("{origin}{scaled}"))
+        };
+        self.known.iter().map(words).collect()
     }
 }
 

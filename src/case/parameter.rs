@@ -147,28 +147,26 @@ fn written_out(case: &Case) -> Value {
     resolved
 }
 
-/// A case with other values at JSON pointers, each of something that is there.
+/// A case with other values at JSON pointers, each of something that is there. Coefficients follow modulus and sizes by their scaling laws,
+/// but those that are among the pointers.
 ///
 /// # Errors
 /// The case is not valid with them.
 pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
     let mut resolved = written_out(case);
     section::remove(&mut resolved);
-    let mut changes = vec![];
-    for (pointer, value) in values {
-        if let Some(number) = resolved.pointer_mut(pointer) {
-            *number = (*value).into();
-        }
-        changes.push(format!("{pointer} = {value}"));
-    }
+    let mut origins = case.origins.clone();
+    origins.given.change(&mut resolved, values);
+    let changes: Vec<String> = values
+        .iter()
+        .map(|(pointer, value)| format!("{pointer} = {value}"))
+        .collect();
     let name = format!("{} with {}", case.name, changes.join(", "));
     // in lines, of which a fault quotes one
     let mut changed = parse(&format!("{resolved:#}"), Path::new(&name), Path::new(""), &[])?;
     // what the case has from elsewhere is still from there, though all of it is written out here
-    changed.origins = case.origins.clone();
-    for (pointer, _) in values {
-        changed.origins.forget(pointer);
-    }
+    values.iter().for_each(|(pointer, _)| origins.forget(pointer));
+    changed.origins = origins;
     Ok(changed)
 }
 

@@ -6,8 +6,8 @@ use std::time::Instant;
 use super::arguments::EquilibriumArguments;
 use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size, terminal};
-use crate::case::Case;
 use crate::case::parameter::Parameter;
+use crate::case::{Case, inherited};
 use crate::error::{Error, Result};
 use crate::output::equilibrium as files;
 use crate::output::kind::Kind;
@@ -69,6 +69,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     };
     let mut warnings = known::at_rest(case, &system);
     warnings.extend(known::instant(case, asked.at));
+    warnings.extend(inherited::varied(case, asked.sensitivity.iter().map(String::as_str)));
     warnings.extend(slow::warning(case, &system, at_s));
     warnings.extend(path.warnings());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use super::arguments::{FloquetArguments, ModesArguments};
 use super::uncertain::{self, Uncertain};
 use super::{line, size, terminal};
-use crate::case::Case;
 use crate::case::parameter::Parameter;
+use crate::case::{Case, inherited};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
@@ -69,6 +69,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     };
     let mut known = known::at_rest(case, &system);
     known.extend(known::instant(case, asked.at));
+    known.extend(inherited::varied(case, asked.sensitivity.iter().map(String::as_str)));
     if let Some(at) = asked.at {
         known.extend(equilibrium::trapped(case, &equilibrium::Options::at(at))?);
     }

@@ -101,8 +101,11 @@ fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: 
     if alternative.sets.is_empty() {
         return Problem::new(case, wanted);
     }
-    let sets = [&asked.case.sets[..], &alternative.sets].concat();
-    let with = size::load_with(&asked.case.case, &sets, asked.vary.len());
+    let with = size::load_varied(
+        &asked.case.case,
+        [&asked.case.sets, &alternative.sets],
+        asked.vary.len(),
+    );
     Problem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
 }
 

@@ -45,8 +45,7 @@ pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
 }
 
 fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
-    let sets: Vec<String> = asked.case.sets.iter().cloned().chain(more).collect();
-    let case = size::load_with(&asked.case.case, &sets, 0)?;
+    let case = size::load_varied(&asked.case.case, [&asked.case.sets, more.as_slice()], 0)?;
     scene::system(&case)?;
     Ok(case)
 }

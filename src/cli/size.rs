@@ -27,10 +27,16 @@ pub fn load(asked: &CaseArguments) -> Result<Case> {
 
 /// The same with derivatives by so many numbers.
 pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case> {
+    load_varied(path, [sets, &[]], parameters)
+}
+
+/// The same with arguments that are varied after those of the case, as [`case::parse_varied`] reads them.
+pub fn load_varied(path: &Path, [sets, varied]: [&[String]; 2], parameters: usize) -> Result<Case> {
     if path == Path::new("-") && std::io::stdin().is_terminal() {
         terminal::tell("slcbeam: reading a case from standard input; Ctrl-D ends it");
     }
-    let case = case::load(path, sets)?;
+    let beside = path.parent().unwrap_or(Path::new(""));
+    let case = case::parse_varied(&case::text(path)?, path, beside, sets, varied)?;
     fits(&case, parameters, 1)?;
     Ok(case)
 }

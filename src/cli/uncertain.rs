@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::arguments::{CaseArguments, UncertainArguments};
 use super::sweep::progress::Counter;
 use super::{interrupt, size, sweep, terminal};
-use crate::case::{self, Case};
+use crate::case::{self, Case, inherited};
 use crate::error::{Error, Result};
 use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
@@ -75,9 +75,9 @@ impl Uncertain {
     }
 
     fn case(&self, own: Vec<String>) -> Result<Case> {
-        let sets = [&self.sets[..], &own].concat();
         let beside = self.path.parent().unwrap_or(Path::new(""));
-        case::parse(&self.text, &self.path, beside, &sets).map_err(|error| error.by("--uncertain", &own))
+        case::parse_varied(&self.text, &self.path, beside, &self.sets, &own)
+            .map_err(|error| error.by("--uncertain", &own))
     }
 
     fn check(&self) -> Result<()> {
@@ -152,7 +152,7 @@ impl Uncertain {
             .iter()
             .map(|one| resolved.pointer(&one.pointer)?.as_f64())
             .collect();
-        Ok(Some(uncertain::judge(
+        let mut judged = uncertain::judge(
             (&self.own.name, self.own.beam.length_m),
             self.what.word(),
             &self.plan,
@@ -160,7 +160,11 @@ impl Uncertain {
             &own_values,
             &samples,
             self.slopes(),
-        )))
+        );
+        let pointers = self.plan.pointers();
+        let shape = inherited::varied(&self.own, pointers.iter().map(String::as_str));
+        judged.warnings.extend(shape);
+        Ok(Some(judged))
     }
 
     /// Derivatives about the means; of cycles, which have none of their own, by differences over two of them.

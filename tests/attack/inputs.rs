@@ -383,10 +383,7 @@ fn files_that_claim_to_be_empty_are_read_within_a_limit() {
     let path = put(dir.path(), &case);
     let output = check(&path, &[]);
     let told = stderr(&output);
-    assert!(
-        output.status.code() == Some(3) && told.contains(ENDLESS),
-        "{told}"
-    );
+    assert!(output.status.code() == Some(3) && told.contains(ENDLESS), "{told}");
     let result = dir.path().join("result");
     fs::create_dir(&result).expect("a folder");
     std::os::unix::fs::symlink(ENDLESS, result.join("summary.json")).expect("a link");

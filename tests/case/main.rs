@@ -13,6 +13,7 @@ mod origins;
 mod program;
 mod robust;
 mod rules;
+mod scaling;
 mod section;
 mod shipped;
 mod signals;

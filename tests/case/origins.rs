@@ -28,7 +28,7 @@ fn warnings(case: &Case) -> Vec<String> {
     all
 }
 
-fn shipped() -> Vec<PathBuf> {
+pub fn shipped() -> Vec<PathBuf> {
     let files = |folder: &str| fs::read_dir(folder).expect("cases").map(|f| f.expect("a file").path());
     let mut all: Vec<PathBuf> = files("cases").chain(files("cases/hard")).collect();
     all.retain(|p| p.extension().is_some_and(|e| e == "json") && !p.ends_with("schema.json"));
@@ -37,7 +37,7 @@ fn shipped() -> Vec<PathBuf> {
     all
 }
 
-fn numbers(value: &Value, at: String, all: &mut Vec<(String, String)>) {
+pub fn numbers(value: &Value, at: String, all: &mut Vec<(String, String)>) {
     match value {
         Value::Object(members) => members
             .iter()
@@ -91,7 +91,8 @@ fn a_number_set_to_its_own_value_changes_nothing() {
     assert!(looked_at > 2000, "{looked_at}");
 }
 
-/// Goal: sizes take no coefficient away; the case says that it has those of another beam, and which.
+/// Goal: coefficients follow sizes that change the shape of the section by laws that are not exact then, and the case says so, and which. The
+/// modulus, the radius of tubes and sizes in proportion change no shape.
 #[test]
 fn changed_sizes_with_coefficients_of_the_preset_warn() {
     assert_eq!(warnings(&little(&[])), [""; 0]);
@@ -104,6 +105,9 @@ fn changed_sizes_with_coefficients_of_the_preset_warn() {
             "/tubes/radius_m=0.001",
             "/beam/young_modulus_pa=2e6",
         ],
+        &["/beam/young_modulus_pa=1e6"],
+        &["/tubes/radius_m=0.002"],
+        &TWICE,
     ] {
         assert_eq!(warnings(&little(same)), [""; 0], "{same:?}");
     }
@@ -125,11 +129,6 @@ fn changed_sizes_with_coefficients_of_the_preset_warn() {
         ],
     ]
     .concat();
-    told(
-        &["/beam/young_modulus_pa=1e6"],
-        &areas,
-        &["permeability", "stiffness_factor"],
-    );
     told(&["/bladders/height_m=0.009"], &all, &["tubes"]);
     told(
         &["/bladders/width_m=0.007"],
@@ -143,26 +142,21 @@ fn changed_sizes_with_coefficients_of_the_preset_warn() {
         &["area_per_pressure", "permeability"],
     );
     told(&["/beam/length_m=0.2"], &all[..5], &["permeability"]);
-    told(
-        &["/tubes/radius_m=0.002"],
-        &["/tubes/permeability_m4", "radius 1 mm"],
-        &["bladders/permeability"],
-    );
-    // everything twice as large: ratios stay
-    let twice = [
-        "/beam/length_m=0.2",
-        "/beam/height_m=0.0432",
-        "/beam/width_m=0.1",
-        "/bladders/height_m=0.0156",
-        "/bladders/width_m=0.0156",
-        "/bladders/length_m=0.092",
-        "/tubes/radius_m=0.002",
-    ];
-    told(&twice, &areas, &["stiffness_factor"]);
 }
 
+/// Everything twice as large.
+const TWICE: [&str; 7] = [
+    "/beam/length_m=0.2",
+    "/beam/height_m=0.0432",
+    "/beam/width_m=0.1",
+    "/bladders/height_m=0.0156",
+    "/bladders/width_m=0.0156",
+    "/bladders/length_m=0.092",
+    "/tubes/radius_m=0.002",
+];
+
 /// Goal: beside what is inherited stands what these sizes would give, as `slcbeam coefficients` has it: for a silicone actuator of 18 x 20 mm
-/// areas per moment ten times as large and more. Nothing is told of a beam without bladders; sizes of which no cell can be made are.
+/// half as much again per unit of moment. Nothing is told of a beam without bladders; sizes of which no cell can be made are.
 #[test]
 fn inherited_coefficients_stand_beside_those_of_a_cell() {
     let actuator = [
@@ -205,23 +199,15 @@ fn inherited_coefficients_stand_beside_those_of_a_cell() {
         assert!((told / own - 1.0).abs() < 6e-3, "{mark}: {told} {own}");
     }
     assert!(
-        all[0].contains("Poisson's ratio of 0.49") && all[0].contains("instead of 3.75e-6"),
+        all[0].contains("Poisson's ratio of 0.49") && all[0].contains("instead of 2.51e-5"),
         "{}",
         all[0]
     );
-    assert!(
-        all[1].contains("permeability_m4") && all[1].contains("instead of 1.55e-12"),
-        "{}",
-        all[1]
-    );
+    // a smaller square has the permeability of its size
+    assert_eq!(all.len(), 1, "{all:?}");
     let dry = little(&["/fluid=null", "/bladders=null", "/tubes=null", "/beam/height_m=0.03"]);
     let told = warnings(&dry).join("");
     assert!(!told.is_empty() && !told.contains("instead of"), "{told}");
-    let tube = warnings(&little(&["/tubes/radius_m=0.002"])).join("");
-    assert!(
-        tube.contains("permeability_m4 6.28e-12 instead of 6.72e-13 (9.35 times)"),
-        "{tube}"
-    );
     // as wide as the pitch: no wall is left between neighbours
     let none = warnings(&little(&["/bladders/width_m=0.01"])).join("");
     assert!(
@@ -305,7 +291,7 @@ fn shipped_cases_inherit_nothing_of_another_beam() {
 }
 
 /// Goal: a derivative by a size is the difference of two `--set`. The sealed beam of two bladders under an end moment: width
-/// enters through the mass and the room alone, since coefficients stay; by height, through the mass. Central differences of
+/// enters through the mass, the room and the coefficients, which follow. Central differences of
 /// 1e-3 leave 1e-6 of a smooth function; both runs are at rtol 1e-8.
 #[test]
 fn derivatives_by_sizes_agree_with_set() {

@@ -125,10 +125,10 @@ fn a_limit_holds_the_pump() {
             "equilibrium",
         ],
     );
-    // the search has nothing to say; the plain command has, of coefficients of a softer beam and of fluid that comes to rest after the run
+    // the search has nothing to say; the plain command has, of fluid that comes to rest after the run
     let warnings = found["warnings"].as_array().expect("warnings");
     let codes: Vec<&str> = warnings.iter().filter_map(|one| one.as_str()?.get(..4)).collect();
-    assert!(found["found"] == true && codes == ["W002", "W017", "W037"], "{found}");
+    assert!(found["found"] == true && codes == ["W037"], "{found}");
     let by = |pointer: &str| {
         let all = found["variables"].as_array().expect("numbers");
         all.iter()
@@ -137,7 +137,7 @@ fn a_limit_holds_the_pump() {
             .clone()
     };
     assert!((number(&by(pump)["value"]) / 5e4 - 1.0).abs() < 1e-6, "{found}");
-    assert_eq!(by("/beam/young_modulus_pa")["at_bound"], "high");
+    assert_eq!(by("/beam/young_modulus_pa")["at_bound"], "low");
     assert_eq!(found["limits"][0]["reached"], true);
     let written = path(&dir, "out/optimum-case.json");
     let case = case::load(written.as_ref(), &[]).expect("a case");
@@ -317,16 +317,16 @@ fn the_end_of_a_keys_range_is_reached() {
     assert_eq!(found["found"], true, "{found}");
 }
 
-/// Goal: what the plain command warns of at the best is told with the best, that coefficients are those of another beam too, though the case of the
-/// best has them written out.
+/// Goal: what the plain command warns of at the best is told with the best, that coefficients belong to another shape of section too, though the
+/// case of the best has them written out.
 #[test]
 fn warnings_of_the_best_are_told() {
     let dir = tempfile::tempdir().expect("a folder");
-    let asked = "cases/tour-actuator.json --minimize tip_u1_m --command equilibrium --vary /beam/young_modulus_pa=9.9e6:1e7 \
+    let asked = "cases/tour-actuator.json --minimize tip_u1_m --command equilibrium --vary /beam/height_m=0.024:0.025 \
                  --set /mesh/cells_per_segment=1 --set /mesh/cells_per_bladder=1";
     let found = best(&dir, &asked.split_whitespace().collect::<Vec<_>>());
     let warnings = found["warnings"].to_string();
-    for code in ["W002", "W017"] {
+    for code in ["W017", "W037"] {
         assert!(warnings.contains(code), "{code}: {warnings}");
     }
 }

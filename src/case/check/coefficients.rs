@@ -55,10 +55,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
     let area = b.height_m * b.width_m;
     let soft = area / beam.young_modulus_pa;
-    let (per_force, per_moment) = (
-        soft / (beam.width_m * beam.height_m),
-        soft / (beam.width_m * beam.height_m.powi(2)),
-    );
+    let per_force = soft / (beam.width_m * beam.height_m);
+    let per_moment = per_force / beam.height_m;
     let [soft, per_force, per_moment] = [soft, per_force, per_moment].map(|x| (x, &SIZES[..]));
     let squares = "areas are in m^2; is this in mm^2?";
     look(

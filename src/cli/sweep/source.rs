@@ -142,8 +142,7 @@ impl Source {
 
 fn parse(path: &Path, text: &str, sets: &[String], designs: &Designs, design: &Design) -> Result<Case> {
     let own: Vec<String> = design.sets(designs.pointers()).collect();
-    let sets = [sets, &own].concat();
-    let found = case::parse(text, path, path.parent().unwrap_or(Path::new("")), &sets);
+    let found = case::parse_varied(text, path, path.parent().unwrap_or(Path::new("")), sets, &own);
     found.map_err(|error| error.by(designs.option(), &own))
 }
 

@@ -28,6 +28,7 @@ use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
 use super::wall::Laps;
 use super::waves;
+use crate::case::inherited;
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
@@ -133,6 +134,10 @@ impl<'a> Run<'a> {
         let mut warnings = known::lasting(case, &system, &characteristic);
         if !by.parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
+            warnings.extend(inherited::varied(
+                case,
+                by.parameters.iter().map(|one| one.pointer.as_str()),
+            ));
         }
         let decisions = &system.model.effects.decisions;
         let chosen = if by.parameters.is_empty() {

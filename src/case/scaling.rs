@@ -1,0 +1,310 @@
+//! Scaling laws: how the coefficients of a section follow Young's modulus and the sizes of beam, bladders and tubes.
+//!
+//! A coefficient belongs to the modulus and the sizes that it is given with. Sections of one shape and one material have coefficients
+//! that are powers of modulus and size, so that a coefficient given for one of them is known for all. A change of shape follows the same
+//! powers, to which no such proof belongs: [`super::inherited`] warns of it.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+
+use super::faults::is_below;
+
+/// Relative difference of a ratio of sizes beyond which two sections have different shapes.
+const SAME: f64 = 1e-3;
+
+/// Modulus and sizes that coefficients belong to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Sizes {
+    /// Young's modulus [Pa].
+    pub modulus: f64,
+    /// Height and width of the beam's section [m].
+    pub section: [f64; 2],
+    /// Densities of solid and fluid [kg/m³].
+    densities: [Option<f64>; 2],
+    pub bladders: Option<InBeam>,
+    /// Radius of tubes [m].
+    radius: Option<f64>,
+}
+
+/// Bladders in the beam [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct InBeam {
+    /// Length of beam to each bladder of a row.
+    pub pitch: f64,
+    pub length: f64,
+    pub height: f64,
+    pub width: f64,
+}
+
+impl Sizes {
+    /// Those of a case as JSON with all its numbers; none where one is missing or not positive.
+    pub fn of(case: &Value) -> Option<Self> {
+        let number = |pointer: &str| case.pointer(pointer).and_then(Value::as_f64).filter(|x| *x > 0.0);
+        let bladders = match case.get("bladders") {
+            Some(Value::Object(_)) => Some(InBeam {
+                pitch: number("/beam/length_m")? / number("/bladders/per_row")?,
+                length: number("/bladders/length_m")?,
+                height: number("/bladders/height_m")?,
+                width: number("/bladders/width_m")?,
+            }),
+            _ => None,
+        };
+        Some(Self {
+            modulus: number("/beam/young_modulus_pa")?,
+            section: [number("/beam/height_m")?, number("/beam/width_m")?],
+            densities: [number("/beam/density_kg_m3"), number("/fluid/density_kg_m3")],
+            bladders,
+            radius: number("/tubes/radius_m"),
+        })
+    }
+
+    /// Cross-section of a bladder [m²].
+    fn bladder_area(&self) -> Option<f64> {
+        self.bladders.map(|b| b.height * b.width)
+    }
+
+    /// `h_b w_b/E`, to which areas per pressure are proportional [m²/Pa].
+    pub fn area_per_pressure(&self) -> Option<f64> {
+        Some(self.bladder_area()? / self.modulus)
+    }
+
+    /// `h_b w_b/(E w_s h_s)`, to which areas per normal force are proportional [m²/N].
+    pub fn area_per_force(&self) -> Option<f64> {
+        let [h, w] = self.section;
+        Some(self.area_per_pressure()? / (w * h))
+    }
+
+    /// `h_b w_b/(E w_s h_s²)`, to which areas per bending moment are proportional [m²/(N m)].
+    pub fn area_per_moment(&self) -> Option<f64> {
+        Some(self.area_per_force()? / self.section[0])
+    }
+
+    /// `l_b h_b w_b/(w_s h_s)`, to which the length of a segment per p/E is proportional [m].
+    fn length_per_pressure(&self) -> Option<f64> {
+        let [h, w] = self.section;
+        Some(self.bladders?.length * self.bladder_area()? / (w * h))
+    }
+
+    /// Proportions of the plane cell.
+    fn cell(&self) -> Option<Vec<f64>> {
+        let (b, [h, _]) = (self.bladders?, self.section);
+        Some(vec![b.height / h, b.width / b.pitch, b.pitch / h])
+    }
+
+    /// Proportions of the section and its cell; of a beam without bladders those of its section.
+    fn whole(&self) -> Option<Vec<f64>> {
+        let [h, w] = self.section;
+        let Some(b) = self.bladders else {
+            return Some(vec![w / h]);
+        };
+        Some([self.cell()?, vec![b.length / w]].concat())
+    }
+
+    /// Those, and the density of the fluid as far as it counts.
+    fn massive(&self) -> Option<Vec<f64>> {
+        let [solid, fluid] = self.densities;
+        let fluid = self.bladders.and(fluid).unwrap_or(0.0);
+        Some([self.whole()?, vec![1.0 + fluid / solid?]].concat())
+    }
+}
+
+/// Scaling law of a coefficient, or of an array of them.
+pub(super) struct Law {
+    /// Where it stands.
+    pub pointer: &'static str,
+    /// What it is proportional to.
+    scale: fn(&Sizes) -> Option<f64>,
+    /// The ratios of sizes that must stay for it to be exact.
+    shape: fn(&Sizes) -> Option<Vec<f64>>,
+}
+
+const fn law(pointer: &'static str, scale: fn(&Sizes) -> Option<f64>, shape: fn(&Sizes) -> Option<Vec<f64>>) -> Law {
+    Law { pointer, scale, shape }
+}
+
+fn ratio(_: &Sizes) -> Option<f64> {
+    Some(1.0)
+}
+
+/// Scaling laws of coefficients.
+///
+/// ```text
+/// f_e, f_i, f_m ~ 1        kGA, P_k ~ E w_s h_s        ψ' ~ l_b h_b w_b/(w_s h_s²)     ζ' ~ l_b h_b w_b/(w_s h_s)
+/// a_p ~ h_b w_b/E          aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
+/// q1b ~ h_b³ w_b³/(h_b² + w_b²)                        q1c ~ r_c⁴
+/// ```
+pub(super) const LAWS: [Law; 17] = [
+    law("/beam/axial_stiffness_factor", ratio, Sizes::whole),
+    law("/beam/bending_stiffness_factor", ratio, Sizes::whole),
+    law(
+        "/beam/shear_stiffness_n",
+        |s| Some(s.modulus * s.section[0] * s.section[1]),
+        Sizes::whole,
+    ),
+    law("/beam/mass_factor", ratio, Sizes::massive),
+    law(
+        "/bladders/area_per_pressure_m2_per_pa",
+        Sizes::area_per_pressure,
+        Sizes::cell,
+    ),
+    law(
+        "/bladders/area_per_moment_m2_per_n_m/opening",
+        Sizes::area_per_moment,
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/area_per_moment_m2_per_n_m/closing",
+        Sizes::area_per_moment,
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/area_per_force_m2_per_n/tension",
+        Sizes::area_per_force,
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/area_per_force_m2_per_n/compression",
+        Sizes::area_per_force,
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/coupling/published/slope_per_pressure_rad",
+        |s| Some(s.length_per_pressure()? / s.section[0]),
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/coupling/published/length_per_pressure_m",
+        Sizes::length_per_pressure,
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/strain_energy/coefficients_n",
+        |s| Some(s.modulus * s.section[0] * s.section[1]),
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/strain_energy/curvature_1_m",
+        |s| Some(s.section[0].recip()),
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/strain_energy/upper_pressure_pa",
+        |s| Some(s.modulus),
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/strain_energy/lower_pressure_pa",
+        |s| Some(s.modulus),
+        Sizes::whole,
+    ),
+    law(
+        "/bladders/permeability_m4",
+        |s| {
+            let b = s.bladders?;
+            Some((b.height * b.width).powi(3) / (b.height.powi(2) + b.width.powi(2)))
+        },
+        |s| s.bladders.map(|b| vec![b.height / b.width]),
+    ),
+    law("/tubes/permeability_m4", |s| Some(s.radius?.powi(4)), |_| None),
+];
+
+impl Law {
+    /// The coefficient with these sizes over that with those.
+    fn factor(&self, now: &Sizes, then: &Sizes) -> f64 {
+        let pair = (self.scale)(now).zip((self.scale)(then));
+        pair.map_or(1.0, |(now, then)| now / then)
+    }
+
+    /// Whether it is exact between these sizes and those; a beam without bladders is compared by its section.
+    pub fn is_exact(&self, now: &Sizes, then: &Sizes) -> bool {
+        let bladders = then.bladders.filter(|_| now.bladders.is_some());
+        match ((self.shape)(now), (self.shape)(&Sizes { bladders, ..*then })) {
+            (Some(now), Some(then)) => {
+                now.len() == then.len() && now.iter().zip(&then).all(|(a, b)| (a - b).abs() <= SAME * b.abs())
+            }
+            _ => true,
+        }
+    }
+}
+
+/// Whether a `POINTER=JSON` argument may change sizes that coefficients belong to.
+pub(super) fn may_change_sizes(argument: &str) -> bool {
+    let pointer = argument.split('=').next().unwrap_or_default();
+    let parts = ["/beam", "/bladders", "/fluid", "/tubes", "/section", "/preset"];
+    parts.iter().any(|part| is_below(pointer, part))
+}
+
+/// Sizes that coefficients are given with, by their pointers, and those of the case.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Given {
+    then: BTreeMap<&'static str, Sizes>,
+    now: Option<Sizes>,
+}
+
+impl Given {
+    /// Notes that the coefficients at pointers, or at and below, are given with these sizes.
+    pub fn note<'a>(&mut self, pointers: impl Iterator<Item = &'a str> + Clone, sizes: Option<Sizes>) {
+        let touches = |law: &&Law| {
+            let mut pointers = pointers.clone();
+            pointers.any(|p| is_below(law.pointer, p) || is_below(p, law.pointer))
+        };
+        for law in LAWS.iter().filter(touches) {
+            match sizes {
+                Some(sizes) => self.then.insert(law.pointer, sizes),
+                None => self.then.remove(law.pointer),
+            };
+        }
+    }
+
+    /// The sizes of the case, and those that the coefficient of a law is given with.
+    pub fn pair(&self, law: &Law) -> Option<(&Sizes, &Sizes)> {
+        self.now.as_ref().zip(self.then.get(law.pointer))
+    }
+
+    /// What the coefficient at a pointer was multiplied by.
+    pub fn factor(&self, pointer: &str) -> f64 {
+        let law = LAWS.iter().find(|law| law.pointer == pointer);
+        let factor = |law: &Law| self.pair(law).map(|(now, then)| law.factor(now, then));
+        law.and_then(factor).unwrap_or(1.0)
+    }
+
+    /// Scales the coefficients of a case as JSON from the sizes that they are given with to its own.
+    pub fn scale(&mut self, case: &mut Value) {
+        self.now = Sizes::of(case);
+        for pointer in self.then.keys() {
+            if let Some(value) = case.pointer_mut(pointer) {
+                multiply(value, self.factor(pointer));
+            }
+        }
+    }
+
+    /// Puts numbers at pointers into a case as JSON that has the sizes of this, and scales its other coefficients.
+    pub fn change(&mut self, case: &mut Value, numbers: &[(&str, f64)]) {
+        let mut step = Self::default();
+        step.note(LAWS.iter().map(|law| law.pointer), Sizes::of(case));
+        for (pointer, number) in numbers {
+            if let Some(place) = case.pointer_mut(pointer) {
+                *place = (*number).into();
+            }
+        }
+        let pointers = numbers.iter().map(|(pointer, _)| *pointer);
+        step.note(pointers.clone(), None);
+        step.scale(case);
+        self.now = step.now;
+        self.note(pointers, step.now);
+    }
+}
+
+/// Multiplies a number, or every number of an array.
+fn multiply(value: &mut Value, factor: f64) {
+    match value {
+        Value::Array(items) => items.iter_mut().for_each(|item| multiply(item, factor)),
+        Value::Number(number) if factor != 1.0 => {
+            if let Some(x) = number.as_f64() {
+                *value = (factor * x).into();
+            }
+        }
+        _ => {}
+    }
+}
