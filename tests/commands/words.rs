@@ -94,6 +94,8 @@ fn summary(status: Status) -> Summary {
         characteristic: Default::default(),
         origins: Default::default(),
         growth: None,
+        growing_wave: None,
+        tables_crc32: Default::default(),
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),

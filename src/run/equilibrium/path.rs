@@ -1,7 +1,7 @@
 //! Along the path of equilibria.
 
 use super::arclength::Arclength;
-use super::faults::{fault, stopped};
+use super::faults::stopped;
 use super::natural::Natural;
 use super::predict::Trail;
 use super::state::{self, Stability, State};
