@@ -168,6 +168,7 @@ fn summary_of(status: Status) -> Summary {
         characteristic: [("f_u".to_string(), f64::INFINITY), ("t_s_s".to_string(), 0.0457)].into(),
         origins: Default::default(),
         growth: None,
+        growing_wave: None,
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),

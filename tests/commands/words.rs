@@ -94,6 +94,7 @@ fn summary(status: Status) -> Summary {
         characteristic: Default::default(),
         origins: Default::default(),
         growth: None,
+        growing_wave: None,
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
