@@ -42,6 +42,7 @@ fn finished(last: f64) -> Summary {
         characteristic: Default::default(),
         origins: Default::default(),
         growth: None,
+        growing_wave: None,
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
