@@ -30,15 +30,15 @@ pub fn warnings(case: &Case) -> Vec<String> {
     };
     moved.retain(|law| belongs(&resolved, law));
     // what is told together has one advice and one origin
-    let mut groups: Vec<((bool, Option<Origin>), Vec<&Law>)> = vec![];
+    let key = |law: &Law| (law.pointer == DUCT, case.origins.get(law.pointer));
+    let mut groups: Vec<Vec<&Law>> = vec![];
     for law in moved {
-        let key = (law.pointer == DUCT, case.origins.get(law.pointer));
-        match groups.iter_mut().find(|(other, _)| *other == key) {
-            Some((_, laws)) => laws.push(law),
-            None => groups.push((key, vec![law])),
+        match groups.iter_mut().find(|group| key(group[0]) == key(law)) {
+            Some(group) => group.push(law),
+            None => groups.push(vec![law]),
         }
     }
-    let told = groups.iter().filter_map(|(_, laws)| warning(case, &resolved, laws));
+    let told = groups.iter().filter_map(|laws| warning(case, &resolved, laws));
     told.chain(plane_cell(case)).chain(cross_term(case)).collect()
 }
 

@@ -17,7 +17,7 @@ const MATIA_GAT_BEAM: &str = include_str!("presets/matia-gat-beam.json");
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// The beam of the paper (section 3.1): 100 x 21.6 x 50 mm of silicone (2 MPa, 950 kg/m^3) with two rows of ten bladders and
-    /// tubes of 2 mm, filled with water. Its coefficients belong to these sizes. The coupling is the reciprocal one.
+    /// tubes of 2 mm, filled with water. Its coefficients follow modulus and sizes of the case. The coupling is the reciprocal one.
     MatiaGatBeam,
 }
 
@@ -38,9 +38,9 @@ impl Preset {
     }
 }
 
-/// Fills in what the case leaves to its section and its fluid, which bring `nearer`, and to its preset, those first: objects are merged, everything else that the case has stands, and what it gives as `null` is left out. What they bring stays what it is whatever
-/// else the case has, so that a number set to its own value changes nothing; only a cross-section from which a permeability is to
-/// follow takes theirs away.
+/// Fills in what the case leaves to its section and its fluid, which bring `nearer`, and to its preset, those first: objects are merged,
+/// everything else that the case has stands, and what it gives as `null` is left out. A cross-section from which a permeability is to follow takes
+/// theirs away; [`super::scaling`] scales the coefficients afterwards to the case's modulus and sizes.
 pub fn apply(case: &mut Value, sets: &[SetValue], nearer: impl IntoIterator<Item = Value>) {
     // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
     let preset = case.get("preset").map(|_| Preset::MatiaGatBeam.values());

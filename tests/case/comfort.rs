@@ -64,8 +64,9 @@ fn what_stands_in_the_case_or_an_argument_goes_before_the_preset() {
     assert!(wide["tubes"].get("permeability_m4").is_none(), "that of the radius");
     let wide = resolved(LITTLE, &["/tubes/radius_m=0.002"]);
     assert_eq!(
-        wide["tubes"]["permeability_m4"], 6.72e-13,
-        "sizes take no coefficient away"
+        wide["tubes"]["permeability_m4"],
+        16.0 * 6.72e-13,
+        "the preset's follows the radius"
     );
 }
 

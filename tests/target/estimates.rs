@@ -43,6 +43,7 @@ fn finished(last: f64) -> Summary {
         origins: Default::default(),
         growth: None,
         growing_wave: None,
+        tables_crc32: Default::default(),
         accuracy: None,
         estimate: None,
         sensitivities: Default::default(),
