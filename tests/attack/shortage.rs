@@ -31,9 +31,9 @@ fn no_thread_and_little_memory_are_no_panic() {
         match output.status.code() {
             Some(0) => finished += 1,
             Some(3 | 5) => assert!(!told.is_empty()),
-            // the loader of the system needs some, too, and may end without a word
+            // the loader of the system needs some, too, and may end without a word or leave not one byte
             Some(127) => {}
-            None if told.is_empty() => {}
+            None if told.is_empty() || told.starts_with("memory allocation of") => {}
             other => panic!("{kilobytes} kB end with {other:?}: {told}"),
         }
     }

@@ -118,9 +118,10 @@ fn a_run_fills_a_result_folder() {
             "max_abs_at_s",
             "extreme",
             "window_max_abs",
+            "window_extreme",
             "window_rms",
         ];
-        let wanted: Vec<_> = all.into_iter().filter(|key| signed || *key != "extreme").collect();
+        let wanted: Vec<_> = all.into_iter().collect();
         assert_eq!(keys(&summary["quantities"][quantity]), wanted, "{quantity}");
         let of = |key: &str| summary["quantities"][quantity][key].as_f64();
         assert_eq!(of("extreme").map(f64::abs), of("max_abs").filter(|_| signed));
@@ -217,7 +218,7 @@ fn json_on_request() {
 fn check_prints_and_writes_nothing() {
     let dir = TempDir::new().unwrap();
     let case = fs::canonicalize("cases/wiring-2.json").unwrap();
-    let output = slcbeam(&["check", case.to_str().unwrap()])
+    let output = slcbeam(&["check", "--verbose", case.to_str().unwrap()])
         .current_dir(dir.path())
         .output()
         .unwrap();
@@ -234,6 +235,21 @@ fn check_prints_and_writes_nothing() {
         assert!(text.contains(part), "check lacks {part}: {text}");
     }
     assert!(names(dir.path()).is_empty());
+}
+
+/// Goal: without `--verbose` a terminal shows all of it, columns of words begin at one place, and equal networks share a line.
+#[test]
+fn check_fits_into_sixty_lines() {
+    for name in ["wiring-1", "tour-harvester", "harvester-crossover-wave", "tour-sensor"] {
+        let output = slcbeam(&["check", &format!("cases/{name}.json")]).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        assert!(text.lines().count() < 60, "{}: {text}", text.lines().count());
+        let slowest = text.lines().filter(|line| line.contains("slowest_time_of_network"));
+        assert!(slowest.count() <= 3, "{text}");
+        let about = |line: &str, words: &str| line.find(words).map(|at| line[..at].chars().count());
+        let places = ["resistance to bending", "mass per length"].map(|words| text.lines().find_map(|l| about(l, words)));
+        assert!(places[0].is_some() && places[0] == places[1], "{text}");
+    }
 }
 
 #[test]
