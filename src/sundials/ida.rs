@@ -7,7 +7,7 @@ use sundials_sys as s;
 use super::callbacks::{self, Bridge};
 use super::context::{Context, Messages, keep};
 use super::diagnosis::meaning;
-use super::integrals::Integrals;
+use super::integrals;
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
 use super::sensitivities::Carried;
@@ -49,10 +49,10 @@ impl Drop for Memory {
 pub struct Ida<D: Dae> {
     pub(super) memory: Memory,
     pub(super) solver: LinearSolver,
-    pub(super) y: Vector,
-    pub(super) yp: Vector,
+    y: Vector,
+    yp: Vector,
     pub(super) scratch: Vector,
-    pub(super) integrals: Integrals,
+    pub(super) quadratures: Option<Vector>,
     pub(super) sensitivities: Option<Carried>,
     pub(super) messages: Shared<Messages>,
     pub(super) bridge: Shared<Bridge<D>>,
@@ -78,7 +78,12 @@ impl<D: Dae> Ida<D> {
             .map(|&differential| f64::from(u8::from(differential)))
             .collect();
         let (y, yp, mut scratch) = (vector(y0)?, vector(yp0)?, vector(&id)?);
-        let integrals = Integrals::new(dae.integrals(), n);
+        let integrals = dae.integrals();
+        let quadratures = if integrals == 0 {
+            None
+        } else {
+            Some(vector(&vec![0.0; integrals])?)
+        };
         let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let mut bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
@@ -109,6 +114,7 @@ impl<D: Dae> Ida<D> {
                 s::IDASetMaxNonlinIters(raw, options.max_newton_iterations.into()),
                 s::IDASetMaxErrTestFails(raw, options.max_error_test_failures.into()),
                 s::IDASetMaxNumSteps(raw, -1),
+                integrals::begin::<D>(raw, quadratures.as_ref()),
             ]
         };
         if let Some(&code) = flags.iter().find(|&&flag| flag != s::IDA_SUCCESS) {
@@ -129,7 +135,7 @@ impl<D: Dae> Ida<D> {
             y,
             yp,
             scratch,
-            integrals,
+            quadratures,
             sensitivities: None,
             messages,
             bridge,
@@ -162,8 +168,7 @@ impl<D: Dae> Ida<D> {
         } else {
             stop
         };
-        self.begin_integrals()?;
-        let (from, before) = (self.time, self.number(s::IDAGetNumSteps));
+        let before = self.number(s::IDAGetNumSteps);
         self.bridge.get_mut().recoverable = None;
         let mut time = self.time;
         // SAFETY: everything IDA points to is alive, and no reference into it is held during the call.
@@ -185,9 +190,6 @@ impl<D: Dae> Ida<D> {
             *count += taken;
         }
         let size = if taken == 0 { 0.0 } else { self.last_step() };
-        if taken > 0 {
-            self.advance_integrals(from, order)?;
-        }
         Ok(Step {
             time,
             size,
@@ -243,7 +245,10 @@ impl<D: Dae> Ida<D> {
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         let counters = self.counters();
         self.solver.system_mut().lu.forget();
-        self.integrals.restart();
+        let reset = self.reset_integrals();
+        if reset < 0 {
+            return Err(self.failure(reset));
+        }
         self.y.entries_mut().copy_from_slice(y);
         self.yp.entries_mut().copy_from_slice(yp);
         // SAFETY: IDA and the vectors, which it copies, are alive.

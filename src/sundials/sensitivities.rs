@@ -1,4 +1,4 @@
-//! Sensitivities to parameters carried along by IDA's own formula (IDAS).
+//! Sensitivities to parameters carried along by IDA's own formula (IDAS), and those of the integrals.
 
 use std::ffi::{c_int, c_void};
 
@@ -6,7 +6,6 @@ use sundials_sys as s;
 
 use super::callbacks::seen;
 use super::ida::Ida;
-use super::integrals::Quadrature;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, EvaluationError};
 use crate::integrate::IntegrationError;
@@ -50,13 +49,7 @@ impl Slopes {
 pub(super) struct Carried {
     s: Vec<Vector>,
     sp: Vec<Vector>,
-}
-
-impl Carried {
-    /// Every sensitivity with its rate, as last read.
-    pub fn along(&self) -> impl Iterator<Item = [&[f64]; 2]> {
-        self.s.iter().zip(&self.sp).map(|(s, sp)| [s.entries(), sp.entries()])
-    }
+    integrals: Vec<Vector>,
 }
 
 fn raws(vectors: &[Vector]) -> Vec<s::N_Vector> {
@@ -124,6 +117,40 @@ unsafe extern "C" fn residuals<D: Dae>(
     code
 }
 
+/// `IDAQuadSensRhsFn` with a [`Bridge`] as user data.
+#[allow(clippy::too_many_arguments)] // SUNDIALS' signature
+unsafe extern "C" fn integrands<D: Dae>(
+    count: c_int,
+    t: f64,
+    y: s::N_Vector,
+    yp: s::N_Vector,
+    along: *mut s::N_Vector,
+    along_rates: *mut s::N_Vector,
+    _: s::N_Vector,
+    out: *mut s::N_Vector,
+    data: *mut c_void,
+    _: s::N_Vector,
+    _: s::N_Vector,
+    _: s::N_Vector,
+) -> c_int {
+    let count = count as usize;
+    // SAFETY: as in `residuals`.
+    let (bridge, y, yp) = unsafe { seen::<D>(data, y, yp) };
+    // SAFETY: as above.
+    let (along, along_rates) = unsafe { (slices(along, count), slices(along_rates, count)) };
+    // SAFETY: as above.
+    let mut out = unsafe { slices_mut(out, count) };
+    let begin = std::time::Instant::now();
+    let code = bridge.call(|dae| {
+        for (k, out) in out.iter_mut().enumerate() {
+            dae.integrand_derivative(k, t, [y, yp], [along[k], along_rates[k]], out)?;
+        }
+        Ok(())
+    });
+    bridge.integrand_wall += begin.elapsed();
+    code
+}
+
 impl<D: Dae> Ida<D> {
     /// `[E41]` Of `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
     ///
@@ -161,18 +188,15 @@ impl<D: Dae> Ida<D> {
         let carried = Carried {
             s: vectors(from)?,
             sp: vectors(rates)?,
+            integrals: vectors(&vec![vec![0.0; integrals]; if integrals == 0 { 0 } else { count }])?,
         };
-        if integrals > 0 {
-            self.integrals
-                .of_parameters
-                .resize_with(count, || Quadrature::new(integrals));
-        }
         let bridge = self.bridge.get();
         let (relative, least) = (
             bridge.relative,
             bridge.absolute.iter().copied().fold(f64::INFINITY, f64::min),
         );
         let (mut from, mut rates, mut absolute) = (raws(&carried.s), raws(&carried.sp), vec![least; count]);
+        let mut zeros = raws(&carried.integrals);
         let memory = self.memory.0;
         // SAFETY: IDA is alive and copies vectors and tolerances; the arrays have `count` entries each.
         let flags = unsafe {
@@ -187,6 +211,11 @@ impl<D: Dae> Ida<D> {
                 ),
                 s::IDASensSStolerances(memory, relative, absolute.as_mut_ptr()),
                 s::IDASetSensErrCon(memory, 1),
+                if zeros.is_empty() {
+                    s::IDA_SUCCESS
+                } else {
+                    s::IDAQuadSensInit(memory, Some(integrands::<D>), zeros.as_mut_ptr())
+                },
             ]
         };
         self.sensitivities = Some(carried);
@@ -207,9 +236,18 @@ impl<D: Dae> Ida<D> {
         for (vector, from) in carried.s.iter_mut().zip(from).chain(carried.sp.iter_mut().zip(rates)) {
             vector.entries_mut().copy_from_slice(from);
         }
-        let (mut from, mut rates) = (raws(&carried.s), raws(&carried.sp));
+        carried
+            .integrals
+            .iter_mut()
+            .for_each(|zeros| zeros.entries_mut().fill(0.0));
+        let (mut from, mut rates, mut zeros) = (raws(&carried.s), raws(&carried.sp), raws(&carried.integrals));
         // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry a parameter.
-        let flag = unsafe { s::IDASensReInit(self.memory.0, s::IDA_STAGGERED, from.as_mut_ptr(), rates.as_mut_ptr()) };
+        let flag = unsafe {
+            match s::IDASensReInit(self.memory.0, s::IDA_STAGGERED, from.as_mut_ptr(), rates.as_mut_ptr()) {
+                s::IDA_SUCCESS if !zeros.is_empty() => s::IDAQuadSensReInit(self.memory.0, zeros.as_mut_ptr()),
+                flag => flag,
+            }
+        };
         if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
     }
 
@@ -235,23 +273,23 @@ impl<D: Dae> Ida<D> {
         if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
     }
 
-    /// Reads the first `count` sensitivities and their rates at a time [s] within the last step; returns IDA's flag.
-    pub(super) fn read_sensitivities(&mut self, time: f64, count: usize) -> c_int {
-        let mut flag = s::IDA_SUCCESS;
-        for (k, (s, sp)) in self
-            .sensitivities
-            .iter()
-            .flat_map(|c| c.s.iter().zip(&c.sp))
-            .take(count)
-            .enumerate()
-        {
-            for (derivative, place) in [s, sp].into_iter().enumerate() {
-                // SAFETY: IDA and the vector are alive.
-                let next =
-                    unsafe { s::IDAGetSensDky1(self.memory.0, time, derivative as c_int, k as c_int, place.raw()) };
-                flag = flag.min(next);
-            }
+    /// Sensitivities of the integrals since the last restart to parameter k, at a time [s] within the last step.
+    ///
+    /// Panics when `out` has another length than the integrals.
+    pub fn integral_sensitivity(&mut self, k: usize, time: f64, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
+        let Some(vector) = self.sensitivities.as_ref().and_then(|carried| carried.integrals.get(k)) else {
+            return Ok(());
+        };
+        if !self.stepped {
+            out.fill(0.0);
+            return Ok(());
         }
-        flag
+        // SAFETY: IDA and the vector are alive.
+        let flag = unsafe { s::IDAGetQuadSensDky1(self.memory.0, time, 0, k as c_int, vector.raw()) };
+        if flag < 0 {
+            return Err(self.failure(flag));
+        }
+        out.copy_from_slice(vector.entries());
+        Ok(())
     }
 }

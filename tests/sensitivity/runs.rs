@@ -38,7 +38,7 @@ fn deviations(value: &Value, pointer: &str, part: f64) -> Vec<(String, f64)> {
 }
 
 /// Every column agrees: to 5e-5 what is read off the state, to 1e-3 what is integrated. Runs at rtol 1e-8 leave some 1e-7 in the state
-/// and, over differences of `part`, a hundred times that in the reference; integrals go over the steps' polynomials.
+/// and, over differences of `part`, a hundred times that in the reference; integrals are carried without error control.
 fn agree(value: &Value, pointer: &str, part: f64) {
     for (name, deviation) in deviations(value, pointer, part) {
         println!("{name} by {pointer}: {deviation:.1e}");
