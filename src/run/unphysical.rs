@@ -73,7 +73,7 @@ impl Unphysical {
             let [lowest, when] = met.lowest;
             Code::Boiling.warning(format!(
                 "The liquid is below its vapor pressure: {} gauge in {} at {} (limit {}, {of}; first below it at {}). A real liquid boils there, so that later states \
-                 are not physical. Reduce the suction, or raise /fluid/ambient_pressure_pa.",
+                 are not physical. Check sign and unit, or reduce the suction.",
                 quantity(lowest, "Pa", 4),
                 self.place(met.place),
                 at(when),

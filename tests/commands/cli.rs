@@ -110,8 +110,7 @@ fn a_run_fills_a_result_folder() {
         (&"two-bladders".into(), &"finished".into())
     );
     assert_eq!(summary["time_s"].as_f64(), Some(0.002));
-    // a pressure may be largest below zero in one bladder and above in another: it has no sign
-    for (quantity, signed) in [("tip_u1_m", true), ("tip_u3_m", true), ("max_pressure_pa", false)] {
+    for quantity in ["tip_u1_m", "tip_u3_m", "max_pressure_pa"] {
         let all = [
             "final",
             "max_abs",
@@ -121,10 +120,9 @@ fn a_run_fills_a_result_folder() {
             "window_extreme",
             "window_rms",
         ];
-        let wanted: Vec<_> = all.into_iter().collect();
-        assert_eq!(keys(&summary["quantities"][quantity]), wanted, "{quantity}");
+        assert_eq!(keys(&summary["quantities"][quantity]), all, "{quantity}");
         let of = |key: &str| summary["quantities"][quantity][key].as_f64();
-        assert_eq!(of("extreme").map(f64::abs), of("max_abs").filter(|_| signed));
+        assert_eq!(of("extreme").map(f64::abs), of("max_abs"));
     }
     assert_eq!(
         keys(&summary["quantities"]["input_energy_j"]),
@@ -247,7 +245,8 @@ fn check_fits_into_sixty_lines() {
         let slowest = text.lines().filter(|line| line.contains("slowest_time_of_network"));
         assert!(slowest.count() <= 3, "{text}");
         let about = |line: &str, words: &str| line.find(words).map(|at| line[..at].chars().count());
-        let places = ["resistance to bending", "mass per length"].map(|words| text.lines().find_map(|l| about(l, words)));
+        let places =
+            ["resistance to bending", "mass per length"].map(|words| text.lines().find_map(|l| about(l, words)));
         assert!(places[0].is_some() && places[0] == places[1], "{text}");
     }
 }

@@ -72,7 +72,9 @@ fn water_hammer_of_a_lumped_line() {
     let flows = memory.column("port_a_flow").unwrap();
     let before = times.iter().position(|t| *t >= shut).unwrap() - 1;
     let inertance = 4.0 / 3.0 * 1000.0 / (PI * radius * radius);
-    let exact = flows[before] * (inertance * modulus / volume).sqrt();
+    // halves of both tubes stand at the tank
+    let halves = 0.5 * (1.0 + 0.001) * PI * radius * radius;
+    let exact = flows[before] * (inertance * modulus / (volume + halves)).sqrt();
     let peak = memory
         .column("accumulator_b_pressure")
         .unwrap()

@@ -225,7 +225,7 @@ fn figures_at_probes_are_those_of_the_motion() {
 /// [E77], figures of the window are those of the history too. Tolerance: the history's trapezoids, and the cubics over long steps.
 #[test]
 fn figures_on_a_mesh_of_fourth_order_are_those_of_the_motion() {
-    let sets = ["/mesh/order=4", "/time/output_interval_s=0.01"].map(String::from);
+    let sets = ["/mesh/order=4", "/time/output_interval_s=0.001"].map(String::from);
     let case = case::load(Path::new("cases/air-actuator.json"), &sets).unwrap();
     let mut memory = Memory::default();
     let summary = dynamics::run(&case, &mut memory).unwrap().summary;

@@ -107,7 +107,6 @@ fn a_liquid_below_its_vapor_pressure_is_told() {
         (-100e3, json!({"preset": "water"}), true),
         (-98e3, json!({"preset": "water"}), false),
         (-100e3, json!({}), false),
-        (-150e3, json!({"ambient_pressure_pa": 3e5}), false),
         (150e3, json!({}), false),
     ] {
         let warnings = run(&by_pressure(pressure, fluid.clone())).warnings;

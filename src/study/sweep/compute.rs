@@ -129,6 +129,7 @@ fn put(found: &mut Found, name: &str, quantity: &Quantity) {
     }
     found.put(format!("{name}.max_abs_at_s"), quantity.max_abs_at_s);
     found.put(format!("{name}.extreme"), quantity.extreme);
+    found.put(format!("{name}.window_extreme"), quantity.window_extreme);
     found.put(format!("{name}.window_power_w"), quantity.window_power_w);
     found.put(format!("{name}.final_error"), quantity.final_error);
     found.put(format!("{name}.window_error"), quantity.window_error);

@@ -228,7 +228,7 @@ fn unsealed(line: &str) -> String {
 fn changed_rows_are_not_used() {
     let dir = TempDir::new().expect("a folder");
     let [out, other] = ["out", "other"].map(|name| path(&dir, name));
-    let vary = ["--vary", &format!("{AREA}=1e-10,2e-10,3e-10"), "--jobs", "1", "--lean"];
+    let vary = ["--vary", &format!("{AREA}=1e-10,2e-10,3e-10"), "--jobs", "1"];
     well(&swept(&out, &vary));
     let whole = table(&out);
     let journal = Path::new(&out).join("designs.jsonl");
@@ -268,12 +268,9 @@ fn changed_rows_are_not_used() {
     assert!(said.err.contains("1 row is not used (line 2)"), "{}", said.err);
     assert_eq!(table(&out), whole);
 
-    well(&swept(
-        &other,
-        &["--vary", &format!("{AREA}=1e-10,2e-10,4e-10"), "--lean"],
-    ));
+    well(&swept(&other, &["--vary", &format!("{AREA}=1e-10,2e-10,4e-10")]));
     fs::copy(&journal, Path::new(&other).join("designs.jsonl")).expect("a copy");
-    let said = swept(&other, &["--vary", &format!("{AREA}=1e-10,2e-10,4e-10"), "--lean"]);
+    let said = swept(&other, &["--vary", &format!("{AREA}=1e-10,2e-10,4e-10")]);
     assert!(said.err.contains("rows are not used"), "{}", said.err);
 }
 
