@@ -9,7 +9,6 @@ use slcbeam::run::dynamics::simulator::{self, Input, Snapshot};
 use slcbeam::run::record::{Control, Progress};
 
 use crate::case::Case;
-use slcbeam::error::Error;
 
 use crate::errors::{broken, raised};
 use crate::watch::Watch;

@@ -23,16 +23,28 @@ use crate::run::needs::Needs;
 use crate::run::{known, method, slow};
 
 /// Characteristic numbers that `--verbose` adds: scales that others are made of.
-const DETAILS: [&str; 9] = [
+const DETAILS: [&str; 21] = [
+    "area_change_estimate",
+    "base_acceleration_m_s2",
+    "bladder_compliance_m3_pa",
     "bladder_fill",
+    "bladder_resistance_pa_s_m3",
     "f_u",
     "force_scale_n",
+    "forcing_frequency_hz",
     "gyration_radius_squared_m2",
+    "inertial_compression_n_m",
     "mass_factor",
+    "mass_per_length_kg_m",
+    "mathieu_frequency_ratio",
+    "mathieu_growth_bound_per_s",
+    "mathieu_modulation",
     "self_weight_buckling_load_n_m",
+    "slenderness",
     "t_f_s",
     "t_s_over_t_f",
     "t_s_s",
+    "tube_resistance_pa_s_m3",
 ];
 
 /// Lines for networks of unlike times without `--verbose`.
@@ -100,11 +112,16 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     );
     if !findings.is_empty() {
         text += "\ncoupling\n";
-        text += &listed(findings.iter().map(|f| {
+        let good = findings.iter().filter(|f| f.good).count();
+        let shown = findings.iter().filter(|f| asked.verbose || !f.good);
+        text += &listed(shown.map(|f| {
             let verdict = if f.good { "good" } else { "BAD" };
             let wanted = format!("wanted {}: {verdict}", f.wanted);
             [f.name.to_string(), significant(f.value, 5), wanted]
         }));
+        if !asked.verbose {
+            let _ = writeln!(text, "  {good} of {} criteria hold", findings.len());
+        }
     }
     text += "\ncoefficients\n";
     let mut origins: Vec<[String; 2]> = case.origins.words().into_iter().map(<[String; 2]>::from).collect();
@@ -120,7 +137,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     }
     text += &listed(origins.into_iter());
     text += "\neffects\n";
-    let by_case = |cause: &Cause| matches!(cause, Cause::Given(_)) && !asked.verbose;
+    let by_case = |cause: &Cause| matches!(cause, Cause::Given(_) | Cause::Filled(_)) && !asked.verbose;
     let (given, decided): (Vec<_>, Vec<_>) = system.model.effects.decisions.iter().partition(|d| by_case(&d.cause));
     text += &listed(decided.iter().map(|d| {
         let on = if d.on { "on" } else { "off" };

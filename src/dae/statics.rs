@@ -116,7 +116,7 @@ impl StaticBeam {
         let replaced = |row: usize| closed.iter().position(|c| c.row == row);
         let mut starts = vec![0];
         let (mut rows, mut from) = (vec![], vec![]);
-        for column in 0..n {
+        for (column, mass) in masses.iter().enumerate() {
             let kept = inner.column(column).map(|e| (inner.rows[e], e));
             let kept = kept.filter(|(row, _)| replaced(*row as usize).is_none());
             let mut entries: Vec<(i64, Entry)> = kept.map(|(row, entry)| (row, Entry::Own(entry))).collect();
@@ -126,7 +126,7 @@ impl StaticBeam {
             };
             let volumes = closed.iter().filter_map(|c| Some((c.row as i64, weight(c)?)));
             entries.extend(volumes.map(|(row, weight)| (row, Entry::Volume(weight))));
-            if masses[column] > 0.0 && entries.iter().all(|(row, _)| *row != column as i64) {
+            if *mass > 0.0 && entries.iter().all(|(row, _)| *row != column as i64) {
                 entries.push((column as i64, Entry::Empty));
             }
             entries.sort_unstable_by_key(|(row, _)| *row);

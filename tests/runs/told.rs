@@ -98,11 +98,11 @@ fn every_command_tells_what_is_known_of_a_case() {
 /// nearer.
 #[test]
 fn modes_tell_what_cells_along_bladders_do_to_rates() {
-    let said = say("modes", &through(), &["--count", "2"]);
+    let said = say("modes", &through(), &["--count", "2", "--kind", "decay"]);
     let fine = say(
         "modes",
         &through(),
-        &["--count", "2", "--set", "/mesh/cells_per_bladder=16"],
+        &["--count", "2", "--kind", "decay", "--set", "/mesh/cells_per_bladder=16"],
     );
     assert!(
         warned(&said, "W021").is_some_and(|w| w.contains("the rate of mode 2")),

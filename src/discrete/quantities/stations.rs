@@ -106,7 +106,7 @@ pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
         if place < ports {
             place % 4 < 2
         } else {
-            (place - ports) % 2 == 0
+            (place - ports).is_multiple_of(2)
         }
     };
     let all = of_network(system, false).into_iter().enumerate();

@@ -82,7 +82,7 @@ impl Bounded for Profile {
 
     fn parted(&self, to: f64, out: &mut Vec<f64>) {
         match self {
-            Self::Table(table) => out.extend(&table.positions),
+            Self::Table(table) => out.extend(table.positions.iter().filter(|at| **at <= to)),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.parted(to, out)),
             _ => {}
         }
