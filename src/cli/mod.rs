@@ -103,7 +103,7 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
 }
 
 /// Memory without which not even a message can be made of a case [byte].
-const LEAST: f64 = 16e6;
+const LEAST: f64 = 32e6;
 
 /// Refuses to begin where the process may have hardly any memory: an allocation that fails later ends it without a message.
 fn room() -> Result<()> {
@@ -114,7 +114,7 @@ fn room() -> Result<()> {
             source: io::Error::new(
                 io::ErrorKind::OutOfMemory,
                 format!(
-                    "{:.0} MB of addresses are left (at least {:.0} MB); raise the limit (ulimit -v)",
+                    "{:.0} MB of address space are left (at least {:.0} MB); raise the limit (ulimit -v)",
                     left / 1e6,
                     LEAST / 1e6
                 ),

@@ -1,8 +1,11 @@
 //! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
 
+use std::ops::Range;
+
 use super::chain::{self, Chain, LANES};
 use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
+use crate::discrete::ledger::EnergyRate;
 use crate::discrete::residual::around::mean_direction;
 use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
@@ -371,6 +374,10 @@ impl Dae for BeamDae {
 
     fn integrals(&self) -> usize {
         ledger::rate_count(&self.system)
+    }
+
+    fn integrals_of_powers(&self) -> Range<usize> {
+        0..EnergyRate::ImpulseX as usize
     }
 
     fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), EvaluationError> {

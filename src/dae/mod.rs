@@ -15,6 +15,8 @@ pub use corotation::{Corotation, Vectors};
 pub use perturbed::PerturbedSystems;
 pub use statics::StaticBeam;
 
+use std::ops::Range;
+
 use crate::numerics::Planar;
 use crate::sparse::Pattern;
 
@@ -83,6 +85,11 @@ pub trait Dae {
     /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
     fn integrals(&self) -> usize {
         0
+    }
+
+    /// The integrals of powers: their integrands are quadratic in the state, those of the others linear.
+    fn integrals_of_powers(&self) -> Range<usize> {
+        0..0
     }
 
     /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Allocates nothing.

@@ -94,10 +94,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&Mathieu>) -> BT
             );
         }
     }
-    put(
-        "first_axial_frequency_hz",
-        axial_wave_number(model) / (2.0 * PI * l) * (ea / m).sqrt(),
-    );
+    put("first_axial_frequency_hz", first_axial_frequency(model) / (2.0 * PI));
     if is_cantilever(model) {
         put("euler_load_n", PI * PI * ei / (4.0 * l * l));
         put("self_weight_buckling_load_n_m", 7.837_347_438_94 * ei / l.powi(3));
@@ -222,6 +219,12 @@ pub fn first_wave_number(ends: &[ResolvedEnd; 2]) -> Option<f64> {
         }
         _ => 0.5 * PI,
     })
+}
+
+/// Angular frequency of the first axial mode [1/s].
+pub fn first_axial_frequency(model: &Model) -> f64 {
+    let section = &model.section;
+    axial_wave_number(model) / model.length * (section.axial_stiffness / section.mass_per_length).sqrt()
 }
 
 /// `k l_s` of the first axial mode.

@@ -7,7 +7,7 @@ use sundials_sys as s;
 use super::callbacks::{self, Bridge};
 use super::context::{Context, Messages, keep};
 use super::diagnosis::meaning;
-use super::integrals;
+use super::integrals::{self, Correction};
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
 use super::sensitivities::Carried;
@@ -53,6 +53,7 @@ pub struct Ida<D: Dae> {
     yp: Vector,
     pub(super) scratch: Vector,
     pub(super) quadratures: Option<Vector>,
+    pub(super) correction: Correction,
     pub(super) sensitivities: Option<Carried>,
     pub(super) messages: Shared<Messages>,
     pub(super) bridge: Shared<Bridge<D>>,
@@ -78,7 +79,7 @@ impl<D: Dae> Ida<D> {
             .map(|&differential| f64::from(u8::from(differential)))
             .collect();
         let (y, yp, mut scratch) = (vector(y0)?, vector(yp0)?, vector(&id)?);
-        let integrals = dae.integrals();
+        let (integrals, correction) = (dae.integrals(), Correction::new(dae.integrals_of_powers()));
         let quadratures = if integrals == 0 {
             None
         } else {
@@ -136,6 +137,7 @@ impl<D: Dae> Ida<D> {
             yp,
             scratch,
             quadratures,
+            correction,
             sensitivities: None,
             messages,
             bridge,
@@ -190,6 +192,12 @@ impl<D: Dae> Ida<D> {
             *count += taken;
         }
         let size = if taken == 0 { 0.0 } else { self.last_step() };
+        if taken > 0 {
+            let flag = self.correct_integrals(size, order);
+            if flag < 0 {
+                return Err(self.failure(flag));
+            }
+        }
         Ok(Step {
             time,
             size,

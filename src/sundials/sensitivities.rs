@@ -6,6 +6,7 @@ use sundials_sys as s;
 
 use super::callbacks::seen;
 use super::ida::Ida;
+use super::integrals::Correction;
 use super::vector::{Vector, entries, entries_mut};
 use crate::dae::{Dae, EvaluationError};
 use crate::integrate::IntegrationError;
@@ -49,7 +50,8 @@ impl Slopes {
 pub(super) struct Carried {
     s: Vec<Vector>,
     sp: Vec<Vector>,
-    integrals: Vec<Vector>,
+    pub(super) integrals: Vec<Vector>,
+    pub(super) corrections: Vec<Correction>,
 }
 
 fn raws(vectors: &[Vector]) -> Vec<s::N_Vector> {
@@ -189,6 +191,9 @@ impl<D: Dae> Ida<D> {
             s: vectors(from)?,
             sp: vectors(rates)?,
             integrals: vectors(&vec![vec![0.0; integrals]; if integrals == 0 { 0 } else { count }])?,
+            corrections: (0..count)
+                .map(|_| Correction::new(self.dae().integrals_of_powers()))
+                .collect(),
         };
         let bridge = self.bridge.get();
         let (relative, least) = (
@@ -240,6 +245,7 @@ impl<D: Dae> Ida<D> {
             .integrals
             .iter_mut()
             .for_each(|zeros| zeros.entries_mut().fill(0.0));
+        carried.corrections.iter_mut().for_each(Correction::restart);
         let (mut from, mut rates, mut zeros) = (raws(&carried.s), raws(&carried.sp), raws(&carried.integrals));
         // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry a parameter.
         let flag = unsafe {
@@ -290,6 +296,9 @@ impl<D: Dae> Ida<D> {
             return Err(self.failure(flag));
         }
         out.copy_from_slice(vector.entries());
+        if let Some(carried) = &self.sensitivities {
+            carried.corrections[k].add(time, out);
+        }
         Ok(())
     }
 }

@@ -9,6 +9,7 @@ mod flips;
 mod folders;
 mod full;
 mod fuzz;
+mod fuzz_data;
 mod inputs;
 mod outputs;
 mod pipes;

@@ -73,7 +73,7 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
         && system.model.effects.has(Effect::FlowAlongBladders)
     {
         let along = "/mesh/cells_per_bladder";
-        for port in ports::ports(case, wet).into_iter().filter(|_| later) {
+        for port in ports::ports(case, &system.model, wet).into_iter().filter(|_| later) {
             let on = |cells| port.left_out(cells);
             all.push(finding(port.pointer(), fluid.cells_per_bladder, along, on));
         }

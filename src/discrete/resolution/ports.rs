@@ -5,19 +5,21 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::TAU;
 
-use crate::case::schema::{BladderEnd, Case};
+use crate::case::schema::{BladderEnd, Case, Effect};
 use crate::functions::signals::{Clock, Signal};
-use crate::model::Wet;
 use crate::model::network::{Feed, Node, PressurePort, Source};
+use crate::model::{Model, Wet, characteristic};
 
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
+/// A jump of pressure makes the beam ring along; the overshoot of the pressure has this multiple of the first frequency, measured.
+const RUNG: f64 = 3.0;
 /// What comes back to less than this part of its largest value is a pulse.
 const BACK: f64 = 0.5;
 
-/// What a port does to the bladders behind it.
+/// What a port or a pump does to the bladders behind it.
 pub struct Port {
-    name: String,
+    pointer: String,
     /// Length of a bladder over the depth that what goes to and fro gets into one; 0: nothing does.
     depths: f64,
     /// Of a flow through to another port, what its pressure falls by along the bladder behind this one, over the largest pressure.
@@ -27,7 +29,7 @@ pub struct Port {
 impl Port {
     /// Where it stands in the case.
     pub fn pointer(&self) -> String {
-        format!("the port \"{}\"", self.name)
+        self.pointer.clone()
     }
 
     /// Share of the pressure behind the port that so many cells along a bladder leave out, and in words what that is. A flow through has
@@ -46,22 +48,30 @@ impl Port {
     }
 }
 
-/// Of every port, what its pressure or flow does. Where that goes to and fro, the depth in a bladder is
+/// Of every port and of every pump at a bladder, what its pressure or flow does. Where that goes to and fro, the depth in a bladder is
 ///
 /// ```text
-/// a_p dp/dt = (q1b/μ) d²p/ds²     δ = (q1b/(μ a_p ω))^(1/2),   ω of its highest tone or its shortest time
+/// a_p dp/dt = (q1b/μ) d²p/ds²     δ = (q1b/(μ a_p ω))^(1/2),   ω of its highest tone, its shortest time, or of
+///                                                            the beam that a jump makes ring
 /// ```
 ///
 /// Where it differs from another port's, a bladder's pressure falls by `|p - p'| r/R`, r the resistance of a bladder, R that of the easiest
 /// way to the other one.
-pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
+pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     let end = case.time.end_s;
     let network = &wet.network;
+    let ringing = model.effects.has(Effect::SolidInertia);
+    let ringing = ringing.then(|| RUNG * characteristic::first_axial_frequency(model));
     let depths = |signal: &Signal| {
-        fastest(signal, end).map_or(0.0, |omega| {
-            let depth = (network.bladder_mobility / (wet.compliance() * omega)).sqrt();
-            wet.bladder_length / depth
-        })
+        let rung = ringing.filter(|_| signal.first_jump(end).is_some());
+        fastest(signal, end)
+            .into_iter()
+            .chain(rung)
+            .reduce(f64::max)
+            .map_or(0.0, |omega| {
+                let depth = (network.bladder_mobility / (wet.compliance() * omega)).sqrt();
+                wet.bladder_length / depth
+            })
     };
     let falls = falls(end, wet);
     let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
@@ -69,13 +79,22 @@ pub fn ports(case: &Case, wet: &Wet) -> Vec<Port> {
         .sources
         .iter()
         .map(|source| (&source.name, source.feed.signal()));
-    let all = pressures.chain(flows).zip(falls);
-    all.map(|((name, signal), falls)| Port {
-        name: name.clone(),
+    let ports = pressures.chain(flows).zip(falls);
+    let ports = ports.map(|((name, signal), falls)| Port {
+        pointer: format!("the port \"{name}\""),
         depths: depths(signal),
         falls,
-    })
-    .collect()
+    });
+    let tubes = case.network.iter().flat_map(|network| network.tubes.iter().enumerate());
+    let at_bladders = tubes.filter(|(_, tube)| tube.from.bladder.or(tube.to.bladder).is_some());
+    let pumps = at_bladders.filter_map(|(k, tube)| {
+        Some(Port {
+            pointer: format!("/network/tubes/{k}/pump"),
+            depths: depths(&tube.pump.as_ref()?.pressure_pa),
+            falls: 0.0,
+        })
+    });
+    ports.chain(pumps).collect()
 }
 
 /// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is

@@ -203,4 +203,32 @@ fn mistakes_on_the_command_line_are_told_with_a_remedy() {
         let said = say(&["check", &case, "--set", set, "--set", "/plausibility=\"off\""]);
         assert!(!said.out.contains(told), "{set}");
     }
+    let pad = "cases/tour-actuator.json";
+    let clamped = |what: &str| format!("/ends/root={{\"clamped\": {{{what}}}}}");
+    let sine = "\"u1_m\": {\"sine\": {\"amplitude\": 0.001, \"frequency_hz\": 3, \"phase_rad\": 90}}";
+    for (set, told) in [
+        (
+            "/network/chains/0/ends/0/pressure_pa=161325".to_string(),
+            "seems to be absolute, 60000 Pa above",
+        ),
+        (clamped("\"slope_rad\": 90"), "is this in degrees?"),
+        (clamped(sine), "is this in degrees?"),
+        (
+            "/bladders/area_per_pressure_m2_per_pa=1e-7".into(),
+            "3290 times the section of a bladder",
+        ),
+        ("/fluid/density_kg_m3=1".into(), "lighter than any liquid"),
+    ] {
+        let said = say(&["check", pad, "--set", &set]);
+        assert!(
+            said.out.contains("W031") && said.out.contains(told),
+            "{set}: {}",
+            said.out
+        );
+    }
+    assert!(!say(&["check", pad]).out.contains("W031"));
+    let wiring = dir.path().join("wiring.json").display().to_string();
+    assert_eq!(say(&["new", "wiring", &wiring]).code, 0);
+    let said = say(&["check", &wiring]);
+    assert!(said.code == 0 && !said.out.contains("W037"), "{}", said.out);
 }
