@@ -1,6 +1,5 @@
 //! The library's errors as exceptions of the package.
 
-use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use slcbeam::case;
 use slcbeam::error::{Error, SolverError};
@@ -41,7 +40,7 @@ pub fn told(fault: &SolverError) -> (String, String) {
     (words(fault), json(&error).to_string())
 }
 
-/// What cannot happen, told all the same.
+/// An internal fault, as the package's base error.
 pub fn broken(what: &str) -> PyErr {
-    PyRuntimeError::new_err(what.to_owned())
+    Python::attach(|py| made(py, "Error", what, "{}"))
 }

@@ -54,7 +54,32 @@ static ANSWERED: AtomicBool = AtomicBool::new(false);
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
 pub fn main() -> ExitCode {
+    #[cfg(target_os = "linux")]
+    begin_with_one_heap();
     main_of(std::env::args_os())
+}
+
+/// Executes the program anew with one heap where its address space is limited: the allocator reserves 64 MB of it for the heap of each thread.
+#[cfg(target_os = "linux")]
+fn begin_with_one_heap() {
+    use std::os::unix::process::CommandExt as _;
+
+    const HEAPS: &str = "MALLOC_ARENA_MAX";
+    const MANY: f64 = 1e9;
+    let limited = machine::address_space().is_some_and(|left| left < MANY);
+    if limited
+        && std::env::var_os(HEAPS).is_none()
+        && let Ok(program) = std::env::current_exe()
+    {
+        let mut words = std::env::args_os();
+        let name = words.next().unwrap_or_default();
+        // it returns only where it fails: then the program goes on as it is
+        let _ = std::process::Command::new(program)
+            .arg0(name)
+            .args(words)
+            .env(HEAPS, "1")
+            .exec();
+    }
 }
 
 /// [`main`] of words, the first of them the program's name.

@@ -35,16 +35,7 @@ impl Curve {
     /// Curve through `(at, values)`; none unless `at` ascends strictly and both have the same length of at least 1.
     pub fn through(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let ascending = at.windows(2).all(|w| w[0] < w[1]);
-        let finite = at.iter().chain(values).all(|v| v.is_finite());
-        if at.is_empty() || at.len() != values.len() || !ascending || !finite {
-            return None;
-        }
-        Some(Self {
-            at: at.to_vec(),
-            values: values.to_vec(),
-            second: second_derivatives(at, values, interpolation),
-            jumps: vec![],
-        })
+        ascending.then(|| Self::with_jumps(at, values, interpolation))?
     }
 
     /// The same, but two points at one place are a jump between them: a curve of its own ends and begins there.

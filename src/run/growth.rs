@@ -70,6 +70,14 @@ pub struct Driver {
     pub evidence: String,
 }
 
+impl Driver {
+    /// Drivers with their evidence, as one list for a message.
+    pub fn list(drivers: &[Self]) -> String {
+        let all = drivers.iter().map(|d| format!("{} ({})", d.name, d.evidence));
+        all.collect::<Vec<_>>().join("; ")
+    }
+}
+
 /// A growing response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Growing {
@@ -366,16 +374,11 @@ fn follows(late: &[&Window]) -> bool {
 impl Growing {
     /// As one warning.
     pub fn warning(&self) -> String {
-        let drivers: Vec<String> = self
-            .drivers
-            .iter()
-            .map(|d| format!("{} ({})", d.name, d.evidence))
-            .collect();
         format!(
             "the deflection grows at {:.3} 1/s, by a factor {:.3} over the later three quarters of the run; driven by: {}",
             self.rate_per_s,
             self.factor,
-            drivers.join("; ")
+            Driver::list(&self.drivers)
         )
     }
 }

@@ -215,14 +215,9 @@ impl Causes {
 impl GrowingWave {
     /// As one warning.
     pub fn warning(&self) -> String {
-        let drivers: Vec<String> = self
-            .drivers
-            .iter()
-            .map(|d| format!("{} ({})", d.name, d.evidence))
-            .collect();
-        let driven = match drivers.is_empty() {
+        let driven = match self.drivers.is_empty() {
             true => "the published coupling or momentum balance".into(),
-            false => drivers.join("; "),
+            false => super::growth::Driver::list(&self.drivers),
         };
         let resolved = self.step_s * self.frequency_hz * std::f64::consts::TAU < 1.0;
         let consequence = match resolved {

@@ -25,7 +25,8 @@ impl Answer {
         let mut arguments = vec![command, &case, "--out", &out];
         arguments.extend(sets.iter().flat_map(|set| ["--set", *set]));
         let said = say(&arguments);
-        let summary = fs::read(dir.path().join("out/summary.json"));
+        let file = if command == "run" { "summary" } else { command };
+        let summary = fs::read(dir.path().join(format!("out/{file}.json")));
         let summary = summary.map_or(Value::Null, |text| serde_json::from_slice(&text).expect("a summary"));
         Self { said, summary, dir }
     }
@@ -63,7 +64,10 @@ impl Answer {
         let text = fs::read_to_string(self.dir.path().join("out/history.csv")).expect("a history");
         let mut lines = text.lines().filter(|line| !line.starts_with('#'));
         let headings: Vec<&str> = lines.next().expect("headings").split(',').collect();
-        let place = headings.iter().position(|name| *name == column).expect(column);
+        let place = headings
+            .iter()
+            .position(|name| name.split(" [").next() == Some(column))
+            .expect(column);
         let rows = lines.map(|line| {
             line.split(',')
                 .map(|cell| cell.parse().unwrap_or(f64::NAN))
@@ -113,7 +117,7 @@ fn a_charged_vessel_keeps_what_follows_it() {
 fn a_vessel_empties_with_inertia_and_losses() {
     let answer = Answer::run("accumulator-empties", &[]);
     near("flow", answer.figure("port_out_flow_m3_s", "max_abs"), 8.71e-6, 0.01);
-    near("pressure", answer.at("accumulator_v_pressure_pa", 0.1), 4746.0, 0.005);
+    near("pressure", answer.at("accumulator_v_pressure", 0.1), 4746.0, 0.005);
 }
 
 /// Source: friction at this Reynolds number. Goal: the losses belong to the steady flow, with which the fluid starts.
@@ -124,7 +128,7 @@ fn a_start_in_steady_flow_is_steady() {
         for kind in ["final", "max_abs"] {
             near(kind, answer.figure("port_in_flow_m3_s", kind), 1.1507e-5, 0.002);
         }
-        near("at once", answer.at("port_in_flow_m3_s", 0.0), 1.1507e-5, 0.002);
+        near("at once", answer.at("port_in_flow", 0.0), 1.1507e-5, 0.002);
     }
 }
 
@@ -166,8 +170,6 @@ fn what_the_mesh_and_the_steps_miss_is_reported() {
 fn a_valve_that_shuts_hammers() {
     let answer = Answer::run("hammer", &[]);
     assert!(answer.warning("W038").contains("907 kPa"));
-    let most = answer.at("accumulator_e_pressure_pa", 5.0045);
-    println!("pressure at the valve {most:e} Pa");
     let highest = answer.figure("accumulator_e_pressure_pa", "max_abs");
     assert!((9e5..1.5 * 9.1e5).contains(&highest), "{highest:e}");
 }
@@ -177,7 +179,8 @@ fn a_valve_that_shuts_hammers() {
 fn a_beam_lies_on_a_wall() {
     let answer = Answer::of("equilibrium", "lying-on-wall", &[]);
     assert_eq!(answer.said.code, 0, "{}", answer.said.err);
-    near("tip", answer.figure("tip_u1_m", "final"), -5.405e-5, 1e-3);
+    let tip = answer.summary["quantities"]["tip_u1_m"].as_f64().expect("a tip");
+    near("tip", tip, -5.405e-5, 1e-4);
 }
 
 /// Source: the solution, a strain of 0.008. Goal: no warning of a strain that was only expected.

@@ -358,7 +358,8 @@ impl Estimator {
         }
     }
 
-    /// Whether a quantity of a size is more than round-off, of what the case does and beside others.
+    /// Whether a quantity of a size is more than round-off, of what the case does and beside others: twice the tolerance of the largest of its unit
+    /// is nothing that the run has to resolve.
     fn counts(&self, name: Interest, size: f64, quantities: &BTreeMap<String, Quantity>) -> bool {
         let (unit, own) = self.floors.weighed(name.name(), size);
         let alike = quantities.iter().filter_map(|(other, q)| {
@@ -366,7 +367,8 @@ impl Estimator {
             (of == unit).then_some(size)
         });
         let beside = alike.fold(0.0, f64::max);
-        own.is_finite() && own > (NOTHING * beside).max(self.floors.of_unit(unit, 0.0))
+        let least = (2.0 * self.settings.1).clamp(NOTHING, 1e-4);
+        own.is_finite() && own > (least * beside).max(self.floors.of_unit(unit, 0.0))
     }
 
     /// What an error gains where the deflection grows, no more than all.
