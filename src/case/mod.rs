@@ -57,5 +57,6 @@ pub use render::render;
 pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
 pub use schema_json::{schema_json, schema_of_resolved};
+pub use tables::unclosed_quote;
 pub use wording::{nearest, short};
 pub use written::{Written, is_table};

@@ -84,6 +84,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         let what = format!("{} is larger than {} MB", path.display(), largest >> 20);
         return Err(at("csv", what));
     };
+    if let Some(line) = unclosed_quote(&text_of) {
+        let what = format!("{name}, line {line}: a quotation mark is not closed");
+        return Err(at("csv", what));
+    }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
@@ -195,6 +199,17 @@ impl Of {
             dimensions: own.into_iter().chain(share).collect(),
         }
     }
+}
+
+/// The last line with a quotation mark of a text that has an odd number of them outside comments: a reader of CSV accepts it, and takes what
+/// follows for one cell.
+pub fn unclosed_quote(text: &[u8]) -> Option<usize> {
+    let lines = text.split(|b| *b == b'\n').enumerate();
+    let written = lines.filter(|(_, line)| !line.trim_ascii_start().starts_with(b"#"));
+    let counts = written.map(|(k, line)| (k + 1, line.iter().filter(|b| **b == b'"').count()));
+    let quoted: Vec<(usize, usize)> = counts.filter(|(_, count)| *count > 0).collect();
+    let all: usize = quoted.iter().map(|(_, count)| count).sum();
+    quoted.last().filter(|_| all % 2 == 1).map(|(line, _)| *line)
 }
 
 /// What stands between cells: semicolons or tabs where the first line that counts has any, else commas.

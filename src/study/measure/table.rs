@@ -143,14 +143,15 @@ pub(in crate::study) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// Cells without blanks and quotes around them, and their places in the text.
+/// Cells without blanks and a pair of quotes around them, and their places in the text.
 pub(in crate::study) fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
     let mut at = line.start;
     let cells = line.text.split(separator).map(|whole| {
         let start = at;
         at += whole.len() + separator.len_utf8();
-        let cell = whole.trim_matches(|c: char| c.is_whitespace() || "\"\u{feff}".contains(c));
-        (cell, start..start + whole.len())
+        let cell = whole.trim_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+        let inner = cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        (inner.map_or(cell, str::trim), start..start + whole.len())
     });
     cells.collect()
 }

@@ -30,6 +30,9 @@ impl Table {
     }
 
     fn parse(text: &str) -> std::result::Result<Self, String> {
+        if let Some(line) = case::unclosed_quote(text.as_bytes()) {
+            return Err(format!("line {line}: a quotation mark is not closed"));
+        }
         let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
             .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
