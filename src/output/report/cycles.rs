@@ -128,13 +128,19 @@ pub fn map(place: &Place) -> Result<Page> {
         let name = factor.map_or("The dry beam".into(), |f| {
             format!("With permeabilities × {}", significant(f, 2))
         });
-        answers.push(format!("{name} the motion grows at {growing} of {points} points."));
+        answers.push(format!(
+            "{name} the motion grows at {growing} of {}.",
+            counted(points as u64, "point")
+        ));
     }
     let (columns, lines) = (found.frequencies_hz.len(), found.amplitudes_m.len());
     page.put("answer", answers.join(" "));
     page.put(
         "facts",
-        vec![format!("{columns} frequencies"), format!("{lines} amplitudes")],
+        vec![
+            format!("{columns} {}", if columns == 1 { "frequency" } else { "frequencies" }),
+            counted(lines as u64, "amplitude"),
+        ],
     );
     page.put(
         "figures",

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
 use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
-use crate::output::numbers::{count, counted, duration, significant};
+use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Estimate, Fit};
 
 /// `fit`.
@@ -34,7 +34,7 @@ pub fn data(place: &Place) -> Result<Page> {
                 significant(found.chi_square, 4),
                 found.degrees_of_freedom
             ),
-            format!("{} simulations", count(found.simulations as u64)),
+            counted(found.simulations as u64, "simulation"),
             format!("found in {}", duration(found.wall_s)),
         ],
     );
