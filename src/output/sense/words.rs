@@ -207,17 +207,18 @@ pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
 pub fn about_band(found: &Sensed) -> String {
     let text = match found.band {
         BandKind::AssumedForm => {
-            let open = found.noise.as_ref().is_some_and(|noise| noise.freedom < 0.5);
-            let check = match open {
-                true => "No pressure is left to check that.",
-                false => "The sum of squares checks that.",
+            let check = match &found.noise {
+                _ if !found.doubts.is_empty() => "The pressures do not fit that: loads may lie outside.",
+                Some(noise) if noise.from == NoiseFrom::Estimated => "What else acts is taken for noise.",
+                Some(noise) if noise.freedom < 0.5 => "No pressure is left to check that.",
+                _ => "χ² checks that.",
             };
             return format!(
-                "bands of 95 % hold loads that act where and as they are looked for, on top of the case: noise is their only error. {check}"
+                "bands of 95 % assume loads that act where and as they are looked for: noise is the only error. {check}"
             );
         }
         BandKind::LocalMean => {
-            "bands of 95 % hold the mean of the load around each place, whatever its shape: its weight falls straight to 0 at the next \
+            "bands of 95 % hold the mean of the load around each place, of pads, points, smooth and rough loads: its weight falls straight to 0 at the next \
              places. Pressures do not determine the load at a point. Where a mean is not determined, its band would be that of assumptions"
         }
         BandKind::AssumedSmoothness => {

@@ -270,10 +270,9 @@ fn stacked(upper: &DMatrix<f64>, lower: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 fn few(states: &[State]) -> Error {
-    let values: usize = states.iter().map(|state| state.measured.len()).sum();
+    let values = counted(states.iter().map(|state| state.measured.len() as u64).sum(), "pressure");
     Error::Usage(format!(
-        "{} tell no more than the loads, and nothing is left to tell the noise by; give its deviation, --noise PA, or look for fewer loads",
-        counted(values as u64, "pressure")
+        "{values} tell no more than the loads, and nothing is left to tell the noise by; give its deviation, --noise PA, or look for fewer loads"
     ))
 }
 
