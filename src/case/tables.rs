@@ -11,6 +11,7 @@ use super::locate::child;
 use super::wording::{nearest, short};
 use super::written::checksum;
 use super::{reading, units};
+use crate::error::numbers::counted;
 use crate::error::{Code, Violation, listed, shown};
 
 /// Largest file of a table that is read.
@@ -107,7 +108,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         let Some(wanted) = text(key) else {
             return match headings.len() > default {
                 true => Ok(default),
-                false => Err(at("csv", format!("{name} has {} columns, not two", headings.len()))),
+                false => Err(at(
+                    "csv",
+                    format!("{name} has {}, not two", counted(headings.len() as u64, "column")),
+                )),
             };
         };
         headings.iter().position(|heading| heading == wanted).ok_or_else(|| {

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::output::export::{self, Written, instants, tables, vtk};
 use crate::output::folder::CASE;
 use crate::output::kind::Kind;
-use crate::output::numbers::{count, significant};
+use crate::output::numbers::{counted, significant};
 
 /// `export`.
 #[derive(Debug, Args)]
@@ -84,17 +84,17 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
         super::print(&format!("{told:#}\n"))?;
     } else {
         let mut text = format!(
-            "{} instants from {} s to {} s\n",
-            count(times.len() as u64),
+            "{} from {} s to {} s\n",
+            counted(times.len() as u64, "instant"),
             significant(first, 6),
             significant(last, 6)
         );
         for (name, w) in &all {
             let size = significant(w.bytes as f64 / 1e6, 3);
             text += &format!(
-                "{name}  {}  {} files, {size} MB\n",
+                "{name}  {}  {}, {size} MB\n",
                 w.path.display(),
-                count(w.files as u64)
+                counted(w.files as u64, "file")
             );
         }
         super::print(&text)?;

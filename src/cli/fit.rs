@@ -7,7 +7,7 @@ use super::{interrupt, line, size, sweep};
 use crate::error::{Error, Result};
 use crate::output::fit as files;
 use crate::output::kind::Kind;
-use crate::output::numbers::significant;
+use crate::output::numbers::{counted, significant};
 use crate::output::report;
 use crate::results;
 use crate::study::data::{Match, Table};
@@ -29,7 +29,8 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let bar = line::line(asked.quiet);
     let tell = |count: usize, squares: f64| {
         bar.set_message(format!(
-            "{count} simulations, sum of squares {}",
+            "{}, sum of squares {}",
+            counted(count as u64, "simulation"),
             significant(squares, 5)
         ));
         bar.tick();

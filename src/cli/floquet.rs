@@ -9,6 +9,7 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
 use crate::output::kind::Kind;
+use crate::output::numbers::counted;
 use crate::output::report;
 use crate::results;
 use crate::results::cycles::Cycle;
@@ -112,7 +113,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let stop = interrupt::stop();
     let bar = line::line(asked.quiet);
     let found = tongue::map(case, &plan, &stop, &|done, count| {
-        bar.set_message(format!("{done} of {count} columns"));
+        bar.set_message(format!("{done} of {}", counted(count as u64, "column")));
         bar.tick();
     });
     bar.finish_and_clear();

@@ -11,7 +11,7 @@ use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
 use crate::output::folder::replace_alike;
-use crate::output::numbers::{pretty_unit, significant};
+use crate::output::numbers::{counted, pretty_unit, significant};
 use crate::output::plot::measured;
 use crate::study::measure::table;
 use crate::study::measure::{Estimate, Experiment, Measured, Options, SIGNIFICANT, measure as fit};
@@ -157,9 +157,9 @@ fn in_words(found: &Measured) -> String {
     };
     let verdict = |p: f64| if p < SIGNIFICANT { "told" } else { "not told" };
     let mut text = format!(
-        "{}: {} points, {} over {}; residuals of {} {}, R² {}\n\n{}\n",
+        "{}: {}, {} over {}; residuals of {} {}, R² {}\n\n{}\n",
         found.experiment.name(),
-        found.points.x.len(),
+        counted(found.points.x.len() as u64, "point"),
         y.name(),
         x.name(),
         significant(found.fit.deviation, 3),

@@ -11,6 +11,7 @@ use crate::error::{Error, Result};
 use crate::output::floquet as stability;
 use crate::output::folder::SUMMARY;
 use crate::output::kind::Kind;
+use crate::output::numbers::counted;
 use crate::output::periodic as files;
 use crate::output::recorder::{FolderRecorder, Labels};
 use crate::output::report;
@@ -172,7 +173,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let stop = interrupt::stop();
     let bar = line::line(asked.quiet);
     let found = along(&pointer, logarithmic, &cases, &stop, &|done| {
-        bar.set_message(format!("{done} of {} cycles", cases.len()));
+        bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();
     });
     bar.finish_and_clear();

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::terminal;
-use crate::output::numbers::{count, duration, percent, quantity, significant};
+use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::run::record::Progress;
 
 /// Between two looks of the bar.
@@ -139,10 +139,10 @@ fn bar() -> ProgressBar {
 fn line(progress: &Progress, left: Option<f64>) -> String {
     let left = left.map_or(String::new(), |s| format!(" · {} left", duration(s)));
     format!(
-        "{} / {} · {} steps, now {}, order {}{left}",
+        "{} / {} · {}, now {}, order {}{left}",
         significant(progress.t, 3),
         quantity(progress.end, "s", 3),
-        count(progress.steps),
+        counted(progress.steps, "step"),
         quantity(progress.step, "s", 2),
         progress.order,
     )

@@ -11,7 +11,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::numerics::threads;
 use crate::output::kind::Kind;
-use crate::output::numbers::duration;
+use crate::output::numbers::{counted, duration};
 use crate::output::report;
 use crate::output::study as files;
 use crate::study::accuracy::trial::Role;
@@ -96,8 +96,10 @@ impl Progress {
             bar.set_length(event.of as u64);
             bar.set_position(event.done as u64);
             bar.set_message(format!(
-                "{what}{} cells, {}, rtol {:e}{expected} · {spent}",
-                s.cells, s.scheme, s.rtol
+                "{what}{}, {}, rtol {:e}{expected} · {spent}",
+                counted(s.cells as u64, "cell"),
+                s.scheme,
+                s.rtol
             ));
         } else if self.shown.lines {
             let now = Some((s.cells, s.scheme, event.role));
@@ -106,8 +108,9 @@ impl Progress {
                 *last = now;
                 let (done, of) = (event.done, event.of);
                 terminal::tell(&format!(
-                    "{done}/{of}: {what}{} cells, {}{expected} each or more; {spent}",
-                    s.cells, s.scheme
+                    "{done}/{of}: {what}{}, {}{expected} each or more; {spent}",
+                    counted(s.cells as u64, "cell"),
+                    s.scheme
                 ));
             }
         }

@@ -150,6 +150,16 @@ pub fn count(n: u64) -> String {
     out
 }
 
+/// A count with its noun, `1 row`, `1 234 rows`; plurals end in `s` or `es`.
+pub fn counted(n: u64, noun: &str) -> String {
+    let plural = match n {
+        1 => "",
+        _ if noun.ends_with("ch") => "es",
+        _ => "s",
+    };
+    format!("{} {noun}{plural}", count(n))
+}
+
 /// A time span by the clock: `850 ms`, `12.3 s`, `3 min 20 s`, `2 h 05 min`.
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {

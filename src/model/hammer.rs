@@ -6,7 +6,7 @@ use super::network::{Link, Node, TubeEnd};
 use super::{Compression, Model, Network};
 use crate::case::schema::{Case, Effect};
 use crate::error::Code;
-use crate::error::numbers::quantity;
+use crate::error::numbers::{counted, quantity};
 use crate::functions::Signal;
 use crate::functions::signals::Clock;
 
@@ -137,15 +137,15 @@ impl Hammer<'_> {
                            /fluid/bulk_modulus_pa (water: 2.2e9)"
                 .into(),
             (true, true) => format!(
-                "{} part(s) of tube do not follow the wave: pressures at the valve overshoot by up to a half. Split the tubes in front of it by \
+                "The wave is not resolved by {} of tube: pressures at the valve overshoot by up to a half. Split the tubes in front of it by \
                  junctions into {} parts of equal length",
-                self.parts,
+                counted(self.parts as u64, "part"),
                 needed.ceil()
             ),
             (true, false) => format!(
-                "{} part(s) of tube do not follow the wave, nor do {MOST_PARTS}: pressures at the valve overshoot by up to a half. Take this value, \
+                "The wave is not resolved by {} of tube, nor by {MOST_PARTS}: pressures at the valve overshoot by up to a half. Take this value, \
                  or let the valve stop the flow in {} or more and split the tubes in front of it into {MOST_PARTS} parts",
-                self.parts,
+                counted(self.parts as u64, "part"),
                 quantity(RESOLVES * self.l / (self.c * MOST_PARTS), "s", 2)
             ),
         };

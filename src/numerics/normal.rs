@@ -88,9 +88,37 @@ pub fn quantile(probability: f64) -> f64 {
     size.copysign(q)
 }
 
+/// The probability of a normal variable of mean 0 and deviation 1 below a number: Abramowitz & Stegun 26.2.17, error below 7.5e-8.
+pub fn probability(x: f64) -> f64 {
+    let t = 1.0 / (1.0 + 0.231_641_9 * x.abs());
+    let sum = [
+        1.330_274_429,
+        -1.821_255_978,
+        1.781_477_937,
+        -0.356_563_782,
+        0.319_381_53,
+    ]
+    .iter()
+    .fold(0.0, |sum, c| (sum + c) * t);
+    let tail = (-0.5 * x * x).exp() / (2.0 * std::f64::consts::PI).sqrt() * sum;
+    if x < 0.0 { tail } else { 1.0 - tail }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Source: [`quantile`].
+    #[test]
+    fn probabilities_are_those_of_quantiles() {
+        for p in [1e-6, 0.025, 0.3, 0.5, 0.8, 0.975, 0.999] {
+            assert!(
+                (probability(quantile(p)) - p).abs() < 8e-8,
+                "{p}: {}",
+                probability(quantile(p))
+            );
+        }
+    }
 
     /// Source: tables; the tails by Wichura's own test values.
     #[test]

@@ -1,6 +1,6 @@
 //! An accuracy that was asked for, in words.
 
-use super::numbers::{count, significant};
+use super::numbers::{counted, significant};
 use crate::run::summary::Accuracy;
 
 /// Estimates told.
@@ -25,13 +25,13 @@ pub fn words(found: &Accuracy) -> String {
             _ => format!("{name} unknown"),
         });
     format!(
-        "accuracy {} {}; estimated relative errors: {}\nwith {}, {} a bladder, rtol {}, after {} computations\n",
+        "accuracy {} {}; estimated relative errors: {}\nwith {}, {} a bladder, rtol {}, after {}\n",
         significant(found.asked, 2),
         if found.reached { "reached" } else { "not reached" },
         told.collect::<Vec<_>>().join("; "),
         found.cells(),
         found.cells_per_bladder,
         significant(found.rtol, 1),
-        count(found.pilots.len() as u64)
+        counted(found.pilots.len() as u64, "computation")
     )
 }

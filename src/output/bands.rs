@@ -1,6 +1,6 @@
 //! Figures beside what uncertain numbers leave open of them, in words.
 
-use super::numbers::{count, quantity, significant};
+use super::numbers::{count, counted, quantity, significant};
 use crate::results::run::{Band, Bands};
 
 /// Digits of the ends of a band at least, and at most.
@@ -49,7 +49,11 @@ pub fn short(band: &Band, unit: &str) -> Option<String> {
 /// Whose band it is.
 fn samples(band: &Band) -> String {
     match band.samples < band.drawn {
-        true => format!("{} of {} samples", count(band.samples as u64), count(band.drawn as u64)),
+        true => format!(
+            "{} of {}",
+            count(band.samples as u64),
+            counted(band.drawn as u64, "sample")
+        ),
         false => "samples".into(),
     }
 }

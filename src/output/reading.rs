@@ -8,6 +8,7 @@ use super::folder::{CASE, FIELDS, HISTORY, damaged, fault, open, text_of};
 use super::npz::Npz;
 use super::summary;
 use crate::error::Result;
+use crate::output::numbers::counted;
 use crate::results;
 use crate::study::compare::{Array, Recording, Series};
 
@@ -97,8 +98,10 @@ fn arrays(path: &Path, out: &mut Recording) -> io::Result<()> {
         if field.len == 0 || field.values.len() != instants * field.len {
             let rows = field.values.len().checked_div(field.len).unwrap_or(0);
             return Err(damaged(format!(
-                "{} has {rows} instants of {} places, {TIMES} has {instants}",
-                field.name, field.len
+                "{} has {} of {}, {TIMES} has {instants}",
+                field.name,
+                counted(rows as u64, "instant"),
+                counted(field.len as u64, "place")
             )));
         }
     }

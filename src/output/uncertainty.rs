@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::bands;
 use super::columns::aligned;
 use super::folder::ResultFolder;
-use super::numbers::{count, percent, significant};
+use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
 use crate::results;
 use crate::results::uncertainty::{Input, Spread, Uncertainty};
@@ -86,10 +86,10 @@ fn about(found: &Uncertainty) -> String {
         lost => format!(", {} of which did not finish", count(lost as u64)),
     };
     format!(
-        "What {} leave{} open, by {} samples{finished} (seed {}):",
+        "What {} leave{} open, by {}{finished} (seed {}):",
         inputs.join(", "),
         if inputs.len() == 1 { "s" } else { "" },
-        count(found.samples as u64),
+        counted(found.samples as u64, "sample"),
         found.seed
     )
 }

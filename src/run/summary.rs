@@ -1,5 +1,6 @@
 //! The summary of a run: `summary.json`.
 
+use crate::error::numbers::counted;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
@@ -219,7 +220,7 @@ impl Accuracy {
     /// The mesh of the beam in words.
     pub fn cells(&self) -> String {
         let order = if self.order == 4 { " of fourth order" } else { "" };
-        format!("{} cells a segment{order}", self.cells_per_segment)
+        format!("{} a segment{order}", counted(self.cells_per_segment as u64, "cell"))
     }
 }
 

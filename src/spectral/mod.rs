@@ -36,6 +36,7 @@ use std::fmt;
 
 use nalgebra::Complex;
 
+use crate::error::numbers::counted;
 use crate::integrate::halt::INTERRUPTED;
 
 pub use growing::{Bounds, growing};
@@ -148,7 +149,12 @@ impl fmt::Display for SpectralError {
             Self::Singular { .. } => write!(f, "the linearised equations leave an unknown undetermined"),
             Self::Package { status } => write!(f, "KLU cannot go on (status {status})"),
             Self::Slow { converged, restarts } => {
-                write!(f, "only {converged} eigenvalues converged in {restarts} restarts")
+                write!(
+                    f,
+                    "only {} converged in {}",
+                    counted(*converged as u64, "eigenvalue"),
+                    counted(*restarts as u64, "restart")
+                )
             }
             Self::NotFinite => write!(f, "the linearised equations are not finite"),
             Self::Interrupted => f.write_str(INTERRUPTED),

@@ -78,7 +78,7 @@ fn data_and_options_that_do_not_go_together() {
             "t_s,u_mm\n0.001,1\n",
             tip.to_vec(),
             2,
-            "1 measured values cannot tell 1 numbers",
+            "1 measured value cannot tell 1 number",
         ),
         (good, vary.to_vec(), 2, "--match COLUMN=QUANTITY"),
         (good, vec!["--match", "u_mm=tip_u1"], 2, "--vary POINTER=LOW:HIGH"),

@@ -9,4 +9,5 @@ mod cycles;
 mod flat;
 mod refused;
 mod rugged;
+mod stress;
 mod wirings;

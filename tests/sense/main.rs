@@ -1,5 +1,6 @@
 //! The beam as a sensor: loads from pressures.
 
+mod any_shape;
 mod command;
 mod common;
 mod coverage;

@@ -199,7 +199,7 @@ fn what_cannot_be_followed_is_refused() {
     let rows = |last: &str| format!("t_s,pressure_1_pa\n0,1\n0.1,1\n0.15,1\n0.2,1\n{last},1\n");
     let cases: [(String, &[&str], &str); 8] = [
         ("pressure_1_pa\n1\n1\n1\n1\n1\n".into(), &[], "have no instants"),
-        ("t_s,pressure_1_pa\n0,1\n0.1,2\n".into(), &[], "2 instants are too few"),
+        ("t_s,pressure_1_pa\n0,1\n0.1,2\n".into(), &[], "2 instants: too few"),
         (rows("0.7"), &[], "--set /time/end_s=0.7"),
         (
             rows("0.3"),

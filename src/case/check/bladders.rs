@@ -5,6 +5,7 @@ use slcbeam_section::finite::energy::monomials;
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
 use crate::case::schema::{Bladders, Case, Coupling, Formulation, StrainEnergy};
+use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
@@ -56,8 +57,9 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     let exceeds = |size: f64, room: f64| size > room * (1.0 + 1e-9);
     if exceeds(bladders.width_m, segment) {
         let what = format!(
-            "{} bladders of width {} m do not fit along the beam",
-            bladders.per_row, bladders.width_m
+            "no room along the beam for {} of width {} m",
+            counted(bladders.per_row as u64, "bladder"),
+            bladders.width_m
         );
         refuse(
             "width_m",
@@ -97,7 +99,11 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         let fault = Violation::new(
             Code::Geometry,
             "/mesh/segments",
-            format!("{segments} segments for {} bladders a row", bladders.per_row),
+            format!(
+                "{} for {} a row",
+                counted(segments as u64, "segment"),
+                counted(bladders.per_row as u64, "bladder")
+            ),
         );
         let fault = fault.allowed(bladders.per_row.to_string());
         let hint = "leave it out: it is the number of bladders per row";

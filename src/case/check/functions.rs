@@ -5,6 +5,7 @@ use crate::case::faults::Violations;
 use crate::case::locate::child;
 use crate::case::numbers::plain;
 use crate::case::schema::{Case, ChainEnd, Formulation};
+use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 use crate::functions::MOST_KNOTS;
 use crate::functions::profile::Profile;
@@ -251,9 +252,9 @@ fn table_fault(pointer: &str, key: &str, jumps: Option<bool>, at: &[f64], values
     let fault = if at.is_empty() {
         Violation::new(Code::Table, pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
     } else if at.len() != values.len() {
-        let what = format!("{} {key} but {} values", at.len(), values.len());
+        let what = format!("{} {key} but {}", at.len(), counted(values.len() as u64, "value"));
         Violation::new(Code::Table, child(pointer, "values"), what)
-            .allowed(format!("{} values, one for each of {key}", at.len()))
+            .allowed(format!("{}, one for each of {key}", counted(at.len() as u64, "value")))
     } else if let Some(i) = at
         .windows(2)
         .position(|w| w[0] > w[1] || (jumps.is_none() && w[0] == w[1]))

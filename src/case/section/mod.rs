@@ -335,7 +335,7 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     match given.unwrap_or(count) {
         number if (number * pitch - length).abs() <= 1e-6 * length => Ok(count as u64),
         number => Err(format!(
-            "{number} bladders of {pitch} m are {} m of a beam of {length} m",
+            "{number} times {pitch} m of a bladder are {} m of a beam of {length} m",
             rounded(number * pitch)
         )),
     }

@@ -9,7 +9,7 @@ use textwrap::{Options, WordSplitter};
 use crate::discrete::quantities::Interest;
 use crate::error::visible;
 use crate::output::bands;
-use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 
@@ -322,9 +322,9 @@ fn integrator(summary: &Summary) -> String {
     let mostly = mostly.map_or(String::new(), |(k, _)| format!(", mostly of order {}", k + 1));
     let failed = c.error_test_failures + c.newton_failures;
     let parts = [
-        format!("{} steps{mostly}", count(c.steps)),
+        counted(c.steps, "step") + &mostly,
         format!("{} rejected", count(failed)),
-        format!("{} unknowns", count(summary.unknowns as u64)),
+        counted(summary.unknowns as u64, "unknown"),
     ];
     parts.map(hold).join(BETWEEN)
 }

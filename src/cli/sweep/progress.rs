@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::cli::line::{PLAIN, Shown};
 use crate::cli::terminal;
-use crate::output::numbers::{count, duration};
+use crate::output::numbers::{count, counted, duration};
 
 /// Between two lines where there is no terminal.
 const EVERY: Duration = Duration::from_secs(30);
@@ -45,8 +45,8 @@ impl Counter {
                 0 => String::new(),
                 n => format!(", {} not finished", count(n as u64)),
             };
-            let (done, of) = (count(self.done as u64), count(self.of as u64));
-            format!("{done} of {of} designs {}{failed} · {} left", self.what, duration(left))
+            let (done, of) = (count(self.done as u64), counted(self.of as u64, "design"));
+            format!("{done} of {of} {}{failed} · {} left", self.what, duration(left))
         };
         if let Some(bar) = &self.shown.bar {
             bar.set_message(words());

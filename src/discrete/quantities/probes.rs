@@ -22,6 +22,8 @@ pub struct Probe {
     segment: usize,
     /// `h_s/2` [m].
     half_height: f64,
+    /// Young's modulus of the solid [Pa].
+    young_modulus: f64,
 }
 
 /// One row of the table: what a column's name ends with, unit, what it is, whether it needs bladders, how it is read.
@@ -29,13 +31,15 @@ type Entry = (&'static str, &'static str, &'static str, bool, fn(&Probe, &Look) 
 
 /// What is recorded at each place.
 #[rustfmt::skip]
-const TABLE: [Entry; 11] = [
+const TABLE: [Entry; 13] = [
     ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
     ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
     ("angle", "rad", "slope angle phi, counted over full turns", false, Probe::angle),
     ("curvature", "1/m", "curvature", false, |p, look| { let kappa = look.w.curvature(); p.of_nodes(|i| kappa[i]) }),
     ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 1.0)),
     ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, -1.0)),
+    ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", false, |p, look| p.stress(look, 1.0)),
+    ("stress_lower", "Pa", "stress along the beam of the solid at the lower surface, without viscous damping", false, |p, look| p.stress(look, -1.0)),
     ("normal_force", "N", "normal force without viscous damping", false, |p, look| { let n = look.w.normals(); p.of_cells(|c| n[c]) }),
     ("moment", "N m", "bending moment without viscous damping", false, |p, look| { let m = look.w.moments(); p.of_nodes(|i| m[i]) }),
     ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.shears()[c])),
@@ -74,6 +78,11 @@ pub fn key(name: &str, unit: &str) -> String {
     }
 }
 
+/// Whether a column is a stress of the solid, by its name: its unit is that of pressures of the fluid, its size is not.
+pub fn is_stress(name: &str) -> bool {
+    name.ends_with("_stress_upper") || name.ends_with("_stress_lower")
+}
+
 /// Columns of all probes of a system, one probe after the other.
 pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> + '_ {
     entries(system).map(|(probe, (name, unit, about, ..))| ProbeColumn {
@@ -102,12 +111,12 @@ fn entries(system: &System) -> impl Iterator<Item = (&Probe, Entry)> {
 impl Probe {
     /// All of a case.
     pub fn all(case: &Case, mesh: &Mesh) -> Vec<Self> {
-        let half_height = 0.5 * case.beam.height_m;
-        let probe = |probe: &Written| Self::new(&probe.name, probe.at, half_height, mesh);
+        let solid = (0.5 * case.beam.height_m, case.beam.young_modulus_pa);
+        let probe = |probe: &Written| Self::new(&probe.name, probe.at, solid, mesh);
         case.probes.iter().map(probe).collect()
     }
 
-    fn new(name: &str, at: f64, half_height: f64, mesh: &Mesh) -> Self {
+    fn new(name: &str, at: f64, (half_height, young_modulus): (f64, f64), mesh: &Mesh) -> Self {
         let place = at * mesh.cells as f64;
         let node = (place as usize).min(mesh.cells - 1);
         let cell = ((place - 0.5).max(0.0) as usize).min(mesh.cells.saturating_sub(2));
@@ -119,6 +128,7 @@ impl Probe {
             cell: (cell, beyond),
             segment: node / mesh.cells_per_segment,
             half_height,
+            young_modulus,
         }
     }
 
@@ -154,6 +164,21 @@ impl Probe {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
             + side * self.half_height * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
+    }
+
+    /// Stress of a fibre at a surface: Young's modulus E times its strain, and what Maxwell branches carry besides, which is linear over the
+    /// section as strain is:
+    ///
+    /// ```text
+    /// σ = E (λ - 1 ± κ h_s/2 + N_r/EA ± M_r h_s/(2 EI))        N_r, M_r: forces of the branches
+    /// ```
+    fn stress(&self, look: &Look, side: f64) -> f64 {
+        let (section, forces) = (&look.system.model.section, &look.w.forces);
+        let normal = |c: usize| forces.relaxing_normal.get(c).copied().unwrap_or(0.0);
+        let moment = |i: usize| forces.relaxing_moment.get(i).copied().unwrap_or(0.0);
+        let relaxing = self.of_cells(normal) / section.axial_stiffness
+            + side * self.half_height * self.of_nodes(moment) / section.bending_stiffness;
+        self.young_modulus * (self.surface(look, side) + relaxing)
     }
 
     fn pressure(&self, look: &Look, row: usize) -> f64 {

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::Shown;
 use crate::case::schema::Effect;
 use crate::output::columns::aligned;
-use crate::output::numbers::{percent, significant};
+use crate::output::numbers::{counted, percent, significant};
 use crate::output::records::{self, number};
 use crate::run::summary::Judged;
 use crate::study::accuracy::trial::Ending;
@@ -27,10 +27,10 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     };
     let _ = writeln!(
         text,
-        "full model: {} unknowns, {} steps, {} residuals, {} s\n",
-        full.unknowns,
-        full.counters.steps,
-        full.counters.residual_evaluations,
+        "full model: {}, {}, {}, {} s\n",
+        counted(full.unknowns as u64, "unknown"),
+        counted(full.counters.steps, "step"),
+        counted(full.counters.residual_evaluations, "residual"),
         significant(full.wall_s(), 3)
     );
     let mut lines = vec![HEADINGS.map(String::from)];

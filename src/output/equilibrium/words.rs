@@ -1,9 +1,10 @@
 //! A load path in words.
 
 use super::Found;
+use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, quantity, significant};
+use crate::output::numbers::{counted, quantity, significant};
 use crate::run::equilibrium::State;
 use crate::run::record::Column;
 use crate::study::refine::meshes::Meshes;
@@ -49,10 +50,10 @@ pub fn words(found: &Found) -> String {
             ),
         };
         text.push_str(&format!(
-            "\n{}, {stability}: {} states, {} Newton steps, {} in all\n",
+            "\n{}, {stability}: {}, {}, {} in all\n",
             reached(found, last),
-            count(path.states.len() as u64),
-            count(path.work.iterations),
+            counted(path.states.len() as u64, "state"),
+            counted(path.work.iterations, "Newton step"),
             quantity(found.wall_s, "s", 3),
         ));
     }
@@ -157,7 +158,8 @@ fn floor(found: &Found, unit: &str) -> f64 {
         "N" => NO_FORCE,
         _ => 0.0,
     };
-    let alike = |k: &usize| found.columns[*k].unit == unit;
+    // stresses of the solid say nothing of pressures
+    let alike = |k: &usize| found.columns[*k].unit == unit && !is_stress(&found.columns[*k].name);
     let rows = found.path.states.iter().map(|state| &state.row);
     let all = rows.flat_map(|row| (1..row.len()).filter(alike).map(|k| ROUND_OFF * row[k].abs()));
     all.fold(least, f64::max)
@@ -168,7 +170,7 @@ fn loads_nothing(found: &Found) -> bool {
     ["m", "rad", "Pa", "N"].iter().all(|unit| {
         let least = floor(found, unit);
         let columns = found.columns.iter().enumerate().skip(1);
-        let mut alike = columns.filter(|(_, column)| column.unit == *unit);
+        let mut alike = columns.filter(|(_, column)| column.unit == *unit && !is_stress(&column.name));
         alike.all(|(k, _)| found.path.states.iter().all(|state| state.row[k].abs() <= least))
     })
 }

@@ -7,6 +7,7 @@ use super::numbers::{shortest, significant};
 use super::plot::fitted::{self, Fitted as Drawn, Part};
 use super::records;
 use crate::case::Written;
+use crate::case::units;
 use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
@@ -109,8 +110,8 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
     let x = match &problem.abscissa {
         Abscissa::Time(_) => ("time t".into(), "s".into()),
         Abscissa::Drives(_) => {
-            let unit = crate::case::units::of_pointer(name).map_or("1", |unit| unit.si);
-            (name.rsplit('/').next().unwrap_or(name).replace('_', " "), unit.into())
+            let unit = units::of_pointer(name).map_or("1", |unit| unit.si);
+            (units::readable_pointer(name), unit.into())
         }
     };
     let part = |(k, one): (usize, &Matched)| {
@@ -135,7 +136,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
         let error = one
             .standard_error
             .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
-        let name = one.pointer.rsplit('/').next().unwrap_or_default();
+        let name = units::readable_pointer(&one.pointer);
         format!("{name} = {}{error}", significant(one.value, 5))
     });
     Drawn {

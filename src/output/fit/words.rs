@@ -2,7 +2,7 @@
 
 use crate::error::{listed, visible};
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, duration, percent, quantity, significant};
+use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::study::fit::beside::Beside;
 use crate::study::fit::found::{Bound, Estimate, Fit};
 use crate::study::fit::robust::Loss;
@@ -14,12 +14,12 @@ const TOLD: f64 = 0.9;
 pub fn words(fit: &Fit) -> String {
     let spent = duration(fit.wall_s);
     let mut text = format!(
-        "{} fitted to {} values of {}: {} steps, {} simulations, {spent}\n\n",
+        "{} fitted to {} of {}: {}, {}, {spent}\n\n",
         fit.case,
-        count(fit.observations as u64),
+        counted(fit.observations as u64, "value"),
         visible(&fit.data),
-        fit.steps,
-        fit.simulations
+        counted(fit.steps as u64, "step"),
+        counted(fit.simulations as u64, "simulation")
     );
     let heading = ["", "estimate", "standard error", "95 %", "bounds"].map(String::from);
     let lines: Vec<_> = std::iter::once(heading)
@@ -118,8 +118,8 @@ fn starts(fit: &Fit) -> String {
         n => format!(", {n} had nothing to begin with"),
     };
     format!(
-        "{same} of {} searches came to the least sum of squares{failed}\n",
-        fit.starts.len()
+        "{same} of {} came to the least sum of squares{failed}\n",
+        counted(fit.starts.len() as u64, "search")
     )
 }
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::columns::{aligned, cells};
 use super::folder::ResultFolder;
-use super::numbers::{shortest, significant};
+use super::numbers::{counted, shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
 use super::plot::tongue::{self, Tongue, TonguePanel};
 use super::records;
@@ -40,10 +40,10 @@ pub fn words(found: &Cycle) -> String {
         ..
     } = &found.floquet;
     let mut text = format!(
-        "{}: period {} s, {} steps\n\n",
+        "{}: period {} s, {}\n\n",
         found.case,
         significant(*period_s, 6),
-        found.cycle.steps_per_period
+        counted(found.cycle.steps_per_period as u64, "step")
     );
     let headings = cells::<7>(" | multiplier | modulus | growth [1/s] | frequency [Hz] | by steps [1/s] | part");
     let mut lines = vec![headings.map(String::from)];

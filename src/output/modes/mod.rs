@@ -11,7 +11,7 @@ use zip::ZipWriter;
 use super::accuracy;
 use super::arrays::write_array;
 use super::folder::{ResultFolder, fault};
-use super::numbers::significant;
+use super::numbers::{counted, significant};
 use super::plot::modes::{self as picture, ModeShapes, Shown};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
@@ -90,13 +90,13 @@ impl Report<'_> {
                 None => "there are no modes".into(),
             },
             [] => {
-                let count = self.found.modes.len();
+                let count = counted(self.found.modes.len() as u64, "mode");
                 let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
                 match self.sort {
                     None if !swings => format!(
-                        "none of the {count} modes shown grows, and none swings: --kind oscillation shows those that do, if there are any"
+                        "none of the {count} shown grows, and none swings: --kind oscillation shows those that do, if there are any"
                     ),
-                    _ => format!("none of the {count} modes shown grows"),
+                    _ => format!("none of the {count} shown grows"),
                 }
             }
             all => format!("unstable: {}", all.join("; ")),

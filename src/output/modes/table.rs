@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Report, moves};
 use crate::output::columns::{aligned, cells};
-use crate::output::numbers::{percent, quantity, significant};
+use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
 use crate::run::modes::{Kind, Limit, Mode};
 
@@ -17,12 +17,12 @@ const HEADINGS: &str = " | mode | moves | frequency | mesh error | damping ratio
 pub fn table(report: &Report) -> String {
     let found = report.found;
     let mut text = format!(
-        "{}: small motions about {}, signals held as at t = {} s\n{} unknowns, {} finite eigenvalues, {}; {} factorisations, {} solves\n\n",
+        "{}: small motions about {}, signals held as at t = {} s\n{}, {}, {}; {}, {}\n\n",
         report.case,
         report.about(),
         found.about.at,
-        found.about.y.len(),
-        found.finite,
+        counted(found.about.y.len() as u64, "unknown"),
+        counted(found.finite as u64, "finite eigenvalue"),
         if report.plan.near_hz > 0.0 {
             format!("those nearest {} Hz", report.plan.near_hz)
         } else {

@@ -107,7 +107,7 @@ fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
         best: best(optimum.variables[i].value),
     });
     let numbers_told = optimum.variables.iter().map(|one| {
-        let name = one.pointer.rsplit('/').next().unwrap_or_default();
+        let name = units::readable_pointer(&one.pointer);
         format!("{name} = {}", significant(one.value, 5))
     });
     Drawn {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::error::visible;
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, duration, percent, significant};
+use crate::output::numbers::{count, counted, duration, percent, significant};
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Bound, Compared, Derivatives, Held, Method, Optimum, Variable};
 
@@ -144,11 +144,11 @@ pub fn searched(found: &Optimum) -> Option<String> {
         false => significant(one.of, 3),
     };
     Some(format!(
-        "a search, not all of them: {} of {of} alternatives were computed; {} of {} searches from different ones came to this best, {} ended where \
+        "a search, not all of them: {} of {of} alternatives were computed; {} of {} from different ones came to this best, {} ended where \
          nothing next to it is better",
         count(one.tried as u64),
         one.came_to_best,
-        one.searches,
+        counted(one.searches as u64, "search"),
         one.ended
     ))
 }
@@ -234,7 +234,10 @@ fn starts(found: &Optimum) -> String {
     } else {
         ""
     };
-    let mut text = format!("{sought}{same} of {} searches came to it", found.starts.len());
+    let mut text = format!(
+        "{sought}{same} of {} came to it",
+        counted(found.starts.len() as u64, "search")
+    );
     if !others.is_empty() {
         text += &format!("; others ended at {}", others.join(", "));
     }

@@ -9,7 +9,7 @@ pub use energies::{energies, headings as energy_headings, shown as energy_shown}
 
 use super::columns::aligned;
 use super::folder::ResultFolder;
-use super::numbers::{count, quantity, shortest, significant};
+use super::numbers::{counted, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
 use super::records;
 use crate::discrete::quantities::Interest;
@@ -102,10 +102,10 @@ pub fn words(found: &Along) -> String {
     let wall: f64 = found.members.iter().map(|m| m.wall_s).sum();
     let _ = writeln!(
         text,
-        "\n{} cycles in {} steps and {} linear solves, {} s",
-        found.members.len(),
-        count(steps),
-        count(solves),
+        "\n{} in {} and {}, {} s",
+        counted(found.members.len() as u64, "cycle"),
+        counted(steps, "step"),
+        counted(solves, "linear solve"),
         significant(wall, 3)
     );
     text
@@ -187,12 +187,12 @@ pub fn slopes(summary: &Summary) -> String {
 /// What the search took, in words.
 pub fn search(search: &Search) -> String {
     format!(
-        "found in {} Newton steps over {} periods: {} steps, {} residuals, {} linear solves; it returns to {:.1e} of the tolerance\n",
-        search.newton_steps,
-        search.periods,
-        count(search.work.steps),
-        count(search.work.residual_evaluations),
-        count(search.work.linear_solves),
+        "found in {} over {}: {}, {}, {}; it returns to {:.1e} of the tolerance\n",
+        counted(search.newton_steps, "Newton step"),
+        counted(search.periods, "period"),
+        counted(search.work.steps, "step"),
+        counted(search.work.residual_evaluations, "residual"),
+        counted(search.work.linear_solves, "linear solve"),
         search.residual
     )
 }

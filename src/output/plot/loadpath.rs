@@ -3,6 +3,7 @@
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
 use super::colour::PALETTE;
 use super::deflection::draw_over_time;
+use super::labels::LabelRoom;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use super::{Curve, extent};
@@ -75,11 +76,14 @@ fn over_displacement(canvas: &mut Canvas, place: Place, data: &LoadPath, curve: 
         let (x, y) = panel.at((*value, *share));
         canvas.rectangle((x - 1.4, y - 1.4), (x + 1.4, y + 1.4), PALETTE[0]);
     }
+    let mut letters = LabelRoom::new((11.0, 11.0));
     for &(state, letter) in &data.marks {
         let (share, value) = curve.points[state];
         let (x, y) = panel.at((value, share));
         canvas.frame((x - 4.0, y - 4.0), (x + 4.0, y + 4.0), Stroke::solid(PALETTE[3], 1.2));
-        canvas.text((x + 8.0, y - 8.0), &letter.to_string(), Words::new(11.0, Anchor::Left));
+        if letters.claim((x, y)) {
+            canvas.text((x + 8.0, y - 8.0), &letter.to_string(), Words::new(11.0, Anchor::Left));
+        }
     }
     panel.axes(canvas, Some(&curve.name), "load factor");
 }

@@ -34,6 +34,7 @@ pub mod designs;
 pub mod energy;
 pub mod fitted;
 pub mod history;
+mod labels;
 pub mod loadpath;
 pub mod measured;
 pub mod modes;

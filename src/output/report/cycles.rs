@@ -6,7 +6,7 @@ use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
-use crate::output::numbers::{count, significant};
+use crate::output::numbers::{counted, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
 use crate::results::cycles::{Along, Cycle, Map, Stability};
 use crate::run::floquet::Multiplier;
@@ -65,12 +65,12 @@ fn multipliers(found: &Cycle) -> Value {
 /// Whether a cycle is stable, and how it was found.
 pub fn answer(found: &Cycle) -> String {
     format!(
-        "{}. The cycle of {} s was found in {} Newton steps over {} periods, with {} steps a period.",
+        "{}. The cycle of {} s was found in {} over {}, with {} a period.",
         capital(&found.floquet.verdict.words),
         significant(found.floquet.period_s, 4),
-        count(found.cycle.newton_steps),
-        count(found.cycle.periods),
-        count(found.cycle.steps_per_period as u64),
+        counted(found.cycle.newton_steps, "Newton step"),
+        counted(found.cycle.periods, "period"),
+        counted(found.cycle.steps_per_period as u64, "step"),
     )
 }
 
@@ -128,13 +128,19 @@ pub fn map(place: &Place) -> Result<Page> {
         let name = factor.map_or("The dry beam".into(), |f| {
             format!("With permeabilities × {}", significant(f, 2))
         });
-        answers.push(format!("{name} the motion grows at {growing} of {points} points."));
+        answers.push(format!(
+            "{name} the motion grows at {growing} of {}.",
+            counted(points as u64, "point")
+        ));
     }
     let (columns, lines) = (found.frequencies_hz.len(), found.amplitudes_m.len());
     page.put("answer", answers.join(" "));
     page.put(
         "facts",
-        vec![format!("{columns} frequencies"), format!("{lines} amplitudes")],
+        vec![
+            format!("{columns} {}", if columns == 1 { "frequency" } else { "frequencies" }),
+            counted(lines as u64, "amplitude"),
+        ],
     );
     page.put(
         "figures",

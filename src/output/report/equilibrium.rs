@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::output::bands;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
 use crate::output::folder::{CASE, open};
-use crate::output::numbers::{count, duration, quantity, significant, trimmed};
+use crate::output::numbers::{counted, duration, quantity, significant, trimmed};
 use crate::results::equilibrium::Equilibrium;
 use crate::results::run::Status;
 
@@ -55,8 +55,8 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put(
         "facts",
         vec![
-            format!("{} states", count(found.states as u64)),
-            format!("{} Newton steps", count(found.solver.newton_iterations)),
+            counted(found.states as u64, "state"),
+            counted(found.solver.newton_iterations, "Newton step"),
             format!("found in {}", duration(found.wall_s.total)),
         ],
     );

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
 use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
-use crate::output::numbers::{count, duration, significant};
+use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Estimate, Fit};
 
 /// `fit`.
@@ -17,12 +17,12 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put(
         "answer",
         format!(
-            "{} fitted to {} values of {}; the case with the estimates is {FITTED}.",
+            "{} fitted to {} of {}; the case with the estimates is {FITTED}.",
             match found.parameters.len() {
                 1 => "One number of the case was".into(),
                 n => format!("{n} numbers of the case were"),
             },
-            count(found.observations as u64),
+            counted(found.observations as u64, "value"),
             found.data
         ),
     );
@@ -34,7 +34,7 @@ pub fn data(place: &Place) -> Result<Page> {
                 significant(found.chi_square, 4),
                 found.degrees_of_freedom
             ),
-            format!("{} simulations", count(found.simulations as u64)),
+            counted(found.simulations as u64, "simulation"),
             format!("found in {}", duration(found.wall_s)),
         ],
     );

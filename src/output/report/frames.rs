@@ -10,6 +10,7 @@ use crate::discrete::quantities::Field;
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
 use crate::output::npz::Npz;
+use crate::output::numbers::counted;
 use crate::output::plot;
 
 /// Numbers of all frames together; four bytes each, a third more as text.
@@ -77,7 +78,11 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
             return Ok(Value::Null);
         };
         if entry.rows() != times.len() {
-            let why = format!("{name} has {} instants, {TIMES} has {}", entry.rows(), times.len());
+            let why = format!(
+                "{name} has {}, {TIMES} has {}",
+                counted(entry.rows() as u64, "instant"),
+                times.len()
+            );
             return Err(damaged(why));
         }
         Ok(pack::numbers(rows(&mut npz, name, &chosen, groups)?))

@@ -11,7 +11,7 @@ use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
 use crate::output::npz::Npz;
-use crate::output::numbers::{count, significant};
+use crate::output::numbers::{counted, significant};
 use crate::results::modes::{About, Modes};
 
 /// Columns of the table that a reader needs; the file has the rest.
@@ -51,8 +51,8 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put(
         "facts",
         vec![
-            format!("{} unknowns", count(found.unknowns as u64)),
-            format!("{} finite eigenvalues", count(found.finite_eigenvalues as u64)),
+            counted(found.unknowns as u64, "unknown"),
+            counted(found.finite_eigenvalues as u64, "finite eigenvalue"),
         ],
     );
     let table = sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name));

@@ -13,7 +13,7 @@ use crate::numerics::threads::begin;
 use crate::output::bands;
 use crate::output::envelope::History as Recorded;
 use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
-use crate::output::numbers::{count, duration, percent, quantity, significant, trimmed};
+use crate::output::numbers::{counted, duration, percent, quantity, significant, trimmed};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
 use crate::results::cycles::Cycle;
@@ -131,11 +131,8 @@ fn facts_line(summary: &Summary) -> Vec<String> {
     let simulated = trimmed(&quantity(summary.time_s, "s", 4));
     vec![
         format!("{simulated} simulated in {}", duration(summary.wall_s.known())),
-        format!("{} unknowns", count(summary.unknowns as u64)),
-        match summary.solver.steps {
-            1 => "1 step".into(),
-            n => format!("{} steps", count(n)),
-        },
+        counted(summary.unknowns as u64, "unknown"),
+        counted(summary.solver.steps, "step"),
     ]
 }
 

@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
-use crate::output::numbers::{count, significant};
+use crate::output::numbers::{counted, significant};
 use crate::output::sense as files;
 use crate::results::sense::Sensed;
 
@@ -15,12 +15,9 @@ pub fn data(place: &Place) -> Result<Page> {
     page.put("label", "Loads from pressures");
     page.put("answer", files::answer(&found));
     page.warnings.clone_from(&found.warnings);
-    let mut facts = vec![format!("{} bladders", count(found.bladders.len() as u64))];
+    let mut facts = vec![counted(found.bladders.len() as u64, "bladder")];
     if !found.rows.is_empty() {
-        facts.push(match found.rows.len() {
-            1 => "1 row of measurements".into(),
-            rows => format!("{} rows of measurements", count(rows as u64)),
-        });
+        facts.push(counted(found.rows.len() as u64, "row") + " of measurements");
     }
     if let Some(sd) = found.noise.as_ref().and_then(|noise| noise.sd_pa) {
         facts.push(format!("noise {} Pa", significant(sd, 3)));
@@ -33,7 +30,7 @@ pub fn data(place: &Place) -> Result<Page> {
         json!([{
             "title": "Loads and pressures",
             "picture": place.picture(files::PICTURE),
-            "about": format!("Bands hold the loads with 95 %. {sight}. {noise}"),
+            "about": format!("{sight}. {noise}"),
         }]),
     );
     let (headings, rows) = files::table(&found);
@@ -41,7 +38,7 @@ pub fn data(place: &Place) -> Result<Page> {
         page.put(
             "table",
             json!({
-                "title": "Loads", "about": "Each load with half of its band of 95 %.",
+                "title": "Loads", "about": format!("Each load with half of its band; {}.", files::about_band(&found).trim_end_matches('.')),
                 "headings": headings, "rows": rows, "file": files::CSV,
             }),
         );

@@ -3,7 +3,7 @@
 use crate::functions::Signal;
 use crate::functions::bounds::Interval;
 use crate::functions::signals::{Ramp, Sine};
-use crate::output::numbers::{quantity, trimmed};
+use crate::output::numbers::{counted, quantity, trimmed};
 
 /// Longest words of a sum or product.
 const LONGEST: usize = 90;
@@ -46,11 +46,11 @@ pub fn words(signal: &Signal, unit: &str) -> String {
         ),
         Signal::Polynomial(_) => "polynomial in time".into(),
         Signal::Table(table) if table.repeat => format!(
-            "curve through {} points, repeated every {}",
-            table.times_s.len(),
+            "curve through {}, repeated every {}",
+            counted(table.times_s.len() as u64, "point"),
             short(table.period_s().unwrap_or_default(), "s")
         ),
-        Signal::Table(table) => format!("curve through {} points", table.times_s.len()),
+        Signal::Table(table) => format!("curve through {}", counted(table.times_s.len() as u64, "point")),
         Signal::Sum(parts) => brief(all(parts, unit).join(" + ")),
         Signal::Product(parts) => brief(all(parts, "1").join(" × ")),
     }

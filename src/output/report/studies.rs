@@ -6,7 +6,7 @@ use super::{Found, Kind, Page, Place, capital};
 use crate::error::Result;
 use crate::output::effects::{self as effects_files, Shown};
 use crate::output::folder::CASE;
-use crate::output::numbers::{count, duration, percent, significant};
+use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::plot::ablation::Bar;
 use crate::output::plot::workprecision::{Line, Marker, WorkPrecision};
 use crate::output::study as study_files;
@@ -36,7 +36,7 @@ pub fn study(place: &Place) -> Result<Page> {
     page.put(
         "facts",
         vec![
-            format!("{} settings", count(found.points.len() as u64)),
+            counted(found.points.len() as u64, "setting"),
             format!("{} spent", duration(found.spent)),
             format!("judged by {measure}"),
         ],
@@ -85,10 +85,7 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
     meshes.dedup();
     let drawn = |marker: &&Marker| marker.error > 0.0 && marker.least_s > 0.0;
     let series = |line: &Line| {
-        let cells = match line.cells {
-            1 => "1 cell".into(),
-            n => format!("{n} cells"),
-        };
+        let cells = counted(line.cells as u64, "cell");
         let name = format!("{cells}, {}", method(line.scheme));
         let point = |marker: &Marker| {
             let worth = if marker.front { "; worth using" } else { "" };

@@ -10,9 +10,9 @@ use super::plot::sensed::{self, Drawn, Part, Series};
 use super::records::{self, number};
 use crate::error::Result;
 use crate::results;
-use crate::results::sense::{Banded, Sensed};
+use crate::results::sense::{BandKind, Banded, Sensed};
 
-pub use words::{about_noise, about_sight, answer, list, table, words};
+pub use words::{about_band, about_noise, about_sight, answer, list, table, words};
 
 /// One row a row of the measurements.
 pub const CSV: &str = "sense.csv";
@@ -100,8 +100,12 @@ fn drawn(found: &Sensed) -> Drawn {
                 .collect();
             if line.len() > 1 {
                 let series = Series { line, points: vec![] };
+                let across = match found.band {
+                    BandKind::LocalMean => "mean force across",
+                    _ => "force across",
+                };
                 parts.push(Part {
-                    axes: [named("share of the length", "1"), named("force across", "N/m")],
+                    axes: [named("share of the length", "1"), named(across, "N/m")],
                     series: vec![series],
                 });
             }
@@ -152,7 +156,13 @@ fn drawn(found: &Sensed) -> Drawn {
     }
     let about = match found.rows.is_empty() {
         true => "what pressures tell of loads, by the number of sensors".into(),
-        false => "loads with bands of 95 %; pressures: rings measured, lines modelled, blue the upper row".into(),
+        false => {
+            let loads = match found.band {
+                BandKind::LocalMean => "means around places",
+                _ => "loads",
+            };
+            format!("{loads} with bands of 95 %; pressures: rings measured, lines modelled, blue the upper row")
+        }
     };
     Drawn {
         case: format!("{} · loads from pressures", found.case),

@@ -2,8 +2,9 @@
 
 use crate::error;
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, significant, trimmed};
-use crate::results::sense::{Banded, NoiseFrom, Sensed, Unknown};
+use crate::output::numbers::{count, counted, significant, trimmed};
+use crate::results::sense::{BandKind, Banded, NoiseFrom, Sensed, Unknown};
+use crate::study::sense::basis::Basis;
 
 /// Rows of a table at most.
 const ROWS: usize = 12;
@@ -31,8 +32,7 @@ pub fn words(found: &Sensed) -> String {
         text += &format!("\n{}", aligned(&lines, &[0]));
         match more {
             0 => {}
-            1 => text += "1 more row in sense.csv\n",
-            _ => text += &format!("{} more rows in sense.csv\n", count(more as u64)),
+            _ => text += &format!("{} in sense.csv\n", counted(more as u64, "more row")),
         }
         text += &format!("\n{}\n", about_noise(found));
     }
@@ -52,12 +52,13 @@ pub fn words(found: &Sensed) -> String {
 /// What pressures of the bladders tell of the loads at all.
 pub fn about_sight(found: &Sensed) -> String {
     let loads: Vec<String> = found.loads.iter().map(ToString::to_string).collect();
-    let bladders = match found.bladders.len() {
-        1 => "1 bladder".to_owned(),
-        many => format!("{many} bladders"),
+    let bladders = counted(found.bladders.len() as u64, "bladder");
+    let straight = match found.loads.iter().any(|load| matches!(load, Basis::Profile(_))) {
+        true => "; of loads that are straight between the places of the profile:",
+        false => "",
     };
     let mut text = format!(
-        "{}: {} from the pressures of {bladders} {}\n",
+        "{}: {} from the pressures of {bladders} {}{straight}\n",
         found.case,
         loads.join(" + "),
         match found.over_time {
@@ -142,13 +143,14 @@ fn listed(all: &[&Unknown]) -> String {
 }
 
 /// A load with half of its band.
-fn banded(one: Option<&Banded>) -> String {
+fn banded(one: Option<&Banded>, kind: BandKind) -> String {
     match one {
         Some(one) => format!(
             "{} ± {}",
             significant(one.value, 4),
             significant(one.high - one.value, 2)
         ),
+        None if kind == BandKind::LocalMean => "not determined".into(),
         None => "not told".into(),
     }
 }
@@ -157,18 +159,29 @@ fn banded(one: Option<&Banded>) -> String {
 pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
     // sums are of use where what they are of is not told
     let lost = found.rows.iter().any(|row| row.amplitudes.contains(&None));
-    let sums = || found.seen.together.iter().filter(|_| lost);
+    let means = found.band == BandKind::LocalMean;
+    let sums = || found.seen.together.iter().filter(|_| lost && !means);
     let names = || {
         let amplitudes = found.amplitudes.iter().map(|a| (&a.name, &a.unit));
         amplitudes.chain(sums().map(|one| (&one.name, &one.unit)))
     };
     if let [row] = found.rows.as_slice() {
-        let headings = ["load", "value ± half of the band of 95 %", "from", "to", "unit"].map(String::from);
+        let value = match means {
+            true => "mean around its place ± half of the band of 95 %",
+            false => "value ± half of the band of 95 %",
+        };
+        let headings = ["load", value, "from", "to", "unit"].map(String::from);
         let all = row.amplitudes.iter().chain(&row.together);
         let lines = names().zip(all).map(|((name, unit), one)| {
             let end = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 4));
             let (low, high) = one.as_ref().map(|one| (one.low, one.high)).unzip();
-            vec![name.clone(), banded(one.as_ref()), end(low), end(high), unit.clone()]
+            vec![
+                name.clone(),
+                banded(one.as_ref(), found.band),
+                end(low),
+                end(high),
+                unit.clone(),
+            ]
         });
         return (headings.into(), lines.collect());
     }
@@ -184,10 +197,39 @@ pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
             .amplitudes
             .iter()
             .chain(&row.together)
-            .map(|one| banded(one.as_ref()));
+            .map(|one| banded(one.as_ref(), found.band));
         [first].into_iter().chain(all).collect()
     });
     (headings, lines.collect())
+}
+
+/// What the bands hold, in a sentence.
+pub fn about_band(found: &Sensed) -> String {
+    let text = match found.band {
+        BandKind::AssumedForm => {
+            let check = match &found.noise {
+                _ if !found.doubts.is_empty() => "The pressures do not fit that: loads may lie outside.",
+                Some(noise) if noise.from == NoiseFrom::Estimated => "What else acts is taken for noise.",
+                Some(noise) if noise.freedom < 0.5 => "No pressure is left to check that.",
+                _ => "χ² checks that.",
+            };
+            return format!(
+                "bands of 95 % assume loads that act where and as they are looked for: noise is the only error. {check}"
+            );
+        }
+        BandKind::LocalMean => {
+            "bands of 95 % hold the mean of the load around each place, of pads, points, smooth and rough loads: its weight falls straight to 0 at the next \
+             places. Pressures do not determine the load at a point. Where a mean is not determined, its band would be that of assumptions"
+        }
+        BandKind::AssumedSmoothness => {
+            "bands of 95 % hold only loads that are straight between the places and as smooth as assumed. Leave --smoothing out for bands of \
+             loads of any shape"
+        }
+        BandKind::SmoothInTime => {
+            "bands of 95 % hold loads that act where they are looked for and change as smoothly as estimated. Loads that jump may lie outside"
+        }
+    };
+    text.into()
 }
 
 /// Noise, fit, and what was known before.
@@ -216,25 +258,29 @@ pub fn about_noise(found: &Sensed) -> String {
             Some(_) => {
                 let values = found.rows.iter().flat_map(|row| &row.measured_pa).flatten().count();
                 format!(
-                    "; what is left of {} pressures has χ² = {}, the roughness of the loads adds {}: {sum} on {freedom} of freedom",
-                    count(values as u64),
+                    "; what is left of {} has χ² = {}, the roughness of the loads adds {}: {sum} on {freedom} of freedom",
+                    counted(values as u64, "pressure"),
                     significant(noise.misfit, 3),
                     significant(noise.roughness, 3)
                 )
             }
         };
     }
+    text += &format!("\n{}", about_band(found));
     if let Some(smoothed) = &found.smoothing {
-        text += &format!(
-            "\nknown before: {}; bands include that",
-            match smoothed.deviation_n_m {
-                Some(deviation) => format!(
-                    "second differences of the profile have a standard deviation of {} N/m",
-                    significant(deviation, 3)
-                ),
-                None => "loads are smooth over time, as much as the pressures speak for".into(),
-            }
-        );
+        text += "\nknown before: ";
+        text += &match (smoothed.deviation_n_m, smoothed.load_deviation_n_m) {
+            (_, Some(deviation)) => format!(
+                "the load is a Gaussian process of any scale and length, most likely of a standard deviation of {} N/m; bands include that scale and length \
+                 are not known",
+                significant(deviation, 3)
+            ),
+            (Some(deviation), _) => format!(
+                "second differences of the profile have a standard deviation of {} N/m; bands include that",
+                significant(deviation, 3)
+            ),
+            _ => "loads are smooth over time, as much as the pressures speak for; bands include that".into(),
+        };
     }
     if let Some(over_time) = &found.over_time {
         let told = found.amplitudes.iter().zip(&over_time.told);
@@ -242,11 +288,11 @@ pub fn about_noise(found: &Sensed) -> String {
             .map(|(a, told)| format!("{} of {}", significant(*told, 3), a.name))
             .collect();
         text += &format!(
-            "\nover time: {} values of each load, one every {} s, a smooth curve between; the pressures tell {}; {} runs",
+            "\nover time: {} values of each load, one every {} s, a smooth curve between; the pressures tell {}; {}",
             over_time.knots,
             significant(over_time.every_s, 3),
             told.join(", "),
-            over_time.runs
+            counted(u64::from(over_time.runs), "run")
         );
     } else if found.rows.iter().any(|row| row.t_s.is_some()) {
         text += "\neach row is taken as at rest: inertia and flow are not in it";
@@ -292,7 +338,14 @@ pub fn answer(found: &Sensed) -> String {
         ([row], ..) => {
             let told = found.amplitudes.iter().zip(&row.amplitudes);
             let told: Vec<String> = told
-                .filter_map(|(a, one)| Some(format!("{} {} {}", a.name, banded(Some(one.as_ref()?)), a.unit)))
+                .filter_map(|(a, one)| {
+                    Some(format!(
+                        "{} {} {}",
+                        a.name,
+                        banded(Some(one.as_ref()?), found.band),
+                        a.unit
+                    ))
+                })
                 .take(4)
                 .collect();
             match told.is_empty() {
@@ -306,9 +359,9 @@ pub fn answer(found: &Sensed) -> String {
             }
         }
         ([], Some(least), Some(most)) => format!(
-            "{} are the {} bladders that tell most; with all {} the errors are as small as they get.",
+            "Of {} most is told by {}; with all {} the errors are as small as they get.",
+            counted(least.bladders.len() as u64, "bladder"),
             list(&least.bladders).replace(' ', ", "),
-            least.bladders.len(),
             most.bladders.len()
         ),
         (rows, ..) => format!("Loads behind {} rows of pressures.", count(rows.len() as u64)),

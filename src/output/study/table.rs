@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::words::spoken;
 use crate::output::columns::{aligned, cells};
-use crate::output::numbers::significant;
+use crate::output::numbers::{counted, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
 use crate::study::accuracy::plan::fluid_cells;
@@ -89,7 +89,12 @@ fn reasons(point: &Point) -> String {
     let s = point.trial.setting;
     let how = ending(point.trial.ending);
     let why = point.trial.reason.as_deref().unwrap_or("no reason given");
-    format!("{} cells, {}, rtol {:e}: {how}: {why}", s.cells, s.scheme, s.rtol)
+    format!(
+        "{}, {}, rtol {:e}: {how}: {why}",
+        counted(s.cells as u64, "cell"),
+        s.scheme,
+        s.rtol
+    )
 }
 
 fn ending(ending: Ending) -> &'static str {
@@ -108,8 +113,8 @@ fn references(study: &Study) -> String {
     for r in &study.references {
         let _ = write!(
             text,
-            "  {} cells: {}, rtol {:e}, {:.2} s: {} by its tolerances",
-            r.cells,
+            "  {}: {}, rtol {:e}, {:.2} s: {} by its tolerances",
+            counted(r.cells as u64, "cell"),
             r.scheme,
             r.rtol,
             r.wall_s,

@@ -1,7 +1,7 @@
 //! The sentence at the end of a study.
 
 use crate::discrete::quantities::Observable;
-use crate::output::numbers::{significant, trimmed};
+use crate::output::numbers::{counted, significant, trimmed};
 use crate::study::accuracy::{Scheme, Setting, Study};
 
 /// A measure as people say it.
@@ -104,7 +104,7 @@ fn foot(study: &Study) -> Option<String> {
     let with = if answering {
         String::new()
     } else {
-        format!(" with {} cells and {}", setting.cells, setting.scheme)
+        format!(" with {} and {}", counted(setting.cells as u64, "cell"), setting.scheme)
     };
     Some(format!(
         "looser than rtol {:e} costs more, not less{with} (up to {factor} times)",

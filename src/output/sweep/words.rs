@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Survey;
 use crate::error::Result;
-use crate::output::numbers::count;
+use crate::output::numbers::{count, counted};
 use crate::results::sweep::Sweep;
 use crate::run::summary::Status;
 use crate::study::sweep::compute::ACCURACY;
@@ -93,10 +93,7 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
 
 /// So many designs.
 pub fn several(count_of: usize) -> String {
-    match count_of {
-        1 => "1 design".into(),
-        n => format!("{} designs", count(n as u64)),
-    }
+    counted(count_of as u64, "design")
 }
 
 fn spoken(status: Status) -> &'static str {

@@ -3,6 +3,7 @@
 use super::path::{End, Follower};
 use super::state::State;
 use super::{Event, Kind};
+use crate::error::numbers::counted;
 use crate::error::{At, Code, SolverError};
 use crate::integrate::halt::{self, INTERRUPTED};
 use crate::sundials::KinsolError;
@@ -45,10 +46,11 @@ impl Follower<'_> {
     }
 
     pub(super) fn lost(&self, share: f64) -> End {
-        let points = self.path.states.len();
+        let points = counted(self.path.states.len() as u64, "point");
         let factor = self.stage as f64 + share;
-        let what =
-            format!("the path does not come to the load factor that is asked for: {points} points end at {factor:.4}");
+        let what = format!(
+            "the path does not come to the load factor that is asked for: it ends after {points} at {factor:.4}"
+        );
         End(fault(factor, &what))
     }
 

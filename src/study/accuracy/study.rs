@@ -13,6 +13,7 @@ use super::sweep::{self, Watch};
 use super::trial::{Role, Trial};
 use crate::case::Case;
 use crate::discrete::quantities::Observable;
+use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 
 /// Accuracies for which the cheapest point is sought.
@@ -303,9 +304,9 @@ fn notes(study: &Study) -> Vec<String> {
     let unjudged = judged.iter().filter(|j| !**j).count();
     if unjudged > 0 {
         notes.push(format!(
-            "{unjudged} of {} points are not judged: the reference is not {BETTER} times better than they are (its own error \
+            "not judged: {unjudged} of {}: the reference is not {BETTER} times better than they are (its own error \
              in {} is {own:.1e}); a larger --budget or tighter --rtol and finer --cells improve it",
-            judged.len(),
+            counted(judged.len() as u64, "point"),
             measure.name
         ));
     }
@@ -331,18 +332,20 @@ fn notes(study: &Study) -> Vec<String> {
         let k = study.headline;
         if r.checked_by.is_none() {
             notes.push(format!(
-                "{} cells: no run of another order or method is near enough to check the reference; its error is by its own \
+                "{}: no run of another order or method is near enough to check the reference; its error is by its own \
                  tolerances alone",
-                r.cells
+                counted(r.cells as u64, "cell")
             ));
         }
         if let (Some(t), Some(o)) = (r.by_tolerance[k], r.by_order[k])
             && r.own[k].max > t.max
         {
             notes.push(format!(
-                "{} cells: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another scheme); \
+                "{}: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another scheme); \
                  the larger one counts",
-                r.cells, t.max, o.max
+                counted(r.cells as u64, "cell"),
+                t.max,
+                o.max
             ));
         }
     }

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use crate::case::heading::Heading;
 use crate::case::{self, Source, nearest};
+use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result, Violation, listed, shown};
 use crate::study::measure::table::{MOST, cells, fault, lines};
 
@@ -81,10 +82,10 @@ impl Table {
             if all.len() != headings.len() {
                 let span = line.start..line.start + line.text.len();
                 let what = format!(
-                    "line {}: {} cells where there are {} headings",
+                    "line {}: {} where there are {}",
                     line.number,
-                    all.len(),
-                    headings.len()
+                    counted(all.len() as u64, "cell"),
+                    counted(headings.len() as u64, "heading")
                 );
                 faults.push(fault(span, what));
             }

@@ -9,6 +9,7 @@ use crate::case::schema::{Case, Thinning};
 use crate::case::{nearest, units};
 use crate::discrete::System;
 use crate::discrete::quantities::Observable;
+use crate::error::numbers::counted;
 use crate::error::{Error, Result, visible};
 use crate::run::equilibrium;
 use crate::run::observe::Observer;
@@ -178,7 +179,9 @@ impl Problem {
         let (values, sought) = (observations.len(), asked.spans.len());
         if values < sought + usize::from(sigmas.iter().any(Option::is_none)) {
             return Err(Error::Usage(format!(
-                "{values} measured values cannot tell {sought} numbers of the case{}",
+                "{} cannot tell {} of the case{}",
+                counted(values as u64, "measured value"),
+                counted(sought as u64, "number"),
                 if values < sought {
                     ""
                 } else {

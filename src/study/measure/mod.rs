@@ -17,6 +17,7 @@
 pub mod table;
 
 use crate::case::Case;
+use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::numerics::regression::{self, Regression};
 use table::{Points, Quantity};
@@ -210,8 +211,8 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
     let fit = regression::fit(&columns(&points, |x| regressors(options, x)), &points.y).ok_or_else(|| {
         let needed = regressors(options, 1.0).len() + 1;
         Error::Usage(format!(
-            "{} points of {} do not fix the fit: it takes {needed} and as many different values of {}",
-            points.x.len(),
+            "too few for the fit: {} of {}; it takes {needed} and as many different values of {}",
+            counted(points.x.len() as u64, "point"),
             y.name(),
             x.name()
         ))

@@ -65,13 +65,11 @@ pub fn names(case: &Case, what: What) -> Result<Vec<String>> {
                 };
                 of(&mut all, figures, one.name());
             }
-            match cycle {
-                true => all.extend(POWERS[usize::from(!turbines)..].iter().map(|(_, name)| (*name).into())),
-                false => {
-                    for probe in probes::columns(&system) {
-                        of(&mut all, motion, &probe.key());
-                    }
-                }
+            if cycle {
+                all.extend(POWERS[usize::from(!turbines)..].iter().map(|(_, name)| (*name).into()));
+            }
+            for probe in probes::columns(&system) {
+                of(&mut all, motion, &probe.key());
             }
         }
     }

@@ -5,6 +5,7 @@ use super::found::{Derivatives, Held, Optimum};
 use super::problem::{Limit, Method, Problem};
 use crate::case::numbers::plain;
 use crate::error::Code;
+use crate::error::numbers::counted;
 use crate::numerics::sqp::Ended;
 use crate::study::sweep::row::Found;
 
@@ -68,10 +69,10 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
         Ended::Found | Ended::Apart => {}
         Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
         Ended::Stuck if !found.failed.is_empty() => say(format!(
-            "the search ended where no step makes the figure better, though its derivatives say so, and {} of {} designs could not be computed: the best \
+            "the search ended where no step makes the figure better, though its derivatives say so, and {} of {} could not be computed: the best \
              lies at the edge of what can, or the figure has a kink or ripples there; bounds that leave out what fails, or --method cma-es, tell which",
             found.failed.values().sum::<usize>(),
-            found.evaluations
+            counted(found.evaluations as u64, "design")
         )),
         Ended::Stuck => say(
             "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \

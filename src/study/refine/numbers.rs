@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Number, Numbers};
 use crate::case::Case;
+use crate::discrete::quantities::probes;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::run::equilibrium::{self, Options, Path};
@@ -42,11 +43,16 @@ pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
 pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
-    // an angle counts beside displacements
-    let alike = |unit: &'static str| if unit == "rad" { ("m", length) } else { (unit, 1.0) };
+    let modulus = case.beam.young_modulus_pa;
+    // an angle counts beside displacements, a stress of the solid beside strains
+    let alike = |column: &Column| match column.unit {
+        "rad" => ("m", length),
+        "Pa" if probes::is_stress(&column.name) => ("1", 1.0 / modulus),
+        unit => (unit, 1.0),
+    };
     let all = || columns.iter().zip(row).skip(1);
     let largest = |unit: &str| {
-        let same = all().map(|(c, x)| (alike(c.unit), x)).filter(|((u, _), _)| *u == unit);
+        let same = all().map(|(c, x)| (alike(c), x)).filter(|((u, _), _)| *u == unit);
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
     // what nothing moves or presses is round-off, and so is all that is made of it
@@ -71,11 +77,11 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         "W" => conductance * even * even,
         _ => 0.0,
     };
-    let number = |unit: &'static str, value: f64| {
-        let (unit, factor) = alike(unit);
+    let number = |column: &Column, value: f64| {
+        let (unit, factor) = alike(column);
         Number::new(value, (NOTHING * largest(unit)).max(floor(unit)) / factor)
     };
-    Ok(all().map(|(c, x)| (c.name.clone(), number(c.unit, *x))).collect())
+    Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }
 
 /// Frequencies and rates of the modes: those across by their order, those along, those of the fluid.

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::misfit::Misfit;
 use super::weight::{choose, heaviest};
+use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::numerics::inverse::{Linear, Posterior, Seen};
 use crate::numerics::{normal, student};
@@ -46,7 +47,7 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// An error with the line of the measurements that leads to it.
-    fn named(&self, mut error: Error) -> Error {
+    pub(super) fn named(&self, mut error: Error) -> Error {
         if let (Error::Solver(fault), Some(line)) = (&mut error, self.line) {
             fault.what = format!("line {line} of the measurements: {}", fault.what);
         }
@@ -269,9 +270,9 @@ fn stacked(upper: &DMatrix<f64>, lower: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 fn few(states: &[State]) -> Error {
-    let values: usize = states.iter().map(|state| state.measured.len()).sum();
+    let values = counted(states.iter().map(|state| state.measured.len() as u64).sum(), "pressure");
     Error::Usage(format!(
-        "{values} pressures tell no more than the loads, and nothing is left to tell the noise by; give its deviation, --noise PA, or look for fewer loads"
+        "{values} tell no more than the loads, and nothing is left to tell the noise by; give its deviation, --noise PA, or look for fewer loads"
     ))
 }
 

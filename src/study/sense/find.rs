@@ -5,10 +5,11 @@ use nalgebra::{DMatrix, DVector};
 use super::basis::{self, Amplitude, Basis};
 use super::choose::{self, Criterion};
 use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
+use super::local_mean::{FineFound, FineLoad, local_band, local_means};
 use super::over_time;
 use super::pressures::Measured;
 use super::rest::{AtRest, labels, probed};
-use super::sensed::{Chosen, Row, Sensed, Smoothed};
+use super::sensed::{BandKind, Banded, Chosen, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
 use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
@@ -130,7 +131,25 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             },
             noise_known: deviations.is_some() || asked.noise_pa.is_some(),
         };
-        let all_found = estimate(&mut problems, &ask)?;
+        let mut all_found = estimate(&mut problems, &ask)?;
+        found.band = match (differences.nrows(), asked.smoothing) {
+            (0, _) => BandKind::AssumedForm,
+            _ => BandKind::AssumedSmoothness,
+        };
+        let fine = FineLoad::new(&found.loads).filter(|_| asked.smoothing == Smoothing::Likelihood);
+        let fine_amplitudes = match &fine {
+            Some(fine) => basis::amplitudes(case, &fine.loads)?,
+            None => vec![],
+        };
+        let mut fine_model = match &fine {
+            Some(_) => Some(AtRest::new(&probed, &names, &fine_amplitudes, &options)?.until(stop)),
+            None => None,
+        };
+        let mut means: Vec<FineFound> = vec![];
+        if let (Some(fine), Some(model)) = (&fine, &mut fine_model) {
+            found.band = BandKind::LocalMean;
+            means = local_means(&problems, &mut all_found, (fine, model), ask.noise_known)?;
+        }
         // what goes together is another sum where the beam is bent far
         if let Some((_, largest)) = largest(&all_found) {
             sight(&mut found, &amplitudes, &largest.jacobian.select_rows(&columns));
@@ -141,6 +160,19 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             .iter()
             .map(|one| over_sizes(one, &amplitudes))
             .collect();
+        let each = |row: usize| -> Vec<Option<Banded>> {
+            match means.get(row) {
+                Some(one) => (0..amplitudes.len())
+                    .map(|k| local_band(&all_found, one, k, &amplitudes[k]))
+                    .collect(),
+                None => (0..amplitudes.len())
+                    .map(|k| banded(&all_found, &all_found.found[row], &alone(&amplitudes, k)))
+                    .collect(),
+            }
+        };
+        // sums of means are not those of loads that are straight between places
+        let sum =
+            |one: &Found, factors: &Vec<f64>| means.is_empty().then(|| banded(&all_found, one, factors)).flatten();
         found.rows = measured
             .rows
             .iter()
@@ -149,17 +181,19 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             .map(|((k, row), one)| Row {
                 line: measured.lines[k],
                 t_s: measured.times.as_ref().map(|times| times[k]),
-                amplitudes: (0..amplitudes.len())
-                    .map(|j| banded(&all_found, one, &alone(&amplitudes, j)))
-                    .collect(),
-                together: combinations.iter().map(|sum| banded(&all_found, one, sum)).collect(),
+                amplitudes: each(k),
+                together: combinations.iter().map(|factors| sum(one, factors)).collect(),
                 measured_pa: row.clone(),
                 modelled_pa: columns.iter().map(|b| one.predicted[*b]).collect(),
             })
             .collect();
         found.smoothing = all_found.deviation_of_differences.map(|deviation| Smoothed {
             by: asked.smoothing,
-            deviation_n_m: Some(deviation * spread(&amplitudes)),
+            deviation_n_m: means.is_empty().then(|| deviation * spread(&amplitudes)),
+            load_deviation_n_m: means
+                .iter()
+                .map(|one| one.posterior.scale * spread(&amplitudes))
+                .max_by(f64::total_cmp),
         });
         found.noise = Some(told::noise(asked, measured, &all_found));
         let places: Vec<usize> = (0..all.len()).collect();
@@ -168,7 +202,11 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         found.doubts = doubts(&found, &left, all.len(), &all_found);
         warnings.extend(found.doubts.clone());
         if let Some((row, largest)) = largest(&all_found) {
-            warnings.extend(aside(&model, largest, measured.lines[row])?);
+            let line = measured.lines[row];
+            warnings.extend(match (&fine_model, means.get(row)) {
+                (Some(model), Some(one)) => aside(model, &one.amplitudes, &one.predicted, line)?,
+                _ => aside(&model, &largest.mean, &largest.predicted, line)?,
+            });
             about.clone_from(&largest.jacobian);
         }
     }
@@ -222,11 +260,11 @@ fn largest(estimate: &Estimate) -> Option<(usize, &Found)> {
 }
 
 /// What is said where the state of the largest loads, those of a line, is not that to which they lead from rest.
-fn aside(model: &AtRest, largest: &Found, line: usize) -> Result<Vec<String>> {
-    if largest.mean.amax() < UNLOADED {
+fn aside(model: &AtRest, loads: &DVector<f64>, predicted: &DVector<f64>, line: usize) -> Result<Vec<String>> {
+    if loads.amax() < UNLOADED {
         return Ok(vec![]);
     }
-    let (followed, mut warnings) = match model.followed(largest.mean.as_slice()) {
+    let (followed, mut warnings) = match model.followed(loads.as_slice()) {
         Ok(followed) => followed,
         Err(Error::Solver(fault)) => {
             return Ok(vec![Code::StateAside.warning(format!(
@@ -236,7 +274,7 @@ fn aside(model: &AtRest, largest: &Found, line: usize) -> Result<Vec<String>> {
         }
         Err(other) => return Err(other),
     };
-    if (&followed - &largest.predicted).norm() > SAME * followed.norm() {
+    if (&followed - predicted).norm() > SAME * followed.norm() {
         warnings.push(Code::StateAside.warning(
             "the loads found lead along their path from rest to other pressures than those that were fitted: the state of the fit is another one",
         ));

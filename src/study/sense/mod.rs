@@ -5,6 +5,8 @@
 //! pressures  what was measured
 //! rest       pressures at rest under loads
 //! estimate   amplitudes from measurements, with bands
+//! load_prior a distributed load before and after measurements
+//! local_mean means of such a load around places
 //! misfit     whether what they leave is noise
 //! weight     that of what is known before
 //! choose     which bladders to measure
@@ -21,6 +23,8 @@ pub mod choose;
 pub mod estimate;
 pub mod find;
 pub mod in_time;
+pub mod load_prior;
+pub mod local_mean;
 pub mod misfit;
 mod over_time;
 pub mod pressures;

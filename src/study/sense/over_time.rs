@@ -12,15 +12,16 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{self, Amplitude};
-use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, estimate};
+use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
 use super::find::{Asked, differences as along_the_beam, nothing_told};
 use super::in_time::{InTime, Knots};
 use super::pressures::Measured;
 use super::rest::{labels, probed};
-use super::sensed::{OverTime, Row, Sensed, Smoothed};
+use super::sensed::{BandKind, OverTime, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
 use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
+use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result};
 use crate::model::characteristic;
 use crate::numerics::inverse::{Seen, second_differences};
@@ -65,6 +66,10 @@ pub(super) fn find(
         case: case.name.clone(),
         loads,
         bladders: measured.bladders.iter().map(|b| all[*b]).collect(),
+        band: match asked.smoothing {
+            Smoothing::Off => BandKind::AssumedForm,
+            _ => BandKind::SmoothInTime,
+        },
         ..Sensed::default()
     };
     let lasting = constant(&first.1, amplitudes.len());
@@ -100,6 +105,7 @@ pub(super) fn find(
     found.smoothing = estimate.deviation_of_differences.map(|_| Smoothed {
         by: asked.smoothing,
         deviation_n_m: None,
+        load_deviation_n_m: None,
     });
     let left: Vec<Left> = left(&problems[0], one, &measured.bladders).collect();
     let correlation = correlation(&left);
@@ -121,8 +127,8 @@ pub(super) fn find(
     }
     if !one.settled {
         found.warnings.push(Code::UnexplainedPressures.warning(format!(
-            "the search ended before it settled, after {} runs: the loads told are not those that fit best; fewer knots, or more smoothing, make it sure",
-            one.runs
+            "the search ended before it settled, after {}: the loads told are not those that fit best; fewer knots, or more smoothing, make it sure",
+            counted(u64::from(one.runs), "run")
         )));
     }
     Ok(found)
@@ -138,8 +144,8 @@ fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
     };
     if times.len() < Knots::FEWEST {
         return Err(usage(format!(
-            "{} instants are too few to follow a load by; {} are the fewest",
-            times.len(),
+            "{}: too few to follow a load by; {} are the fewest",
+            counted(times.len() as u64, "instant"),
             Knots::FEWEST
         )));
     }
@@ -160,7 +166,8 @@ fn knot_count(asked: Option<usize>, rows: usize, loads: usize) -> Result<usize> 
     let count = asked.unwrap_or(USUAL.min(rows).min(room));
     if count > room {
         return Err(Error::Usage(format!(
-            "--knots {count}: {loads} loads have {} values at so many knots, and {ALL} is the most; at most {room} knots, or fewer loads",
+            "--knots {count}: {} have {} values at so many knots, and {ALL} is the most; at most {room} knots, or fewer loads",
+            counted(loads as u64, "load"),
             count * loads
         )));
     }

@@ -38,6 +38,9 @@ pub struct Sensed {
     /// What was known before.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<Smoothed>,
+    /// What the bands hold.
+    #[serde(default)]
+    pub band: BandKind,
     /// How loads over time were found; none where each row is at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
@@ -139,6 +142,9 @@ pub struct Smoothed {
     /// That of a profile at rest [N/m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation_n_m: Option<f64>,
+    /// Standard deviation of the load before the measurements, of the most likely scale and shape [N/m]; the largest of all rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_deviation_n_m: Option<f64>,
 }
 
 /// Loads over time.
@@ -154,6 +160,21 @@ pub struct OverTime {
     pub correlation: f64,
     /// Runs that it took.
     pub runs: u32,
+}
+
+/// What a band of 95 % holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BandKind {
+    /// The load, if loads act where and as they are looked for: noise is the only error.
+    #[default]
+    AssumedForm,
+    /// The mean of the load around its place, whatever its shape between places.
+    LocalMean,
+    /// The load, if it is straight between places and as smooth as assumed.
+    AssumedSmoothness,
+    /// The load at an instant, if loads change as smoothly as estimated.
+    SmoothInTime,
 }
 
 /// A number with its band of 95 %.

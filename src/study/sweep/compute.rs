@@ -180,7 +180,7 @@ pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&F
         found.put("stable", f64::from(u8::from(stable)));
         found.put("growth_per_s", all.multipliers.first().map(|m| m.growth_per_s));
     }
-    for (name, quantity) in &summary.quantities {
+    for (name, quantity) in summary.quantities.iter().chain(&summary.probes) {
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
             found.put(format!("{name}.{figure}"), value);
         }

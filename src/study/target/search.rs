@@ -10,6 +10,7 @@ use crate::case::schema::Effect;
 use crate::case::schema::Method;
 use crate::discrete::{System, resolution};
 use crate::error::Result;
+use crate::error::numbers::counted;
 use crate::run::dynamics;
 use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Estimate, Pilot, Status, Summary};
@@ -123,7 +124,10 @@ impl<'a> Search<'a> {
                 Control::Stop(reason) => stopped = Some(reason.clone()),
                 Control::Continue if most.is_some_and(|most| progress.steps > most) => {
                     let share = 100.0 * progress.t / progress.end;
-                    return Control::Stop(format!("{} steps for {share:.1} % of the run", progress.steps));
+                    return Control::Stop(format!(
+                        "{} for {share:.1} % of the run",
+                        counted(progress.steps, "step")
+                    ));
                 }
                 Control::Continue => {}
             }

@@ -6,6 +6,7 @@ use super::indices::indices;
 use super::nothing::without_round_off;
 use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
 use crate::error::Code;
+use crate::error::numbers::counted;
 use crate::run::summary::Status;
 use crate::study::sweep::row::{Found, word};
 
@@ -198,8 +199,8 @@ fn warnings(
     let lost = samples.iter().filter(|one| one.status != Status::Finished).count();
     if lost > 0 {
         all.push(format!(
-            "{lost} of {} samples did not finish; spreads are those of the others, and may be too narrow",
-            samples.len()
+            "{lost} of {} did not finish; spreads are those of the others, and may be too narrow",
+            counted(samples.len() as u64, "sample")
         ));
     }
     for (input, own) in inputs.iter().zip(own_values) {

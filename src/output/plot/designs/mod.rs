@@ -8,6 +8,7 @@ use std::slice;
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
 use super::colour::PALETTE;
 use super::extent;
+use super::labels::LabelRoom;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use crate::output::numbers::{count, quantity};
@@ -174,7 +175,7 @@ pub fn along(data: &Drawn) -> Option<String> {
                         }
                     }
                 }
-                let mut numbered: Vec<(f64, f64)> = vec![];
+                let mut numbers = LabelRoom::new(ROOM);
                 for (n, ((point, curve), number)) in points.iter().zip(&data.curve).zip(&data.designs).enumerate() {
                     if !(point.0.is_finite() && point.1.is_finite()) {
                         continue;
@@ -184,9 +185,7 @@ pub fn along(data: &Drawn) -> Option<String> {
                     data.thing(canvas, n, slice::from_ref(figure), |canvas| {
                         canvas.ring(at, 3.0, stroke)
                     });
-                    let apart = |other: &(f64, f64)| (at.0 - other.0).abs() > ROOM.0 || (at.1 - other.1).abs() > ROOM.1;
-                    if k == 0 && numbered.iter().all(apart) {
-                        numbered.push(at);
+                    if k == 0 && numbers.claim(at) {
                         let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
                         canvas.text((at.0, at.1 - 9.0), &number.to_string(), words);
                     }

@@ -6,6 +6,7 @@ mod legend;
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
 use super::colour::{Colour, PALETTE};
 use super::extent;
+use super::labels::LabelRoom;
 use super::panel::{Panel, Place, title};
 use super::ticks::Scale;
 use crate::case::schema::Method;
@@ -274,15 +275,13 @@ impl Sheet<'_> {
     /// Tolerances, at the markers of the front.
     fn labels(&self, canvas: &mut Canvas) {
         let markers = self.data.lines.iter().flat_map(|l| &l.markers);
-        let mut labelled: Vec<(f64, f64)> = vec![];
+        let mut labels = LabelRoom::new((30.0, 11.0));
         for marker in markers.filter(|m| m.front) {
             let at = self.at(marker.error, marker.least_s);
             let at = (at.0 - 8.0, at.1 + 10.0);
-            let free = |p: &(f64, f64)| (p.0 - at.0).abs() > 30.0 || (p.1 - at.1).abs() > 11.0;
-            if labelled.iter().all(free) && at.0 - self.panel.place.left > 28.0 {
+            if at.0 - self.panel.place.left > 28.0 && labels.claim(at) {
                 let words = Words::new(9.5, Anchor::Right).coloured(FAINT_INK);
                 canvas.text(at, &format!("{:e}", marker.rtol), words);
-                labelled.push(at);
             }
         }
     }

@@ -6,6 +6,7 @@ use super::swings::Swings;
 use crate::case::schema::Method;
 use crate::case::{self, Case};
 use crate::discrete::System;
+use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::onestep::OneStepOptions;
 use crate::run::method::{self, Options};
@@ -162,9 +163,9 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
 pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
     if values.len() != held.len() {
         return Err(Error::Usage(format!(
-            "{} values for {} inputs: one each is wanted, in their order",
-            values.len(),
-            held.len()
+            "{} for {}: one each is wanted, in their order",
+            counted(values.len() as u64, "value"),
+            counted(held.len() as u64, "input")
         )));
     }
     for (Held { input, .. }, value) in held.iter().zip(values) {

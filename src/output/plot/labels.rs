@@ -1,0 +1,38 @@
+//! Labels of points that do not overprint.
+
+/// Where labels of one size stand; a label that would overlap one before it is left out.
+#[derive(Clone, Debug)]
+pub struct LabelRoom {
+    /// Width and height of a label.
+    size: (f64, f64),
+    taken: Vec<(f64, f64)>,
+}
+
+impl LabelRoom {
+    /// Of labels of a width and height, none drawn yet.
+    pub fn new(size: (f64, f64)) -> Self {
+        Self { size, taken: vec![] }
+    }
+
+    /// Whether there is room for a label at a place, which then is taken.
+    pub fn claim(&mut self, at: (f64, f64)) -> bool {
+        let apart = |other: &(f64, f64)| (at.0 - other.0).abs() > self.size.0 || (at.1 - other.1).abs() > self.size.1;
+        let free = self.taken.iter().all(apart);
+        if free {
+            self.taken.push(at);
+        }
+        free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::LabelRoom;
+
+    #[test]
+    fn labels_that_would_overlap_are_left_out() {
+        let mut room = LabelRoom::new((10.0, 5.0));
+        let claimed = [(0.0, 0.0), (9.0, 0.0), (9.0, 6.0), (20.0, 0.0)].map(|at| room.claim(at));
+        assert_eq!(claimed, [true, false, true, true]);
+    }
+}
