@@ -42,7 +42,8 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let written = written.and(report::complete(&folder, &case));
     let mut written = journal::end(&evaluations, &folder, stopped, written);
     let mut said = String::new();
-    if asked.write {
+    // of effects that were not tried nothing is recommended
+    if asked.write && !stopped {
         match write(&case, &found) {
             Ok(words) => said = format!("\n{words}"),
             Err(error) => written = written.and(Err(error)),

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::checkpoint::build;
 use super::folder::ResultFolder;
 use super::journal::{Journal, Lines};
 use crate::case::Case;
@@ -20,7 +21,7 @@ fn plan(command: &str, case: &Case, settings: &str) -> u32 {
     let written = case.written();
     let all = (
         FORMAT,
-        Provenance::of(None),
+        (Provenance::of(None), build()),
         command,
         written.json,
         written.tables,
