@@ -63,12 +63,13 @@ pub fn command(py: Python<'_>, words: Vec<OsString>) -> PyResult<Told> {
             }
         }
     })?;
+    let interrupted = other.is_some();
     if let Some(error) = other.filter(|error| !error.is_instance_of::<PyKeyboardInterrupt>(py)) {
         return Err(error);
     }
     let answer = match answer {
         // what it was asked to stop for
-        Err(_) if stop.load(Ordering::Relaxed) => return Err(PyKeyboardInterrupt::new_err(())),
+        Err(_) if interrupted => return Err(PyKeyboardInterrupt::new_err(())),
         other => other.map_err(|error| raised(py, &error))?,
     };
     let fault = answer.fault.as_deref().map(told);

@@ -10,6 +10,7 @@ use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
 use super::arguments::CaseArguments;
+use super::interrupt::WallArguments;
 use crate::case::{self, section};
 use crate::error::{Error, Result};
 use crate::output::columns::aligned;
@@ -24,6 +25,9 @@ pub struct CoefficientsArguments {
     /// Solve the cell in three dimensions too, and say how far the plane one is off
     #[arg(long)]
     pub three_d: bool,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// Print JSON
     #[arg(long)]
     pub json: bool,
@@ -40,6 +44,7 @@ struct Row {
 
 /// Computes and prints.
 pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
+    asked.wall.flag();
     let text = case::text(&asked.case.case)?;
     let mut written = section::parse(&text, &asked.case.case, &asked.case.sets)?;
     // where the other stands beside it the table is that of the plane cell

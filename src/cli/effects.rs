@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::EffectsArguments;
 use super::line::Shown;
-use super::{line, size, terminal};
+use super::{interrupt, journal, line, size, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -16,6 +16,7 @@ use crate::output::numbers::duration;
 use crate::output::report;
 use crate::study::effects::choices::with;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
+use crate::study::evaluations::Evaluations;
 
 /// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
@@ -27,15 +28,22 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         budget_s: super::study::seconds(&asked.budget)?,
     };
     let mut folder = asked.place.claim(&case, Kind::Effects)?;
+    let evaluations = Evaluations::default();
+    journal::begin(&evaluations, &folder, ("effects", &case, &format!("{plan:?}")))?;
+    let flag = asked.wall.flag();
     let progress = Shown::new(asked.quiet, line::PLAIN);
-    let found = ablate(&case, plan, asked.measure.as_deref(), &|event| show(&progress, event));
+    let found = ablate(&case, plan, asked.measure.as_deref(), &evaluations, &|event| {
+        show(&progress, event);
+    });
     drop(progress);
-    let found = found?;
+    let (found, stopped) = (found?, interrupt::raised(&flag));
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
     let written = files::write(&mut folder, &found, &shown).map(|_| ());
-    let mut written = written.and(report::complete(&folder, &case));
+    let written = written.and(report::complete(&folder, &case));
+    let mut written = journal::end(&evaluations, &folder, stopped, written);
     let mut said = String::new();
-    if asked.write {
+    // of effects that were not tried nothing is recommended
+    if asked.write && !stopped {
         match write(&case, &found) {
             Ok(words) => said = format!("\n{words}"),
             Err(error) => written = written.and(Err(error)),

@@ -40,6 +40,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     }
     let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Equilibrium, asked.quiet)?;
     let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
+    let stop = asked.wall.flag();
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
@@ -48,7 +49,6 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .transpose()?;
     let case = found.as_ref().map_or(case, |(chosen, _)| chosen);
     let accuracy = found.as_ref().map(|(_, accuracy)| accuracy);
-    let stop = interrupt::flag();
     let bar = line::line(asked.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
         bar.set_message(options.place(state.stage, &format!("{:.4}", state.share)));
@@ -95,7 +95,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     if !path.states.is_empty() {
         written = files::write(&mut folder, &found).map(|_| ());
         if path.fault.is_none() {
-            uncertainty = uncertain::compute(uncertain.as_ref())?;
+            uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
             found.bands = uncertain::bands(uncertainty.as_ref());
         }
         let json = || files::json(&found);
@@ -114,7 +114,8 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         Some(fault) => {
             let error = Error::Solver(Box::new(fault));
             terminal::report(&error);
-            Ok(ExitCode::from(error.exit_code()))
+            let part = interrupt::late() && !path.states.is_empty();
+            Ok(ExitCode::from(if part { 0 } else { error.exit_code() }))
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FitArguments, FittedThrough};
-use super::{interrupt, line, size, sweep};
+use super::{interrupt, journal, line, size, sweep};
 use crate::error::{Error, Result};
 use crate::output::fit as files;
 use crate::output::kind::Kind;
@@ -23,9 +23,18 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
     sweep::overridden(&asked.case.sets, &driven, |drive| format!("every row sets {drive}"))?;
     let problem = Problem::new(&case, &table, &wanted)?;
-    let flag = interrupt::flag();
+    let flag = asked.wall.flag();
     let stop = || interrupt::raised(&flag);
     let mut folder = asked.place.claim(&case, Kind::Fit)?;
+    let settings = format!(
+        "{} {:?}",
+        table.crc32,
+        Asked {
+            jobs: 0,
+            ..wanted.clone()
+        }
+    );
+    journal::begin(&problem.evaluations, &folder, ("fit", &case, &settings))?;
     let bar = line::line(asked.quiet);
     let tell = |count: usize, squares: f64| {
         bar.set_message(format!(
@@ -42,6 +51,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     found.fit.left_alone = study::left_alone(&table, &wanted);
     let written = files::write(&mut folder, &problem, &found);
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
+    let written = journal::end(&problem.evaluations, &folder, found.fit.interrupted, written);
     let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));
     super::tell(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, line, size};
+use super::{interrupt, journal, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::floquet as files;
@@ -18,6 +18,7 @@ use crate::run::floquet;
 use crate::run::known;
 use crate::run::periodic::scene::{self, fault};
 use crate::run::periodic::{Scene, shoot};
+use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
 use crate::study::sweep::What;
@@ -49,7 +50,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     }
     let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Floquet, asked.quiet)?;
     let mut folder = asked.place.claim(case, Kind::Floquet)?;
-    let stop = interrupt::stop();
+    let stop = asked.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
     let refined = accuracy
         .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
@@ -87,7 +88,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         meshes,
     };
     let written = files::write(&mut folder, &found).map(|_| ());
-    let uncertainty = uncertain::compute(uncertain.as_ref())?;
+    let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     found.bands = uncertain::bands(uncertainty.as_ref());
     let text = || results::text(&found);
     let written = written
@@ -110,16 +111,19 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
     let mut folder = asked.place.claim(case, Kind::Map)?;
-    let stop = interrupt::stop();
+    let evaluations = Evaluations::default();
+    journal::begin(&evaluations, &folder, ("map", case, &format!("{plan:?}")))?;
+    let stop = asked.wall.stop();
     let bar = line::line(asked.quiet);
-    let found = tongue::map(case, &plan, &stop, &|done, count| {
+    let found = tongue::map(case, &plan, &evaluations, &stop, &|done, count| {
         bar.set_message(format!("{done} of {}", counted(count as u64, "column")));
         bar.tick();
     });
     bar.finish_and_clear();
-    let found = found?;
+    let (found, stopped) = (found?, stop.raised());
     let written = files::write_map(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
+    let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::map_words(&found) + &line::warnings(&found.warnings);
     super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::SUCCESS)

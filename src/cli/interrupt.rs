@@ -1,11 +1,12 @@
-//! Ctrl-C asks a command to stop soon; everything so far is written.
+//! Ctrl-C, a request to terminate or the clock asks a command to stop soon; everything so far is written.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, OnceLock, Weak};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use clap::Args;
 use rustix::time::{ClockId, clock_gettime};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -27,6 +28,12 @@ const ONE_REQUEST: Duration = Duration::from_millis(300);
 /// that are not whole do not have their names yet.
 const PATIENCE: Duration = Duration::from_secs(1);
 
+/// What the clock says.
+const LATE_WORDS: &str = "the wall time allowed (--max-wall) is used up";
+
+/// Exit code where the clock ends a command before it has anything: that of a computation without the result that was asked for.
+const NOTHING: u8 = 4;
+
 /// How often the program is looked at after a first signal.
 const OFTEN: Duration = Duration::from_millis(20);
 
@@ -39,6 +46,60 @@ struct Asked {
 }
 
 static ASKED: OnceLock<Asked> = OnceLock::new();
+
+/// Whether the wall time allowed is used up.
+static LATE: AtomicBool = AtomicBool::new(false);
+
+/// The wall time that a command is allowed.
+#[derive(Clone, Debug, Default, Args)]
+pub struct WallArguments {
+    /// Stop after so many seconds of wall time as after Ctrl-C, with everything so far written
+    #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
+    pub max_wall: Option<f64>,
+}
+
+impl WallArguments {
+    /// The flag of [`flag`], which the clock raises too. On the command line the program ends within [`PATIENCE`] where nobody looks at it.
+    pub fn flag(&self) -> Arc<AtomicBool> {
+        let flag = flag();
+        if let Some(seconds) = self.max_wall {
+            let deadline = Instant::now() + Duration::from_secs_f64(seconds);
+            let (theirs, program) = (Arc::downgrade(&flag), embedded::stop().is_none());
+            let wait = move || wait_until(deadline, &theirs, program);
+            match seconds > 0.0 {
+                true => drop(thread::Builder::new().spawn(wait)),
+                // the thread would begin too late
+                false => raise_late(&flag, program),
+            }
+        }
+        flag
+    }
+
+    /// The same for work that listens on its way.
+    pub fn stop(&self) -> Stop {
+        Stop::by(self.flag())
+    }
+}
+
+/// Waits for the clock as long as the command lasts.
+fn wait_until(deadline: Instant, theirs: &Weak<AtomicBool>, program: bool) {
+    while let Some(left) = deadline.checked_duration_since(Instant::now()) {
+        thread::sleep(left.min(OFTEN));
+        if theirs.strong_count() == 0 {
+            return;
+        }
+    }
+    let Some(flag) = theirs.upgrade() else { return };
+    raise_late(&flag, program);
+    if let (true, Some(asked)) = (program, ASKED.get()) {
+        end_unless_answered(&asked.halt, || None, (LATE_WORDS, NOTHING.into()));
+    }
+}
+
+fn raise_late(flag: &AtomicBool, program: bool) {
+    LATE.store(program, Ordering::Relaxed);
+    flag.store(true, Ordering::Relaxed);
+}
 
 /// A flag that the first interrupt (or request to terminate) raises. A second one ends the program at once, and so does the first where the
 /// command does not look at it within [`PATIENCE`].
@@ -70,18 +131,24 @@ pub fn flag() -> Arc<AtomicBool> {
 
 fn end_in_time(mut signals: Signals, halt: &Halt) {
     let Some(first) = signals.forever().next() else { return };
-    let (begin, mut spent) = (Instant::now(), cpu_time());
+    let begin = Instant::now();
+    let again = || signals.pending().next().filter(|_| begin.elapsed() > ONE_REQUEST);
+    end_unless_answered(halt, again, ("interrupted", SIGNAL + first));
+}
+
+/// Ends the program with a code where nobody answers a request within [`PATIENCE`], or where it comes `again`.
+fn end_unless_answered(halt: &Halt, mut again: impl FnMut() -> Option<i32>, (why, code): (&str, i32)) {
+    let mut spent = cpu_time();
     loop {
         thread::sleep(OFTEN);
-        let again = signals.pending().next();
-        if let Some(signal) = again.filter(|_| begin.elapsed() > ONE_REQUEST) {
+        if let Some(signal) = again() {
             low_level::exit(SIGNAL + signal);
         }
         if halt.is_answered() {
             spent = cpu_time();
         } else if cpu_time().saturating_sub(spent) > PATIENCE {
-            terminal::tell("slcbeam: interrupted; what had not been written yet is lost");
-            low_level::exit(SIGNAL + first);
+            terminal::tell(&format!("slcbeam: {why}; what had not been written yet is lost"));
+            low_level::exit(code);
         }
     }
 }
@@ -90,11 +157,6 @@ fn end_in_time(mut signals: Signals, halt: &Halt) {
 fn cpu_time() -> Duration {
     let time = clock_gettime(ClockId::ProcessCPUTime);
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
-}
-
-/// The same for work that listens on its way.
-pub fn stop() -> Stop {
-    Stop::by(flag())
 }
 
 /// What there is to say in place of how the search for a cycle failed, where that was because somebody asked for the end.
@@ -108,9 +170,26 @@ pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
 }
 
 /// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate.
-pub fn code() -> Option<ExitCode> {
+fn code() -> Option<ExitCode> {
     let signal = ASKED.get()?.signal.load(Ordering::Relaxed);
     (signal > 0).then(|| ExitCode::from((SIGNAL as usize + signal) as u8))
+}
+
+/// Whether the clock has ended a part of the command.
+pub fn late() -> bool {
+    LATE.load(Ordering::Relaxed) && ASKED.get().is_some_and(|asked| asked.halt.was_seen())
+}
+
+/// The exit code of a command that ended with one, or with an error, in view of what has stopped it, which is told.
+pub fn ended(with: std::result::Result<ExitCode, &Error>) -> ExitCode {
+    if late() {
+        terminal::tell(&format!("slcbeam: {LATE_WORDS}"));
+    }
+    code().unwrap_or_else(|| match with {
+        Ok(code) => code,
+        Err(error) if late() && !matches!(error, Error::Output { .. }) => ExitCode::from(NOTHING),
+        Err(error) => ExitCode::from(error.exit_code()),
+    })
 }
 
 /// A limit on the size of files is told as a fault of writing, by the name of the file, and does not end the program.

@@ -13,6 +13,7 @@ mod export;
 mod fit;
 mod floquet;
 mod interrupt;
+mod journal;
 mod line;
 mod mapping;
 mod measure;
@@ -115,14 +116,14 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     interrupt::outlive_limits();
     match act(&arguments.command, began) {
-        Ok(code) => interrupt::code().unwrap_or(code),
+        Ok(code) => interrupt::ended(Ok(code)),
         Err(error) => {
             terminal::report(&error);
             // after an answer another document would make the output unreadable
             if arguments.command.json() && !ANSWERED.load(Ordering::Relaxed) {
                 let _ = print(&format!("{:#}\n", terminal::json(&error)));
             }
-            interrupt::code().unwrap_or(ExitCode::from(error.exit_code()))
+            interrupt::ended(Err(&error))
         }
     }
 }

@@ -36,6 +36,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
             map: asked.map.clone(),
             uncertain: asked.uncertain.clone(),
             place: asked.place.clone(),
+            wall: asked.wall.clone(),
             quiet: asked.quiet,
             json: asked.json,
         });
@@ -51,6 +52,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     }
     let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Modes, asked.quiet)?;
     let mut folder = asked.place.claim(&case, Kind::Modes)?;
+    asked.wall.flag();
     if !asked.quiet {
         terminal::tell(&format!("modes of {}", case.name));
     }
@@ -90,7 +92,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         bands: &Bands::new(),
     };
     let written = files::write(&mut folder, &report).map(|_| ());
-    let uncertainty = uncertain::compute(uncertain.as_ref())?;
+    let uncertainty = uncertain::compute(uncertain.as_ref(), Some(&folder))?;
     let bands = &uncertain::bands(uncertainty.as_ref());
     let report = Report { bands, ..report };
     let json = || files::json(&report);

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::OptimizeArguments;
-use super::{interrupt, line, size, sweep};
+use super::{interrupt, journal, line, size, sweep};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::kind::Kind;
@@ -12,6 +12,7 @@ use crate::output::optimum as files;
 use crate::output::report;
 use crate::output::sweep::words::several;
 use crate::results;
+use crate::study::evaluations::Evaluations;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
 use crate::study::optimize::choice::{Choice, Part};
@@ -27,11 +28,26 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let wanted = wanted(asked)?;
     let choice = choice(asked, &case, &wanted)?;
-    let make = |alternative: &Alternative| problem(asked, &case, &wanted, alternative);
+    let evaluations = Evaluations::default();
+    let make = |alternative: &Alternative| {
+        let evaluations = evaluations.scoped(&alternative.sets.join(" "));
+        let problem = problem(asked, &case, &wanted, alternative)?;
+        Ok(Problem { evaluations, ..problem })
+    };
     let candidates = candidates(&choice, &make)?;
     let figure = &candidates[0].problem.goal.figure;
     let mut folder = asked.place.claim(&case, Kind::Optimum)?;
-    let flag = interrupt::flag();
+    let settings = format!(
+        "{:?} {:?} {:?}",
+        asked.choose,
+        asked.crossovers,
+        Asked {
+            jobs: 0,
+            ..wanted.clone()
+        }
+    );
+    journal::begin(&evaluations, &folder, ("optimize", &case, &settings))?;
+    let flag = asked.wall.flag();
     let bar = line::line(asked.quiet);
     let tell = |count: usize, best: Option<f64>| {
         let best = best.map_or("none within the limits yet".into(), |best| {
@@ -46,9 +62,10 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         false => study::optimise(&candidates, &wanted, &stop, &tell),
     };
     bar.finish_and_clear();
-    let found = found?;
+    let (found, stopped) = (found?, stop());
     let written = files::write(&mut folder, &found.problem, &found);
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
+    let written = journal::end(&evaluations, &folder, stopped, written);
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
     super::tell(asked.json, folder.dir(), written, text, words)?;

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, line, size, terminal};
+use super::{interrupt, journal, line, size, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use crate::output::folder::SUMMARY;
 use crate::output::kind::Kind;
 use crate::output::numbers::counted;
 use crate::output::periodic as files;
-use crate::output::recorder::{FolderRecorder, Labels};
+use crate::output::recorder::{Finished, FolderRecorder, Labels};
 use crate::output::report;
 use crate::output::summary;
 use crate::results;
@@ -23,6 +23,7 @@ use crate::run::floquet;
 use crate::run::periodic::{Scene, Settled, record, scene, sensitivity, settle, subharmonic};
 use crate::run::record::Control;
 use crate::run::summary::Status;
+use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::along;
 use crate::study::sweep::What;
@@ -64,7 +65,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     }
     let result = asked.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
-    let stop = interrupt::stop();
+    let stop = asked.wall.stop();
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
@@ -129,7 +130,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         Ok(finished)
     });
     let uncertainty = match ended {
-        true => uncertain::compute(uncertain.as_ref())?,
+        true => uncertain::compute(uncertain.as_ref(), finished.as_ref().ok().map(Finished::folder))?,
         false => None,
     };
     told.bands = uncertain::bands(uncertainty.as_ref());
@@ -170,16 +171,20 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     };
     let mut folder = asked.place.claim(first, Kind::Sweep)?;
     let first = first.clone();
-    let stop = interrupt::stop();
+    let evaluations = Evaluations::default();
+    let settings = format!("{:?} {text}", asked.case.sets);
+    journal::begin(&evaluations, &folder, ("periodic --sweep", &first, &settings))?;
+    let stop = asked.wall.stop();
     let bar = line::line(asked.quiet);
-    let found = along(&pointer, logarithmic, &cases, &stop, &|done| {
+    let found = along((&pointer, logarithmic), &cases, &evaluations, &stop, &|done| {
         bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();
     });
     bar.finish_and_clear();
-    let found = found?;
+    let (found, stopped) = (found?, stop.raised());
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, &first));
+    let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::words(&found) + &line::warnings(&found.warnings);
     super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))

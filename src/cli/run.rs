@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 use super::arguments::RunArguments;
+use super::interrupt::WallArguments;
 use super::progress::Watcher;
 use super::uncertain::{self, Uncertain};
 use super::{interrupt, line, size, summary_box, terminal};
@@ -82,8 +83,11 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     drop(way);
     laps.lap();
     let mut uncertainty = None;
+    let left = asked.max_wall.map(|seconds| seconds - began.elapsed().as_secs_f64());
     if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {
-        uncertainty = uncertain::compute(Some(asked))?;
+        let max_wall = left.map(|seconds| seconds.max(0.0));
+        WallArguments { max_wall }.flag();
+        uncertainty = uncertain::compute(Some(asked), Some(finished.folder()))?;
         summary.bands = uncertain::bands(uncertainty.as_ref());
         summary.wall_s.samples = laps.lap();
         // the page is made of what the folder holds

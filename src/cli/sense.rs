@@ -34,7 +34,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let bar = line::line(asked.quiet);
     bar.set_message("looking for the loads");
     bar.tick();
-    let flag = interrupt::flag();
+    let flag = asked.wall.flag();
     let found = find(case, measured.as_ref(), &question, &|| interrupt::raised(&flag));
     bar.finish_and_clear();
     let mut found = found?;

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::arguments::StudyArguments;
 use super::line::Shown;
-use super::{size, terminal};
+use super::{interrupt, journal, size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::numerics::threads;
@@ -16,6 +16,7 @@ use crate::output::report;
 use crate::output::study as files;
 use crate::study::accuracy::trial::Role;
 use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
+use crate::study::evaluations::Evaluations;
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
@@ -31,11 +32,18 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     }
     .checked()?;
     let mut folder = asked.place.claim(case, Kind::Study)?;
+    let evaluations = Evaluations::default();
+    journal::begin(&evaluations, &folder, ("study", case, &format!("{plan:?}")))?;
+    let flag = asked.wall.flag();
     let progress = Progress::new(asked.quiet);
-    let found = run_study(case, plan, asked.measure.as_deref(), &|event| progress.show(event))?;
+    let found = run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {
+        progress.show(event);
+    })?;
     drop(progress);
+    let stopped = interrupt::raised(&flag);
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
+    let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
         format!("{}\n{notes}{}\n", files::table(&found), files::sentence(&found))

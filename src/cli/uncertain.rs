@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use serde::Serialize;
 use serde_json::Value;
 
 use super::arguments::{CaseArguments, UncertainArguments};
 use super::sweep::progress::Counter;
-use super::{interrupt, size, sweep, terminal};
+use super::{interrupt, journal, size, sweep, terminal};
 use crate::case::{self, Case, inherited};
 use crate::error::{Error, Result};
 use crate::output::ResultFolder;
@@ -16,6 +17,7 @@ use crate::output::uncertainty as files;
 use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::Status;
+use crate::study::evaluations::Evaluations;
 use crate::study::sweep::designs::pairs;
 use crate::study::sweep::row::Found;
 use crate::study::sweep::{Ask, Vary, What, compute, pool};
@@ -36,6 +38,7 @@ pub struct Uncertain {
     jobs: usize,
     quiet: bool,
     flag: Arc<AtomicBool>,
+    evaluations: Evaluations,
 }
 
 impl Uncertain {
@@ -69,6 +72,7 @@ impl Uncertain {
             what,
             quiet,
             flag: interrupt::flag(),
+            evaluations: Evaluations::default(),
         };
         one.check()?;
         Ok(Some(one))
@@ -105,15 +109,16 @@ impl Uncertain {
         interrupt::raised(&self.flag)
     }
 
-    /// The figures of a case, with the errors that meshes make on request; nothing where it was interrupted.
-    fn found(&self, case: &Case, meshes: bool) -> Option<Found> {
+    /// The figures of a case under its key, with the errors that meshes make on request; nothing where it was interrupted.
+    fn found(&self, key: &impl Serialize, case: &Case, meshes: bool) -> Option<Found> {
         let ask = Ask {
             what: self.what,
             accuracy: None,
             meshes,
         };
         let stop = || self.stopped();
-        compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop))
+        let found = || compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop));
+        compute::stored(&self.evaluations, key, &stop, found)
     }
 
     /// Computes all samples; nothing where it was interrupted.
@@ -121,7 +126,7 @@ impl Uncertain {
     /// # Errors
     /// The case itself cannot be computed.
     pub fn compute(&self) -> Result<Option<Uncertainty>> {
-        let Some(own) = self.found(&self.own, true) else {
+        let Some(own) = self.found(&"own", &self.own, true) else {
             return Ok(None);
         };
         let mut counter = Counter::new(self.quiet, "samples done", self.plan.count());
@@ -132,7 +137,7 @@ impl Uncertain {
                 return None;
             }
             let of = match self.case(self.plan.sets(number)) {
-                Ok(case) => self.found(&case, false)?,
+                Ok(case) => self.found(&number, &case, false)?,
                 Err(error) => Found::failed(&error),
             };
             Some((number, of))
@@ -180,7 +185,7 @@ impl Uncertain {
                     k += 1;
                     if k - 1 == number { mean + sign * STEP * sd } else { mean }
                 });
-                let found = self.found(&self.case(sets).ok()?, false)?;
+                let found = self.found(&("beside", number, sign), &self.case(sets).ok()?, false)?;
                 (found.status == Status::Finished).then_some(found)
             };
             let (above, below) = (beside(1.0)?, beside(-1.0)?);
@@ -188,25 +193,30 @@ impl Uncertain {
             let slope = |(name, x): &(String, f64)| Some((name.clone(), (x - below.figure(name)?) / step));
             Some(above.figures.iter().filter_map(slope).collect())
         };
-        uncertain::slopes(
-            &means,
-            self.what,
-            &self.plan.pointers(),
-            &|| self.stopped(),
-            &difference,
-        )
+        let stop = || self.stopped();
+        self.evaluations.get(&"slopes", &stop, || {
+            uncertain::slopes(&means, self.what, &self.plan.pointers(), &stop, &difference)
+        })
     }
 }
 
-/// Computes what was asked, where something was.
+/// Computes what was asked, where something was, with its journal in the folder of the result, where there is one.
 ///
 /// # Errors
-/// The case itself cannot be computed.
-pub fn compute(asked: Option<&Uncertain>) -> Result<Option<Uncertainty>> {
+/// The case itself cannot be computed; the journal cannot be read.
+pub fn compute(asked: Option<&Uncertain>, folder: Option<&ResultFolder>) -> Result<Option<Uncertainty>> {
     let Some(asked) = asked else {
         return Ok(None);
     };
+    let Uncertain { plan, text, sets, .. } = asked;
+    let settings = format!("{} {plan:?} {sets:?} {text}", asked.what.word());
+    if let Some(folder) = folder {
+        journal::begin(&asked.evaluations, folder, ("--uncertain", &asked.own, &settings))?;
+    }
     let found = asked.compute()?;
+    if let Some(folder) = folder {
+        journal::end(&asked.evaluations, folder, found.is_none(), Ok(()))?;
+    }
     if found.is_none() {
         terminal::tell("slcbeam: interrupted; there is no uncertainty");
     }

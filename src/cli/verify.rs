@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::arguments::VerifyArguments;
-use super::line;
+use super::{interrupt, line, terminal};
 use crate::error::Result;
 use crate::numerics::threads;
 use crate::output::columns::{aligned, cells};
@@ -18,6 +18,7 @@ use crate::study::verify::{self, Measure};
 
 /// Computes all rows, or those whose name contains the name asked for, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
+    let flag = asked.wall.flag();
     if asked.paper {
         return super::paper::paper(asked.json);
     }
@@ -30,16 +31,21 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
     if threads::granted() {
         bar.enable_steady_tick(Duration::from_millis(200));
     }
+    let count = rows.len();
     let rows: Vec<Row> = rows
         .iter()
-        .map(|row| {
+        .map_while(|row| {
             bar.set_message(row.name.clone());
             let found = Row::of(row, &row.figures());
             bar.inc(1);
-            found
+            // a row that was cut short has no answer
+            (!interrupt::raised(&flag)).then_some(found)
         })
         .collect();
     bar.finish_and_clear();
+    if rows.len() < count {
+        terminal::tell(&format!("slcbeam: interrupted after {} of {count} results", rows.len()));
+    }
     super::print(&if asked.json {
         format!("{:#}\n", rows.iter().map(results::value).collect::<Value>())
     } else {
@@ -49,7 +55,11 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
 }
 
 fn exit_code(rows: &[Row]) -> u8 {
-    if rows.iter().all(|row| row.passed) { 0 } else { 4 }
+    if !rows.is_empty() && rows.iter().all(|row| row.passed) {
+        0
+    } else {
+        4
+    }
 }
 
 const HEADINGS: &str = "name | quantity | computed | exact | error | tolerance | order | limit | estimate | verdict";

@@ -4,6 +4,7 @@
 //! folder    which folder, one writer at a time, and how files get into it without ever being half written
 //! kind      which command filled a folder
 //! stream    files that grow with a run, with checksums
+//! journal   rows with checksums, each on the disk as soon as it is computed
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
@@ -18,6 +19,7 @@
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
+//! evaluations  evaluations of an interrupted search
 //! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their words
 //! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
 //! optimum   optimum.json, designs.csv, optimum.svg, optimum-case.json, and their words
@@ -49,11 +51,13 @@ pub mod effects;
 pub mod envelope;
 pub mod equilibrium;
 pub mod errors;
+pub mod evaluations;
 pub mod export;
 pub mod fit;
 pub mod floquet;
 pub mod folder;
 pub mod history;
+pub mod journal;
 pub mod kind;
 pub mod machine;
 pub mod modes;

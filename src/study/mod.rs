@@ -5,6 +5,7 @@ pub mod compare;
 pub mod counted;
 pub mod data;
 pub mod effects;
+pub mod evaluations;
 pub mod fit;
 pub mod followed;
 pub mod measure;

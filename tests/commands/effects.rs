@@ -15,6 +15,7 @@ use slcbeam::output::kind::Kind;
 use slcbeam::study::effects::change::{Measure, Size, judge, largest};
 use slcbeam::study::effects::choices::{effects, without};
 use slcbeam::study::effects::{Ablation, Plan, Row, Verdict, ablate};
+use slcbeam::study::evaluations::Evaluations;
 use tempfile::TempDir;
 
 /// A slender cantilever under a load that bends it by a hundredth of its length and less: rotations small, sections thin.
@@ -55,7 +56,7 @@ fn parsed(text: &str) -> Case {
 
 fn ablated(text: &str, budget_s: f64) -> Ablation {
     let plan = Plan { repeats: 0, budget_s };
-    ablate(&parsed(text), plan, None, &|_| {}).unwrap()
+    ablate(&parsed(text), plan, None, &Evaluations::default(), &|_| {}).unwrap()
 }
 
 /// Goal: the full model has what the case can have: inertia of tubes with compressed fluid, too, but none where a port feeds tubes of incompressible
@@ -253,7 +254,14 @@ fn without_a_full_model_there_is_nothing_to_compare() {
         repeats: 0,
         budget_s: 600.0,
     };
-    let wrong = ablate(&parsed(SLENDER), plan, Some("tip_u9_m"), &|_| {}).unwrap_err();
+    let wrong = ablate(
+        &parsed(SLENDER),
+        plan,
+        Some("tip_u9_m"),
+        &Evaluations::default(),
+        &|_| {},
+    )
+    .unwrap_err();
     assert_eq!(wrong.exit_code(), 2);
     assert!(wrong.to_string().contains("largest, input_energy_j"), "{wrong}");
 }

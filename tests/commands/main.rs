@@ -6,6 +6,7 @@ mod cli;
 mod compare;
 mod effects;
 mod interruption;
+mod journals;
 mod names;
 mod output;
 #[path = "../common/program.rs"]

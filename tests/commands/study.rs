@@ -7,6 +7,7 @@ use slcbeam::study::accuracy::front::{self, Mark};
 use slcbeam::study::accuracy::study::Study;
 use slcbeam::study::accuracy::trial::{Ending, Role};
 use slcbeam::study::accuracy::{Budget, Plan, Scheme, study};
+use slcbeam::study::evaluations::Evaluations;
 
 use super::swung::{DRY, WET, parsed};
 
@@ -25,7 +26,7 @@ fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
 const PLENTY: Budget = Budget::Steps(2_000_000);
 
 fn studied(text: &str, plan: Plan) -> Study {
-    study(&parsed(text, &[]), plan, None, &|_| {}).unwrap()
+    study(&parsed(text, &[]), plan, None, &Evaluations::default(), &|_| {}).unwrap()
 }
 
 #[test]
@@ -201,7 +202,7 @@ fn senseless_plans_are_refused() {
     for plan in wrong {
         assert_eq!(plan.checked().map_err(|e| e.exit_code()), Err(2));
     }
-    let unknown = study(&parsed(DRY, &[]), good, Some("tip"), &|_| {});
+    let unknown = study(&parsed(DRY, &[]), good, Some("tip"), &Evaluations::default(), &|_| {});
     assert!(unknown.is_err_and(|e| e.to_string().contains("tip_u1")));
 }
 

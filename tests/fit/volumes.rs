@@ -2,12 +2,14 @@
 
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
 use slcbeam::study::data::Table;
+use slcbeam::study::evaluations::Evaluation;
 use slcbeam::study::fit::fit;
 use slcbeam::study::fit::problem::{Asked, Drive, Problem};
 
@@ -94,6 +96,27 @@ fn a_fit_that_is_ended_keeps_the_best_so_far() {
     assert!(!whole.interrupted && whole.found && early.columns[0].left.rms >= whole.columns[0].left.rms);
     let nothing = after(0).expect_err("nothing").to_string();
     assert!(nothing.contains("nothing is written"), "{nothing}");
+}
+
+/// Goal: a fit that is interrupted after its search, while the finer mesh is simulated, says so in its result and has the minimum.
+#[test]
+fn a_fit_that_is_ended_after_its_search_says_so() {
+    let (problem, asked) = syringe();
+    let finer = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&finer);
+    let write = move |row: &Evaluation| {
+        seen.fetch_or(row.key.starts_with("finer"), Relaxed);
+        Ok(())
+    };
+    problem.evaluations.begin([], Box::new(write));
+    let found = fit(&problem, &asked, ("data.csv", 0), &|| finer.load(Relaxed), &|_, _| {}).expect("a fit");
+    let fit = found.fit;
+    assert!(
+        fit.interrupted && fit.found && fit.parameters[0].finer_change.is_some(),
+        "{fit:?}"
+    );
+    let told = fit.warnings.last().expect("a warning");
+    assert!(told.contains("interrupted after the search"), "{told}");
 }
 
 /// Goal: Ctrl-C ends the program with 130, and what it leaves is a fit that says it was interrupted, or nothing where nothing was simulated.

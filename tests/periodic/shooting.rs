@@ -14,6 +14,7 @@ use slcbeam::run::periodic::{Scene, record, sensitivity, settle, shoot};
 use slcbeam::run::record::Memory;
 use slcbeam::run::stop::Stop;
 use slcbeam::run::summary::Status;
+use slcbeam::study::evaluations::Evaluations;
 use slcbeam::study::stability::along;
 
 fn shipped(name: &str, sets: &[&str]) -> Case {
@@ -325,9 +326,13 @@ fn searches_end_when_they_are_asked_to() {
         )
     };
     let cases: Vec<(f64, Case)> = (1..=4).map(|n| (f64::from(n), case(n))).collect();
-    let found = along("/network/permeability_factor", false, &cases, &stop, &|_| {
-        flag.store(true, Ordering::Relaxed)
-    })
+    let found = along(
+        ("/network/permeability_factor", false),
+        &cases,
+        &Evaluations::default(),
+        &stop,
+        &|_| flag.store(true, Ordering::Relaxed),
+    )
     .unwrap();
     assert_eq!(found.members.len(), 1);
     let missing: Vec<_> = (2..=4).map(|n| (f64::from(n), "interrupted".to_string())).collect();

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, MapArguments, PlaceArguments, UncertainArguments};
+use super::{CaseArguments, MapArguments, PlaceArguments, UncertainArguments, WallArguments};
 use crate::run::modes::Sort;
 
 /// Of which kind modes are.
@@ -60,6 +60,9 @@ pub struct EquilibriumArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,
@@ -102,6 +105,9 @@ pub struct ModesArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, PlaceArguments};
+use super::{CaseArguments, PlaceArguments, WallArguments};
 use crate::study::fit::robust::Loss;
 
 /// What large residuals count.
@@ -72,6 +72,9 @@ pub struct FitArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -18,6 +18,7 @@ use super::coefficients::CoefficientsArguments;
 use super::completions::CompletionsArguments;
 use super::explain::ExplainArguments;
 use super::export::ExportArguments;
+use super::interrupt::WallArguments;
 use super::measure::MeasureArguments;
 use super::new::NewArguments;
 use super::place::PlaceArguments;
@@ -161,6 +162,9 @@ pub struct StudyArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// Wall time for everything, such as 90s or 2m; half of it is for points, the rest for their references
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -207,6 +211,9 @@ pub struct EffectsArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// Wall time for everything, such as 90s or 2m
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -252,6 +259,9 @@ pub struct FloquetArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,
@@ -279,6 +289,9 @@ pub struct MappingArguments {
 pub struct VerifyArguments {
     /// Only results whose name contains this
     pub name: Option<String>,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// Compute instead the coefficients of the published cell, for every shape that the paper leaves open, beside the printed ones
     #[arg(long, conflicts_with = "name")]
     pub paper: bool,

@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, PlaceArguments, Through};
+use super::{CaseArguments, PlaceArguments, Through, WallArguments};
 use crate::study::optimize::problem::Method;
 
 /// `optimize`.
@@ -49,6 +49,9 @@ pub struct OptimizeArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CaseArguments, PlaceArguments, UncertainArguments};
+use super::{CaseArguments, PlaceArguments, UncertainArguments, WallArguments};
 
 /// `periodic`.
 #[derive(Debug, Args)]
@@ -29,6 +29,9 @@ pub struct PeriodicArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{CaseArguments, PlaceArguments};
+use super::{CaseArguments, PlaceArguments, WallArguments};
 
 /// `sense`.
 #[derive(Debug, Args)]
@@ -45,6 +45,9 @@ pub struct SenseArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

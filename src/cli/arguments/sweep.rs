@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::PlaceArguments;
+use super::{PlaceArguments, WallArguments};
 use crate::study::sweep::{Shard, What};
 
 /// Commands that a design can go through.
@@ -102,6 +102,9 @@ pub struct SweepArguments {
     /// Where its result goes.
     #[command(flatten)]
     pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
     /// No progress
     #[arg(long)]
     pub quiet: bool,

@@ -18,7 +18,7 @@ use crate::output::folder::ResultFolder;
 use crate::output::kind::Kind;
 use crate::output::report;
 use crate::output::sweep::script::{Jobs, Scheduler, script};
-use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Journal, Survey, words};
+use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Survey, words};
 use crate::results;
 use crate::results::sweep::Plan;
 use crate::run::dynamics::Outcome;
@@ -69,7 +69,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let left: Vec<usize> = (0..plan.designs)
         .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
         .collect();
-    let flag = interrupt::flag();
+    let flag = asked.wall.flag();
     check(&source, &left, jobs, asked.quiet, &flag)?;
     if before.is_none() {
         files::begin(&mut folder, plan, &source.first.written())?;
@@ -211,7 +211,7 @@ fn compute_all(
         accuracy: plan.accuracy,
         meshes: plan.mesh_errors,
     };
-    let mut journal = Journal::go_on(folder, done)?;
+    let mut journal = done.go_on(folder)?;
     let mut counter = Counter::new(asked.quiet, "done", left.len());
     let unkept: Mutex<Option<Error>> = Mutex::new(None);
     let work = |number: usize| {

@@ -39,7 +39,8 @@ use crate::results::sweep::{Column, Plan, Sweep};
 use crate::study::sweep::row::word;
 pub use crate::study::sweep::unit::unit;
 
-pub use journal::{Journal, Survey};
+pub use super::journal::Journal;
+pub use journal::Survey;
 
 /// The sweep as it was asked for; it is there from the beginning.
 pub const PLAN: &str = "plan.json";

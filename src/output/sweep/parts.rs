@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::{JOURNAL, Journal, PLAN, Survey};
+use super::{JOURNAL, PLAN, Survey};
 use crate::error::{Error, Result};
 use crate::output::folder::{ResultFolder, result};
 use crate::output::kind::Kind;
@@ -86,7 +86,7 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Surve
             .collect::<Vec<_>>(),
     )?;
     for own in &surveys {
-        let mut journal = Journal::go_on(folder, &there)?;
+        let mut journal = there.go_on(folder)?;
         let mut failed = None;
         own.each(|row| {
             let better = row.found.status == Status::Finished && !there.finished(row.number);

@@ -47,7 +47,7 @@ pub enum Kind {
 }
 
 /// A vector that two runs can be compared by.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Signal {
     /// Column, field or quantity: `tip_u1`, `v1_m_s`, `tip_u1_m.max_abs`.
     pub name: String,

@@ -15,6 +15,7 @@ use crate::case::Case;
 use crate::discrete::quantities::Observable;
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
+use crate::study::evaluations::Evaluations;
 
 /// Accuracies for which the cheapest point is sought.
 const ACCURACIES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
@@ -104,15 +105,15 @@ impl Study {
     }
 }
 
-/// Studies a case; `measure` names the headline, by default the deflection of the tip.
-pub fn study(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Study> {
+/// Studies a case; `measure` names the headline, by default the deflection of the tip. Runs among `evaluations` are not done again.
+pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evaluations, watch: Watch) -> Result<Study> {
     if let Some(name) = measure.filter(|name| !signals::possible(name)) {
         return Err(Error::Usage(format!(
             "--measure {name}: one of {}, or a figure such as tip_u1_m.max_abs",
             signals::names()
         )));
     }
-    let (mut trials, spent) = sweep::sweep(case, &plan, watch)?;
+    let (mut trials, spent) = sweep::sweep(case, &plan, evaluations, watch)?;
     let (left_out, sizes) = agree(&mut trials);
     let names: Vec<String> = best(&trials)
         .iter()

@@ -13,6 +13,7 @@ use crate::case::Case;
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::numerics::threads::crew;
+use crate::study::evaluations::Evaluations;
 
 /// Share of the budget that points may take; references need the rest.
 const POINTS: f64 = 0.5;
@@ -50,6 +51,8 @@ struct State {
     reserved: f64,
     done: usize,
     lines_begun: usize,
+    /// Wall time of runs that an interrupted study had done [s].
+    earlier: f64,
 }
 
 struct Sweep<'a> {
@@ -57,16 +60,18 @@ struct Sweep<'a> {
     plan: &'a Plan,
     begin: Instant,
     state: Mutex<State>,
+    evaluations: &'a Evaluations,
     watch: Watch<'a>,
 }
 
 /// Runs points, then references; returns them with the cost of everything.
-pub fn sweep(case: &Case, plan: &Plan, watch: Watch) -> Result<(Vec<Trial>, f64)> {
+pub fn sweep(case: &Case, plan: &Plan, evaluations: &Evaluations, watch: Watch) -> Result<(Vec<Trial>, f64)> {
     let sweep = Sweep {
         case,
         plan,
         begin: Instant::now(),
         state: Mutex::default(),
+        evaluations,
         watch,
     };
     let lines: Vec<(usize, Scheme)> = plan
@@ -95,16 +100,14 @@ impl Sweep<'_> {
 
     fn spent(&self, state: &State) -> f64 {
         match self.plan.budget {
-            Budget::Wall(_) => self.begin.elapsed().as_secs_f64(),
+            Budget::Wall(_) => state.earlier + self.begin.elapsed().as_secs_f64(),
             Budget::Steps(_) => state.spent + state.reserved,
         }
     }
 
     /// Does the work for every item, at once when asked.
     fn each<T: Sync>(&self, items: &[T], work: impl Fn(&T) -> Result<()> + Sync) -> Result<()> {
-        let workers = std::thread::available_parallelism()
-            .map_or(1, |n| n.get())
-            .min(items.len());
+        let workers = cores().min(items.len());
         if !self.plan.parallel || workers < 2 {
             return items.iter().try_for_each(work);
         }
@@ -193,11 +196,15 @@ impl Sweep<'_> {
             }
         };
         (self.watch)(&event);
-        let outcome = trial::run(self.case, setting, role, self.plan.budget, allowed);
+        let begin = Instant::now();
+        let outcome = trial::run(self.case, (setting, role), self.plan.budget, allowed, self.evaluations);
         let mut state = self.lock();
         state.reserved -= most;
         let (trial, cost) = outcome?;
         state.spent += cost;
+        // what was read took its time before, as many runs at once as now
+        let before = (cost - begin.elapsed().as_secs_f64()).max(0.0);
+        state.earlier += before / if self.plan.parallel { cores() as f64 } else { 1.0 };
         state.trials.push(trial);
         Ok(cost)
     }
@@ -270,4 +277,8 @@ impl Sweep<'_> {
         }
         Ok(room - left)
     }
+}
+
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }

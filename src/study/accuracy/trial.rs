@@ -13,6 +13,7 @@ use crate::integrate::halt;
 use crate::run::dynamics;
 use crate::run::null;
 use crate::run::summary::{Counters, Status};
+use crate::study::evaluations::Evaluations;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,7 +40,7 @@ pub enum Ending {
 }
 
 /// A setting and what came of it.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
     /// How.
     pub setting: Setting,
@@ -109,13 +110,29 @@ pub struct Allowance {
     pub wanted: usize,
 }
 
-/// Runs a setting; returns it with the seconds or steps spent on all runs.
+/// Runs a setting, unless it is among `evaluations`; returns it with the seconds or steps spent on all runs.
 ///
 /// The first run warms up. It counts when there is no allowance for others: a long run needs no warming.
-pub fn run(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: Allowance) -> Result<(Trial, f64)> {
+pub fn run(
+    case: &Case,
+    (setting, role): (Setting, Role),
+    budget: Budget,
+    allowed: Allowance,
+    evaluations: &Evaluations,
+) -> Result<(Trial, f64)> {
     if halt::asked() {
         return Ok((Trial::skipped(setting, role, "interrupted".into()), 0.0));
     }
+    let compute = || {
+        let (mut trial, spent) = computed(case, setting, role, budget, allowed)?;
+        let signals = trial.signals.take();
+        Ok((trial, signals, spent))
+    };
+    let (trial, signals, spent) = evaluations.try_get(&(setting, role), &halt::asked, compute)?;
+    Ok((Trial { signals, ..trial }, spent))
+}
+
+fn computed(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: Allowance) -> Result<(Trial, f64)> {
     let variant = setting.case(case);
     let once = |most: f64| -> Result<(Trial, f64)> {
         let begin = Instant::now();

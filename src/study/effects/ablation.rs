@@ -12,6 +12,7 @@ use crate::error::{Error, Result};
 use crate::run::null;
 use crate::run::summary::Judged;
 use crate::study::counted::Floors;
+use crate::study::evaluations::Evaluations;
 use crate::study::target::estimates::LOST;
 
 /// Tightest tolerance that is allowed.
@@ -173,11 +174,18 @@ impl Judge {
     }
 }
 
-/// Runs the full model, then each effect left out, then the program's own choice, then what is recommended.
+/// Runs the full model, then each effect left out, then the program's own choice, then what is recommended. Runs among `evaluations` are
+/// not done again.
 ///
 /// # Errors
 /// [`Error::Usage`] for a measure that the full model has not.
-pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> Result<Ablation> {
+pub fn ablate(
+    case: &Case,
+    plan: Plan,
+    measure: Option<&str>,
+    evaluations: &Evaluations,
+    watch: Watch,
+) -> Result<Ablation> {
     let auto_case = with(case, Effects::Auto);
     let decided = effects(&auto_case)?;
     let mut found = Ablation {
@@ -196,7 +204,7 @@ pub fn ablate(case: &Case, plan: Plan, measure: Option<&str>, watch: Watch) -> R
         spent_s: 0.0,
     };
     let all = candidates(case)?;
-    let mut runs = Runs::new(plan, watch);
+    let mut runs = Runs::new(plan, evaluations, watch);
     let full_case = whole(case)?;
     let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();

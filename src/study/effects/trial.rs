@@ -15,6 +15,7 @@ use crate::run::null;
 use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Counters, Status, Summary};
 use crate::study::accuracy::trial::Ending;
+use crate::study::evaluations::Evaluations;
 
 /// Steps between two looks at the clock.
 const LOOK: u64 = 64;
@@ -102,19 +103,24 @@ pub struct Runs<'a> {
     plan: Plan,
     begin: Instant,
     watch: Watch<'a>,
+    evaluations: Evaluations,
     all: Vec<(Case, EffectSet, Trial)>,
     done: usize,
+    /// Wall time of runs that an interrupted command had done [s].
+    earlier_s: f64,
 }
 
 impl<'a> Runs<'a> {
-    /// None yet.
-    pub fn new(plan: Plan, watch: Watch<'a>) -> Self {
+    /// None yet; those among `evaluations` are not done again.
+    pub fn new(plan: Plan, evaluations: &Evaluations, watch: Watch<'a>) -> Self {
         Self {
             plan,
             begin: Instant::now(),
             watch,
+            evaluations: evaluations.clone(),
             all: vec![],
             done: 0,
+            earlier_s: 0.0,
         }
     }
 
@@ -125,7 +131,7 @@ impl<'a> Runs<'a> {
 
     /// Wall time so far [s].
     pub fn spent_s(&self) -> f64 {
-        self.begin.elapsed().as_secs_f64()
+        self.earlier_s + self.begin.elapsed().as_secs_f64()
     }
 
     fn left_s(&self) -> f64 {
@@ -135,19 +141,18 @@ impl<'a> Runs<'a> {
     /// Runs a case, unless one with the same effects and tolerance was run. Returns its number.
     pub fn run(&mut self, what: &str, case: Case) -> Result<usize> {
         let set = effects(&case)?;
-        let on = |set: &EffectSet| set.decisions.iter().map(|d| d.on).collect::<Vec<_>>();
         let alike = |c: &Case, s: &EffectSet| c.solver.rtol == case.solver.rtol && on(s) == on(&set);
         if set.refusals.is_empty()
             && let Some(known) = self.all.iter().position(|(c, s, _)| alike(c, s))
         {
             return Ok(known);
         }
-        let trial = self.first(what, &case);
+        let trial = self.first(what, &case, &set);
         self.all.push((case, set, trial));
         Ok(self.all.len() - 1)
     }
 
-    fn first(&mut self, what: &str, case: &Case) -> Trial {
+    fn first(&mut self, what: &str, case: &Case, set: &EffectSet) -> Trial {
         let mut trial = Trial::skipped(what);
         if let Err(Error::Case(fault)) = System::new(case) {
             trial.reason = fault.violations.first().map(|refusal| refusal.what.clone());
@@ -163,7 +168,7 @@ impl<'a> Runs<'a> {
             return trial;
         }
         self.tell(what);
-        let (summary, wall) = match once(case, left) {
+        let (summary, wall) = match self.once(case, set, 0, left) {
             Ok(ran) => ran,
             Err(e) => {
                 trial.ending = Ending::Failed;
@@ -197,7 +202,7 @@ impl<'a> Runs<'a> {
     pub fn repeat(&mut self) {
         for round in 1..=self.plan.repeats {
             for k in 0..self.all.len() {
-                let (case, _, trial) = &self.all[k];
+                let (case, set, trial) = &self.all[k];
                 // What is judged by a tighter tolerance is not judged by its time.
                 if case.solver.rtol < self.all[0].0.solver.rtol {
                     continue;
@@ -209,9 +214,9 @@ impl<'a> Runs<'a> {
                 {
                     continue;
                 }
-                let (case, what) = (case.clone(), trial.what.clone());
+                let (case, set, what) = (case.clone(), set.clone(), trial.what.clone());
                 self.tell(&format!("{what}, again"));
-                let again = once(&case, self.left_s());
+                let again = self.once(&case, &set, round, self.left_s());
                 let trial = &mut self.all[k].2;
                 if let Ok((summary, wall)) = again
                     && summary.status == Status::Finished
@@ -227,6 +232,17 @@ impl<'a> Runs<'a> {
         }
     }
 
+    /// Runs a case for the so manieth time, unless that is known; returns what came out and the wall time [s].
+    fn once(&mut self, case: &Case, set: &EffectSet, round: usize, most_s: f64) -> Result<(Summary, f64)> {
+        let begin = Instant::now();
+        let key = (on(set), case.solver.rtol, round);
+        let compute = || once(case, most_s);
+        let found = self.evaluations.try_get(&key, &halt::asked, compute)?;
+        // what was read took its time before
+        self.earlier_s += (found.1 - begin.elapsed().as_secs_f64()).max(0.0);
+        Ok(found)
+    }
+
     fn tell(&mut self, what: &str) {
         (self.watch)(&Event {
             what,
@@ -236,6 +252,11 @@ impl<'a> Runs<'a> {
         });
         self.done += 1;
     }
+}
+
+/// Which effects are on.
+fn on(set: &EffectSet) -> Vec<bool> {
+    set.decisions.iter().map(|d| d.on).collect()
 }
 
 /// Runs a case; returns what came out and the wall time [s].

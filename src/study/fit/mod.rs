@@ -172,6 +172,12 @@ pub fn fit(
     };
     fit.warnings = warnings(&fit, reached.minimum.ended, known && plain);
     fit.warnings.extend(of_the_model(problem, &case, stop));
+    if stop() && !fit.interrupted {
+        fit.interrupted = true;
+        fit.warnings.push(Code::Fit.warning(
+            "interrupted after the search: its minimum is found, what a finer mesh and the plain command say of it may be missing",
+        ));
+    }
     fit.wall_s = begin.elapsed().as_secs_f64();
     let weights = reached.weights.iter().zip(&reached.sigmas);
     let weights = weights.map(|(weight, sigma)| weight / sigma.powi(2)).collect();
@@ -216,6 +222,7 @@ fn finer(
     stop: &(dyn Fn() -> bool + Sync),
 ) -> (Simulator, Option<Vec<f64>>) {
     let mut other = problem.clone();
+    other.evaluations = problem.evaluations.scoped("finer");
     other.case.mesh.cells_per_segment *= 2;
     let mut with = vec![format!("{} cells a segment", other.case.mesh.cells_per_segment)];
     if other.case.bladders.is_some() {
@@ -325,7 +332,8 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
         accuracy: None,
         meshes: false,
     };
-    let found = compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
+    let found = || compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
+    let found = compute::stored(&problem.evaluations, &"check", stop, found);
     found.map_or(vec![], |found| found.told)
 }
 

@@ -15,6 +15,7 @@ use crate::run::equilibrium;
 use crate::run::observe::Observer;
 use crate::study::data::matching::Named;
 use crate::study::data::{Match, Matched, Table, matching};
+use crate::study::evaluations::Evaluations;
 use crate::study::span::{self, Span};
 use crate::study::sweep::{What, compute};
 
@@ -126,6 +127,8 @@ pub struct Problem {
     pub abscissa: Abscissa,
     /// Measured values, row after row.
     pub observations: Vec<Observation>,
+    /// Simulations that are computed already.
+    pub evaluations: Evaluations,
 }
 
 impl Problem {
@@ -196,6 +199,7 @@ impl Problem {
             matched,
             abscissa,
             observations,
+            evaluations: Evaluations::default(),
         };
         let begin = problem.with(&problem.start)?;
         let what = through.command();

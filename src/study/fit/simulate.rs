@@ -30,6 +30,18 @@ pub struct Simulated {
 /// # Errors
 /// The case is none with them, or is not simulated to the end of the data, because `stop` became true too.
 pub fn simulate(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
+    let compute = || {
+        let found = computed(problem, values, jobs, stop)?;
+        Ok((found.values, found.slopes.as_slice().to_vec()))
+    };
+    let (beside, slopes) = problem.evaluations.try_get(&values, stop, compute)?;
+    Ok(Simulated {
+        slopes: DMatrix::from_vec(beside.len(), values.len(), slopes),
+        values: beside,
+    })
+}
+
+fn computed(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
     let rows = match &problem.abscissa {
         Abscissa::Time(instants) => run(problem, values, instants, stop)?,
         Abscissa::Drives(drives) => rest(problem, values, drives, jobs, stop)?,

@@ -135,6 +135,15 @@ type Exact = (Vec<f64>, Option<Vec<Vec<f64>>>);
 
 /// Figures with exact derivatives; `None` where derivatives by one of the numbers are refused, so that differences take over.
 fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> Option<std::result::Result<Exact, String>> {
+    let compute = || differentiated(problem, values, stop);
+    problem.evaluations.get(&("exact", values), stop, compute)
+}
+
+fn differentiated(
+    problem: &Problem,
+    values: &[f64],
+    stop: &dyn Fn() -> bool,
+) -> Option<std::result::Result<Exact, String>> {
     let found = problem.with(values).and_then(|case| {
         let parameters = problem.parameters(values);
         slopes::slopes(&case, problem.what, &parameters, problem.system.as_ref(), stop)
@@ -159,6 +168,11 @@ fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> Option<s
 
 /// What the plain command tells of a design.
 fn plain(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
+    let compute = || computed(problem, values, stop);
+    problem.evaluations.get(&("plain", values), stop, compute)
+}
+
+fn computed(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
     let case = problem.with(values).map_err(|error| why(&error))?;
     let ask = Ask {
         what: problem.what,

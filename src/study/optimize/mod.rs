@@ -288,7 +288,8 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
         accuracy: None,
         meshes: true,
     };
-    compute::found(case, ask, stop, &|case| compute::run(case, None, stop))
+    let found = || compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
+    compute::stored(&problem.evaluations, &("check", &case.name), stop, found)
 }
 
 /// The estimated error of a figure, absolute.

@@ -7,6 +7,7 @@ use crate::case::Case;
 use crate::case::parameter::{Parameter, with};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::study::evaluations::Evaluations;
 use crate::study::slopes;
 use crate::study::span::{self, Span};
 use crate::study::sweep::{What, compute};
@@ -142,6 +143,8 @@ pub struct Problem {
     pub limits: Vec<Limit>,
     /// Why there are no exact derivatives, where there are none.
     pub differences: Option<String>,
+    /// Designs that are computed already.
+    pub evaluations: Evaluations,
 }
 
 impl Problem {
@@ -176,6 +179,7 @@ impl Problem {
             },
             limits,
             differences: None,
+            evaluations: Evaluations::default(),
         };
         let begin = problem.with(&problem.start)?;
         span::check(&begin, &problem.spans, false, &|case| {

@@ -13,6 +13,7 @@ use crate::run::periodic::{Scene, Search, Settled, record, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::stop::{INTERRUPTED, Stop};
 use crate::run::summary::{Quantity, Status};
+use crate::study::evaluations::Evaluations;
 
 /// Multipliers looked at.
 const COUNT: usize = 4;
@@ -54,15 +55,26 @@ pub struct Along {
     pub warnings: Vec<String>,
 }
 
+/// A value, and what the next one needs of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Step {
+    found: std::result::Result<Member, String>,
+    /// That its energies do not add up.
+    open: Option<String>,
+    /// State of its cycle.
+    state: Option<Vec<f64>>,
+}
+
 /// Finds the cycle of every case; `tell` hears how many of them are done. Those that are not when somebody asks for the end are missing.
-/// Where turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle.
+/// Where turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle. A cycle among `evaluations`
+/// is not sought again.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.
 pub fn along(
-    pointer: &str,
-    logarithmic: bool,
+    (pointer, logarithmic): (&str, bool),
     cases: &[(f64, Case)],
+    evaluations: &Evaluations,
     stop: &Stop,
     tell: &dyn Fn(usize),
 ) -> Result<Along> {
@@ -91,46 +103,15 @@ pub fn along(
             found.warnings.extend(scene.trapped.clone());
         }
         let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
-        match shoot(&scene, from.as_deref()) {
-            Ok(cycle) => {
-                let harvests = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
-                let Settled {
-                    case,
-                    scene,
-                    mut cycle,
-                    refined,
-                } = match harvests {
-                    true => settle(case, scene, cycle)?,
-                    false => Settled::as_found(case, scene, cycle),
-                };
-                let floquet = floquet::multipliers(&scene, &mut cycle, COUNT);
-                let wall_s = begin.elapsed().as_secs_f64();
-                let run = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
-                if run.summary.status == Status::Finished {
-                    let mark = Code::EnergyFigure.id();
-                    open.extend(
-                        run.summary
-                            .warnings
-                            .into_iter()
-                            .find(|w| w.starts_with(mark))
-                            .map(|w| (*value, w)),
-                    );
-                    found.members.push(Member {
-                        value: *value,
-                        unknowns: scene.system.layout.len,
-                        search: cycle.search,
-                        floquet,
-                        quantities: run.summary.quantities,
-                        refined,
-                        wall_s,
-                    });
-                } else {
-                    let why = run.summary.reason.unwrap_or_default();
-                    found.missing.push((*value, why));
-                }
-                before = Some((scene, cycle.y));
-            }
-            Err(impasse) => found.missing.push((*value, impasse.what)),
+        let compute = || step((*value, case), scene.clone(), from.as_deref(), begin);
+        let step = evaluations.try_get(&(k, value), &|| stop.raised(), compute)?;
+        match step.found {
+            Ok(member) => found.members.push(member),
+            Err(why) => found.missing.push((*value, why)),
+        }
+        open.extend(step.open.map(|warning| (*value, warning)));
+        if let Some(y) = step.state {
+            before = Some((scene, y));
         }
         tell(k + 1);
     }
@@ -144,4 +125,51 @@ pub fn along(
             .push(format!("{warning} (at {pointer} = {value}{others})"));
     }
     Ok(found)
+}
+
+fn step((value, case): (f64, &Case), scene: Scene, from: Option<&[f64]>, begin: Instant) -> Result<Step> {
+    let cycle = match shoot(&scene, from) {
+        Ok(cycle) => cycle,
+        Err(impasse) => {
+            return Ok(Step {
+                found: Err(impasse.what),
+                open: None,
+                state: None,
+            });
+        }
+    };
+    let harvests = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
+    let Settled {
+        case,
+        scene,
+        mut cycle,
+        refined,
+    } = match harvests {
+        true => settle(case, scene, cycle)?,
+        false => Settled::as_found(case, scene, cycle),
+    };
+    let floquet = floquet::multipliers(&scene, &mut cycle, COUNT);
+    let wall_s = begin.elapsed().as_secs_f64();
+    let summary = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?.summary;
+    let finished = summary.status == Status::Finished;
+    let mark = Code::EnergyFigure.id();
+    Ok(Step {
+        open: summary
+            .warnings
+            .into_iter()
+            .find(|warning| finished && warning.starts_with(mark)),
+        found: match finished {
+            true => Ok(Member {
+                value,
+                unknowns: scene.system.layout.len,
+                search: cycle.search,
+                floquet,
+                quantities: summary.quantities,
+                refined,
+                wall_s,
+            }),
+            false => Err(summary.reason.unwrap_or_default()),
+        },
+        state: Some(cycle.y),
+    })
 }

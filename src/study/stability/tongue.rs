@@ -17,6 +17,7 @@ use crate::run::known;
 use crate::run::periodic::scene::whole;
 use crate::run::periodic::{Scene, shoot};
 use crate::run::stop::{INTERRUPTED, Stop};
+use crate::study::evaluations::Evaluations;
 
 /// Multipliers looked at in a point.
 const COUNT: usize = 2;
@@ -111,11 +112,18 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
     }
 }
 
-/// Computes the map; `tell` hears how many of how many columns are done. Points that are not when somebody asks for the end have no answer.
+/// Computes the map; `tell` hears how many of how many columns are done. Points that are not when somebody asks for the end have no answer,
+/// those among `evaluations` are not computed again.
 ///
 /// # Errors
 /// A case without shaken root, or with another period besides.
-pub fn map(case: &Case, plan: &Plan, stop: &Stop, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Map> {
+pub fn map(
+    case: &Case,
+    plan: &Plan,
+    evaluations: &Evaluations,
+    stop: &Stop,
+    tell: &(dyn Fn(usize, usize) + Sync),
+) -> Result<Map> {
     let own = shaking(case)?;
     // another drive beside the shaking would have a period of its own
     crate::run::drive::drive(case, &whole(case)?, None)?;
@@ -134,6 +142,7 @@ pub fn map(case: &Case, plan: &Plan, stop: &Stop, tell: &(dyn Fn(usize, usize) +
             factors[k / columns],
             plan.frequencies_hz[k % columns],
             &plan.amplitudes_m,
+            &evaluations.scoped(&k.to_string()),
             stop,
         );
         tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
@@ -159,7 +168,14 @@ pub fn map(case: &Case, plan: &Plan, stop: &Stop, tell: &(dyn Fn(usize, usize) +
 }
 
 /// All amplitudes at one frequency, each cycle found from the one before.
-fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64], stop: &Stop) -> Result<Vec<Point>> {
+fn column(
+    case: &Case,
+    factor: Option<f64>,
+    frequency_hz: f64,
+    amplitudes: &[f64],
+    evaluations: &Evaluations,
+    stop: &Stop,
+) -> Result<Vec<Point>> {
     let mut case = case.clone();
     if let (Some(factor), Some(network)) = (factor, &mut case.network) {
         network.permeability_factor *= factor;
@@ -184,24 +200,38 @@ fn column(case: &Case, factor: Option<f64>, frequency_hz: f64, amplitudes: &[f64
             )?
             .heeding(stop);
             let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
-            Ok(match shoot(&scene, from.as_deref()) {
-                Ok(mut cycle) => {
-                    let found = floquet::multipliers(&scene, &mut cycle, COUNT);
-                    before = Some((scene, cycle.y));
-                    Point {
-                        growth_per_s: Some(found.verdict.growth_per_s),
-                        multiplier: found.multipliers.first().map(|m| (m.re, m.im)),
-                        words: found.verdict.words,
-                        stability: Some(found.verdict.stability),
-                    }
-                }
-                Err(impasse) => Point {
-                    words: impasse.what,
-                    ..Point::default()
-                },
-            })
+            let compute = || point(&scene, from.as_deref());
+            let (point, state) = evaluations.get(&amplitude, &|| stop.raised(), compute);
+            if let Some(y) = state {
+                before = Some((scene, y));
+            }
+            Ok(point)
         })
         .collect()
+}
+
+/// A point, and the state of its cycle, where there is one.
+fn point(scene: &Scene, from: Option<&[f64]>) -> (Point, Option<Vec<f64>>) {
+    match shoot(scene, from) {
+        Ok(mut cycle) => {
+            let found = floquet::multipliers(scene, &mut cycle, COUNT);
+            let point = Point {
+                growth_per_s: Some(found.verdict.growth_per_s),
+                multiplier: found.multipliers.first().map(|m| (m.re, m.im)),
+                words: found.verdict.words,
+                stability: Some(found.verdict.stability),
+            };
+            (point, Some(cycle.y))
+        }
+        Err(impasse) => {
+            let words = impasse.what;
+            let point = Point {
+                words,
+                ..Point::default()
+            };
+            (point, None)
+        }
+    }
 }
 
 /// The model with another shaking of the root.

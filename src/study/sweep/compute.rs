@@ -2,6 +2,8 @@
 
 use std::cell::Cell;
 
+use serde::Serialize;
+
 use super::multipliers::multipliers;
 use super::plan::What;
 use super::power::{self, POWERS};
@@ -18,6 +20,7 @@ use crate::run::record::{Column, Control, Progress, Unrecorded};
 use crate::run::stop::Stop;
 use crate::run::summary::{Accuracy, Quantity, Status, Summary};
 use crate::run::{known, periodic, slow};
+use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes, numbers};
 use crate::study::target;
 
@@ -70,6 +73,21 @@ pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: &dyn Fn(&Case)
         return None;
     }
     Some(found.unwrap_or_else(|error| Found::failed(&error)))
+}
+
+/// What was found of a case under a key of a journal, with its warnings, or what `found` finds.
+pub fn stored(
+    evaluations: &Evaluations,
+    key: &impl Serialize,
+    stop: &dyn Fn() -> bool,
+    found: impl FnOnce() -> Option<Found>,
+) -> Option<Found> {
+    let apart = |mut found: Found| {
+        let told = std::mem::take(&mut found.told);
+        (found, told)
+    };
+    let (found, told) = evaluations.get(key, stop, || found().map(apart))?;
+    Some(Found { told, ..found })
 }
 
 /// Runs a case and keeps its summary alone.
