@@ -10,6 +10,9 @@ use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Signal};
 use crate::model::network::Feed;
 
+/// Strain below which axial motion is not resolved further.
+const LEAST_STRAIN: f64 = 1e-6;
+
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
@@ -242,14 +245,16 @@ impl Scales {
             + (d.transverse_force + d.transverse_load * l) * transverse / l
             + m * l * foreshortening * first_mode * first_mode
             + ea * stretch)
-            .max(1e-6 * ea);
-        let axial = (force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(1e-6 * l, 10.0 * l);
+            .max(LEAST_STRAIN * ea);
+        let axial = (force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(LEAST_STRAIN * l, 10.0 * l);
         let frequency = first_mode.max(d.frequency);
+        // The least axial motion counts as a wave: its velocity has the energy of its stretch, up to that of bending.
+        let least_axial_rate = (LEAST_STRAIN * 0.5 * PI * (ea / m).sqrt()).min(transverse * frequency);
         Self {
             transverse,
             axial,
             transverse_rate: transverse * frequency,
-            axial_rate: axial * frequency,
+            axial_rate: (axial * frequency).max(least_axial_rate),
             transverse_force: (ei * transverse / l.powi(3)).max(1e-9 * ei / (l * l)),
             axial_force: force,
             moment: (ei * transverse / (l * l)).max(moment_of_loads).max(1e-6 * ei / l),

@@ -2,7 +2,8 @@
 //!
 //! Estimates of the error behave as `e ~ φ h^k` with a slowly changing `φ`. After an accepted step the next one is the
 //! smaller of `h (ρ/eₙ)^(1/k)` and `h (ρ/eₙ)^(1/k) · hₙ/hₙ₋₁ (eₙ₋₁/eₙ)^(1/k)`, which foresees the change of `φ`
-//! (Gustafsson's predictive controller; Hairer & Wanner IV.8), `ρ = safety^k`. After a rejected one it is `h (ρ/e)^(1/k)`.
+//! (Gustafsson's predictive controller; Hairer & Wanner IV.8), `ρ = safety^k`. After a rejected one it is `h (ρ/e)^(1/k)`,
+//! and growth beyond that size waits.
 
 /// Fraction of the step that the estimate allows.
 const SAFETY: f64 = 0.9;
@@ -12,6 +13,55 @@ const GROWTH: f64 = 5.0;
 const KEEP: f64 = 1.5;
 /// Errors are taken as no smaller than this: a moment of rest does not stand for the past.
 const LEAST: f64 = 1e-4;
+
+/// Longest wait for growth, in accepted steps.
+const LONGEST_WAIT: u32 = 32;
+/// Ratio of successive sizes from which on a step has grown.
+const GROWN: f64 = 1.01;
+
+/// Wait for growth after a rejected step.
+///
+/// Estimates of superposed oscillations fluctuate: a small one permits growth that the next one rejects, and each change of
+/// size costs a new matrix. A rejection of growth doubles the wait, growth that is accepted halves it.
+#[derive(Clone, Debug)]
+struct Wait {
+    /// Largest size while it lasts [s].
+    ceiling: f64,
+    /// Accepted steps until it ends.
+    left: u32,
+    /// Length of the next one, in accepted steps.
+    next: u32,
+}
+
+impl Wait {
+    fn new() -> Self {
+        Self {
+            ceiling: f64::INFINITY,
+            left: 0,
+            next: 1,
+        }
+    }
+
+    /// A step is rejected, `grown` from the one before; `size` [s] follows.
+    fn begin(&mut self, size: f64, grown: bool) {
+        if grown {
+            self.next = (2 * self.next).min(LONGEST_WAIT);
+        }
+        (self.ceiling, self.left) = (size, self.next);
+    }
+
+    /// A step is accepted, `grown` from the one before; limits the size of the next [s].
+    fn limit(&mut self, size: f64, grown: bool) -> f64 {
+        if self.left > 0 {
+            self.left -= 1;
+            return size.min(self.ceiling);
+        }
+        if grown {
+            self.next = (self.next / 2).max(1);
+        }
+        size
+    }
+}
 
 /// Step sizes from errors.
 #[derive(Clone, Debug)]
@@ -24,6 +74,7 @@ pub(super) struct Control {
     last: Option<(f64, f64)>,
     /// Whether the present step has failed before.
     failed: bool,
+    wait: Wait,
 }
 
 impl Control {
@@ -34,6 +85,7 @@ impl Control {
             power: power.into(),
             last: None,
             failed: false,
+            wait: Wait::new(),
         }
     }
 
@@ -46,6 +98,7 @@ impl Control {
     /// Begins with a step [s], without a past.
     pub fn begin(&mut self, size: f64) {
         (self.size, self.last, self.failed) = (size.min(self.largest), None, false);
+        self.wait = Wait::new();
     }
 
     /// Tries no more than this as the next step [s].
@@ -67,6 +120,11 @@ impl Control {
         }
     }
 
+    /// Whether a step of size `h` [s] is larger than the last one accepted.
+    fn grown(&self, h: f64) -> bool {
+        self.last.is_some_and(|(last, _)| h > GROWN * last)
+    }
+
     /// A step of size `h` [s] is accepted with an error relative to the tolerance.
     pub fn accepted(&mut self, h: f64, error: f64) {
         let error = (error / SAFETY.powf(self.power)).max(LEAST);
@@ -80,7 +138,8 @@ impl Control {
         }
         let limit = if self.last.is_none() { 2.0 * GROWTH } else { GROWTH };
         factor = factor.clamp(1.0 / GROWTH, limit);
-        let next = h * factor;
+        let grown = self.grown(h);
+        let next = self.wait.limit(h * factor, grown);
         // a step cut short by a stop says little about the next
         let keep = (1.0..KEEP).contains(&(next / self.size)) || (h < self.size && next < self.size && !self.failed);
         if !keep {
@@ -94,6 +153,10 @@ impl Control {
         let factor = (error / SAFETY.powf(self.power)).powf(-1.0 / self.power);
         // written so that an error that is no number counts as large
         self.size = h * if factor > 1.0 / GROWTH { factor } else { 1.0 / GROWTH };
+        if !self.failed {
+            let grown = self.grown(h);
+            self.wait.begin(self.size, grown);
+        }
         self.failed = true;
     }
 

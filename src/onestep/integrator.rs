@@ -23,6 +23,8 @@ pub struct OneStep<D: Dae> {
     pub(super) options: OneStepOptions,
     pub(super) tableau: Tableau,
     absolute: Vec<f64>,
+    /// Error that Newton's iteration may leave, as a fraction of the tolerance.
+    pub(super) newton_tolerance: f64,
     /// 1 for differential, 0 for algebraic unknowns.
     pub(super) mask: Vec<f64>,
     /// Positions of algebraic unknowns.
@@ -60,6 +62,9 @@ impl<D: Dae> OneStep<D> {
             mask: differential.iter().map(|&d| f64::from(u8::from(d))).collect(),
             algebraic: (0..n).filter(|&i| !differential[i]).collect(),
             absolute: options.absolute.each(n),
+            newton_tolerance: options
+                .newton_tolerance
+                .unwrap_or_else(|| tableau.newton_tolerance(options.relative)),
             matrix: Matrix::new(lu, Corotation::new(&dae)),
             now: Stages::new(tableau.stages, n),
             last: Stages::new(tableau.stages, n),

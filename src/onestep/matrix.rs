@@ -10,6 +10,10 @@ use crate::sparse::{KluError, Lu};
 const UNKNOWN_RATE: f64 = 0.5;
 /// Measured contraction from which on a new matrix pays.
 const SLOW: f64 = 0.1;
+/// Relative change of `cj` that asks for a new matrix once two steps in a row have the same size.
+const STEADY_BAND: f64 = 5e-3;
+/// Relative difference up to which two sizes are the same.
+const SAME_SIZE: f64 = 1e-6;
 
 /// The factors and what is known of them.
 pub(super) struct Matrix {
@@ -19,6 +23,8 @@ pub(super) struct Matrix {
     values: Vec<f64>,
     /// `cj` of the factors; 0 without factors.
     cj: f64,
+    /// `cj` of the last attempt at a step; 0 before the first.
+    attempted: f64,
     /// Contraction of Newton's iteration with these factors, as last measured.
     pub rate: f64,
     /// Asks for new factors at the next stage.
@@ -39,6 +45,7 @@ impl Matrix {
             lu,
             corotation,
             cj: 0.0,
+            attempted: 0.0,
             rate: UNKNOWN_RATE,
             stale: true,
             fresh: false,
@@ -53,7 +60,7 @@ impl Matrix {
     pub fn forget(&mut self) {
         self.lu.forget();
         (self.cj, self.rate, self.stale) = (0.0, UNKNOWN_RATE, true);
-        (self.fresh, self.slow) = (false, false);
+        (self.fresh, self.slow, self.attempted) = (false, false, 0.0);
         self.singular = None;
     }
 
@@ -62,9 +69,13 @@ impl Matrix {
         self.rate = UNKNOWN_RATE;
     }
 
-    /// A new attempt at a step begins.
-    pub fn begin(&mut self) {
-        self.stale |= std::mem::take(&mut self.slow) && !self.fresh;
+    /// A new attempt at a step begins. Steps that keep their size get a matrix of that size: linear equations then take one
+    /// iteration, and its leftover does not add up over a long undamped motion.
+    pub fn begin(&mut self, cj: f64) {
+        let apart = |other: f64| (cj / other - 1.0).abs();
+        let steady = apart(self.attempted) <= SAME_SIZE && apart(self.cj) > STEADY_BAND;
+        self.attempted = cj;
+        self.stale |= steady || std::mem::take(&mut self.slow) && !self.fresh;
         self.fresh = false;
     }
 

@@ -13,8 +13,9 @@ pub struct OneStepOptions {
     pub relative: f64,
     /// Absolute tolerances, > 0.
     pub absolute: Absolute,
-    /// Error that Newton's iteration may leave, as a fraction of the tolerance.
-    pub newton_tolerance: f64,
+    /// Error that Newton's iteration may leave, as a fraction of the tolerance; absent:
+    /// [`super::Tableau::newton_tolerance`].
+    pub newton_tolerance: Option<f64>,
     /// Relative change of `1/(h γ)` that asks for a new matrix.
     pub matrix_band: f64,
     /// First step [s], after every restart; a guess when absent.
@@ -31,7 +32,7 @@ impl Default for OneStepOptions {
             method: Method::Esdirk34,
             relative: 1e-4,
             absolute: Absolute::Same(1e-6),
-            newton_tolerance: 0.02,
+            newton_tolerance: None,
             matrix_band: 0.3,
             initial_step: None,
             max_step: None,
@@ -58,7 +59,7 @@ impl OneStepOptions {
         self.absolute.check(self.relative, n)?;
         let positive = |value: f64| value.is_finite() && value > 0.0;
         for (value, what) in [
-            (self.newton_tolerance, "tolerance of Newton's iteration"),
+            (self.newton_tolerance.unwrap_or(1.0), "tolerance of Newton's iteration"),
             (self.matrix_band, "change of the step for a new matrix"),
             (self.initial_step.unwrap_or(1.0), "first step"),
             (self.max_step.unwrap_or(1.0), "largest step"),

@@ -196,9 +196,9 @@ pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: 
 impl<D: Dae> OneStep<D> {
     /// Tries a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
     pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, StageError> {
-        self.matrix.begin();
-        (self.now.t, self.now.h) = (self.time, h);
         let cj = 1.0 / (h * self.tableau.gamma());
+        self.matrix.begin(cj);
+        (self.now.t, self.now.h) = (self.time, h);
         self.equations.dae.approach(cj);
         for i in 1..self.tableau.stages {
             let last = self.tableau.c[i] == 1.0;
@@ -279,7 +279,7 @@ impl<D: Dae> OneStep<D> {
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
-        let tolerance = self.options.newton_tolerance;
+        let tolerance = self.newton_tolerance;
         let mut before: Option<f64> = None;
         for iteration in 0..ITERATIONS {
             self.newton_iterations += 1;

@@ -51,6 +51,13 @@ impl fmt::Display for Method {
     }
 }
 
+/// Largest fraction of the tolerance that Newton's iteration may leave.
+const LEFTOVER: f64 = 0.02;
+/// Relative tolerance from which on this fraction suffices.
+const LEFTOVER_TOLERANCE: f64 = 1e-4;
+/// Least leftover that is asked for, relative to the unknowns: rounding errors of a stage stay below it.
+const LEAST_LEFTOVER: f64 = 2e-12;
+
 /// Most stages of a method.
 pub const STAGES: usize = 7;
 
@@ -63,6 +70,8 @@ pub struct Tableau {
     pub stages: usize,
     /// `h^power` is what the estimate of the error falls with.
     pub power: u8,
+    /// Power of `h ω` with which a step damps an undamped oscillation: `1 - |R(i h ω)| ~ (h ω)^damping`.
+    pub damping: u8,
     /// Times of the stages within the step.
     pub c: [f64; STAGES],
     /// Weights of the stages before and of each itself.
@@ -77,6 +86,16 @@ impl Tableau {
     /// The diagonal.
     pub fn gamma(&self) -> f64 {
         self.a[1][1]
+    }
+
+    /// Fraction κ of the tolerance that Newton's iteration may leave.
+    ///
+    /// The error test chooses `(h ω)^power ~ rtol`, and a step takes `(h ω)^damping` of the amplitude of an undamped oscillation.
+    /// The leftover has either sign. It stays below that loss, and energy does not grow, with `κ rtol ~ rtol^(damping/power)`.
+    pub fn newton_tolerance(&self, relative: f64) -> f64 {
+        let excess = f64::from(self.damping) / f64::from(self.power) - 1.0;
+        let share = LEFTOVER * (relative / LEFTOVER_TOLERANCE).min(1.0).powf(excess);
+        share.max(LEAST_LEFTOVER / relative).min(LEFTOVER)
     }
 
     /// Factor by which a step multiplies the solution of `y' = λ y`, `z = h λ`, real and imaginary part: `1 + z bᵀ(1 - zA)⁻¹ 1`.
@@ -118,6 +137,7 @@ fn trbdf2() -> Tableau {
     Tableau {
         stages: 3,
         power: 3,
+        damping: 4,
         c: row(&[0.0, 2.0 * gamma, 1.0]),
         a,
         embedded: row(&[(1.0 - w) / 3.0, (1.0 + 3.0 * w) / 3.0, gamma / 3.0]),
@@ -128,6 +148,7 @@ fn trbdf2() -> Tableau {
 const ESDIRK34: Tableau = Tableau {
     stages: 4,
     power: 3,
+    damping: 4,
     c: row(&[0.0, 0.871733043016918, 0.6, 1.0]),
     a: [
         [0.0; STAGES],
@@ -155,6 +176,7 @@ const ESDIRK34: Tableau = Tableau {
 const ESDIRK46: Tableau = Tableau {
     stages: 6,
     power: 4,
+    damping: 6,
     c: row(&[0.0, 0.5, 0.332, 0.62, 0.85, 1.0]),
     a: [
         [0.0; STAGES],
@@ -192,6 +214,7 @@ const ESDIRK46: Tableau = Tableau {
 const ESDIRK57: Tableau = Tableau {
     stages: 7,
     power: 5,
+    damping: 6,
     c: [
         0.0,
         0.368,

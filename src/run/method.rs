@@ -132,7 +132,7 @@ impl Options {
                     method,
                     relative,
                     absolute,
-                    newton_tolerance: solver.nonlinear_coefficient.unwrap_or(usual.newton_tolerance),
+                    newton_tolerance: solver.nonlinear_coefficient,
                     initial_step,
                     max_step,
                     ..usual

@@ -6,3 +6,4 @@ mod orders;
 mod simulator;
 mod stepping;
 mod tableau;
+mod undamped;

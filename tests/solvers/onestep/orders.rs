@@ -12,7 +12,7 @@ pub fn fixed(method: Method, step: f64) -> OneStepOptions {
         method,
         relative: 1.0,
         absolute: Absolute::Same(1.0),
-        newton_tolerance: 1e-13,
+        newton_tolerance: Some(1e-13),
         initial_step: Some(step),
         max_step: Some(step),
         ..OneStepOptions::default()
