@@ -44,8 +44,9 @@ struct Row {
 
 /// Computes and prints.
 pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
-    asked.wall.flag();
     let text = case::text(&asked.case.case)?;
+    // standard input is read until it ends or Ctrl-C ends the program
+    asked.wall.flag();
     let mut written = section::parse(&text, &asked.case.case, &asked.case.sets)?;
     // where the other stands beside it the table is that of the plane cell
     written.section.three_d &= !asked.three_d;

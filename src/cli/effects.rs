@@ -36,7 +36,8 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         show(&progress, event);
     });
     drop(progress);
-    let (found, stopped) = (found?, interrupt::raised(&flag));
+    let stopped = interrupt::raised(&flag);
+    let found = journal::outcome(found, &folder, stopped)?;
     let shown = files::Shown::choose(&found, asked.measure.as_deref());
     let written = files::write(&mut folder, &found, &shown).map(|_| ());
     let written = written.and(report::complete(&folder, &case));

@@ -47,7 +47,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let name = asked.data.display().to_string();
     let found = study::fit(&problem, &wanted, (&name, table.crc32), &stop, &tell);
     bar.finish_and_clear();
-    let mut found = found?;
+    let mut found = journal::outcome(found, &folder, stop())?;
     found.fit.left_alone = study::left_alone(&table, &wanted);
     let written = files::write(&mut folder, &problem, &found);
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));

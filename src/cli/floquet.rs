@@ -120,7 +120,8 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
         bar.tick();
     });
     bar.finish_and_clear();
-    let (found, stopped) = (found?, stop.raised());
+    let stopped = stop.raised();
+    let found = journal::outcome(found, &folder, stopped)?;
     let written = files::write_map(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);

@@ -1,6 +1,6 @@
 //! The journal of a search: what it is begun with, what is told of it, and when it goes.
 
-use super::terminal;
+use super::{embedded, terminal};
 use crate::case::Case;
 use crate::error::Result;
 use crate::output::ResultFolder;
@@ -16,6 +16,17 @@ pub fn begin(evaluations: &Evaluations, folder: &ResultFolder, of: (&str, &Case,
         terminal::tell(&format!("slcbeam: {damage}. They are computed again."));
     }
     Ok(())
+}
+
+/// What a search found. The journal of one that failed goes, that of one that was stopped stays.
+///
+/// # Errors
+/// Those of the search.
+pub fn outcome<T>(found: Result<T>, folder: &ResultFolder, stopped: bool) -> Result<T> {
+    if found.is_err() && !stopped {
+        let _ = files::remove(folder);
+    }
+    found
 }
 
 /// Says how many evaluations were read. The journal of a search that was stopped stays, as does that of a result that could not be
@@ -34,7 +45,8 @@ pub fn end(evaluations: &Evaluations, folder: &ResultFolder, stopped: bool, writ
         terminal::tell(&format!("slcbeam: {fault}. Evaluations after it are not kept."));
     }
     match (stopped, &written) {
-        (true, _) if all == 0 => {}
+        // inside another program the answer says so
+        (true, _) if all == 0 || embedded::stop().is_some() => {}
         (true, _) => terminal::tell(&format!(
             "slcbeam: stopped; the same command goes on after {all} evaluations, which {} holds",
             path.display()

@@ -62,7 +62,8 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         false => study::optimise(&candidates, &wanted, &stop, &tell),
     };
     bar.finish_and_clear();
-    let (found, stopped) = (found?, stop());
+    let stopped = stop();
+    let found = journal::outcome(found, &folder, stopped)?;
     let written = files::write(&mut folder, &found.problem, &found);
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let written = journal::end(&evaluations, &folder, stopped, written);

@@ -181,7 +181,8 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
         bar.tick();
     });
     bar.finish_and_clear();
-    let (found, stopped) = (found?, stop.raised());
+    let stopped = stop.raised();
+    let found = journal::outcome(found, &folder, stopped)?;
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, &first));
     let written = journal::end(&evaluations, &folder, stopped, written);

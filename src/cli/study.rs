@@ -38,9 +38,10 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let progress = Progress::new(asked.quiet);
     let found = run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {
         progress.show(event);
-    })?;
+    });
     drop(progress);
     let stopped = interrupt::raised(&flag);
+    let found = journal::outcome(found, &folder, stopped)?;
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
