@@ -266,7 +266,7 @@ fn what_belongs_together() {
         one(&[("\"width_m\": 0.0078", "\"width_m\": 0.0178")]),
         "/bladders/width_m",
         "0.0178",
-        "do not fit",
+        "no room along the beam",
     );
     assert_fault(
         one(&[("\"fields_interval_s\": 0.001", "\"fields_interval_s\": 0.0012")]),

@@ -311,7 +311,7 @@ fn a_profile_shows_where_a_load_is() {
         assert!((value - truth).abs() < 4.0, "{k}: {value}");
         assert!(number(&told(k)["low"]) < value && value < number(&told(k)["high"]));
     }
-    assert!(number(&found["smoothing"]["deviation_n_m"]) > 0.0);
+    assert!(number(&found["smoothing"]["load_deviation_n_m"]) > 0.0);
     assert_eq!(found["rows"][0]["t_s"], 0.5);
     let said = sense(&dir, &[&path, "--load", "profile:7", "--noise", "1"]);
     assert!(said.out.contains("inertia and flow are not in it"), "{}", said.out);
