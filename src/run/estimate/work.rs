@@ -85,7 +85,8 @@ impl Estimator {
                 continue;
             };
             let size = quantity.last.map_or(0.0, f64::abs);
-            if !self.counts(name, size, quantities) {
+            // beside what is stored, so little is the rounding error of works that cancel
+            if !self.counts(name, size, quantities) || size < NOTHING * work.stored {
                 continue;
             }
             // where fluid is pumped through a beam that hardly moves, its motion says nothing; what turbines take may be a small part
