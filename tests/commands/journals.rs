@@ -283,8 +283,8 @@ fn the_clock_ends_every_command() {
             "{asked}: {}",
             said.err
         );
-        // a sweep without a cycle and effects without the full model have files, and nothing in them
-        let empty = ["sweep.json", "effects.json"].contains(file) && said.code == 4;
+        // a sweep without a cycle, a study without a run and effects without the full model have files, and nothing in them
+        let empty = ["sweep.json", "study.json", "effects.json"].contains(file) && said.code == 4;
         let part = out.join(file).exists();
         assert_eq!(
             said.code,
