@@ -45,7 +45,7 @@ impl Heading {
         }
     }
 
-    /// Whether a line of cells has numbers alone, which are no headings.
+    /// True if a line of cells has numbers alone, which are no headings.
     pub fn are_numbers<'c>(mut cells: impl Iterator<Item = &'c str> + Clone) -> bool {
         cells.clone().next().is_some() && cells.all(|cell| cell.trim().parse::<f64>().is_ok())
     }

@@ -78,7 +78,7 @@ pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) 
 /// A number that is varied over what it is.
 const ASIDE: f64 = 1.01;
 
-/// Whether a case has the coefficient of a law, and it is none of a full section, which has the same in every shape.
+/// True if a case has the coefficient of a law, and it is none of a full section, which has the same in every shape.
 fn belongs(resolved: &Value, law: &Law) -> bool {
     let value = resolved.pointer(law.pointer);
     let full = resolved.get("bladders").is_none() && value.and_then(Value::as_f64) == Some(1.0);

@@ -216,7 +216,7 @@ impl Law {
         pair.map_or(1.0, |(now, then)| now / then)
     }
 
-    /// Whether it is exact between these sizes and those; a beam without bladders is compared by its section.
+    /// True if it is exact between these sizes and those; a beam without bladders is compared by its section.
     pub fn is_exact(&self, now: &Sizes, then: &Sizes) -> bool {
         let bladders = then.bladders.filter(|_| now.bladders.is_some());
         match ((self.shape)(now), (self.shape)(&Sizes { bladders, ..*then })) {
@@ -228,7 +228,7 @@ impl Law {
     }
 }
 
-/// Whether a `POINTER=JSON` argument may change sizes that coefficients belong to.
+/// True if a `POINTER=JSON` argument may change sizes that coefficients belong to.
 pub(super) fn may_change_sizes(argument: &str) -> bool {
     let pointer = argument.split('=').next().unwrap_or_default();
     let parts = ["/beam", "/bladders", "/fluid", "/tubes", "/section", "/preset"];

@@ -47,7 +47,7 @@ struct Asked {
 
 static ASKED: OnceLock<Asked> = OnceLock::new();
 
-/// Whether the wall time allowed is used up.
+/// True if the wall time allowed is used up.
 static LATE: AtomicBool = AtomicBool::new(false);
 
 /// The wall time that a command is allowed.
@@ -175,7 +175,7 @@ fn code() -> Option<ExitCode> {
     (signal > 0).then(|| ExitCode::from((SIGNAL as usize + signal) as u8))
 }
 
-/// Whether the clock has ended a part of the command.
+/// True if the clock has ended a part of the command.
 pub fn late() -> bool {
     LATE.load(Ordering::Relaxed) && ASKED.get().is_some_and(|asked| asked.halt.was_seen())
 }

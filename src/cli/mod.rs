@@ -50,7 +50,7 @@ use crate::error::{Error, Result, visible};
 use crate::output::machine;
 use arguments::{Arguments, Command};
 
-/// Whether standard output has an answer.
+/// True if standard output has an answer.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
 
 /// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.

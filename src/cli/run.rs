@@ -213,7 +213,7 @@ struct Recorded {
     finished: Option<Finished>,
     /// Where an older result went.
     aside: Option<PathBuf>,
-    /// Whether its files could be written.
+    /// True if its files could be written.
     written: Result<()>,
 }
 

@@ -82,7 +82,7 @@ impl Curve {
         Some([*self.at.first()?, *self.at.last()?])
     }
 
-    /// Whether it ends at the value at which it begins.
+    /// True if it ends at the value at which it begins.
     pub fn joins(&self) -> bool {
         self.values.first() == self.values.last()
     }

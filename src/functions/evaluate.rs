@@ -218,7 +218,7 @@ impl Table {
         self.curve.inside(x, within, self.interpolation)
     }
 
-    /// Whether it repeats itself as a curve that is twice continuously differentiable.
+    /// True if it repeats itself as a curve that is twice continuously differentiable.
     pub fn is_smooth(&self) -> bool {
         self.repeat && self.interpolation == Interpolation::Cubic && self.curve.jumps().is_empty() && self.curve.joins()
     }

@@ -130,7 +130,7 @@ pub struct Table {
     /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
-    /// Whether it repeats itself, for ever and in both directions.
+    /// True if it repeats itself, for ever and in both directions.
     pub repeat: bool,
     pub(super) curve: Curve,
 }

@@ -20,7 +20,7 @@ pub struct Halt {
     answered: Arc<AtomicBool>,
     /// Threads that complete something now.
     completing: Arc<AtomicUsize>,
-    /// Whether this thread does a part of the work of another one, which waits for it.
+    /// True if this thread does a part of the work of another one, which waits for it.
     helps: bool,
 }
 
@@ -42,7 +42,7 @@ impl Halt {
         self.seen.load(Ordering::Relaxed)
     }
 
-    /// Whether the thread that has begun the work ends it, or something is completed that is not to be cut.
+    /// True if the thread that has begun the work ends it, or something is completed that is not to be cut.
     pub fn is_answered(&self) -> bool {
         self.answered.load(Ordering::Relaxed) || self.completing.load(Ordering::Relaxed) > 0
     }

@@ -123,7 +123,7 @@ struct Hammer<'a> {
     rise: f64,
     /// Velocity that is stopped [m/s].
     velocity: f64,
-    /// Whether the model has compressed fluid.
+    /// True if the model has compressed fluid.
     compressed: bool,
 }
 

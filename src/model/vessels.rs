@@ -47,7 +47,7 @@ impl Wet {
         }
     }
 
-    /// Whether fluid in a tube swings against a vessel at its end so fast that Poiseuille's profile does not follow: `Wo⁴/1152` above
+    /// True if fluid in a tube swings against a vessel at its end so fast that Poiseuille's profile does not follow: `Wo⁴/1152` above
     /// [`MEMORY`], `Wo² = r²/(ν √(I C))`.
     pub(super) fn swings_fast(&self) -> bool {
         let fast = |one: &Accumulator| {

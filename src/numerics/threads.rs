@@ -60,7 +60,7 @@ impl<T> Begun<'_, T> {
     }
 }
 
-/// Whether the system grants a thread now: for what begins one by itself.
+/// True if the system grants a thread now: for what begins one by itself.
 pub fn granted() -> bool {
     Builder::new().spawn(|| ()).is_ok_and(|thread| thread.join().is_ok())
 }

@@ -120,7 +120,7 @@ impl Control {
         }
     }
 
-    /// Whether a step of size `h` [s] is larger than the last one accepted.
+    /// True if a step of size `h` [s] is larger than the last one accepted.
     fn grown(&self, h: f64) -> bool {
         self.last.is_some_and(|(last, _)| h > GROWN * last)
     }

@@ -6,7 +6,7 @@ use super::equations::{Equations, StageError};
 use super::matrix::Matrix;
 use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
-use super::tableau::Tableau;
+use super::tableau::{LEFTOVER, Tableau};
 use crate::dae::{Corotation, Dae};
 use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
 use crate::numerics::kernels;
@@ -23,8 +23,9 @@ pub struct OneStep<D: Dae> {
     pub(super) options: OneStepOptions,
     pub(super) tableau: Tableau,
     absolute: Vec<f64>,
-    /// Error that Newton's iteration may leave, as a fraction of the tolerance.
-    pub(super) newton_tolerance: f64,
+    /// Error that Newton's iteration may leave, as a fraction of the tolerance: at which it ends, and which it accepts where it contracts too
+    /// slowly for that.
+    pub(super) newton_tolerance: [f64; 2],
     /// 1 for differential, 0 for algebraic unknowns.
     pub(super) mask: Vec<f64>,
     /// Positions of algebraic unknowns.
@@ -62,9 +63,10 @@ impl<D: Dae> OneStep<D> {
             mask: differential.iter().map(|&d| f64::from(u8::from(d))).collect(),
             algebraic: (0..n).filter(|&i| !differential[i]).collect(),
             absolute: options.absolute.each(n),
-            newton_tolerance: options
-                .newton_tolerance
-                .unwrap_or_else(|| tableau.newton_tolerance(options.relative)),
+            newton_tolerance: options.newton_tolerance.map_or_else(
+                || [tableau.newton_tolerance(options.relative), LEFTOVER],
+                |one| [one; 2],
+            ),
             matrix: Matrix::new(lu, Corotation::new(&dae)),
             now: Stages::new(tableau.stages, n),
             last: Stages::new(tableau.stages, n),

@@ -279,8 +279,9 @@ impl<D: Dae> OneStep<D> {
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
-        let tolerance = self.newton_tolerance;
+        let [tolerance, accepted] = self.newton_tolerance;
         let mut before: Option<f64> = None;
+        let mut enough = false;
         for iteration in 0..ITERATIONS {
             self.newton_iterations += 1;
             self.equations
@@ -296,18 +297,24 @@ impl<D: Dae> OneStep<D> {
             if let Some(before) = before {
                 let rate = size / before;
                 // at round-off nothing contracts any further
-                let settled = size <= 0.1 * tolerance;
-                self.matrix.measured(rate, settled);
-                if settled {
+                self.matrix.measured(rate, size <= 0.1 * accepted);
+                if size <= 0.1 * tolerance {
                     return Ok(());
                 }
                 let left = (ITERATIONS - 1 - iteration) as i32;
-                if rate > DIVERGING || rate.powi(left) * size * rate / (1.0 - rate) > tolerance {
-                    return Err(StageError::Newton);
+                if rate > DIVERGING || rate.powi(left) * size * rate / (1.0 - rate) > accepted {
+                    // where it contracts no further, the leftover accepted before suffices
+                    return if enough && rate < 1.0 {
+                        Ok(())
+                    } else {
+                        Err(StageError::Newton)
+                    };
                 }
             }
             let rate = self.matrix.rate_of(before.is_some());
-            if rate / (1.0 - rate) * size <= tolerance {
+            let left = rate / (1.0 - rate) * size;
+            enough = left <= accepted;
+            if left <= tolerance {
                 if before.is_none() {
                     self.matrix.trust_less();
                 }
@@ -315,7 +322,7 @@ impl<D: Dae> OneStep<D> {
             }
             before = Some(size);
         }
-        Err(StageError::Newton)
+        if enough { Ok(()) } else { Err(StageError::Newton) }
     }
 
     /// Values and rates of stage `i` from its own unknowns.

@@ -52,7 +52,7 @@ impl fmt::Display for Method {
 }
 
 /// Largest fraction of the tolerance that Newton's iteration may leave.
-const LEFTOVER: f64 = 0.02;
+pub(super) const LEFTOVER: f64 = 0.02;
 /// Relative tolerance from which on this fraction suffices.
 const LEFTOVER_TOLERANCE: f64 = 1e-4;
 /// Least leftover that is asked for, relative to the unknowns: rounding errors of a stage stay below it.

@@ -117,7 +117,7 @@ impl Kind {
         [self.sign()].into_iter().chain(own.iter().copied()).collect()
     }
 
-    /// Whether a command writes a file of this name.
+    /// True if a command writes a file of this name.
     pub fn owns(name: &str) -> bool {
         Self::ALL.into_iter().any(|kind| kind.files().contains(&name))
     }

@@ -82,7 +82,7 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     }
 }
 
-/// Whether everything that acts comes to rest in the long run.
+/// True if everything that acts comes to rest in the long run.
 pub fn comes_to_rest(model: &Model) -> bool {
     let mut rests = true;
     model.each_signal(|signal| rests &= settled(signal).is_constant());

@@ -39,7 +39,7 @@ impl PortFigures {
         }
     }
 
-    /// Whether there is neither a port nor an accumulator.
+    /// True if there is neither a port nor an accumulator.
     pub fn is_empty(&self) -> bool {
         self.names.is_empty()
     }

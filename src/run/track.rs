@@ -13,12 +13,12 @@ const WORTH: f64 = 1e-3;
 pub struct Track {
     last: f64,
     max_abs: f64,
-    /// Whether the value was negative there.
+    /// True if the value was negative there.
     negative: bool,
     /// When that was first reached [s].
     max_abs_at: f64,
     window_max_abs: f64,
-    /// Whether the value was negative there.
+    /// True if the value was negative there.
     #[serde(default)]
     window_negative: bool,
     /// When that was first reached [s]; asked for within its step alone.

@@ -14,7 +14,7 @@ use crate::error::numbers::quantity;
 pub struct Unphysical {
     /// Pressure against ambient below which the liquid boils [Pa]; none of gas.
     boils_below: Option<f64>,
-    /// Whether that is the vapor pressure, else it is a vacuum.
+    /// True if that is the vapor pressure, else it is a vacuum.
     known: bool,
     /// Bladders in a row.
     per_row: usize,
@@ -31,7 +31,7 @@ pub struct Met {
     boiled: Option<f64>,
     /// Its lowest pressure [Pa], and when.
     lowest: [f64; 2],
-    /// Whether that is in a bladder, and which bladder, junction or port.
+    /// True if that is in a bladder, and which bladder, junction or port.
     place: (bool, usize),
 }
 

@@ -63,7 +63,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// Whether there is none.
+    /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.states.is_empty()
     }
@@ -113,7 +113,7 @@ impl Watch {
         self.next = STATES.partition_point(|part| part * self.end <= t);
     }
 
-    /// Whether a state is due at a time [s].
+    /// True if a state is due at a time [s].
     pub fn due(&self, t: f64) -> bool {
         STATES.get(self.next).is_some_and(|part| t >= part * self.end)
     }
@@ -274,12 +274,12 @@ fn share(k: usize) -> f64 {
     to - from
 }
 
-/// Whether the published momentum balance acts.
+/// True if the published momentum balance acts.
 fn published(model: &Model) -> bool {
     model.published()
 }
 
-/// Whether areas and strains share one potential.
+/// True if areas and strains share one potential.
 fn reciprocal(model: &Model) -> bool {
     let shared =
         |wet: &crate::model::Wet| matches!(wet.coupling, Coupling::Reciprocal { .. }) && wet.strains == wet.area;

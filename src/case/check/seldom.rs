@@ -147,7 +147,7 @@ fn pressures(case: &Case, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// Whether a pressure is that of the atmosphere and something round more, or the first of a recording at ambient pressure.
+/// True if a pressure is that of the atmosphere and something round more, or the first of a recording at ambient pressure.
 fn is_absolute(pointer: &str, value: f64) -> bool {
     let above = value - ATMOSPHERE[0];
     let round = |x: f64| (x / ROUND_PRESSURE - (x / ROUND_PRESSURE).round()).abs() < 1e-9;

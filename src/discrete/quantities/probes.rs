@@ -78,7 +78,7 @@ pub fn key(name: &str, unit: &str) -> String {
     }
 }
 
-/// Whether a column is a stress of the solid, by its name: its unit is that of pressures of the fluid, its size is not.
+/// True if a column is a stress of the solid, by its name: its unit is that of pressures of the fluid, its size is not.
 pub fn is_stress(name: &str) -> bool {
     name.ends_with("_stress_upper") || name.ends_with("_stress_lower")
 }

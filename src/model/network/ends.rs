@@ -11,7 +11,7 @@ pub struct TubeEnd {
     pub in_tubes: f64,
     /// Largest inertance of these tubes [kg/m^4]; 0 without one.
     pub inertance: f64,
-    /// Whether a check valve may shut one of them.
+    /// True if a check valve may shut one of them.
     pub check_valve: bool,
     /// The law of the vessel; none of a group of junctions.
     pub vessel: Option<AccumulatorLaw>,

@@ -14,7 +14,7 @@ impl LabelRoom {
         Self { size, taken: vec![] }
     }
 
-    /// Whether there is room for a label at a place, which then is taken.
+    /// True if there is room for a label at a place, which then is taken.
     pub fn claim(&mut self, at: (f64, f64)) -> bool {
         let apart = |other: &(f64, f64)| (at.0 - other.0).abs() > self.size.0 || (at.1 - other.1).abs() > self.size.1;
         let free = self.taken.iter().all(apart);

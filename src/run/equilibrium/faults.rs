@@ -9,7 +9,7 @@ use crate::integrate::halt::{self, INTERRUPTED};
 use crate::sundials::KinsolError;
 
 impl Follower<'_> {
-    /// Whether the load moves away from the one that is asked for on the way to a state.
+    /// True if the load moves away from the one that is asked for on the way to a state.
     pub(super) fn turns(&self, now: &State) -> bool {
         let away = |state: &State| (self.options.share - state.share).abs();
         let before = self.path.states.last().filter(|before| before.stage == now.stage);

@@ -19,7 +19,7 @@ const MOST: usize = 600;
 const SHARES: [f64; 3] = [1.0 / 16.0, 1.0 / 128.0, 1.0 / 1024.0];
 
 impl Follower<'_> {
-    /// Whether anything can be touched.
+    /// True if anything can be touched.
     fn has_walls(&mut self) -> bool {
         !self.solver.dae_mut().statics().system().touching.is_empty()
     }

@@ -358,7 +358,7 @@ impl Estimator {
         }
     }
 
-    /// Whether a quantity of a size is more than round-off, of what the case does and beside others: twice the tolerance of the largest of its unit
+    /// True if a quantity of a size is more than round-off, of what the case does and beside others: twice the tolerance of the largest of its unit
     /// is nothing that the run has to resolve.
     fn counts(&self, name: Interest, size: f64, quantities: &BTreeMap<String, Quantity>) -> bool {
         let (unit, own) = self.floors.weighed(name.name(), size);

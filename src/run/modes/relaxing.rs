@@ -14,7 +14,7 @@ use crate::spectral::{self, Options, Pencil};
 /// Pairs looked at around the place where one is expected: that, then more.
 const AROUND: [usize; 2] = [1, 4];
 
-/// Whether there are branches of a solid that relaxes, or of friction with a memory that is not asked for by name.
+/// True if there are branches of a solid that relaxes, or of friction with a memory that is not asked for by name.
 pub fn relaxes(about: &Linearised) -> bool {
     let system = about.system();
     let asked = system.model.effects.decision(Effect::UnsteadyFriction).cause == Cause::Asked;

@@ -50,7 +50,7 @@ pub struct LoadPrior {
 struct Kernel {
     covariance: DMatrix<f64>,
     log_weight: f64,
-    /// Whether it is alike everywhere.
+    /// True if it is alike everywhere.
     stationary: bool,
 }
 
@@ -63,7 +63,7 @@ pub struct Interval {
     pub deviation: f64,
     /// Half of the symmetric interval of 95 %.
     pub half: f64,
-    /// Whether the measurements determine it, rather than what is assumed before.
+    /// True if the measurements determine it, rather than what is assumed before.
     pub determined: bool,
 }
 

@@ -11,7 +11,7 @@ pub(super) struct Circuit {
     pub least: f64,
     /// Largest one [m^3/Pa].
     pub most: f64,
-    /// Whether its bladders do not bound its flows: vessels, pumps or ports of different pressures drive them too.
+    /// True if its bladders do not bound its flows: vessels, pumps or ports of different pressures drive them too.
     pub through: bool,
 }
 
@@ -25,7 +25,7 @@ impl Circuit {
 }
 
 impl Scene<'_> {
-    /// Whether the run begins with pressure in bladders or accumulators that no equilibrium balances; of accumulators, only of those
+    /// True if the run begins with pressure in bladders or accumulators that no equilibrium balances; of accumulators, only of those
     /// joined to bladders where that is asked.
     pub(super) fn begins_pressed(&self, bladders: bool) -> bool {
         if self.case.start.equilibrium.is_some() {
