@@ -279,7 +279,7 @@ impl<D: Dae> OneStep<D> {
         let state = (t, self.now.y[i].as_slice(), self.work.yp.as_slice());
         self.matrix
             .prepare(&mut self.equations, state, cj, self.options.matrix_band)?;
-        let [tolerance, accepted] = self.newton_tolerance;
+        let [mut tolerance, accepted] = self.newton_tolerance;
         let mut before: Option<f64> = None;
         let mut enough = false;
         for iteration in 0..ITERATIONS {
@@ -288,6 +288,10 @@ impl<D: Dae> OneStep<D> {
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
             if iteration == 0 {
                 self.matrix.corotation.look(&self.equations.dae);
+                if self.matrix.corotation.turned() {
+                    // a matrix that has turned contracts too slowly for more
+                    tolerance = accepted;
+                }
             }
             let factor = -self.matrix.solve(&mut self.work.r, cj);
             let size = self.correct(i, [factor, cj]);
