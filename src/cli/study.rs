@@ -9,6 +9,7 @@ use super::line::Shown;
 use super::{interrupt, journal, size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::output::kind::Kind;
 use crate::output::numbers::{counted, duration};
@@ -36,8 +37,11 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     journal::begin(&evaluations, &folder, ("study", case, &format!("{plan:?}")))?;
     let flag = asked.wall.flag();
     let progress = Progress::new(asked.quiet);
-    let found = run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {
-        progress.show(event);
+    // a run that has begun answers late: the program ends in time without it, and goes on from its journal
+    let found = halt::heard().during(|| {
+        run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {
+            progress.show(event);
+        })
     });
     drop(progress);
     let stopped = interrupt::raised(&flag);

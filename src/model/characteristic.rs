@@ -234,7 +234,7 @@ fn axial_wave_number(model: &Model) -> f64 {
 }
 
 /// Highest frequency among the sines of the case, wherever they act and also as a term or factor [Hz].
-fn forcing_frequency(case: &Case) -> Option<f64> {
+pub fn forcing_frequency(case: &Case) -> Option<f64> {
     let mut highest: Option<f64> = None;
     let mut hear = |s: &Signal| {
         if let Some(f) = s.highest_tone_hz() {

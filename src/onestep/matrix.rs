@@ -18,6 +18,8 @@ const SAME_SIZE: f64 = 1e-6;
 /// The factors and what is known of them.
 pub(super) struct Matrix {
     pub lu: Lu,
+    /// True if the beam has turned since a matrix was made, now or before.
+    pub has_turned: bool,
     /// How the beam has turned since.
     pub corotation: Corotation,
     values: Vec<f64>,
@@ -53,6 +55,7 @@ impl Matrix {
             solves: 0,
             wall: Duration::ZERO,
             singular: None,
+            has_turned: false,
         }
     }
 
@@ -62,6 +65,7 @@ impl Matrix {
         (self.cj, self.rate, self.stale) = (0.0, UNKNOWN_RATE, true);
         (self.fresh, self.slow, self.attempted) = (false, false, 0.0);
         self.singular = None;
+        self.has_turned = false;
     }
 
     /// What was measured of the factors no longer holds.

@@ -288,8 +288,9 @@ impl<D: Dae> OneStep<D> {
                 .residual(t, &self.now.y[i], &self.work.yp, &mut self.work.r)?;
             if iteration == 0 {
                 self.matrix.corotation.look(&self.equations.dae);
-                if self.matrix.corotation.turned() {
-                    // a matrix that has turned contracts too slowly for more
+                self.matrix.has_turned |= self.matrix.corotation.turned();
+                if self.matrix.has_turned {
+                    // matrices that turn contract too slowly for more
                     tolerance = accepted;
                 }
             }

@@ -12,10 +12,10 @@ pub fn memory() -> Option<f64> {
     Some(limits.into_iter().flatten().fold(available, f64::min))
 }
 
-/// Bytes that a user can still write where a path is or will be.
+/// Bytes that a user can still write where a path is or will be. None where nothing is stored, as in `/proc`.
 pub fn free(path: &Path) -> Option<f64> {
     let there = path.ancestors().find(|part| part.exists()).unwrap_or(Path::new("."));
-    let told = rustix::fs::statvfs(there).ok()?;
+    let told = rustix::fs::statvfs(there).ok().filter(|told| told.f_blocks > 0)?;
     Some(told.f_bavail as f64 * told.f_frsize as f64)
 }
 

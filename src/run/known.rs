@@ -45,7 +45,8 @@ pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
             .iter()
             .any(|code| warning.starts_with(code.id()))
     };
-    all.retain(|warning| !of_motion(warning) && !late.contains(warning));
+    let of_change = |warning: &String| warning.contains(resolution::OF_CHANGE);
+    all.retain(|warning| !of_motion(warning) && !late.contains(warning) && !of_change(warning));
     all
 }
 

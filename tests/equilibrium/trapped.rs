@@ -90,7 +90,7 @@ fn sensed(case: &Case, record: &Memory) {
     };
     let asked = Asked {
         loads: vec![Basis::TipForce],
-        noise_pa: Some(5.0),
+        noise_pa: Some(2.0),
         at_s: 6.0,
         ..Asked::default()
     };

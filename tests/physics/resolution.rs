@@ -226,16 +226,16 @@ fn energy_that_is_wrong_at_the_start_is_told() {
 /// that is little.
 #[test]
 fn pressures_that_fall_along_a_cell_are_told() {
-    let case = |bladders: &str, cells: usize| {
+    let case = |bladders: &str, cells: usize, end: f64| {
         let text = format!(
             r#"{{"name": "through", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": 1.0}},
             "beam": {{"damping": {{"bending_time_s": 0.002, "axial_time_s": 0.002}}}},
             "network": {{"chains": [{{"bladders": {bladders}, "ends": [{{"pressure_pa": 5000}}, {{"pressure_pa": 0}}]}}]}},
-            "ends": {{"root": "clamped", "tip": "free"}}, "mesh": {{"cells_per_bladder": {cells}}}, "time": {{"end_s": 0.5}}}}"#
+            "ends": {{"root": "clamped", "tip": "free"}}, "mesh": {{"cells_per_bladder": {cells}}}, "time": {{"end_s": {end}}}}}"#
         );
         written::<&str>(&text, &[])
     };
-    let two = case("[1,2]", 2);
+    let two = case("[1,2]", 2, 0.5);
     let found = resolution::unresolved(&two, &System::new(&two).unwrap());
     let largest = run(&two).summary.quantities["max_pressure_pa"].max_abs.unwrap();
     println!("largest pressure {largest:.0} Pa of 5000: {found:?}");
@@ -244,8 +244,9 @@ fn pressures_that_fall_along_a_cell_are_told() {
     assert!(off > resolution::LIMIT && found.len() == 1);
     assert!(found[0].setting == "/mesh/cells_per_bladder" && (found[0].left_out / off - 1.0).abs() < 0.05);
     for fine in [
-        case("[1,2]", found[0].wanted.unwrap()),
-        case("[1,2,3,4,5,6,7,8,9,10]", 2),
+        case("[1,2]", found[0].wanted.unwrap(), 0.5),
+        // ten take 20 s to fill, until when the largest pressure is off by as much
+        case("[1,2,3,4,5,6,7,8,9,10]", 2, 50.0),
     ] {
         assert!(resolution::unresolved(&fine, &System::new(&fine).unwrap()).is_empty());
     }

@@ -373,7 +373,9 @@ fn a_mass_that_strikes_a_stop_says_what_its_steps_do() {
     let estimate = |s: &Summary| s.estimate.as_ref().unwrap().quantities["tip_u1_m"].time.unwrap();
     for rtol in [1e-4, 1e-5] {
         let usual = bouncing(rtol);
-        let (truth, time) = (apart("tip_u1_m", &usual, &tight), estimate(&usual));
+        // errors of strikes cancel by chance: the largest at tolerances nearby
+        let nearby = [0.8, 1.0, 1.25].map(|factor| apart("tip_u1_m", &bouncing(factor * rtol), &tight));
+        let (truth, time) = (nearby.into_iter().fold(0.0, f64::max), estimate(&usual));
         println!("rtol {rtol:e}: true {truth:.1e}, estimated {time:.1e}");
         assert!(
             truth > 0.1 && time > 0.5 * truth && time < 10.0 * truth,

@@ -21,6 +21,7 @@ use crate::model::{Load, Model, Storage};
 
 use super::{System, shapes};
 use begun::Begun;
+pub use ports::OF_CHANGE;
 use statics::Shape;
 
 /// Share of a shape's effect beyond which leaving it out is told.

@@ -3,17 +3,23 @@
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::case::schema::{BladderEnd, Case, Effect};
 use crate::functions::signals::{Clock, Signal};
-use crate::model::network::{Feed, Node, PressurePort, Source};
+use crate::model::network::{Feed, LinkKind, Node, PressurePort, Source};
 use crate::model::{Model, Wet, characteristic};
 
+/// What a mesh leaves out of pressures that change, and of no state at rest.
+pub const OF_CHANGE: &str = "pressure along the bladder behind it";
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
-/// A jump of pressure makes the beam ring along; the overshoot of the pressure has this multiple of the first frequency, measured.
+/// A jump makes the beam ring along; the overshoot of the pressure has this multiple of the first frequency, measured.
 const RUNG: f64 = 3.0;
+/// A change is like a jump where it takes less than this angle of the first vibration along.
+const SUDDEN: f64 = 1.5;
+/// Length of a bladder over the depth of that ringing from which on the fluid damps it.
+const DAMPED: f64 = 2.0;
 /// What comes back to less than this part of its largest value is a pulse.
 const BACK: f64 = 0.5;
 
@@ -24,6 +30,8 @@ pub struct Port {
     depths: f64,
     /// Of a flow through to another port, what its pressure falls by along the bladder behind this one, over the largest pressure.
     falls: f64,
+    /// Of a pressure that changes and stays, half a bladder over the depth that the change gets into it by the end of the run.
+    lag: f64,
 }
 
 impl Port {
@@ -37,13 +45,14 @@ impl Port {
     pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
         let swings = (LEFT_OUT * self.depths / cells as f64).min(1.0);
         let flows = 0.5 * self.falls / cells as f64;
+        let swings = swings.max((self.lag / cells as f64).min(1.0));
         if flows > swings {
             (
                 flows,
                 "the largest pressure of a flow through, in the middle of the first cell,",
             )
         } else {
-            (swings, "pressure along the bladder behind it")
+            (swings, OF_CHANGE)
         }
     }
 }
@@ -61,17 +70,18 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     let end = case.time.end_s;
     let network = &wet.network;
     let ringing = model.effects.has(Effect::SolidInertia);
-    let ringing = ringing.then(|| RUNG * characteristic::first_axial_frequency(model));
-    let depths = |signal: &Signal| {
-        let rung = ringing.filter(|_| signal.first_jump(end).is_some());
-        fastest(signal, end)
-            .into_iter()
-            .chain(rung)
-            .reduce(f64::max)
-            .map_or(0.0, |omega| {
-                let depth = (network.bladder_mobility / (wet.compliance() * omega)).sqrt();
-                wet.bladder_length / depth
-            })
+    let ringing = ringing.then(|| characteristic::first_axial_frequency(model));
+    let in_depths = |omega: f64| wet.bladder_length * (wet.compliance() * omega / network.bladder_mobility).sqrt();
+    let depths = |signal: &Signal, begins: bool| {
+        let sudden = |first: &f64| {
+            let time = signal.shortest_time_s(end).filter(|time| time * first < SUDDEN);
+            begins || time.is_some() || signal.first_jump(end).is_some()
+        };
+        let rung = ringing.filter(sudden).map(|first| RUNG * first);
+        // fluid that gets in no further than that does not make the beam ring
+        let rung = rung.filter(|omega| in_depths(*omega) < DAMPED);
+        let tones = fastest(signal, end).into_iter().chain(rung);
+        tones.reduce(f64::max).map_or(0.0, in_depths)
     };
     let falls = falls(end, wet);
     let pressures = network.ports.iter().map(|port| (&port.name, &port.pressure));
@@ -80,32 +90,96 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
         .iter()
         .map(|source| (&source.name, source.feed.signal()));
     let ports = pressures.chain(flows).zip(falls);
-    let ports = ports.map(|((name, signal), falls)| Port {
-        pointer: format!("the port \"{name}\""),
-        depths: depths(signal),
-        falls,
-    });
+    let lags = lags(case, wet).into_iter().chain(std::iter::repeat(0.0));
+    let ports = ports
+        .zip(lags)
+        .enumerate()
+        .map(|(k, (((name, signal), falls), lag))| Port {
+            pointer: format!("the port \"{name}\""),
+            depths: depths(signal, k < network.ports.len() && begins_with_jump(case, signal)),
+            falls,
+            lag,
+        });
     let tubes = case.network.iter().flat_map(|network| network.tubes.iter().enumerate());
     let at_bladders = tubes.filter(|(_, tube)| tube.from.bladder.or(tube.to.bladder).is_some());
     let pumps = at_bladders.filter_map(|(k, tube)| {
         Some(Port {
             pointer: format!("/network/tubes/{k}/pump"),
-            depths: depths(&tube.pump.as_ref()?.pressure_pa),
+            depths: depths(&tube.pump.as_ref()?.pressure_pa, false),
             falls: 0.0,
+            lag: 0.0,
         })
     });
-    ports.chain(pumps).collect()
+    let tone = characteristic::forcing_frequency(case).map(|f| TAU * f);
+    let turbines = network.turbines.iter().enumerate().filter_map(|(k, turbine)| {
+        let resistance = 1.0 / turbine.conductance;
+        let bladder = wet.bladder_length / network.bladder_mobility;
+        let links = network.links.iter().filter(|link| link.kind == LinkKind::Turbine(k));
+        let mut ends = links.flat_map(|link| [link.from, link.to]);
+        let depths = ends.any(is_cell).then(|| tone.map_or(0.0, in_depths))?;
+        Some(Port {
+            pointer: format!("the turbine \"{}\"", turbine.name),
+            // little of a pressure falls in a bladder before a turbine of much more resistance; a half is measured
+            depths: 0.5 * depths * bladder / (bladder + resistance),
+            falls: 0.0,
+            lag: 0.0,
+        })
+    });
+    ports.chain(pumps).chain(turbines).collect()
+}
+
+fn is_cell(node: Node) -> bool {
+    matches!(node, Node::Cell { .. })
+}
+
+/// True if a port has another pressure at the start than the fluid behind it.
+fn begins_with_jump(case: &Case, signal: &Signal) -> bool {
+    let within = 0.5 * signal.smooth_intervals(case.time.end_s)[0].1;
+    let first = signal.jet(Clock { t: 0.0, within }).value;
+    case.start.pressures.is_empty() && first != case.held_at_start(signal)
+}
+
+/// Of every port of pressure at a bladder, half the bladder's length over the depth to which its change has come by the end of the run:
+///
+/// ```text
+/// p(x, t)/p_port = erfc(x/(4 D t)^(1/2)) = 1 - x/(π D t)^(1/2) + ...       D = q1b/(μ a_p)
+/// ```
+///
+/// with t since nine tenths of the change were reached, a quarter of the time before at least.
+fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
+    const SAMPLES: usize = 200;
+    const REACHED: f64 = 0.9;
+    let (end, network) = (case.time.end_s, &wet.network);
+    let diffusivity = network.bladder_mobility / wet.compliance();
+    let lag = |(k, port): (usize, &PressurePort)| {
+        let signal = &port.pressure;
+        let at_bladder = network.links.iter().any(|link| {
+            let ends = [link.from, link.to];
+            ends.contains(&Node::Port(k)) && ends.into_iter().any(is_cell) && link.kind == LinkKind::Opening
+        });
+        let start = match case.start.pressures.is_empty() {
+            true => case.held_at_start(signal),
+            false => signal.value(0.0),
+        };
+        let change = (signal.value(end) - start).abs();
+        let largest = signal.largest(end).value;
+        if !at_bladder || change <= BACK * largest || change == 0.0 {
+            return 0.0;
+        }
+        let times = (0..=SAMPLES).map(|i| end * i as f64 / SAMPLES as f64);
+        let mut late = times.skip_while(|t| (signal.value(*t) - start).abs() < REACHED * change);
+        let reached = late.next().unwrap_or(end);
+        let time = (end - reached).max(0.25 * reached);
+        0.5 * wet.bladder_length / (PI * diffusivity * time).sqrt()
+    };
+    network.ports.iter().enumerate().map(lag).collect()
 }
 
 /// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is
 /// thinner than any cell.
 pub fn first_jump(case: &Case, wet: &Wet) -> Option<(String, f64)> {
     let end = case.time.end_s;
-    let begins = |signal: &Signal| {
-        let within = 0.5 * signal.smooth_intervals(end)[0].1;
-        let first = signal.jet(Clock { t: 0.0, within }).value;
-        case.start.pressures.is_empty() && first != case.held_at_start(signal)
-    };
+    let begins = |signal: &Signal| begins_with_jump(case, signal);
     wet.network.ports.iter().find_map(|port| {
         let later = || port.pressure.first_jump(end).map(|[t, ..]| t);
         let t = if begins(&port.pressure) { 0.0 } else { later()? };

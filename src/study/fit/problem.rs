@@ -387,13 +387,8 @@ fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Optio
         let all = table.numbers(beside, scale)?;
         let wrong = |row: &usize| one.values[*row].is_some() && all[*row].is_none_or(|sigma| sigma <= 0.0);
         let faults = (0..table.len()).filter(wrong);
-        let faults = faults.map(|row| {
-            table.fault(
-                row,
-                beside,
-                "a standard deviation above 0 is wanted where something was measured",
-            )
-        });
+        let faults =
+            faults.map(|row| table.fault(row, beside, "a standard deviation above 0 is wanted beside a value"));
         table.sound(faults.collect())?;
         Ok(Some(all.into_iter().map(|sigma| sigma.unwrap_or(f64::NAN)).collect()))
     };

@@ -70,6 +70,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         "N" => (model.section.axial_stiffness * STRAIN).min(NOTHING * model.scales.force),
         "N m" => (model.section.bending_stiffness / length * STRAIN).min(NOTHING * model.scales.moment),
         "J" => model.section.axial_stiffness * length * STRAIN * STRAIN,
+        "m^3" => floors.volume,
         "m^3/s" => conductance * even,
         // of probes: strain that is round-off beside what moves
         "1" => floors.displacement.max(STRAIN * largest("m")) / length,
