@@ -12,8 +12,6 @@ use crate::model::network::Feed;
 
 /// Strain below which axial motion is not resolved further.
 const LEAST_STRAIN: f64 = 1e-6;
-/// Strain of the least axial wave: smaller than [`LEAST_STRAIN`], since waves along draw energy from bending.
-const LEAST_WAVE: f64 = 1e-7;
 
 /// Sizes to which tolerances are relative; SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -251,7 +249,7 @@ impl Scales {
         let axial = (force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(LEAST_STRAIN * l, 10.0 * l);
         let frequency = first_mode.max(d.frequency);
         // The least axial motion counts as a wave: its velocity has the energy of its stretch, up to that of bending.
-        let least_axial_rate = (LEAST_WAVE * 0.5 * PI * (ea / m).sqrt()).min(transverse * frequency);
+        let least_axial_rate = (LEAST_STRAIN * 0.5 * PI * (ea / m).sqrt()).min(transverse * frequency);
         Self {
             transverse,
             axial,

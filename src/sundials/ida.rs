@@ -49,7 +49,7 @@ impl Drop for Memory {
 pub struct Ida<D: Dae> {
     pub(super) memory: Memory,
     pub(super) solver: LinearSolver,
-    y: Vector,
+    pub(super) y: Vector,
     yp: Vector,
     pub(super) scratch: Vector,
     pub(super) quadratures: Option<Vector>,

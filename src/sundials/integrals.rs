@@ -8,7 +8,9 @@
 //! ∫ g dt over a step = h g_1 - h² s/2        s = minmod(slope of g in this step, slope in the step before)
 //! ```
 //!
-//! It is exact for linear powers, and zero where a power jumps.
+//! It is exact for linear powers, and zero where a power jumps. Where the state is not linear, rates are means over the step and not those at
+//! its end: the correction fades out where the local error of the state is more than what Newton's iteration leaves,
+//! since the tolerance of the state then limits the step.
 
 use std::ffi::{c_int, c_void};
 use std::ops::Range;
@@ -37,6 +39,38 @@ pub(super) unsafe extern "C" fn integrands<D: Dae>(
     code
 }
 
+/// A limited slope: none, that of the step, or that of the step before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Limit {
+    None,
+    Now,
+    Before,
+}
+
+impl Limit {
+    /// `minmod`: the smaller of two slopes of one sign.
+    fn minmod(now: f64, before: f64) -> Self {
+        if now * before <= 0.0 {
+            Self::None
+        } else if now.abs() < before.abs() {
+            Self::Now
+        } else {
+            Self::Before
+        }
+    }
+
+    fn of(self, now: f64, before: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Now => now,
+            Self::Before => before,
+        }
+    }
+}
+
+/// Corrector of the state in its tolerances, root mean square: below the first the correction is full, above the second there is none.
+const LINEAR: [f64; 2] = [0.005, 0.02];
+
 /// Correction of the sums of powers in steps of order 1.
 pub(super) struct Correction {
     range: Range<usize>,
@@ -47,6 +81,8 @@ pub(super) struct Correction {
     /// Slopes of the integrands in the last step, and limited by the step before; the latter are zero above order 1.
     slope: Vec<f64>,
     limited: Vec<f64>,
+    /// The slope that each limited one is.
+    limits: Vec<Limit>,
     /// End and size of the last step [s].
     end: f64,
     size: f64,
@@ -57,6 +93,7 @@ impl Correction {
     pub fn new(range: Range<usize>) -> Self {
         let zeros = vec![0.0; range.len()];
         Self {
+            limits: vec![Limit::None; range.len()],
             range,
             total: zeros.clone(),
             integrand: None,
@@ -67,19 +104,23 @@ impl Correction {
         }
     }
 
-    /// Follows a step [s] of an order, with the integrands at its end.
-    fn follow(&mut self, end: f64, size: f64, order: u8, integrands: &[f64]) {
+    /// Follows a step [s], with the integrands at its end; `weight` of the correction, 0 above order 1. Sensitivities have the limits of what they belong to, so that they are
+    /// its derivatives.
+    fn follow(&mut self, [end, size]: [f64; 2], weight: f64, integrands: &[f64], limits: Option<&[Limit]>) {
         let finished = 0.5 * self.size * self.size;
         let now = &integrands[self.range.clone()];
         for (total, limited) in self.total.iter_mut().zip(&self.limited) {
             *total -= finished * limited;
         }
         self.limited.fill(0.0);
+        self.limits.fill(Limit::None);
         if let Some(before) = &mut self.integrand {
             for (k, (before, now)) in before.iter_mut().zip(now).enumerate() {
                 let slope = (now - *before) / size;
-                if order == 1 {
-                    self.limited[k] = minmod(slope, self.slope[k]);
+                if weight > 0.0 {
+                    let own = || Limit::minmod(slope, self.slope[k]);
+                    self.limits[k] = limits.map_or_else(own, |limits| limits[k]);
+                    self.limited[k] = weight * self.limits[k].of(slope, self.slope[k]);
                 }
                 (self.slope[k], *before) = (slope, *now);
             }
@@ -102,17 +143,6 @@ impl Correction {
     /// Starts at zero.
     pub fn restart(&mut self) {
         *self = Self::new(self.range.clone());
-    }
-}
-
-/// The smaller of two slopes of one sign, else zero.
-fn minmod(a: f64, b: f64) -> f64 {
-    if a * b <= 0.0 {
-        0.0
-    } else if a.abs() < b.abs() {
-        a
-    } else {
-        b
     }
 }
 
@@ -158,21 +188,46 @@ impl<D: Dae> Ida<D> {
 
     /// Corrects the sums of powers, and their sensitivities, after a step.
     pub(super) fn correct_integrals(&mut self, size: f64, order: u8) -> c_int {
+        if self.quadratures.is_none() {
+            return s::IDA_SUCCESS;
+        }
+        let (step, weight) = (
+            [self.time, size],
+            if order == 1 { self.weight_of_correction() } else { 0.0 },
+        );
         let Some(quadratures) = &self.quadratures else {
             return s::IDA_SUCCESS;
         };
         // SAFETY: IDA and the vector are alive.
         let mut flag = unsafe { s::IDAGetQuadDky(self.memory.0, self.time, 1, quadratures.raw()) };
-        self.correction.follow(self.time, size, order, quadratures.entries());
+        self.correction.follow(step, weight, quadratures.entries(), None);
         if let Some(carried) = &mut self.sensitivities {
             for (k, (vector, correction)) in carried.integrals.iter().zip(&mut carried.corrections).enumerate() {
                 // SAFETY: IDA and the vector are alive.
                 let next = unsafe { s::IDAGetQuadSensDky1(self.memory.0, self.time, 1, k as c_int, vector.raw()) };
                 flag = flag.min(next);
-                correction.follow(self.time, size, order, vector.entries());
+                correction.follow(step, weight, vector.entries(), Some(&self.correction.limits));
             }
         }
         flag
+    }
+
+    /// Weight of the correction after a step of order 1.
+    fn weight_of_correction(&mut self) -> f64 {
+        if self.local_errors().is_empty() {
+            return 0.0;
+        }
+        let (corrector, bridge) = (self.scratch.entries(), self.bridge.get());
+        let tolerances = self.y.entries().iter().zip(&bridge.absolute);
+        let tolerances = tolerances.map(|(y, absolute)| bridge.relative * y.abs() + absolute);
+        let squares: f64 = corrector
+            .iter()
+            .zip(tolerances)
+            .map(|(e, tolerance)| (e / tolerance).powi(2))
+            .sum();
+        let size = (squares / corrector.len().max(1) as f64).sqrt();
+        let [full, none] = LINEAR;
+        ((none - size) / (none - full)).clamp(0.0, 1.0)
     }
 
     /// Sets the integrals back to zero at a restart.
