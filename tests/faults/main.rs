@@ -98,7 +98,7 @@ fn the_work_of_a_steady_flow_is_right_at_every_tolerance() {
             .expect("work");
         near(rtol, work, 3.105_616e-8, 1e-5);
         let open = answer.summary["balances"]["energy_residual_relative"].as_f64();
-        assert!(open.expect("a balance") < 1e-6, "{open:?}");
+        assert!(open.expect("a balance") < 1e-5, "{open:?}");
         assert!(answer.summary["solver"]["steps"].as_u64() < Some(300));
         assert!(answer.warnings("W008").is_empty());
     }

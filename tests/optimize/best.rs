@@ -52,10 +52,11 @@ fn turbine(more: &[&str]) -> Value {
 }
 
 /// Goal: the turbine that takes most is found by exact derivatives of cycles in few designs, from another decade. Neighbours that would lose
-/// a thousandth by the curvature that is told lose that much.
+/// a thousandth by the curvature that is told lose that much. At rtol 1e-5 the power is known to 5e-5, which hides where slopes end.
 #[test]
 fn a_turbine_takes_most() {
-    let found = turbine(&[]);
+    const TIGHT: &str = "/solver/rtol=1e-6";
+    let found = turbine(&["--set", TIGHT]);
     assert!(found["found"] == true && found["derivatives"] == "exact", "{found}");
     assert!(number(&found["evaluations"]) <= 12.0, "{found}");
     let [value, power] = [&found["variables"][0]["value"], &found["value"]].map(number);
@@ -63,7 +64,7 @@ fn a_turbine_takes_most() {
     assert!(low < value && value < high);
     for (far, share) in [(0.5_f64, 0.0025), (-0.5, 0.0025)] {
         let beside = value * (high / low).powf(0.5 * far);
-        let lost = 1.0 - figure(&harvester(&[]), What::Periodic, &[(CONDUCTANCE, beside)], POWER) / power;
+        let lost = 1.0 - figure(&harvester(&[TIGHT]), What::Periodic, &[(CONDUCTANCE, beside)], POWER) / power;
         // the fourth order of the curve, and the energies' own error
         assert!((lost / share - 1.0).abs() < 0.3, "{beside}: {lost}");
     }
