@@ -112,6 +112,21 @@ fn killed_and_resumed(asked: &str, file: &str) {
     assert_eq!(result(&out, file), result(&whole, file), "{asked}");
 }
 
+/// A journal with a byte changed or lost: its bytes, the number of lines that are as they were, and the place of the change.
+pub fn changed(sound: &[u8], random: &mut Random) -> (Vec<u8>, usize, usize) {
+    let mut bytes = sound.to_vec();
+    let at = random.below(bytes.len() - 1);
+    match random.below(3) {
+        0 => bytes[at] ^= 1 << random.below(8),
+        1 => bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' },
+        _ => drop(bytes.remove(at)),
+    }
+    let sound: Vec<&[u8]> = sound.split(|b| *b == b'\n').collect();
+    let lines = bytes.split(|b| *b == b'\n').filter(|line| !line.is_empty());
+    let same = lines.filter(|line| sound.contains(line)).count();
+    (bytes, same, at)
+}
+
 #[test]
 fn a_killed_optimization_goes_on() {
     let asked = format!("optimize {SMALL} --vary {MODULUS} --minimize tip_u1_m.max_abs --method cma-es --jobs 1");
@@ -196,22 +211,11 @@ fn changed_evaluations_are_not_used() {
     assert_eq!(ask(&first), 0);
     let path = files::path(&folder);
     let sound = fs::read(&path).expect("rows");
-    let lines = |bytes: &[u8]| bytes.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect::<Vec<_>>();
     let mut random = Random(53);
     for trial in 0..60 {
-        let mut bytes = sound.clone();
-        let at = random.below(bytes.len() - 1);
-        match random.below(3) {
-            0 => bytes[at] ^= 1 << random.below(8),
-            1 => bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' },
-            _ => drop(bytes.remove(at)),
-        }
+        let (bytes, same, at) = changed(&sound, &mut random);
         fs::write(&path, &bytes).expect("written");
         let (again, damage) = begin(("optimize", &own, "--starts 1"));
-        let same = lines(&bytes)
-            .iter()
-            .filter(|line| !line.is_empty() && lines(&sound).contains(line))
-            .count();
         assert!(damage.is_some() && ask(&again) == same, "{trial}: byte {at}");
     }
     fs::write(&path, &sound).expect("written");

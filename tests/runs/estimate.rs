@@ -3,20 +3,9 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
-use slcbeam::run::dynamics;
-use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Status, Summary};
+use slcbeam::run::summary::Summary;
 
-fn shipped(name: &str, sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(Path::new(&format!("cases/{name}.json")), &sets).unwrap()
-}
-
-fn run(case: &Case) -> Summary {
-    let summary = dynamics::run(case, &mut Memory::default()).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    summary
-}
+use super::{run, shipped};
 
 /// A cantilever of 10 segments, a load across, loads and ends as given in JSON.
 fn cantilever(load: &str, segments: usize, end: f64, rtol: f64) -> Case {

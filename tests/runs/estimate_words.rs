@@ -3,15 +3,9 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
-use slcbeam::run::dynamics;
-use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Status, Summary};
+use slcbeam::run::summary::Summary;
 
-fn run(case: &Case) -> Summary {
-    let summary = dynamics::run(case, &mut Memory::default()).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    summary
-}
+use super::run;
 
 fn warned(summary: &Summary, code: &str) -> bool {
     summary.warnings.iter().any(|w| w.starts_with(code))

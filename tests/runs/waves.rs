@@ -2,21 +2,12 @@
 
 use std::path::Path;
 
-use slcbeam::case::{self, Case};
+use slcbeam::case;
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Status, Summary};
+use slcbeam::run::summary::Summary;
 
-fn shipped(name: &str, sets: &[&str]) -> Case {
-    let sets: Vec<String> = sets.iter().map(|s| s.to_string()).collect();
-    case::load(Path::new(&format!("cases/{name}.json")), &sets).unwrap()
-}
-
-fn run(case: &Case) -> Summary {
-    let summary = dynamics::run(case, &mut Memory::default()).unwrap().summary;
-    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
-    summary
-}
+use super::{run, shipped};
 
 fn warned(summary: &Summary) -> Vec<&String> {
     summary.warnings.iter().filter(|w| w.starts_with("W007")).collect()

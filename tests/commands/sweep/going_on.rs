@@ -10,6 +10,7 @@ use slcbeam::results::{self, sweep::Plan};
 use tempfile::TempDir;
 
 use crate::chance::Random;
+use crate::journals::changed;
 
 use super::common::{AREA, CASE, SHORT, command, json, path, rows, say, swept, table, well};
 
@@ -237,20 +238,9 @@ fn changed_rows_are_not_used() {
     let plan = results::read::<Plan>(&text).expect("a plan").result;
     let mut random = Random(52);
     for trial in 0..60 {
-        let mut bytes = sound.clone();
-        let at = random.below(bytes.len() - 1);
-        match random.below(3) {
-            0 => bytes[at] ^= 1 << random.below(8),
-            1 => bytes[at] = if bytes[at] == b'7' { b'8' } else { b'7' },
-            _ => drop(bytes.remove(at)),
-        }
+        let (bytes, same, at) = changed(&sound, &mut random);
         fs::write(&journal, &bytes).expect("written");
         let survey = Survey::of(&journal, &plan).expect("a survey");
-        let lines = |bytes: &[u8]| bytes.split(|b| *b == b'\n').map(<[u8]>::to_vec).collect::<Vec<_>>();
-        let same = lines(&bytes)
-            .iter()
-            .filter(|line| !line.is_empty() && lines(&sound).contains(line))
-            .count();
         assert!(
             survey.damage().is_some() && survey.count() == same,
             "{trial}: byte {at}"
