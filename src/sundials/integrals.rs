@@ -104,8 +104,8 @@ impl Correction {
         }
     }
 
-    /// Follows a step [s], with the integrands at its end; `weight` of the correction, 0 above order 1. Sensitivities have the limits of what they belong to, so that they are
-    /// its derivatives.
+    /// Follows a step [s], with the integrands at its end; `weight` of the correction, 0 above order 1. Sensitivities have the limits of what
+    /// they belong to, so that they are its derivatives.
     fn follow(&mut self, [end, size]: [f64; 2], weight: f64, integrands: &[f64], limits: Option<&[Limit]>) {
         let finished = 0.5 * self.size * self.size;
         let now = &integrands[self.range.clone()];
@@ -188,13 +188,8 @@ impl<D: Dae> Ida<D> {
 
     /// Corrects the sums of powers, and their sensitivities, after a step.
     pub(super) fn correct_integrals(&mut self, size: f64, order: u8) -> c_int {
-        if self.quadratures.is_none() {
-            return s::IDA_SUCCESS;
-        }
-        let (step, weight) = (
-            [self.time, size],
-            if order == 1 { self.weight_of_correction() } else { 0.0 },
-        );
+        let step = [self.time, size];
+        let weight = if order == 1 { self.weight_of_correction() } else { 0.0 };
         let Some(quadratures) = &self.quadratures else {
             return s::IDA_SUCCESS;
         };
@@ -214,7 +209,7 @@ impl<D: Dae> Ida<D> {
 
     /// Weight of the correction after a step of order 1.
     fn weight_of_correction(&mut self) -> f64 {
-        if self.local_errors().is_empty() {
+        if self.quadratures.is_none() || self.local_errors().is_empty() {
             return 0.0;
         }
         let (corrector, bridge) = (self.scratch.entries(), self.bridge.get());

@@ -110,26 +110,29 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
             lag: 0.0,
         })
     });
-    let tone = characteristic::forcing_frequency(case).map(|f| TAU * f);
-    let turbines = network.turbines.iter().enumerate().filter_map(|(k, turbine)| {
-        let resistance = 1.0 / turbine.conductance;
-        let bladder = wet.bladder_length / network.bladder_mobility;
-        let links = network.links.iter().filter(|link| link.kind == LinkKind::Turbine(k));
-        let mut ends = links.flat_map(|link| [link.from, link.to]);
-        let depths = ends.any(is_cell).then(|| tone.map_or(0.0, in_depths))?;
-        Some(Port {
-            pointer: format!("the turbine \"{}\"", turbine.name),
-            // little of a pressure falls in a bladder before a turbine of much more resistance; a half is measured
-            depths: 0.5 * depths * bladder / (bladder + resistance),
-            falls: 0.0,
-            lag: 0.0,
-        })
+    let tone = characteristic::forcing_frequency(case).map_or(0.0, |f| in_depths(TAU * f));
+    let bladder = wet.bladder_length / network.bladder_mobility;
+    let mut turbine_at_bladder = vec![false; network.turbines.len()];
+    for link in &network.links {
+        if let LinkKind::Turbine(k) = link.kind {
+            turbine_at_bladder[k] |= [link.from, link.to]
+                .iter()
+                .any(|node| matches!(node, Node::Cell { .. }));
+        }
+    }
+    let turbines = network
+        .turbines
+        .iter()
+        .zip(turbine_at_bladder)
+        .filter(|(_, at_bladder)| *at_bladder);
+    let turbines = turbines.map(|(turbine, _)| Port {
+        pointer: format!("the turbine \"{}\"", turbine.name),
+        // little of a pressure falls in a bladder before a turbine of much more resistance; a half is measured
+        depths: 0.5 * tone * bladder / (bladder + 1.0 / turbine.conductance),
+        falls: 0.0,
+        lag: 0.0,
     });
     ports.chain(pumps).chain(turbines).collect()
-}
-
-fn is_cell(node: Node) -> bool {
-    matches!(node, Node::Cell { .. })
 }
 
 /// True if a port has another pressure at the start than the fluid behind it.
@@ -151,19 +154,25 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
     const REACHED: f64 = 0.9;
     let (end, network) = (case.time.end_s, &wet.network);
     let diffusivity = network.bladder_mobility / wet.compliance();
-    let lag = |(k, port): (usize, &PressurePort)| {
+    let mut at_bladder = vec![false; network.ports.len()];
+    for link in network.links.iter().filter(|link| link.kind == LinkKind::Opening) {
+        match (link.from, link.to) {
+            (Node::Port(k), Node::Cell { .. }) | (Node::Cell { .. }, Node::Port(k)) => at_bladder[k] = true,
+            _ => {}
+        }
+    }
+    let lag = |(port, at_bladder): (&PressurePort, bool)| {
+        if !at_bladder {
+            return 0.0;
+        }
         let signal = &port.pressure;
-        let at_bladder = network.links.iter().any(|link| {
-            let ends = [link.from, link.to];
-            ends.contains(&Node::Port(k)) && ends.into_iter().any(is_cell) && link.kind == LinkKind::Opening
-        });
         let start = match case.start.pressures.is_empty() {
             true => case.held_at_start(signal),
             false => signal.value(0.0),
         };
         let change = (signal.value(end) - start).abs();
         let largest = signal.largest(end).value;
-        if !at_bladder || change <= BACK * largest || change == 0.0 {
+        if change <= BACK * largest || change == 0.0 {
             return 0.0;
         }
         let times = (0..=SAMPLES).map(|i| end * i as f64 / SAMPLES as f64);
@@ -172,17 +181,20 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
         let time = (end - reached).max(0.25 * reached);
         0.5 * wet.bladder_length / (PI * diffusivity * time).sqrt()
     };
-    network.ports.iter().enumerate().map(lag).collect()
+    network.ports.iter().zip(at_bladder).map(lag).collect()
 }
 
 /// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is
 /// thinner than any cell.
 pub fn first_jump(case: &Case, wet: &Wet) -> Option<(String, f64)> {
     let end = case.time.end_s;
-    let begins = |signal: &Signal| begins_with_jump(case, signal);
     wet.network.ports.iter().find_map(|port| {
         let later = || port.pressure.first_jump(end).map(|[t, ..]| t);
-        let t = if begins(&port.pressure) { 0.0 } else { later()? };
+        let t = if begins_with_jump(case, &port.pressure) {
+            0.0
+        } else {
+            later()?
+        };
         Some((port.name.clone(), t))
     })
 }
