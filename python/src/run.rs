@@ -16,7 +16,7 @@ use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::observe::Observer;
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
-use slcbeam::study::{refine, target};
+use slcbeam::study::{companion, refine, target};
 
 use crate::case::Case;
 use crate::errors::{broken, raised, told};
@@ -60,7 +60,7 @@ pub fn run<'py>(
     let (ended, stopped) = py.detach(|| {
         let watch = Watch::new(progress);
         let ended = match accuracy {
-            None => once(case, &sensitivities, &watch),
+            None => once(case, &sensitivities, &watch, companion::run),
             Some(accuracy) => reach(case, accuracy, &watch),
         };
         (ended, (watch.stopped(), watch.end()))
@@ -110,11 +110,14 @@ pub fn again(
     })
 }
 
+/// A run with or without error bars.
+type Run = fn(&slcbeam::case::Case, System, &[Parameter], &mut dyn Recorder) -> Result<Outcome>;
+
 /// One run on the mesh of the case.
-fn once(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch) -> Result<Ended> {
+fn once(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch, run: Run) -> Result<Ended> {
     let by = Parameter::find_all(case, sensitivities)?;
     let mut keeper = Keeper::new(watch);
-    let outcome = dynamics::run_with(case, System::new(case)?, &by, &mut keeper)?;
+    let outcome = run(case, System::new(case)?, &by, &mut keeper)?;
     Ok(Ended {
         case: case.clone(),
         header: keeper.header,
@@ -128,7 +131,7 @@ fn reach(case: &slcbeam::case::Case, accuracy: f64, watch: &Watch) -> Result<End
     let mut placed: Option<Ended> = None;
     let hook = |progress: &Progress| watch.step(progress);
     let mut candidate = |case: &slcbeam::case::Case| -> Result<Outcome> {
-        let ended = once(case, &[], watch)?;
+        let ended = once(case, &[], watch, dynamics::run_with)?;
         let outcome = ended.outcome.clone();
         if outcome.summary.status == Status::Finished || placed.is_none() {
             placed = Some(ended);

@@ -262,10 +262,22 @@ fn table(found: &Comparison) -> String {
     let figures = found.figures.iter().map(|f| {
         let change = f.change.map_or_else(|| "-".into(), signed_percent);
         let of_largest = format!("{:.1e}", f.relative);
-        [significant(f.a, 6), significant(f.b, 6), change, of_largest]
+        let within = match f.is_within_errors() {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "-",
+        };
+        [
+            significant(f.a, 6),
+            significant(f.b, 6),
+            change,
+            of_largest,
+            within.into(),
+        ]
     });
     let names = found.figures.iter().map(|f| &f.name);
-    let headings = ["figure", "A", "B", "(B − A)/|A|", "|B − A| over the quantity's largest"];
+    let largest = "|B − A| over the quantity's largest";
+    let headings = ["figure", "A", "B", "(B − A)/|A|", largest, "within error bars"];
     text += &beside(headings, names, figures);
     let costs = found.costs.iter().map(|c| {
         let ratio = if c.a > 0.0 {

@@ -32,6 +32,7 @@ use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
+use crate::study::companion;
 use crate::study::compare::changes::changes;
 use crate::study::sweep::What;
 use crate::study::target;
@@ -217,7 +218,18 @@ struct Recorded {
     written: Result<()>,
 }
 
+/// Runs a case into a folder, with error bars unless it is lean or the memory does not hold a companion.
 fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
+    if way.lean || !size::holds_companion(case, by.len()) {
+        return record_alone(case, system, by, folder, way);
+    }
+    let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook));
+    let outcome = companion::run(case, system, by, &mut recorder)?;
+    complete(recorder, outcome, way)
+}
+
+/// Runs a case into a folder, without error bars.
+fn record_alone(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
     let outcome = dynamics::run_with(case, system, by, &mut recorder)?;
     complete(recorder, outcome, way)
@@ -257,7 +269,7 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Res
             finished,
             written,
             ..
-        } = record(case, System::new(case)?, &[], folder, way)?;
+        } = record_alone(case, System::new(case)?, &[], folder, way)?;
         if written.is_err() {
             unwritten = written;
             return Ok(outcome);
@@ -317,7 +329,10 @@ fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Wa
     let header = Observer::header(case, &system);
     let mut recorder =
         FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
-    let outcome = dynamics::resume(case, system, &saved.run, &mut recorder)?;
+    let outcome = match way.lean {
+        true => dynamics::resume(case, system, &saved.run, &mut recorder)?,
+        false => companion::resume(case, system, &saved.run, &mut recorder)?,
+    };
     complete(recorder, outcome, way)
 }
 

@@ -65,6 +65,19 @@ pub fn fits(case: &Case, parameters: usize, at_once: usize) -> Result<()> {
     Ok(())
 }
 
+/// True if the memory holds a case and its companion, which has up to twice the cells. Prints why not.
+pub fn holds_companion(case: &Case, parameters: usize) -> bool {
+    let needed = Needs::of(case, parameters).memory + 2.0 * Needs::of(case, 0).memory;
+    let held = machine::memory().is_none_or(|there| needed <= there);
+    if !held {
+        terminal::tell(&format!(
+            "slcbeam: no error bars: a companion run needs {} of memory in all",
+            bytes(needed)
+        ));
+    }
+    held
+}
+
 /// What a run's files will take.
 pub fn disk(case: &Case, system: &System, parameters: usize) -> Disk {
     Disk::of(case, &Observer::header(case, system), system.layout.len, parameters)

@@ -117,7 +117,7 @@ impl Uncertain {
             meshes,
         };
         let stop = || self.stopped();
-        let found = || compute::found(case, ask, &stop, &|case| compute::run(case, None, &stop));
+        let found = || compute::found(case, ask, &stop, &|case| compute::run(case, ask, &stop));
         compute::stored(&self.evaluations, key, &stop, found)
     }
 

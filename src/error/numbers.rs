@@ -101,6 +101,44 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
+/// Most significant digits of a value beside its error.
+const MOST_DIGITS: i32 = 4;
+
+/// A value with its absolute error, rounded to the same place, and their unit: `21.5 ± 0.4 mm`. The error is rounded up to one digit, or
+/// two where the first is 1, and at least to the fourth digit of the value.
+pub fn with_error(value: f64, error: f64, unit: &str) -> String {
+    if !value.is_finite() || !error.is_finite() {
+        return quantity(value, unit, 3);
+    }
+    let largest = value.abs().max(error);
+    if largest == 0.0 {
+        return quantity(value, unit, 3);
+    }
+    let (factor, unit) = scaled_unit(largest, unit);
+    let (value, error) = (value / factor, error / factor);
+    let place = |x: f64| x.abs().log10().floor() as i32;
+    let last = place(largest / factor) + 1 - MOST_DIGITS;
+    let last = match error > 0.0 {
+        true => {
+            let first = place(error);
+            let leading = error / 10_f64.powi(first);
+            last.max(if leading < 2.0 { first - 1 } else { first })
+        }
+        false => last,
+    };
+    let step = 10_f64.powi(last);
+    let error = ((error / step - 1e-9).ceil().max(1.0)) * step;
+    let decimals = (-last).max(0) as usize;
+    let value = (value / step).round() * step;
+    let value = if value == 0.0 { 0.0 } else { value };
+    let pair = format!("{value:.decimals$} ± {error:.decimals$}").replacen('-', "−", 1);
+    match unit.strip_prefix("10").filter(|power| !power.is_empty()) {
+        _ if unit.is_empty() => pair,
+        Some(power) => format!("({pair})·10{power}"),
+        None => format!("{pair} {unit}"),
+    }
+}
+
 /// Without zeros behind the point that say nothing: `450 ms` for `450.0 ms`.
 pub fn trimmed(quantity: &str) -> String {
     let (number, rest) = quantity.split_once(' ').unwrap_or((quantity, ""));

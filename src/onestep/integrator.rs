@@ -263,11 +263,6 @@ impl<D: Dae> OneStep<D> {
         &self.yp
     }
 
-    /// What the last step accepted is estimated to have added to the errors of the unknowns.
-    pub fn local_errors(&self) -> &[f64] {
-        &self.work.r
-    }
-
     /// Goes on from consistent values at time `t` [s], forgetting the past, factors, pivots and step size included, so that
     /// a new integrator from the same values would do the same bit for bit. Integrals start at zero.
     ///

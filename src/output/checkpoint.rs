@@ -17,7 +17,7 @@ use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
 /// Number of the format: another one whenever a key of the file, or what it means, is another (tests/formats.rs).
-const FORMAT: u32 = 13;
+const FORMAT: u32 = 14;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -7,7 +7,6 @@ use super::fit;
 use crate::discrete::TimeData;
 use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::quantity;
-use crate::model::Model;
 use crate::model::characteristic::Mathieu;
 
 /// Windows into which a run is divided.
@@ -20,11 +19,6 @@ const GROWN: f64 = 3.0;
 
 /// Share of a deflection to which it falls before it counts as one that turns.
 const FALLEN: f64 = 0.5;
-
-/// Compression in `EI/l²` that is beyond what any column stands, `4 π²` with both ends clamped.
-const STOCKY: f64 = 40.0;
-/// Growth of the fastest waves under a compression from which on they count.
-const LASTED: f64 = 3.0;
 
 /// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
 const STRAIGHT: f64 = 0.6;
@@ -52,13 +46,7 @@ pub struct Growth {
     end: f64,
     windows: Vec<Window>,
     /// Largest compressive force seen [N].
-    pub compression: f64,
-    /// What a beam stands: `EI/l²` [N], and `2 √(m EI)` [N s], by which waves under compression grow.
-    column: [f64; 2],
-    /// Time and compression of the state before [s, N], and how long the compression has lasted, times its size [N s].
-    before: [f64; 3],
-    /// The largest of that, and the largest compression in it [N s, N].
-    pushed: [f64; 2],
+    compression: f64,
 }
 
 /// What drives a growing response.
@@ -99,16 +87,11 @@ pub struct Linear {
 }
 
 impl Growth {
-    /// For a run of a model until `end` [s].
-    pub fn new(model: &Model, end: f64) -> Self {
-        let s = &model.section;
+    /// For a run until `end` [s].
+    pub fn new(end: f64) -> Self {
         Self {
             end,
             windows: vec![Window::default(); WINDOWS],
-            column: [
-                s.bending_stiffness / model.length.powi(2),
-                2.0 * (s.mass_per_length * s.bending_stiffness).sqrt(),
-            ],
             ..Self::default()
         }
     }
@@ -125,7 +108,6 @@ impl Growth {
     ) {
         let k = ((t / self.end * WINDOWS as f64) as usize).min(WINDOWS - 1);
         self.compression = self.compression.max(-least_force);
-        self.push(t, -least_force);
         let Some(w) = self.windows.get_mut(k) else { return };
         w.deflection = w.deflection.max(deflection);
         w.bending_energy = w.bending_energy.max(bending);
@@ -142,36 +124,6 @@ impl Growth {
                 .map(|f| integrals[f as usize].abs())
                 .iter()
                 .sum();
-        }
-    }
-
-    /// Adds up the compression of one stretch of time in which every column buckles.
-    fn push(&mut self, t: f64, compression: f64) {
-        let [at, before, so_far] = self.before;
-        let [unit, _] = self.column;
-        if t < at {
-            return;
-        }
-        let both = 0.5 * (before + compression);
-        let lasted = if both > STOCKY * unit {
-            so_far + (t - at) * both
-        } else {
-            0.0
-        };
-        self.before = [t, compression, lasted];
-        if lasted > self.pushed[0] {
-            self.pushed = [lasted, self.pushed[1].max(before).max(compression)];
-        }
-    }
-
-    /// `N l²/(EI)` of a compression far beyond what the beam stands that lasted long enough for the waves that grow fastest under it to
-    /// become [`LASTED`] times as large, `σ = N/(2 √(m EI))`; 0: there was none.
-    pub fn crushed(&self) -> f64 {
-        let ([unit, slowness], [pushed, most]) = (self.column, self.pushed);
-        if pushed > LASTED.ln() * slowness {
-            most / unit
-        } else {
-            0.0
         }
     }
 
@@ -217,43 +169,6 @@ impl Growth {
             factor,
             drivers: self.drivers(late, rate, linear),
         })
-    }
-
-    /// The factor by which the deflection has grown by itself, 1 where it has not: to the end, or, where the scene is known to be
-    /// unstable, up to where it was largest.
-    pub fn amplification(&self, length: f64, linear: &Linear) -> f64 {
-        let to_the_end = self.judge(length, linear).map_or(1.0, |growing| growing.factor);
-        let tongue = linear.mathieu.is_some_and(|m| m.growth_rate > 0.0);
-        let buckles = linear.euler_load.is_some_and(|euler| self.compression > euler);
-        match tongue || buckles {
-            true => to_the_end.max(self.risen().unwrap_or(1.0)),
-            false => to_the_end,
-        }
-    }
-
-    /// Exponential growth up to the largest deflection.
-    fn risen(&self) -> Option<f64> {
-        let seen: Vec<&Window> = self.windows.iter().take_while(|w| w.samples > 0).collect();
-        let top = (0..seen.len()).max_by(|a, b| seen[*a].deflection.total_cmp(&seen[*b].deflection))?;
-        let part = seen.get(1..=top)?;
-        let width = self.end / WINDOWS as f64;
-        let points: Vec<(f64, f64)> = part
-            .iter()
-            .enumerate()
-            .map(|(k, w)| ((k as f64 + 1.5) * width, w.deflection))
-            .collect();
-        let points: Vec<(f64, f64)> = points.into_iter().filter(|(_, d)| *d > 0.0).collect();
-        let (rate, straight) = fit::exponential(&points)?;
-        let factor = points.last()?.1 / points.first()?.1;
-        let grows = factor >= GROWN && rate > 0.0 && straight >= STRAIGHT;
-        (grows && fit::is_exponential(&points) && !follows(part)).then_some(factor)
-    }
-
-    /// How much softer than a straight one a compressed column is, at least 1: `1/|1 - N/N_E|` with the largest compression seen. What changes
-    /// Euler's load by a part changes its deflection by so many times as much.
-    pub fn softened(&self, linear: &Linear) -> f64 {
-        let share = linear.euler_load.map_or(0.0, |euler| self.compression.max(0.0) / euler);
-        (share / (1.0 - share).abs().max(f64::EPSILON)).max(1.0)
     }
 
     /// A warning when a beam without inertia stayed straight although its compression passed Euler's load: an equilibrium,

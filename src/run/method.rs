@@ -142,16 +142,6 @@ impl Options {
     }
 }
 
-impl Options {
-    /// The one-step method, when it is one.
-    pub fn one_step(&self) -> Option<Method> {
-        match self {
-            Self::Ida(_) => None,
-            Self::OneStep(options) => Some(options.method),
-        }
-    }
-}
-
 /// An integrator: IDA, or a one-step method. See [`Ida`] for what its functions promise.
 #[allow(clippy::large_enum_variant)] // there is one of it in a run
 pub enum Integrator<D: Dae> {
@@ -209,11 +199,6 @@ impl<D: Dae> Integrator<D> {
     /// Their derivatives at the present time [1/s].
     pub fn yp(&self) -> &[f64] {
         either!(self, one => one.yp())
-    }
-
-    /// What the last step is estimated to have added to the errors of the unknowns; empty where that is not known.
-    pub fn local_errors(&mut self) -> &[f64] {
-        either!(self, one => one.local_errors())
     }
 
     /// Derivative number `k` of the unknowns at a time [s] within the last step.

@@ -8,7 +8,6 @@ mod drives;
 pub mod dynamics;
 pub mod energies;
 pub mod equilibrium;
-pub mod estimate;
 pub mod figures;
 pub mod fit;
 pub mod floors;

@@ -16,7 +16,6 @@ use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
 use super::energies::Energies;
-use super::estimate::Estimator;
 use super::figures::{self, Figures};
 use super::floors::Floors;
 use super::growth::Growth;
@@ -65,9 +64,6 @@ pub struct Observed {
     pub steps: Option<StepResponses>,
     /// Errors of those that are energies.
     pub energies: Energies,
-    /// What mesh and steps do to vibrations.
-    #[serde(default)]
-    pub estimate: Estimator,
     /// Growth of the response.
     pub growth: Growth,
     /// Waves that grow in the linearised equations.
@@ -121,8 +117,7 @@ impl Observer {
                     .step_response
                     .map(|step| StepResponses::new(readings::names(system), step.at_s)),
                 energies: Energies::new(case, floors.energy),
-                estimate: Estimator::new(case, system, floors),
-                growth: Growth::new(&system.model, case.time.end_s),
+                growth: Growth::new(case.time.end_s),
                 row: Row::of(system),
                 ..Observed::default()
             },
@@ -187,9 +182,8 @@ impl Observer {
             return beyond;
         }
         self.readings.arrive(t, false, system, now, w);
-        let (balance, open) = self.watch(system, now, w, &glance, integrals);
+        self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
-            self.seen.estimate.see(system, now, w, t - before.t, (&balance, open));
             self.seen.range.take(&self.limits, Some(&before), &glance);
             self.seen.figures.span(&before, &glance);
             self.seen.residuals.follow(system, now, w, t - before.t);
@@ -255,7 +249,7 @@ impl Observer {
         self.limits.beyond(&glance)
     }
 
-    /// Balances, growth and largest values of a state, in whatever order of time; with what the balance of angular momentum leaves open [N m s].
+    /// Balances, growth and largest values of a state, in whatever order of time.
     fn watch(
         &mut self,
         system: &System,
@@ -263,7 +257,7 @@ impl Observer {
         w: State,
         glance: &Glance,
         integrals: &[f64],
-    ) -> (EnergyBalance, f64) {
+    ) -> EnergyBalance {
         let stored = ledger::energies(system, now, w);
         let invariants = ledger::invariants(system, now, w);
         let (at_start, first) = self
@@ -272,7 +266,7 @@ impl Observer {
             .get_or_insert_with(|| (stored.total(), invariants.clone()));
         let balance = ledger::balance(stored, *at_start, integrals);
         let residuals = &mut self.seen.residuals;
-        let angular = residuals.take(system, w, &balance, [first, &invariants], integrals);
+        residuals.take(system, w, &balance, [first, &invariants], integrals);
         let least_force = w.normals().iter().copied().fold(f64::INFINITY, f64::min);
         self.seen.growth.take(
             now,
@@ -283,7 +277,7 @@ impl Observer {
         );
         self.seen.figures.see(glance);
         self.seen.energies.see(glance.t, balance.residual);
-        (balance, angular)
+        balance
     }
 
     /// Notes where the cubics through the step's ends turn, wherever that may be beyond all that has been seen.
@@ -323,7 +317,7 @@ impl Observer {
         if let Some(what) = self.limits.beyond(&glance).filter(|_| !last) {
             return Ok(Sampled::Beyond(what));
         }
-        let (balance, _) = self.watch(system, now, w, &glance, integrals);
+        let balance = self.watch(system, now, w, &glance, integrals);
         // The last step's end is later, but where the run ends within the step.
         let before = self.before.filter(|before| before.t < t);
         self.seen.range.take(&self.limits, before.as_ref(), &glance);

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::band::Bands;
-use super::estimate::Estimated;
 use super::growth::Growing;
 use super::null;
 use super::sensitivity::figures::Sensitivity;
@@ -90,11 +89,54 @@ impl Quantity {
         all.into_iter().filter_map(|(name, value)| Some((name, value?)))
     }
 
+    /// All of them, by the names in `summary.json`.
+    pub fn all_figures(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
+        let further = [
+            ("extreme", self.extreme),
+            ("window_extreme", self.window_extreme),
+            ("window_power_w", self.window_power_w),
+        ];
+        let further = further.into_iter().filter_map(|(name, value)| Some((name, value?)));
+        self.figures().chain(further)
+    }
+
     /// Those that tell one motion from another of the same kind the least: root mean square and increment over the window.
     pub fn statistics(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
         self.figures()
             .filter(|(name, _)| matches!(*name, "window_rms" | "window"))
     }
+}
+
+/// Figures by quantity and name.
+pub type Figures = BTreeMap<String, BTreeMap<String, f64>>;
+
+/// The run beside which the errors of figures are measured: see [`companion`](crate::study::companion).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct CompanionRun {
+    /// Reason for which there are no errors; absent where there are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+    /// Beam cells per segment.
+    pub cells_per_segment: usize,
+    /// Fluid cells per bladder.
+    pub cells_per_bladder: usize,
+    /// Tolerance.
+    pub rtol: f64,
+    /// Effects that the run leaves out and the companion does not.
+    pub added_effects: Vec<String>,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Steps.
+    pub steps: u64,
+    /// Evaluations of the residual.
+    pub residual_evaluations: u64,
+    /// Wall time [s].
+    pub wall_s: f64,
+    /// Its figures.
+    pub figures: Figures,
+    /// Errors of figures by their cause, the JSON pointer of a setting; absent where no error is above 5 %.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub causes: BTreeMap<String, Figures>,
 }
 
 /// Whether the balances close.
@@ -239,6 +281,12 @@ pub struct Summary {
     pub unknowns: usize,
     /// Quantities of interest.
     pub quantities: BTreeMap<String, Quantity>,
+    /// Absolute errors of figures of quantities, probes and ports, each in the unit of its figure.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub errors: Figures,
+    /// The run beside which they are measured.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub companion: Option<CompanionRun>,
     /// What is recorded at probes, by name and unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub probes: BTreeMap<String, Quantity>,
@@ -270,9 +318,6 @@ pub struct Summary {
     /// A wave that grows in the equations linearised about states of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growing_wave: Option<GrowingWave>,
-    /// A rough estimate of the errors of final values, made from the run itself.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub estimate: Option<Estimated>,
     /// Estimated errors, when an accuracy was asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
@@ -287,6 +332,22 @@ pub struct Summary {
 }
 
 impl Summary {
+    /// Largest error of a quantity or probe over its largest figure; nothing where it is not known.
+    pub fn relative_error(&self, name: &str) -> Option<f64> {
+        if let Some(found) = &self.accuracy {
+            return found.quantities.get(name)?.total;
+        }
+        let quantity = self.quantities.get(name).or_else(|| self.probes.get(name))?;
+        let errors = self.errors.get(name)?.iter();
+        let largest = errors.filter(|(figure, _)| *figure != "window_power_w");
+        Some(largest.map(|(_, error)| *error).reduce(f64::max)? / quantity.size()).filter(|e| e.is_finite())
+    }
+
+    /// Absolute error of a figure of a quantity or probe, in its unit; nothing where it is not known.
+    pub fn error(&self, name: &str, figure: &str) -> Option<f64> {
+        self.errors.get(name)?.get(figure).copied()
+    }
+
     /// A quantity, by name and unit.
     pub fn quantity(&self, name: &str) -> Option<&Quantity> {
         self.quantities.get(name)

@@ -36,6 +36,9 @@ pub struct WallTimes {
     pub watching: f64,
     /// Samples: rows of the history, instants of the fields; checkpoints.
     pub output: f64,
+    /// Time after the run until its companion and the runs that attribute errors have ended.
+    #[serde(default)]
+    pub companion: f64,
     /// Pictures.
     #[serde(default)]
     pub pictures: f64,
@@ -59,7 +62,7 @@ fn none(seconds: &f64) -> bool {
 
 impl WallTimes {
     /// What a run took until its result was known, by names in plain words.
-    pub fn until_known(&self) -> [(&'static str, f64); 10] {
+    pub fn until_known(&self) -> [(&'static str, f64); 11] {
         [
             ("start-up", self.start_up),
             ("set-up", self.set_up),
@@ -71,6 +74,7 @@ impl WallTimes {
             ("rest of the steps", self.steps),
             ("watching", self.watching),
             ("output", self.output),
+            ("error bars", self.companion),
         ]
     }
 

@@ -22,6 +22,32 @@ pub fn counted_of_ports<'a>(summary: &'a Summary, floors: &Floors) -> impl Itera
     summary.ports.iter().filter(counts).map(|(name, _)| name)
 }
 
+/// Figures of probes that are more than rounding: beside others of their unit, displacements and pressures also beside what the case is
+/// expected to do.
+pub fn counted_of_probes<'a>(
+    summary: &'a Summary,
+    floors: &'a Floors,
+) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
+    let of = |name: &str| match name.rsplit('_').next() {
+        Some("pa") => "Pa",
+        Some("m") => "m",
+        Some("rad") => "rad",
+        _ => "1",
+    };
+    let largest = move |unit: &str| {
+        let alike = summary.probes.iter().filter(|(name, _)| of(name) == unit);
+        alike.map(|(_, q)| q.size()).fold(0.0, f64::max)
+    };
+    let counts = move |(name, q): &(&'a String, &'a Quantity)| {
+        let floor = match of(name) {
+            "rad" => floors.displacement / floors.length,
+            unit => floors.of_unit(unit, 0.0),
+        };
+        q.size() > (NOTHING * largest(of(name))).max(floor)
+    };
+    summary.probes.iter().filter(counts)
+}
+
 /// The quantities that are more than round-off, by name: beside others of their unit, an angle beside displacements over the
 /// beam's length; beside what the case is expected to do; energies beside the largest one stored or passed. A ratio of
 /// energies counts where both do. Figures that are no numbers always count.

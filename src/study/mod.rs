@@ -1,6 +1,7 @@
 //! Studies: many runs to answer one question. Prints nothing.
 
 pub mod accuracy;
+pub mod companion;
 pub mod compare;
 pub mod counted;
 pub mod data;

@@ -152,7 +152,7 @@ pub fn against(case: &Case, found: &Found, asked: f64, parts: [bool; 2]) -> Both
 
 fn default(case: &Case, found: &Found) -> Verdict {
     let mut work = Work { left: WORK[0] };
-    let Some(run) = work.run(case, guess(case)) else {
+    let Some(run) = work.run_with_errors(case, guess(case)) else {
         return Verdict::new(Word::Unknown, "too long at default settings");
     };
     match found {

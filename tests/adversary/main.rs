@@ -12,6 +12,7 @@
 
 #[path = "../common/chance.rs"]
 mod chance;
+mod coverage;
 mod digits;
 mod further;
 mod judge;
@@ -114,6 +115,17 @@ fn sane_scenes_are_rarely_warned_needlessly() {
     let needless = lines.iter().filter(|line| !line["needless"].is_null()).count() as u64;
     assert!(20 * needless <= count, "{needless} of {count} warned needlessly");
     none_silent(&lines);
+}
+
+/// Goal: bars are at least a third of the errors above 1e-3 in 95 % and within a third and four times in 80 %, over 200 scenes, or over `SLCBEAM_ADVERSARY` from `SLCBEAM_ADVERSARY_FIRST`.
+#[test]
+#[ignore = "takes minutes"]
+fn error_bars_cover_errors() {
+    let (count, first) = (number("SLCBEAM_ADVERSARY"), number("SLCBEAM_ADVERSARY_FIRST"));
+    let all = coverage::run(kind(), first.unwrap_or(1), count.unwrap_or(200));
+    println!("{}", coverage::table(&all));
+    let [covered, sharp] = coverage::shares(&all);
+    assert!(covered >= 0.95 && sharp >= 0.8, "{covered} {sharp}");
 }
 
 /// Of which scenes a seed is: of those that `SLCBEAM_ADVERSARY_KIND` names, `sane`, `further` or `parts`.

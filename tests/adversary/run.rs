@@ -4,10 +4,12 @@ use std::collections::BTreeMap;
 
 use slcbeam::case::Case;
 use slcbeam::case::schema::{Effects, Method};
-use slcbeam::run::dynamics;
+use slcbeam::discrete::System;
+use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::record::{Control, Progress, Recorder, Unrecorded};
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::accuracy::plan;
+use slcbeam::study::companion;
 
 /// Why a run was cut short by its budget.
 pub const BUDGET: &str = "budget";
@@ -29,6 +31,22 @@ pub struct Work {
 impl Work {
     /// Runs a case; `unknowns` is a guess of their number. No summary where the budget did not last.
     pub fn run(&mut self, case: &Case, unknowns: f64) -> Option<Summary> {
+        self.run_by(case, unknowns, |case, recorder| dynamics::run(case, recorder).ok())
+    }
+
+    /// The same with error bars.
+    pub fn run_with_errors(&mut self, case: &Case, unknowns: f64) -> Option<Summary> {
+        self.run_by(case, unknowns, |case, recorder| {
+            companion::run(case, System::new(case).ok()?, &[], recorder).ok()
+        })
+    }
+
+    fn run_by(
+        &mut self,
+        case: &Case,
+        unknowns: f64,
+        run: impl FnOnce(&Case, &mut dyn Recorder) -> Option<Outcome>,
+    ) -> Option<Summary> {
         let stages = match case.solver.method {
             Method::Esdirk57 => 7.0,
             Method::Esdirk46 => 6.0,
@@ -40,7 +58,7 @@ impl Work {
             self.left = 0.0;
             return None;
         }
-        let outcome = dynamics::run(case, &mut self::steps(steps)).ok()?;
+        let outcome = run(case, &mut self::steps(steps))?;
         self.left -= outcome.summary.solver.steps as f64 * price;
         (outcome.summary.reason.as_deref() != Some(BUDGET)).then_some(outcome.summary)
     }

@@ -36,13 +36,11 @@ const TRUST: [(Code, &[Cause]); 11] = [
     (Code::Unresolved, &[Cause::Space]),
     // Only figures of energy, whatever made them wrong.
     (Code::EnergyFigure, ALL),
-    (Code::ErrorEstimate, &[Cause::Time, Cause::Space]),
+    // Names each quantity, whatever made it wrong.
+    (Code::ErrorEstimate, ALL),
     // Says itself that results are not those of the model.
     (Code::OutOfRange, ALL),
 ];
-
-/// What W021 says where it is about more than phases.
-const LARGEST_TOO: &str = "largest values are off as well";
 
 const ALL: &[Cause] = &[Cause::Effects, Cause::Time, Cause::Space, Cause::Outputs, Cause::Joint];
 
@@ -68,8 +66,7 @@ pub fn names(warning: &str, causes: &[Cause], quantity: &str, figure: &str) -> b
         .map_or(&[][..], |(_, causes)| causes);
     let about = match code {
         Code::EnergyFigure => energy,
-        // Of a phase that is lost it says that only final values have it.
-        Code::ErrorEstimate => figure == "final" || warning.contains(LARGEST_TOO),
+        Code::ErrorEstimate => warning.contains(quantity) || warning.contains("not known"),
         _ => true,
     };
     about && (causes == [Cause::Joint] || causes.iter().any(|c| of.contains(c)))

@@ -1,13 +1,13 @@
 //! What a run watches and says of itself, beside what it computes.
 
-mod estimate;
-mod estimate_words;
+mod energies;
+mod error_bars;
 mod probes;
 #[path = "../common/scene.rs"]
 mod scene;
 mod step_response;
+mod stuck;
 mod told;
-mod turning;
 mod unphysical;
 mod watch;
 mod waves;

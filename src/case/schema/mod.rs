@@ -116,6 +116,10 @@ pub struct Case {
     /// Time integration.
     #[serde(default)]
     pub solver: Solver,
+    /// Error bars of all figures by a companion run: the same case with other meshes, a looser tolerance and all effects, in a second
+    /// thread.
+    #[serde(default, skip_serializing_if = "Companion::is_on")]
+    pub companion: Companion,
     /// Places of the beam that are recorded over time.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]

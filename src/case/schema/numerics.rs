@@ -32,6 +32,24 @@ impl Plausibility {
     }
 }
 
+/// Error bars of figures by a companion run in a second thread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Companion {
+    /// The companion runs.
+    #[default]
+    On,
+    /// No companion: figures have no error bars.
+    Off,
+}
+
+impl Companion {
+    /// True for the default, which a case need not write.
+    pub fn is_on(&self) -> bool {
+        *self == Self::On
+    }
+}
+
 /// Resolution in space.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

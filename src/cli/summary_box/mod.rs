@@ -9,7 +9,7 @@ use textwrap::{Options, WordSplitter};
 use crate::discrete::quantities::Interest;
 use crate::error::visible;
 use crate::output::bands;
-use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed};
+use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed, with_error};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 
@@ -105,6 +105,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     add("uncertain", uncertain(summary), Tone::Plain);
     add("sensitivity", sensitivities(summary), Tone::Plain);
     add("accuracy", accuracy(summary), Tone::Plain);
+    add("errors", errors(summary), Tone::Plain);
     add("balances", Some(balances(summary)), Tone::Plain);
     add("integrator", Some(integrator(summary)), Tone::Plain);
     add("time", Some(times(summary)), Tone::Plain);
@@ -212,8 +213,12 @@ fn hold(text: String) -> String {
     text.replace(' ', "\u{a0}")
 }
 
-fn shown(value: f64, unit: &str) -> String {
-    hold(quantity(value, unit, 3))
+/// A figure with its error, where that is known.
+fn figure(summary: &Summary, (name, figure): (&str, &str), value: f64, unit: &str) -> String {
+    hold(match summary.error(name, figure) {
+        Some(error) => with_error(value, error, unit),
+        None => quantity(value, unit, 3),
+    })
 }
 
 fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
@@ -222,27 +227,30 @@ fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
 
 /// Where the tip is at the end, and where it was furthest away, and when.
 fn tip(summary: &Summary) -> [Option<String>; 2] {
-    let joined = |words: &str, told: &dyn Fn(&Quantity) -> Option<String>| {
+    let joined = |words: &str, told: &dyn Fn(&str, &Quantity) -> Option<String>| {
         let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
-        let one = |(symbol, one)| Some(hold(format!("{symbol} {}", told(get(summary, one)?)?)));
+        let one =
+            |(symbol, one): (&str, Interest)| Some(hold(format!("{symbol} {}", told(one.name(), get(summary, one)?)?)));
         let parts: Vec<String> = tip.into_iter().filter_map(one).collect();
         (!parts.is_empty()).then(|| format!("{words}: {}", parts.join(BETWEEN)))
     };
-    let last = |q: &Quantity| Some(shown(q.last?, "m"));
-    let largest = |q: &Quantity| {
+    let last = |name: &str, q: &Quantity| Some(figure(summary, (name, "final"), q.last?, "m"));
+    let largest = |name: &str, q: &Quantity| {
         let at = q.max_abs_at_s.map(|t| format!(" at {}", trimmed(&quantity(t, "s", 3))));
-        Some(shown(q.largest()?, "m") + &at.unwrap_or_default())
+        Some(figure(summary, (name, "max_abs"), q.largest()?, "m") + &at.unwrap_or_default())
     };
     [joined("at the end", &last), joined("largest", &largest)]
 }
 
 fn pressure(summary: &Summary) -> Option<String> {
     let pressure = get(summary, Interest::MaxPressure)?;
-    let largest = shown(pressure.largest()?, "Pa");
+    let name = Interest::MaxPressure.name();
+    let largest = figure(summary, (name, "max_abs"), pressure.largest()?, "Pa");
     let window = pressure
         .window_extreme
         .or(pressure.window_max_abs)
-        .map_or(String::new(), |p| format!("{BETWEEN}in the window {}", shown(p, "Pa")));
+        .map(|p| figure(summary, (name, "window_max_abs"), p, "Pa"));
+    let window = window.map_or(String::new(), |p| format!("{BETWEEN}in the window {p}"));
     Some(format!("largest in a bladder: {largest}{window}"))
 }
 
@@ -252,17 +260,25 @@ fn energy(summary: &Summary) -> Option<String> {
     let power = |one: Interest| {
         let quantity = get(summary, one)?;
         let power = quantity.window_power_w.filter(|_| quantity.last != Some(0.0))?;
-        Some(format!(" ({} in the window)", shown(power, "W")))
+        let power = figure(summary, (one.name(), "window_power_w"), power, "W");
+        Some(format!(" ({power} in the window)"))
+    };
+    let energy = |one: Interest| Some(figure(summary, (one.name(), "final"), last(one)?, "J"));
+    let efficiency = |kind: &str, value: f64| {
+        let error = summary.error(Interest::Efficiency.name(), kind);
+        hold(error.map_or_else(
+            || percent(value),
+            |error| with_error(100.0 * value, 100.0 * error, "1") + " %",
+        ))
     };
     let with_power = |one: Interest| power(one).unwrap_or_default();
     let parts = [
-        last(Interest::InputEnergy).map(|e| format!("put in {}{}", shown(e, "J"), with_power(Interest::InputEnergy))),
-        last(Interest::HarvestedEnergy)
-            .map(|e| format!("harvested {}{}", shown(e, "J"), with_power(Interest::HarvestedEnergy))),
-        last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", percent(e)))),
+        energy(Interest::InputEnergy).map(|e| format!("put in {e}{}", with_power(Interest::InputEnergy))),
+        energy(Interest::HarvestedEnergy).map(|e| format!("harvested {e}{}", with_power(Interest::HarvestedEnergy))),
+        last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", efficiency("final", e)))),
         get(summary, Interest::Efficiency)
             .and_then(|q| q.window)
-            .map(|e| hold(format!("in the window {}", percent(e)))),
+            .map(|e| hold(format!("in the window {}", efficiency("window", e)))),
     ];
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
 }
@@ -292,6 +308,30 @@ fn accuracy(summary: &Summary) -> Option<String> {
         significant(found.rtol, 1),
         found.pilots.len(),
         shown.collect::<Vec<_>>().join(" · ")
+    ))
+}
+
+/// How the errors of figures were measured, or why there are none.
+fn errors(summary: &Summary) -> Option<String> {
+    if summary.accuracy.is_some() || summary.status != Status::Finished {
+        return None;
+    }
+    let Some(companion) = &summary.companion else {
+        return Some("no error bars: no companion ran".into());
+    };
+    if let Some(reason) = &companion.reason {
+        return Some(format!("no error bars: {reason}"));
+    }
+    let effects = match companion.added_effects.len() {
+        0 => String::new(),
+        n => format!(", {} more", counted(n as u64, "effect")),
+    };
+    Some(format!(
+        "± by a companion run: {} a segment, {} a bladder, rtol {}{effects}{BETWEEN}{}",
+        counted(companion.cells_per_segment as u64, "cell"),
+        companion.cells_per_bladder,
+        significant(companion.rtol, 1),
+        hold(duration(companion.wall_s))
     ))
 }
 
@@ -353,6 +393,7 @@ fn spent(summary: &Summary) -> Option<String> {
         ("linear solver", w.linear_solver),
         ("rest of steps", w.steps),
         ("watching", w.watching),
+        ("error bars", w.companion),
         ("samples", w.samples),
         ("output", w.output + w.pictures + w.report + w.files),
     ];

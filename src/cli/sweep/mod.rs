@@ -294,7 +294,7 @@ impl Keep<'_> {
     /// A run, with its folder on request.
     fn run(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
         if !self.asked.keep_folders {
-            return compute::run(case, ask.accuracy, stop);
+            return compute::run(case, ask, stop);
         }
         let dir = self.folder.path(FOLDERS).join(files::numbered(self.plan, self.number));
         run::into(case, ask.accuracy, &dir, self.asked.lean, self.flag)

@@ -1,7 +1,5 @@
 //! Vibrations of a straight beam without bladders between its ends, in units of its length, mass per length and stiffness.
 
-pub mod meshed;
-
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::Matrix4;

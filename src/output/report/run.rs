@@ -195,9 +195,13 @@ impl Shown {
         told: impl Fn(f64, usize) -> String,
     ) -> Self {
         let band = bands::of(&summary.bands, name, figures, value);
+        let error = figures.iter().find_map(|figure| summary.error(name, figure));
         Self {
             text: told(value, 3),
-            band: band.map(|band| bands::beside(band, value, &told)),
+            band: match band {
+                Some(band) => Some(bands::beside(band, value, &told)),
+                None => error.map(|error| format!("± {}", told(error, 2))),
+            },
         }
     }
 }

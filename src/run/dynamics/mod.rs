@@ -166,6 +166,8 @@ impl<'a> Run<'a> {
                 time_s: 0.0,
                 unknowns: system.layout.len,
                 quantities: Default::default(),
+                errors: Default::default(),
+                companion: None,
                 probes: Default::default(),
                 ports: Default::default(),
                 step_response: Default::default(),
@@ -205,7 +207,6 @@ impl<'a> Run<'a> {
                 growth: None,
                 tables_crc32: BTreeMap::new(),
                 growing_wave: None,
-                estimate: None,
                 accuracy: None,
                 sensitivities: Default::default(),
                 characteristic,
@@ -348,12 +349,6 @@ impl Run<'_> {
                     Err(failure) => return Ok(End::Failed(fault(&failure))),
                 };
                 self.summary.time_s = step.time;
-                let method = self.options.one_step();
-                self.observer
-                    .seen
-                    .estimate
-                    .step(method, &step, [solver.y(), solver.yp()]);
-                self.observer.seen.estimate.erred(step.size, solver.local_errors());
                 let steps = solver.steps();
                 let progress = Progress {
                     t: step.time,

@@ -9,8 +9,8 @@ use super::shape::{alike, likeness};
 use super::{Fluid, Limit, Linearised, Mode, Modes, Plan, Tally, at_equilibrium, linearise, search};
 use crate::case::Case;
 use crate::case::schema::Effect;
+use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::{Code, Result};
-use crate::run::estimate::words::LARGE;
 
 /// What meshes of second and of fourth order leave of a difference to half the cells, and of second to twice the cells.
 const TO_HALF: [f64; 2] = [1.0 / 3.0, 1.0 / 15.0];

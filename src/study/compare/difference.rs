@@ -48,6 +48,16 @@ pub struct FigureDifference {
     /// Second less first, over the size of the first; nothing where that is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<f64>,
+    /// Sum of the absolute errors of both, where both are known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub errors: Option<f64>,
+}
+
+impl FigureDifference {
+    /// True if the difference is not larger than the errors of both; nothing where these are not known.
+    pub fn is_within_errors(&self) -> Option<bool> {
+        Some((self.a - self.b).abs() <= self.errors?)
+    }
 }
 
 /// What each run took.
@@ -322,16 +332,18 @@ fn figures(a: &Recording, b: &Recording) -> Vec<FigureDifference> {
             .filter_map(|(figure, a)| Some((figure, a, of_b(figure)?.1)))
             .collect();
         let size = pairs.iter().fold(0.0, |s: f64, (_, a, b)| s.max(a.abs()).max(b.abs()));
+        let errors = |figure: &str| Some(a.summary.error(name, figure)? + b.summary.error(name, figure)?);
         all.extend(
             pairs
                 .into_iter()
                 .filter(|_| size > 0.0)
-                .map(|(figure, a, b)| FigureDifference {
+                .map(|(figure, of_a, of_b)| FigureDifference {
                     name: format!("{name}.{figure}"),
-                    a,
-                    b,
-                    relative: (a - b).abs() / size,
-                    change: (a != 0.0).then(|| (b - a) / a.abs()),
+                    errors: errors(figure),
+                    a: of_a,
+                    b: of_b,
+                    relative: (of_a - of_b).abs() / size,
+                    change: (of_a != 0.0).then(|| (of_b - of_a) / of_a.abs()),
                 }),
         );
     }

@@ -330,9 +330,9 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
     let ask = Ask {
         what: problem.through().command(),
         accuracy: None,
-        meshes: false,
+        meshes: true,
     };
-    let found = || compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
+    let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));
     let found = compute::stored(&problem.evaluations, &"check", stop, found);
     found.map_or(vec![], |found| found.told)
 }

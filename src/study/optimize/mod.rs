@@ -288,7 +288,7 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
         accuracy: None,
         meshes: true,
     };
-    let found = || compute::found(case, ask, stop, &|case| compute::run(case, None, stop));
+    let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));
     compute::stored(&problem.evaluations, &("check", &case.name), stop, found)
 }
 

@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Numbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
+use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::{Code, Error, Result};
-use crate::run::estimate::words::LARGE;
 
 /// What meshes do to one number, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

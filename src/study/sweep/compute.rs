@@ -22,7 +22,7 @@ use crate::run::summary::{Accuracy, Quantity, Status, Summary};
 use crate::run::{known, periodic, slow};
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes, numbers};
-use crate::study::target;
+use crate::study::{companion, target};
 
 /// Modes told, those lowest.
 pub const MODES: usize = 6;
@@ -44,7 +44,7 @@ pub struct Ask {
     pub what: What,
     /// Relative error below which every figure is wanted.
     pub accuracy: Option<f64>,
-    /// Whether the errors that meshes make are estimated, where a command can: the case is then computed on two or three of them.
+    /// True if errors are measured: by a companion of a run, by two or three meshes of what other commands compute.
     pub meshes: bool,
 }
 
@@ -90,11 +90,11 @@ pub fn stored(
     Some(Found { told, ..found })
 }
 
-/// Runs a case and keeps its summary alone.
+/// Runs a case for its summary alone.
 ///
 /// # Errors
-/// Those of [`dynamics::run`].
-pub fn run(case: &Case, accuracy: Option<f64>, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+/// Those of [`companion::run`].
+pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     let wait = Cell::new(0_u32);
     let hook = |_: &Progress| {
         wait.set(wait.get() + 1);
@@ -103,10 +103,11 @@ pub fn run(case: &Case, accuracy: Option<f64>, stop: &dyn Fn() -> bool) -> Resul
             false => Control::Continue,
         }
     };
-    let one = |case: &Case| dynamics::run(case, &mut Unrecorded(hook));
-    match accuracy {
-        None => one(case),
-        Some(accuracy) => target::reach(case, accuracy, &hook, &mut |case| one(case)),
+    let alone = |case: &Case| dynamics::run(case, &mut Unrecorded(hook));
+    match ask.accuracy {
+        None if ask.meshes => companion::run(case, System::new(case)?, &[], &mut Unrecorded(hook)),
+        None => alone(case),
+        Some(accuracy) => target::reach(case, accuracy, &hook, &mut |case| alone(case)),
     }
 }
 
@@ -125,11 +126,9 @@ pub fn of_run(summary: &Summary) -> Found {
     if summary.status == Status::Failed && summary.time_s == 0.0 {
         return found;
     }
-    let accuracy = summary.accuracy.as_ref().map(|accuracy| &accuracy.quantities);
-    let estimates = accuracy.or(summary.estimate.as_ref().map(|estimate| &estimate.quantities));
     for (name, quantity) in summary.quantities.iter().chain(&summary.probes) {
         put(&mut found, name, quantity);
-        found.put(format!("{name}.error"), estimates.and_then(|all| all.get(name)?.total));
+        found.put(format!("{name}.error"), summary.relative_error(name));
     }
     let balances = &summary.balances;
     found.put("energy_residual_relative", balances.energy_residual_relative);

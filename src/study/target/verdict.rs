@@ -1,12 +1,32 @@
 //! What is said in the end.
 
+use std::collections::BTreeMap;
+
 use super::estimates::{At, Way, worst};
 use super::search::Search;
 use crate::case::schema::Effect;
 use crate::discrete::{System, resolution};
 use crate::error::Code;
-use crate::run::summary::{Accuracy, Estimate, Summary};
+use crate::run::summary::{Accuracy, Estimate, Figures, Judged, Summary};
 use crate::study::accuracy::plan;
+
+/// Absolute errors of all figures, or of statistics alone, by estimates relative to the largest figure of each quantity.
+fn absolute(summary: &Summary, estimates: &BTreeMap<String, Estimate>, statistics: bool) -> Figures {
+    let of = |(name, estimate): (&String, &Estimate)| {
+        let quantity = summary.quantities.get(name).or_else(|| summary.ports.get(name))?;
+        let error = estimate.total? * quantity.size();
+        let judged = |figure: &str| match figure {
+            "window_rms" | "window" => true,
+            figure => !statistics && figure != "window_power_w",
+        };
+        let figures = quantity.all_figures().filter(|(figure, _)| judged(figure));
+        Some((
+            name.clone(),
+            figures.map(|(figure, _)| (figure.into(), error)).collect(),
+        ))
+    };
+    estimates.iter().filter_map(of).collect()
+}
 
 impl Search<'_> {
     /// Writes into the summary of the result what is known of its errors; `present` is false where candidates have since gained
@@ -21,11 +41,6 @@ impl Search<'_> {
         let within = worst(&estimates) <= self.asked;
         let unseen = self.unseen(at, present);
         let reached = present && within && unseen.is_empty();
-        // measured errors stand in place of the rough ones
-        if present {
-            let rough = Code::ErrorEstimate.id();
-            summary.warnings.retain(|warning| !warning.starts_with(rough));
-        }
         let mut warn = |what: String| {
             let warning = Code::Accuracy.warning(format!("accuracy: {what}"));
             summary.warnings.push(warning);
@@ -60,6 +75,8 @@ impl Search<'_> {
             ));
             summary.warnings.push(lost);
         }
+        let statistics = self.runs.judged_by == Judged::WindowStatistics;
+        summary.errors = absolute(summary, &estimates, statistics);
         summary.accuracy = Some(Accuracy {
             asked: self.asked,
             reached,

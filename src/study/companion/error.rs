@@ -1,0 +1,64 @@
+//! Differences of the figures of two runs.
+
+use std::collections::BTreeMap;
+
+use crate::run::summary::{Figures, Quantity, Summary};
+use crate::study::counted::{Floors, counted, counted_of_ports, counted_of_probes};
+
+/// Smallest error of a figure, relative to the largest error among the figures of its quantity.
+pub const SHARED: f64 = 0.3;
+
+/// Figures of quantities, probes and ports.
+pub fn figures(summary: &Summary) -> Figures {
+    let all = summary.quantities.iter().chain(&summary.probes).chain(&summary.ports);
+    let of = |q: &Quantity| q.all_figures().map(|(figure, x)| (figure.into(), x)).collect();
+    all.map(|(name, q)| (name.clone(), of(q))).collect()
+}
+
+/// Absolute error of each figure of a run by its companion, in the unit of the figure; without those that the companion does not have.
+pub fn errors(run: &Summary, companion: &Summary) -> Figures {
+    differences(&figures(run), &figures(companion))
+}
+
+/// The same of figures.
+pub fn differences(run: &Figures, companion: &Figures) -> Figures {
+    let of = |(name, own): (&String, &BTreeMap<String, f64>)| {
+        let other = companion.get(name)?;
+        let apart = |figure: &str| Some((own.get(figure)? - other.get(figure)?).abs()).filter(|e| e.is_finite());
+        let mut errors: BTreeMap<String, f64> = own
+            .keys()
+            .filter_map(|figure| Some((figure.clone(), apart(unsigned(figure))?)))
+            .collect();
+        let alike = |figure: &str| figure != "window_power_w";
+        let largest = errors.iter().filter(|(figure, _)| alike(figure));
+        let largest = largest.map(|(_, error)| *error).fold(0.0, f64::max);
+        for (_, error) in errors.iter_mut().filter(|(figure, _)| alike(figure)) {
+            *error = error.max(SHARED * largest);
+        }
+        Some((name.clone(), errors))
+    };
+    run.iter().filter_map(of).collect()
+}
+
+/// The figure without sign that stands for an extreme: the sides of a vibration change places from run to run.
+fn unsigned(figure: &str) -> &str {
+    match figure {
+        "extreme" => "max_abs",
+        "window_extreme" => "window_max_abs",
+        other => other,
+    }
+}
+
+/// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
+pub fn relative(summary: &Summary, floors: &Floors) -> BTreeMap<String, f64> {
+    let quantities = counted(summary, floors).map(|(name, q)| (name, q.size()));
+    let probes = counted_of_probes(summary, floors).map(|(name, q)| (name, q.size()));
+    let ports = counted_of_ports(summary, floors).map(|name| (name, summary.ports[name].size()));
+    let largest = |(name, size): (&String, f64)| {
+        let errors = summary.errors.get(name)?;
+        let alike = errors.iter().filter(|(figure, _)| *figure != "window_power_w");
+        let largest = alike.map(|(_, error)| *error).fold(0.0, f64::max);
+        Some((name.clone(), largest / size))
+    };
+    quantities.chain(probes).chain(ports).filter_map(largest).collect()
+}

@@ -1,0 +1,174 @@
+//! Cases beside a case: its companion, and those that differ from it in one setting.
+
+use crate::case::Case;
+use crate::case::schema::{Choice, Companion, Effect, Effects};
+use crate::discrete::{Mesh, System, resolution};
+use crate::error::Result;
+use crate::run::summary::{CompanionRun, Summary};
+use crate::study::companion::error;
+use crate::study::effects::choices::with;
+use crate::study::refine::has_cells_along_bladders;
+use crate::study::target::models;
+
+/// Loosest and tightest tolerance of a variant.
+const TOLERANCES: [f64; 2] = [1e-13, 0.1];
+
+/// A case beside another.
+pub struct Variant {
+    /// The case.
+    pub case: Case,
+    /// Effects that the other leaves out.
+    pub added: Vec<Effect>,
+}
+
+/// A setting of a case that makes an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Cause {
+    /// `/mesh/cells_per_segment`.
+    BeamMesh,
+    /// `/mesh/cells_per_bladder`.
+    FluidMesh,
+    /// `/solver/rtol`.
+    TimeSteps,
+    /// An effect that is left out.
+    Effect(Effect),
+}
+
+impl Cause {
+    /// JSON pointer of the setting.
+    pub fn pointer(self) -> String {
+        match self {
+            Self::BeamMesh => "/mesh/cells_per_segment".into(),
+            Self::FluidMesh => "/mesh/cells_per_bladder".into(),
+            Self::TimeSteps => "/solver/rtol".into(),
+            Self::Effect(effect) => format!("/effects/{effect}"),
+        }
+    }
+}
+
+impl Variant {
+    /// The companion with all effects.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn with_all_effects(case: &Case) -> Result<Option<Self>> {
+        Ok(Some(match models::full(case)? {
+            Some(full) => Self::discretized(&full.case, full.left_out)?,
+            None => Self::discretized(case, vec![])?,
+        }))
+    }
+
+    /// The companion with the effects of the case, where it leaves out any.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn with_its_effects(case: &Case) -> Result<Option<Self>> {
+        models::full(case)?.map(|_| Self::discretized(case, vec![])).transpose()
+    }
+
+    /// A companion with a tighter tolerance and a finer mesh, for cases that looser ones do not reach the end of.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn tighter(case: &Case) -> Result<Option<Self>> {
+        let mut case = alone(case);
+        case.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
+        case.mesh.cells_per_segment *= 2;
+        case.mesh.cells_per_bladder *= 2;
+        Ok(Some(Self { case, added: vec![] }))
+    }
+
+    fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
+        let mut case = alone(case);
+        let unresolved = !resolution::unresolved(&case, &System::new(&case)?).is_empty();
+        case.solver.rtol = (10.0 * case.solver.rtol).min(TOLERANCES[1]);
+        case.solver.max_step_s = case.solver.max_step_s.map(|step| 2.0 * step);
+        case.mesh.cells_per_segment = if unresolved {
+            2 * case.mesh.cells_per_segment
+        } else {
+            other_cells(&case).0
+        };
+        case.mesh.cells_per_bladder *= 2;
+        Ok(Self { case, added })
+    }
+
+    /// The case with one setting changed, and the error of the case over the difference that this makes. Nothing where the setting does
+    /// not apply.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn with_change(case: &Case, cause: Cause) -> Result<Option<(Self, f64)>> {
+        let mut other = alone(case);
+        let mut added = vec![];
+        let factor = match cause {
+            Cause::BeamMesh => {
+                let (cells, factor) = other_cells(case);
+                other.mesh.cells_per_segment = cells;
+                factor
+            }
+            Cause::FluidMesh => {
+                if !has_cells_along_bladders(case)? {
+                    return Ok(None);
+                }
+                other.mesh.cells_per_bladder *= 2;
+                4.0 / 3.0
+            }
+            Cause::TimeSteps => {
+                other.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
+                1.0
+            }
+            Cause::Effect(effect) => {
+                let mut choices = case.effects.choices();
+                choices.set(effect, Choice::On);
+                other = with(&other, Effects::Chosen(choices));
+                added.push(effect);
+                1.0
+            }
+        };
+        Ok(System::new(&other)
+            .is_ok()
+            .then_some((Self { case: other, added }, factor)))
+    }
+
+    /// Its settings and what it took.
+    pub fn describe(&self, summary: &Summary) -> CompanionRun {
+        let mesh = &self.case.mesh;
+        CompanionRun {
+            reason: None,
+            cells_per_segment: mesh.cells_per_segment,
+            cells_per_bladder: mesh.cells_per_bladder,
+            rtol: self.case.solver.rtol,
+            added_effects: self.added.iter().map(Effect::to_string).collect(),
+            unknowns: summary.unknowns,
+            steps: summary.solver.steps,
+            residual_evaluations: summary.solver.residual_evaluations,
+            wall_s: summary.wall_s.total,
+            figures: error::figures(summary),
+            causes: Default::default(),
+        }
+    }
+}
+
+/// A case that runs beside another: without a companion, checkpoints and thinned outputs.
+fn alone(case: &Case) -> Case {
+    let mut case = case.clone();
+    case.companion = Companion::Off;
+    case.time.checkpoint_interval_s = None;
+    case.time.history = Default::default();
+    case
+}
+
+/// Other cells of a segment, and the error of the case over the difference that they make: half as many at second order, three quarters at
+/// fourth, twice as many where there can be no fewer.
+fn other_cells(case: &Case) -> (usize, f64) {
+    let (cells, order) = (case.mesh.cells_per_segment, i32::from(case.mesh.order()));
+    let fewer = if order == 4 {
+        (3 * cells).div_ceil(4)
+    } else {
+        cells.div_ceil(2)
+    };
+    let possible = fewer < cells && fewer * case.segments() >= Mesh::fewest(case.mesh.order());
+    let other = if possible { fewer } else { 2 * cells };
+    let ratio = (cells as f64 / other as f64).powi(order);
+    (other, 1.0 / (ratio - 1.0).abs())
+}

@@ -1,0 +1,293 @@
+//! Error bars of a run beside its true errors, which a run on finer meshes at a tighter tolerance shows.
+
+use std::path::Path;
+
+use slcbeam::case::schema::{Companion, Effect};
+use slcbeam::case::{self, Case};
+use slcbeam::discrete::System;
+use slcbeam::run::dynamics::Outcome;
+use slcbeam::run::record::{Control, Progress, Unrecorded};
+use slcbeam::run::summary::{Status, Summary};
+use slcbeam::study::companion;
+
+use super::{run, shipped};
+
+/// Smallest bar over true error.
+const COVERED: f64 = 1.0 / 3.0;
+/// Error relative to the largest value of a quantity below which nothing is judged.
+const JUDGED: f64 = 1e-3;
+
+fn outcome(case: &Case) -> Outcome {
+    let system = System::new(case).expect("a system");
+    companion::run(case, system, &[], &mut Unrecorded(|_| Control::Continue)).expect("a run")
+}
+
+fn with_errors(case: &Case) -> Summary {
+    let summary = outcome(case).summary;
+    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
+    summary
+}
+
+fn parsed(text: &str, sets: &[&str]) -> Case {
+    let sets: Vec<String> = sets.iter().map(|set| (*set).into()).collect();
+    case::parse(text, Path::new("scene.json"), Path::new("."), &sets).expect("a case")
+}
+
+fn warning<'a>(summary: &'a Summary, code: &str) -> Option<&'a str> {
+    let mut all = summary.warnings.iter().filter(|warning| warning.starts_with(code));
+    let first = all.next().map(String::as_str);
+    assert_eq!(all.next(), None, "{:?}", summary.warnings);
+    first
+}
+
+/// Asserts that the bars of quantities cover their errors beside a reference; returns the largest true error, relative to its quantity.
+fn assert_covered(scene: &str, summary: &Summary, exact: &Summary, names: &[&str]) -> f64 {
+    let mut worst = 0.0_f64;
+    for name in names {
+        let (own, right) = (summary.quantities[*name], exact.quantities[*name]);
+        let right: Vec<(&str, f64)> = right.figures().collect();
+        for (figure, value) in own.figures() {
+            let Some((_, truth)) = right.iter().find(|(other, _)| *other == figure) else {
+                continue;
+            };
+            let size = own.size().max(right.iter().fold(0.0, |s, (_, x)| s.max(x.abs())));
+            let (error, bar) = (
+                (value - truth).abs() / size,
+                summary.error(name, figure).expect("a bar") / size,
+            );
+            println!("{scene}: {name}.{figure} error {error:.2e}, bar {bar:.2e}");
+            worst = worst.max(error);
+            assert!(
+                error < JUDGED || bar >= COVERED * error,
+                "{scene}: {name}.{figure} error {error:e}, bar {bar:e}"
+            );
+        }
+    }
+    worst
+}
+
+/// A cantilever of so many segments under a load across.
+fn cantilever(load: &str, segments: usize, end: f64, more: &[&str]) -> Case {
+    let text = format!(
+        r#"{{"name": "cantilever",
+            "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e9, "density_kg_m3": 1200}},
+            "loads": [{{"force_x_n_m": {{"signal": {load}}}}}], "ends": {{"root": "clamped", "tip": "free"}},
+            "mesh": {{"segments": {segments}}}, "time": {{"end_s": {end}, "output_interval_s": {}}}}}"#,
+        end / 100.0
+    );
+    parsed(&text, more)
+}
+
+const TIP: [&str; 3] = ["tip_u1_m", "tip_angle_rad", "largest_u1_m"];
+const MOTION: [&str; 5] = ["tip_u1_m", "tip_u3_m", "tip_angle_rad", "largest_u1_m", "largest_u3_m"];
+
+/// Source: Hairer & Wanner's test set, "beam", n = 40, t = 5. Tolerance of the angle: the beam here stretches by 1e-5 and has another mesh
+/// of the same order, whose angle differs by 1e-3 of the largest.
+#[test]
+fn bars_cover_the_stiff_beam() {
+    let usual = with_errors(&shipped("hard/stiff-beam", &[]));
+    let exact = run(&shipped("hard/stiff-beam", &["/solver/rtol=1e-8"]));
+    let angle = exact.quantities["tip_angle_rad"].last.expect("an angle");
+    assert!((angle + 0.1767201761075488).abs() < 2e-3, "{angle}");
+    assert_covered("stiff beam", &usual, &exact, &TIP);
+}
+
+/// Free vibration on coarse meshes loses its phase; a loose tolerance does the same. Beyond 5 % the warning names what is wrong, its cause and
+/// a remedy that removes the warning.
+#[test]
+fn bars_cover_phases_that_mesh_and_steps_shift() {
+    let fine = run(&cantilever("0.5", 24, 4.0, &["/solver/rtol=1e-8"]));
+    let coarse = with_errors(&cantilever("0.5", 2, 4.0, &[]));
+    assert!(assert_covered("coarse", &coarse, &fine, &MOTION) > 0.1);
+    let told = warning(&coarse, "W021").expect("a warning");
+    assert!(told.contains("tip_u1_m") && told.contains("beam mesh"), "{told}");
+    let remedy = told.split("--set ").nth(1).expect("a remedy").trim_end_matches('.');
+    let mended = with_errors(&cantilever("0.5", 2, 4.0, &[remedy]));
+    assert_eq!(warning(&mended, "W021"), None, "{remedy}");
+    let loose = with_errors(&cantilever("0.5", 24, 4.0, &["/solver/rtol=1e-2"]));
+    assert!(assert_covered("loose", &loose, &fine, &MOTION) > 0.05);
+    let told = warning(&loose, "W021").expect("a warning");
+    assert!(told.contains("time steps") && told.contains("/solver/rtol="), "{told}");
+    let usual = with_errors(&cantilever("0.5", 24, 4.0, &[]));
+    assert_eq!(warning(&usual, "W021"), None);
+}
+
+/// A load that comes and goes slowly has no phase to lose on the same coarse mesh.
+#[test]
+fn slow_motion_on_a_coarse_mesh_is_not_warned_of() {
+    let load = r#"{"sine": {"amplitude": 0.5, "frequency_hz": 0.1, "ramp_cycles": 1}}"#;
+    let slow = with_errors(&cantilever(load, 4, 20.0, &[]));
+    assert_eq!(warning(&slow, "W021"), None);
+    let exact = run(&cantilever(load, 16, 20.0, &["/solver/rtol=1e-7"]));
+    assert_covered("slow", &slow, &exact, &TIP);
+}
+
+/// Scenes that predictions from one run missed: short waves, waves that grow under a push, a drive near a mode that the mesh misplaces, work
+/// that comes back, a couple beside a rotational spring, a beam that spins up, strikes on a stop.
+#[test]
+fn bars_cover_what_predictions_missed() {
+    let slender =
+        r#""beam": {"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 1200"#;
+    let finer = ["/mesh/cells_per_segment=32", "/solver/rtol=1e-7"];
+    let scenes = [
+        (
+            "begun",
+            format!(
+                r#"{{"name": "begun", {slender}}},
+                "ends": {{"root": {{"clamped": {{"slope_rad": {{"ramp": {{"to": 0.1, "duration_s": 3}}}}}}}}, "tip": "free"}},
+                "mesh": {{"segments": 3}}, "time": {{"end_s": 0.6}}}}"#
+            ),
+            &finer,
+            &["tip_u1_m", "largest_u1_m"][..],
+        ),
+        (
+            "pulse",
+            format!(
+                r#"{{"name": "pulse", {slender}, "damping": {{"bending_time_s": 2}}}}, "ends": {{"root": "clamped", "tip": {{"free":
+                {{"moment_n_m": {{"table": {{"times_s": [10, 10.1, 10.2, 10.3], "values": [0, 0.01, 0.01, 0], "interpolation": "cubic"}}}}}}}}}},
+                "mesh": {{"segments": 2}}, "time": {{"end_s": 40}}}}"#
+            ),
+            &finer,
+            &["tip_angle_rad", "tip_u1_m"],
+        ),
+        (
+            "spring",
+            r#"{"name": "spring", "beam": {"length_m": 0.2, "height_m": 0.002, "width_m": 0.03, "young_modulus_pa": 2e7, "density_kg_m3": 1100,
+                "damping": {"bending_time_s": 0.05, "axial_time_s": 0.05}}, "ends": {"root": "clamped", "tip": {"free": {"moment_n_m":
+                {"ramp": {"to": -0.008, "duration_s": 5}}}}}, "attachments": [{"at": 1, "stiffness_rotation_n_m_rad": 0.002}],
+                "mesh": {"segments": 10, "cells_per_segment": 2}, "time": {"end_s": 8}}"#
+                .into(),
+            &finer,
+            &["tip_angle_rad", "tip_u1_m"],
+        ),
+        (
+            "spins",
+            r#"{"name": "spins", "beam": {"length_m": 0.2, "height_m": 0.01, "width_m": 0.03, "young_modulus_pa": 2e6, "density_kg_m3": 1100},
+                "ends": {"root": {"pinned": {"moment_n_m": {"ramp": {"to": -0.005, "duration_s": 0.58}}}}, "tip": "free"},
+                "mesh": {"segments": 12, "cells_per_segment": 1, "order": 4}, "time": {"end_s": 5.8, "output_interval_s": 0.058}}"#
+                .into(),
+            &["/solver/method=\"esdirk57\"", "/solver/rtol=1e-9"],
+            &["tip_u1_m", "tip_u3_m"],
+        ),
+        (
+            "strikes",
+            r#"{"name": "strikes", "beam": {"length_m": 0.2, "height_m": 0.002, "width_m": 0.02, "young_modulus_pa": 2e9, "density_kg_m3": 10},
+                "attachments": [{"at": 1, "mass_kg": 0.05}], "loads": [{"gravity": {"x_m_s2": -9.81}}],
+                "contacts": [{"name": "stop", "point_m": [-0.005, 0.2], "normal": [1, 0], "at": 1, "stiffness_n_m": 5000, "smoothing_m": 2e-4,
+                "reach_m": 0}], "ends": {"root": "clamped", "tip": "free"}, "mesh": {"segments": 4},
+                "time": {"end_s": 1, "output_interval_s": 0.002}}"#
+                .into(),
+            &["/mesh/cells_per_segment=16", "/solver/rtol=1e-8"],
+            &["tip_u1_m"],
+        ),
+    ];
+    for (name, text, exact, names) in scenes {
+        let usual = with_errors(&parsed(&text, &[]));
+        let exact = run(&parsed(&text, exact));
+        let worst = assert_covered(name, &usual, &exact, names);
+        let told = warning(&usual, "W021");
+        println!("{name}: {worst:.2e} {told:?}");
+        if worst > 0.05 {
+            assert!(
+                names.iter().any(|n| told.is_some_and(|told| told.contains(n))),
+                "{name}: {told:?}"
+            );
+        }
+    }
+}
+
+/// Pressure at a port of a viscous fluid does not get far into the bladder: two cells miss a third of it, and the bar says so.
+#[test]
+fn bars_cover_the_mesh_of_the_fluid() {
+    let on = |cells: usize, viscosity: f64| {
+        let text = format!(
+            r#"{{"name": "port", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": {viscosity}}},
+                "beam": {{"damping": {{"bending_time_s": 0.002, "axial_time_s": 0.002}}}}, "ends": {{"root": "clamped", "tip": "free"}},
+                "network": {{"chains": [{{"bladders": [1, 2], "ends": [{{"pressure_pa": {{"sine": {{"amplitude": 5000,
+                "frequency_hz": 3, "ramp_cycles": 1}}}}}}, "sealed"]}}]}},
+                "mesh": {{"cells_per_segment": 2, "cells_per_bladder": {cells}}}, "time": {{"end_s": 0.7}}}}"#
+        );
+        parsed(&text, &[])
+    };
+    let (coarse, fine) = (with_errors(&on(2, 1.0)), with_errors(&on(32, 1.0)));
+    assert!(assert_covered("port", &coarse, &fine, &["max_pressure_pa"]) > 0.2);
+    let told = warning(&coarse, "W021").expect("a warning");
+    assert!(
+        told.contains("max_pressure_pa") && told.contains("/mesh/cells_per_bladder="),
+        "{told}"
+    );
+    assert_eq!(warning(&fine, "W021"), None);
+}
+
+/// Forty waves of a load that the mesh sees as nothing: the companion has a mesh that sees it.
+#[test]
+fn bars_cover_a_load_that_the_mesh_does_not_see() {
+    let aliased = cantilever(
+        "1",
+        10,
+        1.0,
+        &[
+            r#"/loads/0={"force_x_n_m": {"signal": {"ramp": {"to": 1, "duration_s": 0.3}}, "profile": {"cosine": {"waves": 40}}}}"#,
+        ],
+    );
+    let summary = with_errors(&aliased);
+    assert!(summary.quantities["tip_u1_m"].max_abs < Some(1e-12));
+    println!("{:?} {:?}", summary.errors["tip_u1_m"], summary.warnings);
+    assert!(summary.error("tip_u1_m", "max_abs") > Some(1e-7));
+    assert!(warning(&summary, "W008").is_none() && warning(&summary, "W020").is_none());
+}
+
+/// Effects that the run leaves out are in the companion. `"companion": "off"` gives the same figures without errors.
+#[test]
+fn a_companion_has_all_effects_and_changes_no_figure() {
+    let case = shipped("two-bladders", &["/effects=\"auto\""]);
+    let left_out: Vec<Effect> = slcbeam::study::target::models::full(&case)
+        .expect("effects")
+        .map_or(vec![], |full| full.left_out);
+    let with = with_errors(&case);
+    let companion = with.companion.as_ref().expect("a companion");
+    let names: Vec<String> = left_out.iter().map(Effect::to_string).collect();
+    assert_eq!(companion.added_effects, names);
+    assert!(!companion.figures.is_empty() && companion.reason.is_none());
+    let off = Case {
+        companion: Companion::Off,
+        ..case.clone()
+    };
+    let without = with_errors(&off);
+    assert_eq!(with.quantities, without.quantities);
+    assert!(without.errors.is_empty() && without.companion.is_none());
+}
+
+/// A companion that costs much more than the run is ended by its work, so that two runs agree bit for bit.
+#[test]
+fn error_bars_do_not_depend_on_the_machine() {
+    for name in ["ecoflex-actuator", "tip-mass"] {
+        let case = shipped(name, &["/time/end_s=0.2"]);
+        let [a, b] = [with_errors(&case), with_errors(&case)];
+        assert_eq!(a.errors, b.errors, "{name}");
+        assert_eq!(
+            a.companion.map(|c| (c.steps, c.reason)),
+            b.companion.map(|c| (c.steps, c.reason))
+        );
+    }
+}
+
+/// A run that is stopped has no errors, and says why.
+#[test]
+fn a_stopped_run_has_no_error_bars() {
+    let case = cantilever("0.5", 10, 4.0, &[]);
+    let mut recorder = Unrecorded(|progress: &Progress| match progress.steps > 20 {
+        true => Control::Stop("enough".into()),
+        false => Control::Continue,
+    });
+    let system = System::new(&case).expect("a system");
+    let summary = companion::run(&case, system, &[], &mut recorder)
+        .expect("a run")
+        .summary;
+    assert_eq!(summary.status, Status::Stopped);
+    assert!(summary.errors.is_empty());
+    assert_eq!(
+        summary.companion.and_then(|c| c.reason).as_deref(),
+        Some("the run did not reach its end")
+    );
+}
