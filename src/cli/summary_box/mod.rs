@@ -255,12 +255,15 @@ fn energy(summary: &Summary) -> Option<String> {
         Some(format!(" ({} in the window)", shown(power, "W")))
     };
     let with_power = |one: Interest| power(one).unwrap_or_default();
+    let efficiency = get(summary, Interest::Efficiency);
+    let undetermined = efficiency.is_some_and(|q| q.final_absent.is_some());
     let parts = [
         last(Interest::InputEnergy).map(|e| format!("put in {}{}", shown(e, "J"), with_power(Interest::InputEnergy))),
         last(Interest::HarvestedEnergy)
             .map(|e| format!("harvested {}{}", shown(e, "J"), with_power(Interest::HarvestedEnergy))),
         last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", percent(e)))),
-        get(summary, Interest::Efficiency)
+        undetermined.then(|| "no efficiency: the energy put in is below the numerical error".into()),
+        efficiency
             .and_then(|q| q.window)
             .map(|e| hold(format!("in the window {}", percent(e)))),
     ];
