@@ -127,9 +127,10 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
 
 /// The end of a path that somebody asked for.
 pub(super) fn stopped(share: f64, reason: &str) -> End {
-    let cause = None;
     End(SolverError {
-        cause,
+        code: Code::Interrupted,
+        cause: None,
+        hint: None,
         ..fault(share, reason)
     })
 }

@@ -148,10 +148,11 @@ pub fn of_cycle(case: &Case, periods: usize, stop: &Stop) -> Result<Numbers> {
 fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
     let outcome = record::record(case, scene, cycle, &mut Unrecorded(|_| Control::Continue))?;
     if outcome.summary.status != Status::Finished {
-        return Err(outcome.fault.map_or_else(
-            || Error::Usage(outcome.summary.reason.unwrap_or_default()),
-            |fault| Error::Solver(Box::new(fault)),
-        ));
+        let reason = outcome.summary.reason.unwrap_or_default();
+        return Err(match outcome.fault {
+            Some(fault) => Error::Solver(Box::new(fault)),
+            None => Error::Interrupted(reason),
+        });
     }
     of_summary(case, &outcome.summary)
 }
