@@ -295,7 +295,7 @@ fn no_shipped_case_is_warned() {
 /// Goal: a finding says whether a state at rest has it too: the shape of a load does, a pressure that goes to and fro in a bladder does not.
 #[test]
 fn findings_say_whether_states_at_rest_have_them() {
-    let load = pressed(r#"{"polynomial": {"coefficients": [0, 0, 0, 0, 0, 1]}}"#, 1, &[]);
+    let load = pressed(&pad(0.03, 50.0), 1, &[]);
     let swinging = shipped(
         "network-tour",
         &[

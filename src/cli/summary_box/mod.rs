@@ -262,7 +262,7 @@ fn energy(summary: &Summary) -> Option<String> {
         last(Interest::HarvestedEnergy)
             .map(|e| format!("harvested {}{}", shown(e, "J"), with_power(Interest::HarvestedEnergy))),
         last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", percent(e)))),
-        undetermined.then(|| "no efficiency: the energy put in is below the numerical error".into()),
+        undetermined.then(|| "no efficiency (below numerical error)".into()),
         efficiency
             .and_then(|q| q.window)
             .map(|e| hold(format!("in the window {}", percent(e)))),
