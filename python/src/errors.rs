@@ -30,6 +30,7 @@ pub fn raised(py: Python<'_>, error: &Error) -> PyErr {
         Error::Usage(what) => made(py, "UsageError", what, &told),
         Error::Case(fault) => made(py, "CaseError", case::render(fault, false, WIDTH).trim_end(), &told),
         Error::Solver(fault) => made(py, "SolverError", &words(fault), &told),
+        Error::Interrupted(what) => made(py, "SolverError", what, &told),
         Error::Output { .. } => made(py, "FileError", &error.to_string(), &told),
     }
 }

@@ -35,7 +35,7 @@ pub struct ExportArguments {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub every: u32,
     /// Folder in which csv and vtk are made [default: the result folder]
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = super::line::output_path())]
     pub out: Option<PathBuf>,
     /// Print what was written as JSON
     #[arg(long)]

@@ -162,7 +162,7 @@ fn cpu_time() -> Duration {
 /// What there is to say in place of how the search for a cycle failed, where that was because somebody asked for the end.
 pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
     match found {
-        Err(_) if stop.raised() => Err(Error::Usage(format!(
+        Err(_) if stop.raised() => Err(Error::Interrupted(format!(
             "{INTERRUPTED} before a cycle was found; nothing is written"
         ))),
         other => other,

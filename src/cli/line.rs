@@ -1,7 +1,9 @@
 //! A line on a terminal that says how far something is; numbers of the command line.
 
 use std::io::IsTerminal as _;
+use std::path::PathBuf;
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressFinish, ProgressStyle};
 
 use crate::case::amounts::{self, Here};
@@ -50,6 +52,14 @@ impl Drop for Shown {
             bar.finish_and_clear();
         }
     }
+}
+
+/// The name of a file or folder to write, which messages, pages and scripts show as it is.
+pub fn output_path() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| match path.to_string_lossy().contains(char::is_control) {
+        true => Err("a name of output holds no control characters, such as ends of lines and tabs"),
+        false => Ok(path),
+    })
 }
 
 /// A time span [s] that a clock can wait for; its unit may stand behind it.

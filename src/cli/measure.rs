@@ -43,7 +43,7 @@ pub struct MeasureArguments {
     #[arg(long)]
     pub cubic: bool,
     /// Draw data, fit with its band of 95 % and residuals (SVG)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = super::line::output_path())]
     pub plot: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]

@@ -19,6 +19,7 @@ pub struct NewArguments {
     /// What to begin with
     pub kind: Kind,
     /// The file; the case is named like it [default: <kind>.json]
+    #[arg(value_parser = super::line::output_path())]
     pub file: Option<PathBuf>,
     /// Which section, of `new section` [default: honeycomb]; the others have one row, which `coefficients` takes and a case does not
     #[arg(long, value_name = "NAME")]

@@ -15,7 +15,7 @@ use crate::output::kind::Kind;
 #[derive(Clone, Debug, Default, Args)]
 pub struct PlaceArguments {
     /// Result folder [default: out/<case name>, with the command's name behind it where it is not run]
-    #[arg(short, long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR", value_parser = super::line::output_path())]
     pub out: Option<PathBuf>,
     /// Take a folder that holds something else
     #[arg(long)]

@@ -1,8 +1,8 @@
 //! Equilibrium as a system without derivatives: what a beam at rest obeys, with the share of its loads as "time".
 
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
-use crate::discrete::System;
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
+use crate::discrete::{System, ValveTangents};
 use crate::numerics::sets::Sets;
 
 /// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
@@ -185,6 +185,15 @@ impl StaticBeam {
     /// The beam as a DAE.
     pub fn beam(&mut self) -> &mut BeamDae {
         &mut self.beam
+    }
+
+    /// Replaces valves by their tangents at the state that was evaluated last, or has them follow their characteristics again.
+    pub fn linearize_valves(&mut self, linear: bool) {
+        let beam = &mut self.beam;
+        beam.now.tangents = match linear {
+            true => ValveTangents::new(&beam.system, &beam.now, &beam.plain.workspace),
+            false => ValveTangents::default(),
+        };
     }
 
     /// Flow that ports feed into a closed network which nothing lets out [m^3/s]: then there is no equilibrium.

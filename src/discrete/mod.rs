@@ -23,6 +23,7 @@ pub mod time_data;
 pub mod touching;
 pub mod turning;
 pub mod turns;
+pub mod valve_tangents;
 pub mod waves;
 pub mod workspace;
 
@@ -41,6 +42,7 @@ pub use quantities::Probe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
 pub use touching::Touching;
+pub use valve_tangents::ValveTangents;
 pub use workspace::{State, Workspace};
 
 /// A model on a mesh: everything the residual needs besides time and state.

@@ -1,7 +1,7 @@
 //! Everything that depends on time alone, evaluated once an instant.
 
 use super::turns::Turns;
-use super::{Statics, System, shapes};
+use super::{Statics, System, ValveTangents, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Jet, Signal};
@@ -150,6 +150,8 @@ pub struct TimeData {
     pub cj: f64,
     /// How far the beam had turned.
     pub turns: Turns,
+    /// Where valves are linear, for derivatives.
+    pub tangents: ValveTangents,
     /// Root and tip.
     pub ends: [EndData; 2],
     /// Force per length at each node [N/m].
@@ -187,17 +189,15 @@ pub struct TimeData {
 impl TimeData {
     /// Room for the values of a system; nothing is evaluated yet.
     pub fn new(system: &System) -> Self {
-        let (ports, sources) = system
-            .model
-            .wet
-            .as_ref()
-            .map_or((0, 0), |wet| (wet.network.ports.len(), wet.network.sources.len()));
+        let network = system.model.wet.as_ref().map(|wet| &wet.network);
+        let (ports, sources) = network.map_or((0, 0), |network| (network.ports.len(), network.sources.len()));
         let links = system.fluid.as_ref().map_or(0, |fluid| fluid.links.len());
         let curved = system.loads.iter().any(|load| load.kind == LoadKind::RestCurvature);
         Self {
             clock: None,
             cj: 0.0,
             turns: Turns::default(),
+            tangents: ValveTangents::default(),
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],

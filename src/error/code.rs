@@ -61,6 +61,7 @@ codes! {
     NoCycle = "E046", "No motion over a period.";
     NoModes = "E047", "No modes are found.";
     OutOfRange = "E048", "The result leaves what the model describes.";
+    Interrupted = "E049", "A command that was interrupted.";
     File = "E050", "A file that cannot be read or written.";
     Reciprocity = "W001", "A coupling that is not reciprocal.";
     CouplingLaw = "W002", "A coupling that is not passive, solvable or convex.";

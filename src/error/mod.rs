@@ -138,6 +138,9 @@ pub enum Error {
     /// The solver could not go on (exit code 4).
     #[error("{}", .0.what)]
     Solver(Box<SolverError>),
+    /// Somebody ended the command before it had a result (exit code 4; after a signal that of the signal).
+    #[error("{0}")]
+    Interrupted(String),
     /// A file could not be read or written (exit code 5).
     #[error("cannot {action} {}: {source}", .path.display())]
     Output {
@@ -157,6 +160,7 @@ impl Error {
             Self::Usage(_) => Code::Usage,
             Self::Case(fault) => fault.violations.first().map_or(Code::Text, |v| v.code),
             Self::Solver(fault) => fault.code,
+            Self::Interrupted(_) => Code::Interrupted,
             Self::Output { .. } => Code::File,
         }
     }
@@ -186,7 +190,7 @@ impl Error {
         match self {
             Self::Usage(_) => 2,
             Self::Case(_) => 3,
-            Self::Solver(_) => 4,
+            Self::Solver(_) | Self::Interrupted(_) => 4,
             Self::Output { .. } => 5,
         }
     }

@@ -24,7 +24,7 @@ pub fn json(error: &Error) -> Value {
             told["cause"] = fault.cause.clone().into();
             told["hint"] = fault.hint.clone().into();
         }
-        Error::Usage(_) | Error::Output { .. } => {}
+        Error::Usage(_) | Error::Interrupted(_) | Error::Output { .. } => {}
     }
     told
 }
@@ -45,7 +45,7 @@ fn violation(places: &mut Places, violation: &Violation) -> Value {
 pub fn diagnosis(fault: &SolverError) -> String {
     // modes and equilibria belong to an instant and do not run
     let failed = match (fault.code, fault.at) {
-        (Code::NoModes | Code::NoEquilibrium, _) => String::new(),
+        (Code::NoModes | Code::NoEquilibrium | Code::Interrupted, _) => String::new(),
         (Code::NoCycle, At::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
         (_, At::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
         (_, At::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),

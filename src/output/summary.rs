@@ -36,6 +36,7 @@ pub fn to_json(summary: &Summary) -> String {
             window_power_w: finite(q.window_power_w),
             final_error: finite(q.final_error),
             window_error: finite(q.window_error),
+            ..*q
         };
     }
     results::text(&summary)

@@ -11,14 +11,18 @@
 //!
 //! What is stored when the window begins is not put in within it: over the window the quotient has `W - ΔE` below, and takes it
 //! from where it went, since Δr is an error of the works, which are differences of what goes in and comes back, more than of
-//! losses, which only grow.
+//! losses, which only grow. A quotient whose denominator is below the numerical error of the run has no value:
+//!
+//! ```text
+//! |denominator| <= max(E_f, max(rtol², 1e-12) max(|E|, |W|))        E_f the energy of a displacement that is round-off
+//! ```
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 use super::schedule::SAME;
-use super::summary::Quantity;
+use super::summary::{Absence, Quantity};
 use crate::case::schema::Case;
 use crate::discrete::quantities::{Group, Interest, Row};
 use crate::error::Code;
@@ -30,6 +34,8 @@ const OPEN: f64 = 0.1;
 pub const REMAINDER: f64 = 3e-3;
 /// An efficiency is above one, or below zero, when it is so by more than its round-off.
 const ROUND_OFF: f64 = 1e-6;
+/// Rounding error of energies that are sums over the beam and the run, relative to the largest one.
+pub const ROUNDING: f64 = 1e-12;
 
 /// Energies at an instant, or gains over a time [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -141,8 +147,15 @@ impl Energies {
         }
     }
 
-    /// Gives every figure of energy its error, and the window its efficiency.
-    pub fn complete(&self, quantities: &mut BTreeMap<String, Quantity>) {
+    /// Numerical error of energies of a run with a tolerance [J].
+    fn numerical_error(&self, rtol: f64) -> f64 {
+        let relative = (rtol * rtol).max(ROUNDING);
+        self.floor.max(relative * self.largest_stored.max(self.largest_input))
+    }
+
+    /// Gives every figure of energy of a run with a tolerance its error, and the window its efficiency; an efficiency of what is numerical error
+    /// alone has no value.
+    pub fn complete(&self, quantities: &mut BTreeMap<String, Quantity>, rtol: f64) {
         let (run, window) = (self.run.gained(&self.last), self.window.gained(&self.last));
         let (opened, open) = (self.run.open(), self.window.open());
         let relative = |open: f64, size: f64| finite(open / size.abs());
@@ -157,6 +170,14 @@ impl Energies {
         }
         if let Some(q) = quantities.get_mut(Interest::Efficiency.name()) {
             q.window = finite(window.harvested / window.spent());
+            let least = self.numerical_error(rtol);
+            let absent = |since: &Since, of: f64| {
+                (since.start.is_some() && of.abs() <= least).then_some(Absence::BelowNumericalError)
+            };
+            q.final_absent = absent(&self.run, run.input);
+            q.last = q.last.filter(|_| q.final_absent.is_none());
+            q.window_absent = absent(&self.window, window.spent());
+            q.window = q.window.filter(|_| q.window_absent.is_none());
             q.final_error = q.last.and_then(|_| relative(opened, run.input));
             q.window_error = q.window.and_then(|_| relative(open, window.spent()));
         }
@@ -190,9 +211,6 @@ impl Energies {
                     continue;
                 };
                 let gained = since.gained(&self.last);
-                if gained.input.abs().max(gained.spent().abs()) <= self.floor {
-                    continue;
-                }
                 let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
                 if error > OPEN {
                     all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));

@@ -13,7 +13,13 @@ type Numbers = BTreeMap<String, f64>;
 
 /// What stays true whatever a run finds: of the case with its characteristic numbers, and of its mesh.
 pub fn lasting(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
-    with_the_mesh(audit::lasting(case, &system.model, numbers), case, system, numbers)
+    with_the_mesh(
+        audit::lasting(case, &system.model, numbers),
+        case,
+        system,
+        numbers,
+        false,
+    )
 }
 
 /// The part of that which no mesh changes.
@@ -25,7 +31,13 @@ pub fn on_any_mesh(case: &Case, system: &System) -> Vec<String> {
 /// That, and what is expected of it: of what does not run and look for itself.
 pub fn warnings(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
-    with_the_mesh(audit::warnings(case, &system.model, &numbers), case, system, &numbers)
+    with_the_mesh(
+        audit::warnings(case, &system.model, &numbers),
+        case,
+        system,
+        &numbers,
+        false,
+    )
 }
 
 /// The same of what has no output times: a cycle, multipliers.
@@ -38,16 +50,11 @@ pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
 /// The same of a state at rest, and of what swings about it by as little as one likes: numbers of motions that the case expects say
 /// nothing of its flows and strains, which the state itself has.
 pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
-    let mut all = without_outputs(case, system);
-    let late = told(seldom::late(case));
-    let of_motion = |warning: &String| {
-        [Code::FastFlow, Code::Strain]
-            .iter()
-            .any(|code| warning.starts_with(code.id()))
-    };
-    let of_change = |warning: &String| warning.contains(resolution::OF_CHANGE);
-    all.retain(|warning| !of_motion(warning) && !late.contains(warning) && !of_change(warning));
-    all
+    let numbers = characteristic::numbers(case, &system.model);
+    let mut of_case = audit::lasting(case, &system.model, &numbers);
+    let of_motion = [Code::FewOutputs, Code::FastFlow, Code::Strain].map(Code::id);
+    of_case.retain(|warning| !of_motion.iter().any(|id| warning.starts_with(id)));
+    with_the_mesh(of_case, case, system, &numbers, true)
 }
 
 /// What there is to say of an instant that a command is asked about [s].
@@ -60,12 +67,18 @@ fn told(seldom: Vec<(String, String)>) -> Vec<String> {
     seldom.into_iter().map(told).collect()
 }
 
-fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
+/// Adds what sizes of the case and its mesh give; of a state `at_rest` nothing that belongs to what changes in time.
+fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System, numbers: &Numbers, at_rest: bool) -> Vec<String> {
     all.extend(told(seldom::sizes(case)));
-    all.extend(told(seldom::late(case)));
+    if !at_rest {
+        all.extend(told(seldom::late(case)));
+    }
     let first = numbers.get("first_bending_frequency_hz").copied();
     all.extend(told(seldom::damping(case, first)));
     all.extend(told(seldom::unheld(case, &system.model.unheld()).into_iter().collect()));
-    all.extend(resolution::warnings(case, system));
+    all.extend(match at_rest {
+        true => resolution::warnings_at_rest(case, system),
+        false => resolution::warnings(case, system),
+    });
     all
 }

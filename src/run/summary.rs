@@ -28,6 +28,14 @@ pub enum Status {
     Failed,
 }
 
+/// Why a ratio has no value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Absence {
+    /// What it divides by is below the numerical error of the run.
+    BelowNumericalError,
+}
+
 /// A quantity over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
@@ -64,6 +72,12 @@ pub struct Quantity {
     /// Of energies: how far the balance was open over the window, relative to `window`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_error: Option<f64>,
+    /// Why a ratio has no value over the run, where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub final_absent: Option<Absence>,
+    /// Likewise over the window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window_absent: Option<Absence>,
 }
 
 impl Quantity {

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::run::dynamics::Outcome;
 use crate::run::record::{Control, Header, Progress, Recorder};
+use crate::run::summary::{Status, Summary};
 
 /// A row: a value of each column, and of each number the derivatives of all columns.
 pub type Row = (Vec<f64>, Vec<Vec<f64>>);
@@ -44,14 +45,12 @@ impl<'a> Followed<'a> {
         if self.rows.len() == self.count && self.rows.iter().all(|row| row.1.len() == self.by.len()) {
             return Ok(self.rows);
         }
+        let Summary { status, reason, .. } = outcome.summary;
+        let reason = reason.unwrap_or_else(|| "the run ended before the data".into());
         Err(match outcome.fault {
             Some(fault) => Error::Solver(Box::new(fault)),
-            None => Error::Usage(
-                outcome
-                    .summary
-                    .reason
-                    .unwrap_or_else(|| "the run ended before the data".into()),
-            ),
+            None if status == Status::Stopped => Error::Interrupted(reason),
+            None => Error::Usage(reason),
         })
     }
 }

@@ -195,3 +195,21 @@ fn every_long_command_ends_within_two_seconds_of_cpu() {
     }
     assert!(late.is_empty(), "{}", late.join("\n"));
 }
+
+/// Goal: a command that ends before it has anything says that it was interrupted, by a number of its own, and not that its command line makes no sense.
+#[test]
+fn an_interrupted_command_has_a_number_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    for (command, case) in [("periodic", "cases/wiring-2.json"), ("equilibrium", "cases/curl.json")] {
+        let said = Command::new(env!("CARGO_BIN_EXE_slcbeam"))
+            .args([command, case, "--quiet", "--json", "--max-wall", "0", "--out"])
+            .arg(folder.path().join(command))
+            .output()
+            .unwrap();
+        let err = String::from_utf8_lossy(&said.stderr);
+        assert!(
+            err.contains("explain E049") && !err.contains("E030"),
+            "{command}: {err}"
+        );
+    }
+}

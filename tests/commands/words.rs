@@ -319,3 +319,31 @@ fn warnings_are_whole_and_the_tip_has_its_end() {
     assert!(text.contains("tip at the end: u₁ 1.14 mm"), "{text}");
     assert!(text.contains("largest: u₁ −2.57 mm at 0 s"), "{text}");
 }
+
+/// Goal: a name of output with control characters is refused at once, by every command that writes one.
+#[test]
+fn names_of_output_hold_no_control_characters() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let name = dir.path().join("a\nb");
+    let name = name.to_str().expect("text");
+    for words in [
+        vec!["run", "cases/curl.json", "--out", name],
+        vec![
+            "sweep",
+            "cases/curl.json",
+            "--vary",
+            "/beam/width_m=0.01:0.02:2",
+            "--out",
+            name,
+        ],
+        vec!["merge", "x", "--out", name],
+        vec!["report", "x", "--out", name],
+        vec!["export", "x", "--out", name],
+        vec!["compare", "x", "y", "--out", name],
+        vec!["new", "beam", name],
+    ] {
+        let (code, _, err) = slcbeam(Path::new("."), &words);
+        assert!(code == 2 && err.contains("control characters"), "{words:?}: {err}");
+        assert!(!Path::new(name).exists(), "{words:?}");
+    }
+}

@@ -287,3 +287,16 @@ fn command_tells_what_is_nothing() {
     ]);
     assert!(words.contains("nothing acts at t = 1.00000 s"), "{words}");
 }
+
+/// Goal: an angle of a ten-thousandth of what the beam moves by over its length, which is what a mesh leaves of zero, is no figure to warn of.
+#[test]
+fn an_angle_counts_beside_the_deflection() {
+    let out = tempfile::tempdir().expect("a folder");
+    let run = slcbeam(&["equilibrium", "tests/faults/lying-on-wall.json"], out.path());
+    let text = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success() && text.contains("mesh error"), "{text}");
+    assert!(
+        !text.contains("tip_angle may be off") && !text.contains("that of tip_angle"),
+        "{text}"
+    );
+}

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use serde_json::json;
+use slcbeam::case::Case;
 use slcbeam::dae::{Dae as _, Seeds, StaticBeam};
 use slcbeam::discrete::start;
 use slcbeam::run::equilibrium::{Options, system};
@@ -197,4 +198,70 @@ fn a_flow_at_its_zero_is_none() {
     for (a, b) in still.last().row.iter().zip(&held.last().row).skip(1).take(3) {
         assert!((a / b - 1.0).abs() < 1e-9, "{a:e} {b:e}");
     }
+}
+
+/// An actuator behind a check valve that opens at once, with an outlet that is nearly shut; `more` changes it.
+fn behind_check_valve(smoothing_pa: f64, reverse: f64, more: &[&str]) -> Case {
+    let circle = |radius: f64| json!({"circle": {"radius_m": radius}});
+    let case = json!({
+        "name": "checked", "preset": "matia-gat-beam", "bladders": {"coupling": "reciprocal"},
+        "network": {
+            "chains": [
+                {"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ["connected", "sealed"]},
+                {"bladders": [-1, -2, -3, -4, -5, -6, -7, -8, -9, -10], "ends": [{"pressure_pa": 0}, "sealed"]}
+            ],
+            "junctions": ["a", "b", "o"],
+            "tubes": [
+                {"from": {"junction": "a"}, "to": {"bladder": 1, "end": "inlet"}, "length_m": 0.02, "cross_section": circle(3e-4)},
+                {"from": {"junction": "b"}, "to": {"junction": "a"}, "length_m": 1, "cross_section": circle(2e-3),
+                 "check_valve": {"cracking_pressure_pa": 0, "forward_conductance_m3_s_pa": 3e-8,
+                                 "reverse_conductance_m3_s_pa": reverse, "smoothing_pa": smoothing_pa}},
+                {"from": {"junction": "a"}, "to": {"junction": "o"}, "length_m": 0.02, "cross_section": circle(3e-4), "opening": 0.01}
+            ],
+            "ports": [
+                {"name": "o", "at": {"junction": "o"}, "pressure_pa": 0},
+                {"name": "b", "at": {"junction": "b"}, "pressure_pa": 4e4}
+            ]
+        },
+        "beam": {"damping": {"bending_time_s": 1e-3, "axial_time_s": 1e-4}},
+        "fluid": {"viscosity_pa_s": 0.01, "density_kg_m3": 970},
+        "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 3}
+    });
+    let sets: Vec<String> = more.iter().map(ToString::to_string).collect();
+    let path = std::path::Path::new("test.json");
+    slcbeam::case::parse(&case.to_string(), path, std::path::Path::new(""), &sets).expect("a valid case")
+}
+
+/// Goal: a valve that opens over a pressure far below those that act, beside conductances of any size: the path is found, and the pressure behind
+/// the valve is that of tube, valve and outlet in series, `p - p_a = q/G_t + sqrt(2 w q/G_f)` with `q = G_o p_a`.
+#[test]
+fn a_valve_opens_over_a_small_part_of_the_pressure() {
+    let poiseuille = |radius: f64, length: f64| PI * radius.powi(4) / (8.0 * 0.01 * length);
+    for (smoothing, reverse) in [(5.0, 1e-14), (5.0, 1e-12), (0.05, 1e-14), (5e3, 1e-17)] {
+        for more in [&[][..], &["/loads=[{\"gravity\": {\"x_m_s2\": -9.81}}]"]] {
+            let (path, at) = solved(&behind_check_valve(smoothing, reverse, more));
+            let pushed = 4e4;
+            let outlet = 0.01 * poiseuille(3e-4, 0.02);
+            let mut behind = pushed;
+            for _ in 0..100 {
+                let flow = outlet * behind;
+                behind = pushed - flow / poiseuille(2e-3, 1.0) - (2.0 * smoothing * flow / 3e-8).sqrt();
+            }
+            let found = at("max_pressure");
+            assert!(
+                (found - behind).abs() < 2e-4 * behind,
+                "w {smoothing}, G_r {reverse:e}: {found} instead of {behind}"
+            );
+            assert!(path.states.len() < 100, "{} states", path.states.len());
+        }
+    }
+}
+
+/// Goal: a pump before the valve presses as its port would.
+#[test]
+fn a_pump_opens_a_valve_over_a_small_part_of_its_pressure() {
+    let pump = "/network/tubes/1/pump={\"pressure_pa\": 4e4, \"resistance_pa_s_m3\": 1e3}";
+    let pumped = behind_check_valve(5.0, 1e-14, &["/network/ports/1/pressure_pa=0", pump]);
+    let [by_port, by_pump] = [behind_check_valve(5.0, 1e-14, &[]), pumped].map(|case| solved(&case).1("max_pressure"));
+    assert!((by_pump / by_port - 1.0).abs() < 1e-6, "{by_pump} {by_port}");
 }

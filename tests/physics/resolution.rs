@@ -291,3 +291,27 @@ fn no_shipped_case_is_warned() {
         }
     }
 }
+
+/// Goal: a finding says whether a state at rest has it too: the shape of a load does, a pressure that goes to and fro in a bladder does not.
+#[test]
+fn findings_say_whether_states_at_rest_have_them() {
+    let load = pressed(&pad(0.03, 50.0), 1, &[]);
+    let swinging = shipped(
+        "network-tour",
+        &[
+            r#"/network/ports/0/pressure_pa={"sine": {"amplitude": 500, "frequency_hz": 200}}"#,
+            "/mesh/cells_per_bladder=1",
+            "/fluid/viscosity_pa_s=0.05",
+        ],
+    );
+    for (case, at_rest) in [(load, true), (swinging, false)] {
+        let system = System::new(&case).unwrap();
+        let found = resolution::unresolved(&case, &system);
+        assert!(
+            !found.is_empty() && found.iter().all(|finding| finding.at_rest == at_rest),
+            "{found:?}"
+        );
+        let told = resolution::warnings_at_rest(&case, &system);
+        assert_eq!(told.len(), if at_rest { found.len() } else { 0 }, "{told:?}");
+    }
+}

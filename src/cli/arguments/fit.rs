@@ -99,7 +99,7 @@ pub struct CompareArguments {
     #[arg(long, value_name = "COLUMN", requires = "matches")]
     pub time: Option<String>,
     /// A page of tables and of histories over each other, report.html in this folder; or a picture of two, where it ends in .svg
-    #[arg(short, long, value_name = "FOLDER")]
+    #[arg(short, long, value_name = "FOLDER", value_parser = crate::cli::line::output_path())]
     pub out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]

@@ -264,7 +264,7 @@ fn energy(summary: &Summary) -> Option<String> {
         Some(format!(" ({power} in the window)"))
     };
     let energy = |one: Interest| Some(figure(summary, (one.name(), "final"), last(one)?, "J"));
-    let efficiency = |kind: &str, value: f64| {
+    let share = |kind: &str, value: f64| {
         let error = summary.error(Interest::Efficiency.name(), kind);
         hold(error.map_or_else(
             || percent(value),
@@ -272,13 +272,16 @@ fn energy(summary: &Summary) -> Option<String> {
         ))
     };
     let with_power = |one: Interest| power(one).unwrap_or_default();
+    let efficiency = get(summary, Interest::Efficiency);
+    let undetermined = efficiency.is_some_and(|q| q.final_absent.is_some());
     let parts = [
         energy(Interest::InputEnergy).map(|e| format!("put in {e}{}", with_power(Interest::InputEnergy))),
         energy(Interest::HarvestedEnergy).map(|e| format!("harvested {e}{}", with_power(Interest::HarvestedEnergy))),
-        last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", efficiency("final", e)))),
-        get(summary, Interest::Efficiency)
+        last(Interest::Efficiency).map(|e| hold(format!("efficiency {}", share("final", e)))),
+        undetermined.then(|| "no efficiency (below numerical error)".into()),
+        efficiency
             .and_then(|q| q.window)
-            .map(|e| hold(format!("in the window {}", efficiency("window", e)))),
+            .map(|e| hold(format!("in the window {}", share("window", e)))),
     ];
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
 }

@@ -210,7 +210,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
                 let volume = match &link.check_valve {
                     None => driving * conductance,
                     Some(_) if conductance == 0.0 => T::zero(),
-                    Some(valve) => valve.flow_behind(1.0 / conductance, driving),
+                    Some(valve) => now.tangents.behind(k, valve, 1.0 / conductance, driving),
                 };
                 w.fluid.at_ambient_density(k, volume)
             }
@@ -304,8 +304,9 @@ pub fn over_bridge<T: Scalar>(
 #[inline]
 pub fn through_bridge<T: Scalar>(wet: &Wet, fluid: &FluidMesh, k: usize, now: &TimeData, w: &Workspace<T>) -> T {
     let valve = &wet.network.bridges[fluid.bridges[k].number].valve;
-    let ((forward, backward), density) = over_bridge(wet, fluid, k, now, w);
-    let volume = valve.flow(forward) - valve.flow(backward);
+    let (drops, density) = over_bridge(wet, fluid, k, now, w);
+    let (forward, backward) = now.tangents.through(k, valve, drops);
+    let volume = forward - backward;
     density.map_or(volume, |density| volume * density)
 }
 

@@ -165,7 +165,8 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
             None => (volume * (link.half_cells + link.of_pump) - driven) * now.opening[k] + volume * link.resistance,
             Some(valve) => {
                 let along = law.resistance_along_a_step(now.cj);
-                volume - valve.flow_behind(1.0 / now.conductance[k] + along, driven + volume * along)
+                let resistance = 1.0 / now.conductance[k] + along;
+                volume - now.tangents.behind(k, valve, resistance, driven + volume * along)
             }
         };
     }
@@ -201,8 +202,10 @@ pub fn bridges<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: 
     };
     for (k, &MeshBridge { number, .. }) in fluid.bridges.iter().enumerate() {
         let bridge = &wet.network.bridges[number];
-        let ((forward, backward), _) = over_bridge(wet, fluid, k, now, w);
+        let (forward, backward) = now
+            .tangents
+            .through(k, &bridge.valve, over_bridge(wet, fluid, k, now, w).0);
         let through = w.fluid.bridge[k] * wet.network.turbines[bridge.turbine].conductance;
-        r[system.layout.network.bridge.start + k] = bridge.valve.flow(forward) + bridge.valve.flow(backward) - through;
+        r[system.layout.network.bridge.start + k] = forward + backward - through;
     }
 }

@@ -21,7 +21,6 @@ use crate::model::{Load, Model, Storage};
 
 use super::{System, shapes};
 use begun::Begun;
-pub use ports::OF_CHANGE;
 use statics::Shape;
 
 /// Share of a shape's effect beyond which leaving it out is told.
@@ -43,6 +42,26 @@ pub struct Finding {
     pub wanted: Option<usize>,
     /// Setting of the mesh that decides.
     pub setting: &'static str,
+    /// Whether a state at rest leaves it out too; otherwise it belongs to what changes in time.
+    pub at_rest: bool,
+}
+
+/// What so many cells leave out of one shape.
+pub(super) struct LeftOut {
+    /// The share of it.
+    pub share: f64,
+    /// In words.
+    pub what: &'static str,
+    /// As [`Finding::at_rest`].
+    pub at_rest: bool,
+}
+
+impl From<(f64, &'static str)> for LeftOut {
+    /// Of a shape that a state at rest has too.
+    fn from((share, what): (f64, &'static str)) -> Self {
+        let at_rest = true;
+        Self { share, what, at_rest }
+    }
 }
 
 /// Everything that the mesh of a system leaves out of the shapes of its case, by more than [`LIMIT`] or not.
@@ -56,16 +75,15 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     let along = "/mesh/cells_per_segment";
     let mut all = vec![];
     for shape in loads_along(case, &system.model) {
-        let on = |cells: usize| (shape.left_out(segments * cells), shape.what());
+        let on = |cells: usize| (shape.left_out(segments * cells), shape.what()).into();
         all.push(finding(shape.pointer.clone(), cells, along, on));
     }
     for begun in Begun::all(case, system) {
         let on = |cells: usize| {
             let cells = segments * cells;
-            if later {
-                begun.left_out(cells)
-            } else {
-                begun.at_once(cells)
+            match later {
+                true => begun.left_out(cells).into(),
+                false => begun.at_once(cells).into(),
             }
         };
         all.push(finding(begun.pointer(), cells, along, on));
@@ -81,7 +99,7 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
         for (k, start) in case.start.pressures.iter().enumerate() {
             let mut bladders = start.bladders.iter().filter_map(|b| bladder_index(*b, wet.per_row));
             if bladders.any(|b| wet.storage[b] == Storage::Flowing) {
-                let on = |cells| of_means(&start.pressure_pa, cells);
+                let on = |cells| of_means(&start.pressure_pa, cells).into();
                 let pointer = format!("/start/pressures/{k}/pressure_pa");
                 all.push(finding(pointer, fluid.cells_per_bladder, along, on));
             }
@@ -117,6 +135,17 @@ pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
 
 /// A warning for every shape that is not resolved.
 pub fn warnings(case: &Case, system: &System) -> Vec<String> {
+    told(unresolved(case, system))
+}
+
+/// A warning for every shape that is not resolved and that a state at rest has too.
+pub fn warnings_at_rest(case: &Case, system: &System) -> Vec<String> {
+    let mut all = unresolved(case, system);
+    all.retain(|finding| finding.at_rest);
+    told(all)
+}
+
+fn told(findings: Vec<Finding>) -> Vec<String> {
     let told = |finding: Finding| {
         let advice = match finding.wanted {
             Some(cells) => format!("{cells} in {} resolve it", finding.setting),
@@ -129,31 +158,27 @@ pub fn warnings(case: &Case, system: &System) -> Vec<String> {
             100.0 * finding.left_out.min(9.99)
         ))
     };
-    unresolved(case, system).into_iter().map(told).collect()
+    findings.into_iter().map(told).collect()
 }
 
-fn finding(
-    pointer: String,
-    cells: usize,
-    setting: &'static str,
-    left_out: impl Fn(usize) -> (f64, &'static str),
-) -> Finding {
-    let (here, what) = left_out(cells);
+fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl Fn(usize) -> LeftOut) -> Finding {
+    let here = left_out(cells);
     let doubled = std::iter::successors(Some(cells), |cells| Some(2 * cells));
-    let wanted = if here > LIMIT {
+    let wanted = if here.share > LIMIT {
         doubled
             .skip(1)
             .take_while(|cells| *cells <= FINEST)
-            .find(|cells| left_out(*cells).0 <= LIMIT)
+            .find(|cells| left_out(*cells).share <= LIMIT)
     } else {
         Some(cells)
     };
     Finding {
         pointer,
-        what,
-        left_out: here,
+        what: here.what,
+        left_out: here.share,
         wanted,
         setting,
+        at_rest: here.at_rest,
     }
 }
 

@@ -5,13 +5,12 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap};
 use std::f64::consts::{PI, TAU};
 
+use super::LeftOut;
 use crate::case::schema::{BladderEnd, Case, Effect};
 use crate::functions::signals::{Clock, Signal};
 use crate::model::network::{Feed, LinkKind, Node, PressurePort, Source};
 use crate::model::{Model, Wet, characteristic};
 
-/// What a mesh leaves out of pressures that change, and of no state at rest.
-pub const OF_CHANGE: &str = "pressure along the bladder behind it";
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
 /// A jump makes the beam ring along; the overshoot of the pressure has this multiple of the first frequency, measured.
@@ -42,17 +41,21 @@ impl Port {
 
     /// Share of the pressure behind the port that so many cells along a bladder leave out, and in words what that is. A flow through has
     /// its largest pressure in the middle of the first cell, half a cell from the port.
-    pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
+    pub(super) fn left_out(&self, cells: usize) -> LeftOut {
         let swings = (LEFT_OUT * self.depths / cells as f64).min(1.0);
         let flows = 0.5 * self.falls / cells as f64;
         let swings = swings.max((self.lag / cells as f64).min(1.0));
-        if flows > swings {
-            (
-                flows,
-                "the largest pressure of a flow through, in the middle of the first cell,",
-            )
-        } else {
-            (swings, OF_CHANGE)
+        match flows > swings {
+            true => LeftOut {
+                share: flows,
+                what: "the largest pressure of a flow through, in the middle of the first cell,",
+                at_rest: true,
+            },
+            false => LeftOut {
+                share: swings,
+                what: "pressure along the bladder behind it",
+                at_rest: false,
+            },
         }
     }
 }

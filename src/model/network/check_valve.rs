@@ -47,6 +47,11 @@ impl CheckValve {
         drop.lift(|drop| self.behind(resistance, drop))
     }
 
+    /// Flow and its slope behind a resistance [Pa s/m^3], under the drop over both.
+    pub fn flow_and_slope(&self, resistance: f64, drop: f64) -> (f64, f64) {
+        self.behind(resistance, drop)
+    }
+
     /// The pressure drop that a flow takes.
     #[inline]
     pub fn drop<T: Scalar>(&self, flow: T) -> T {

@@ -57,7 +57,7 @@ pub fn words(found: &Found) -> String {
             quantity(found.wall_s, "s", 3),
         ));
     }
-    if loads_nothing(found) {
+    if path.fault.is_none() && loads_nothing(found) {
         let at = significant(found.options.at_s, 6);
         text.push_str(&format!(
             "nothing acts at t = {at} s: beam and bladders are as they are made\n"

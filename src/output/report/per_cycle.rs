@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::history::History;
 use super::pack;
 use crate::discrete::quantities::{Group, Observable};
+use crate::run::energies::ROUNDING;
 
 /// Part of the energy that a period spends below which a ratio of energies says nothing.
 const LEAST: f64 = 1e-9;
@@ -33,9 +34,11 @@ pub fn columns(history: &History, period: f64) -> Vec<Value> {
         .iter()
         .filter(|x| x.is_finite())
         .fold(0.0, |m: f64, x| m.max(x.abs()));
+    let stored = sum(Group::Stored).iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let least = (LEAST * largest).max(ROUNDING * stored);
     let ratio = (0..times.len()).map(|k| {
         let spent = harvested[k] + lost[k] - added[k];
-        if spent.abs() > LEAST * largest {
+        if spent.abs() > least {
             harvested[k] / spent
         } else {
             f64::NAN

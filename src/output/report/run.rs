@@ -278,11 +278,14 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         ),
     );
     let efficiency = summary.quantity("efficiency");
-    let window = efficiency
-        .and_then(|q| q.window)
-        .map_or("harvested over put in".into(), |e| {
-            format!("harvested over put in; {} in the last part", percent(e))
-        });
+    let absent = efficiency.is_some_and(|q| q.final_absent.is_some());
+    let without = match absent {
+        true => "no value: the energy put in is below the numerical error",
+        false => "harvested over put in",
+    };
+    let window = efficiency.and_then(|q| q.window).map_or(without.into(), |e| {
+        format!("{without}; {} in the last part", percent(e))
+    });
     let share = efficiency.and_then(|q| q.last).map(|e| {
         let told = |e: f64, digits| match digits {
             3 => percent(e),

@@ -3,7 +3,7 @@
 use super::{End, Outcome, Run};
 use crate::case::schema::Method;
 use crate::dae::BeamDae;
-use crate::discrete::quantities::Group;
+use crate::discrete::quantities::{Group, Interest};
 use crate::error::Code;
 use crate::integrate::Wall;
 use crate::run::method::{Integrator, Options};
@@ -78,9 +78,15 @@ impl Run<'_> {
         s.ports = o.probes.ports.quantities();
         let finished = s.status == Status::Finished;
         s.step_response = o.steps.as_ref().map(|steps| steps.judge(finished)).unwrap_or_default();
-        o.energies.complete(&mut s.quantities);
+        o.energies.complete(&mut s.quantities, self.case.solver.rtol);
         s.warnings.extend(o.energies.warning(&s.quantities));
         s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
+        let of = Interest::Efficiency.name();
+        let value = s.quantities.get(of).copied().unwrap_or_default();
+        for slope in s.sensitivities.values_mut().filter_map(|by| by.quantities.get_mut(of)) {
+            slope.last = slope.last.filter(|_| value.final_absent.is_none());
+            slope.window = slope.window.filter(|_| value.window_absent.is_none());
+        }
         let b = &mut s.balances;
         b.energy_residual_relative = o.residuals.energy_relative();
         b.volume_residual_relative = o.residuals.volume_relative();

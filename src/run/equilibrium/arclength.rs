@@ -1,6 +1,7 @@
 //! The equations of equilibrium with the load factor as one more unknown.
 
 use crate::dae::{Dae, EvaluationError, Seeds, StaticBeam};
+use crate::discrete::ValveTangents;
 use crate::sparse::Pattern;
 
 /// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads, and one that
@@ -50,6 +51,11 @@ impl Arclength {
         }
     }
 
+    /// The beam, to look at.
+    pub fn statics_ref(&self) -> &StaticBeam {
+        &self.statics
+    }
+
     /// The beam.
     pub fn statics(&mut self) -> &mut StaticBeam {
         &mut self.statics
@@ -62,10 +68,16 @@ impl Arclength {
         self.position = share;
     }
 
-    /// `∂F/∂s` into `above`.
+    /// `∂F/∂s` into `above`. Valves are linear meanwhile: the pressure over which one opens may be a small part of what the difference changes.
     fn by_share(&mut self, y: &[f64], s: f64) -> Result<(), EvaluationError> {
-        self.statics.residual(s + DIFFERENCE, y, &[], &mut self.above)?;
-        self.statics.residual(s - DIFFERENCE, y, &[], &mut self.below)?;
+        if ValveTangents::needed(self.statics.system()) {
+            self.statics.residual(s, y, &[], &mut self.above)?;
+            self.statics.linearize_valves(true);
+        }
+        let above = self.statics.residual(s + DIFFERENCE, y, &[], &mut self.above);
+        let below = self.statics.residual(s - DIFFERENCE, y, &[], &mut self.below);
+        self.statics.linearize_valves(false);
+        above.and(below)?;
         for (above, below) in self.above.iter_mut().zip(&self.below) {
             *above = (*above - below) / (2.0 * DIFFERENCE);
         }

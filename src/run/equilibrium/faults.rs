@@ -3,6 +3,7 @@
 use super::path::{End, Follower};
 use super::state::State;
 use super::{Event, Kind};
+use crate::discrete::ValveTangents;
 use crate::error::numbers::counted;
 use crate::error::{At, Code, SolverError};
 use crate::integrate::halt::{self, INTERRUPTED};
@@ -58,6 +59,26 @@ impl Follower<'_> {
         if halt::asked() {
             return stopped(self.stage as f64 + share, INTERRUPTED);
         }
+        // where a state has been found, what holds it is there
+        let begun = self.path.states.iter().any(|state| state.stage == self.stage);
+        let valves = ValveTangents::needed(self.solver.dae().statics_ref().system());
+        let cause = match (begun, valves) {
+            (true, true) => Some(VALVE_CAUSE.into()),
+            (true, false) => Some(CAUSE.into()),
+            (false, _) => None,
+        };
+        let fault = |share: f64, what: &str| {
+            let fault = fault(share, what);
+            SolverError {
+                cause: cause.clone().or(fault.cause),
+                hint: if begun && valves {
+                    Some(VALVE_HINT.into())
+                } else {
+                    fault.hint
+                },
+                ..fault
+            }
+        };
         End(SolverError {
             unknown: failure.worst.clone(),
             ..fault(
@@ -75,6 +96,11 @@ impl Follower<'_> {
 /// What probably ends a path, and what of a beam without fluid.
 const CAUSE: &str = "two paths that meet, a coupling that is not convex, a bladder that closes";
 const DRY_CAUSE: &str = "two paths that meet or pass close by each other, or loads beyond those that the beam can bear";
+
+/// The same of a network with valves that open by themselves.
+const VALVE_CAUSE: &str = "a check valve or rectifier that opens over a pressure far below those that act; or two paths that meet, a coupling that is not convex, a bladder that closes";
+const VALVE_HINT: &str =
+    "a larger smoothing_pa of the valve, or the state after a run (slcbeam run); look at the states up to there";
 
 /// The same fault of a beam without fluid: neither bladders nor a coupling are a cause.
 pub(super) fn dry(mut fault: SolverError) -> SolverError {
@@ -101,9 +127,10 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
 
 /// The end of a path that somebody asked for.
 pub(super) fn stopped(share: f64, reason: &str) -> End {
-    let cause = None;
     End(SolverError {
-        cause,
+        code: Code::Interrupted,
+        cause: None,
+        hint: None,
         ..fault(share, reason)
     })
 }

@@ -338,7 +338,7 @@ fn paired(
 
 fn failed(about: &Linearised, failure: &SpectralError) -> Error {
     if *failure == SpectralError::Interrupted {
-        return Error::Usage(format!("{failure} before modes were found; nothing is written"));
+        return Error::Interrupted(format!("{failure} before modes were found; nothing is written"));
     }
     let unknown = match failure {
         SpectralError::Singular { column } => Some(about.system().layout.name(*column)),

@@ -133,7 +133,7 @@ impl<'a> Search<'a> {
         let Some(mut best) = best else {
             if (self.stop)() {
                 let what = format!("{INTERRUPTED} before the data were simulated once; nothing is written");
-                return Err(Error::Usage(what));
+                return Err(Error::Interrupted(what));
             }
             return Err(self.fault(|| "the case cannot be simulated at any start".into()));
         };

@@ -96,7 +96,7 @@ fn of_row(
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Row> {
     if stop() {
-        return Err(Error::Usage(INTERRUPTED.into()));
+        return Err(Error::Interrupted(INTERRUPTED.into()));
     }
     let driven = drives
         .iter()
@@ -112,7 +112,7 @@ fn of_row(
         false => Control::Continue,
     })?;
     if stop() {
-        return Err(Error::Usage(INTERRUPTED.into()));
+        return Err(Error::Interrupted(INTERRUPTED.into()));
     }
     if let Some(fault) = path.fault {
         return Err(Error::Solver(Box::new(fault)));

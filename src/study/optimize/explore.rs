@@ -135,7 +135,7 @@ pub fn explore(
         })
         .collect();
     if tried.is_empty() {
-        return Err(Error::Usage(
+        return Err(Error::Interrupted(
             "interrupted before a design was computed; nothing is written".into(),
         ));
     }

@@ -150,7 +150,7 @@ fn differentiated(
     });
     let (found, slopes) = match found {
         Ok(found) => found,
-        Err(Error::Usage(_)) => return None,
+        Err(Error::Usage(_) | Error::Interrupted(_)) => return None,
         Err(error) => return Some(Err(why(&error))),
     };
     let figures = match wanted(problem, &found) {

@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
         let ends = found.into_iter().flatten();
         let best = ends.min_by(|(a, own), (b, other)| better((a, own[0]), (b, other[0])));
         if best.is_none() && (self.stop)() {
-            return Err(Error::Usage(
+            return Err(Error::Interrupted(
                 "interrupted before a design was computed; nothing is written".into(),
             ));
         }

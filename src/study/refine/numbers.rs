@@ -19,6 +19,8 @@ use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
+/// An angle below this part of the largest displacement over the length moves nothing by more than this part of that displacement.
+const SLOPE: f64 = 1e-3;
 /// Strain that is round-off beside moving as a whole.
 const STRAIN: f64 = 1e-9;
 /// Multipliers below this are of what is gone after a period.
@@ -80,7 +82,8 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
     };
     let number = |column: &Column, value: f64| {
         let (unit, factor) = alike(column);
-        Number::new(value, (NOTHING * largest(unit)).max(floor(unit)) / factor)
+        let part = if column.unit == "rad" { SLOPE } else { NOTHING };
+        Number::new(value, (part * largest(unit)).max(floor(unit)) / factor)
     };
     Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }
@@ -145,10 +148,11 @@ pub fn of_cycle(case: &Case, periods: usize, stop: &Stop) -> Result<Numbers> {
 fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
     let outcome = record::record(case, scene, cycle, &mut Unrecorded(|_| Control::Continue))?;
     if outcome.summary.status != Status::Finished {
-        return Err(outcome.fault.map_or_else(
-            || Error::Usage(outcome.summary.reason.unwrap_or_default()),
-            |fault| Error::Solver(Box::new(fault)),
-        ));
+        let reason = outcome.summary.reason.unwrap_or_default();
+        return Err(match outcome.fault {
+            Some(fault) => Error::Solver(Box::new(fault)),
+            None => Error::Interrupted(reason),
+        });
     }
     of_summary(case, &outcome.summary)
 }

@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use serde_json::json;
 use slcbeam::discrete::quantities::{Observable, Row};
+use slcbeam::run::dynamics;
 use slcbeam::run::energies::Energies;
-use slcbeam::run::summary::Quantity;
+use slcbeam::run::record::Memory;
+use slcbeam::run::summary::{Absence, Quantity};
 
 const COLUMNS: [Observable; 8] = [
     Observable::Time,
@@ -47,7 +50,7 @@ fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
             },
         ),
     ]);
-    energies.complete(&mut quantities);
+    energies.complete(&mut quantities, 1e-6);
     (energies, quantities)
 }
 
@@ -80,4 +83,43 @@ fn an_efficiency_above_one_is_explained() {
     assert!(energies.warning(&all).expect("5 of 4 J").contains("published"));
     let (energies, all) = followed(&[start, start, [2.0, 10.0, 9.0, 5.0, 4.0, 0.0, 0.0, 0.0]]);
     assert_eq!(energies.warning(&all), None);
+}
+
+/// Goal: an efficiency of energies that are the run's numerical error has no value, but its reason; a turbine that nothing drives.
+#[test]
+fn an_idle_turbine_has_no_efficiency() {
+    let row = |sign: i64| json!((1..=10).map(|k| sign * k).collect::<Vec<i64>>());
+    let case = json!({
+        "name": "idle", "preset": "matia-gat-beam", "bladders": {"coupling": "reciprocal"},
+        "network": {
+            "chains": [{"bladders": row(1), "ends": ["connected", "sealed"]}, {"bladders": row(-1), "ends": ["connected", "sealed"]}],
+            "turbines": [{"name": "t", "from": {"bladder": 1, "end": "inlet"}, "to": {"bladder": -1, "end": "inlet"},
+                          "conductance": {"m3_s_pa": 1e-9}, "rectifier": "ideal"}]
+        },
+        "time": {"end_s": 0.5, "output_interval_s": 0.0025}, "ends": {"root": "clamped", "tip": "free"},
+        "fluid": {"viscosity_pa_s": 0.01, "density_kg_m3": 1000, "bulk_modulus_pa": 2e9},
+        "loads": [{"gravity": {"x_m_s2": -9.81}}], "start": {"equilibrium": {"loads_at_s": 0}}
+    });
+    let path = std::path::Path::new("idle.json");
+    let case = slcbeam::case::parse(&case.to_string(), path, std::path::Path::new(""), &[]).expect("a case");
+    let summary = dynamics::run(&case, &mut Memory::default()).expect("a run").summary;
+    let q = summary.quantities["efficiency"];
+    assert_eq!(
+        (q.last, q.window, q.final_error, q.window_error),
+        (None, None, None, None)
+    );
+    assert_eq!(
+        (q.final_absent, q.window_absent),
+        (Some(Absence::BelowNumericalError), Some(Absence::BelowNumericalError))
+    );
+    assert!(
+        !summary.warnings.iter().any(|warning| warning.starts_with("W020")),
+        "{:?}",
+        summary.warnings
+    );
+    let words = slcbeam::cli::summary_box::render(&summary, std::path::Path::new("out"), false, false, 100);
+    assert!(
+        words.contains("no efficiency") && !words.contains("efficiency 7"),
+        "{words}"
+    );
 }
