@@ -251,6 +251,7 @@ impl Estimator {
         let found = Estimated::of(&rows, unstable, self.near, self.young[0].max(self.young[1]));
         let found = found.map(|found| Estimated {
             turning: self.turning.as_ref().map(Turning::ended),
+            struck: self.strikes.as_ref().and_then(Strikes::struck),
             ..found
         });
         let (cells, rtol) = self.settings;
@@ -341,7 +342,9 @@ impl Estimator {
             let displacements = rows
                 .iter_mut()
                 .filter(|row| row.name.unit() != "J" && row.name.unit() != "Pa");
-            displacements.for_each(|row| row.errors[0] += strikes.off());
+            displacements.for_each(|row| {
+                row.errors = [row.errors[0] + strikes.off(), strikes.multiplied(row.errors[1])];
+            });
         }
         self.couple.tell(&mut rows);
         rows

@@ -7,10 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use super::Unstable;
 use super::resonance::Near;
+use super::strikes::Struck;
 use super::turning::Turned;
 use crate::discrete::quantities::Interest;
 use crate::discrete::resolution;
 use crate::error::Code;
+use crate::error::numbers::{counted, significant};
 use crate::run::summary::Estimate;
 
 /// Above this a figure is warned of.
@@ -53,6 +55,9 @@ pub struct Estimated {
     /// How far a beam has turned that nothing turns back, and by what angle steps may have turned it wrongly; absent where something does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub turning: Option<Turned>,
+    /// Strikes against walls that multiply errors; absent where they do not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub struck: Option<Struck>,
     /// What a rotational spring at an end whose moment is given does to the figure, of first order in the cells; absent where the mesh does more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub couple: Option<f64>,
@@ -123,6 +128,7 @@ impl Estimated {
             crushed: beyond_one(unstable.crushed),
             young: beyond_one(young),
             turning: None,
+            struck: None,
             couple: (worst.couple > 0.5 * worst.errors[1]).then_some(worst.couple),
             near,
             quantities: rows.iter().map(one).collect(),
@@ -139,7 +145,9 @@ impl Estimated {
             .map(|r| format!("{} {}", r.name, size(r.total())))
             .collect();
         let phase = |row: &Row| row.total() - row.phase <= LARGE && row.phase > 0.5 * row.total();
-        let by_phase = self.growth.or(self.softened).or(self.crushed).or(self.young).is_none();
+        let struck = self.struck.map(|struck| struck.gain);
+        let grows = self.growth.or(self.softened).or(self.crushed).or(self.young).or(struck);
+        let by_phase = grows.is_none();
         let only_phase = by_phase && large.iter().all(|row| phase(row));
         let (figures, because) = match (only_phase, self.turned()) {
             (true, Some(turned)) => ("final values", format!("{turned}; largest values are hardly affected")),
@@ -224,7 +232,15 @@ impl Estimated {
         let couple = self.couple.map(|_| {
             "a rotational spring acts at an end whose moment is given: half a cell of it is bent wrongly, an error of first order in the cells".into()
         });
-        let all: Vec<String> = [near, growth, soft, crushed, young, self.turned(), couple]
+        let struck = self.struck.map(|struck| {
+            format!(
+                "{} against walls multiply errors of the motion by about {}, so that small changes of mesh, tolerance or case change \
+                 what follows",
+                counted(struck.strikes.into(), "strike"),
+                significant(struck.gain, 1)
+            )
+        });
+        let all: Vec<String> = [near, growth, soft, crushed, young, self.turned(), couple, struck]
             .into_iter()
             .flatten()
             .collect();
