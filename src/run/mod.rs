@@ -37,5 +37,6 @@ pub mod strides;
 pub mod summary;
 pub mod track;
 pub mod unphysical;
+pub mod valves;
 pub mod wall;
 pub mod waves;
