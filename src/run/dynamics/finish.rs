@@ -13,6 +13,7 @@ use crate::run::method::{Integrator, Options};
 use crate::run::order;
 use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::{Status, WallTimes};
+use crate::run::unbounded;
 
 impl Run<'_> {
     pub(super) fn count(&mut self, solver: &Integrator<BeamDae>) {
@@ -51,12 +52,14 @@ impl Run<'_> {
         wall.steps -= wall.residual + wall.jacobian + wall.linear_solver + integrands;
     }
 
-    /// Figures of ports, and what the run knows of flows that its valves stopped.
+    /// Figures of ports, and what the run knows of flows that its valves stopped and of those that have no largest value.
     pub(super) fn judge_network(&mut self, system: &System) {
         let (s, seen) = (&mut self.summary, &self.observer.seen);
         s.ports = seen.probes.ports.quantities();
         let hammers = hammer::confirmed(self.case, &system.model, s.time_s, &seen.valve_flows);
         s.warnings.extend(hammers);
+        let unbounded = unbounded::leave_out(self.case, system, s.time_s, &mut s.ports);
+        s.warnings.extend(unbounded);
     }
 
     pub(super) fn finish(mut self, end: End) -> Outcome {
