@@ -1,4 +1,4 @@
-//! Ctrl-C, a request to terminate or the clock asks a command to stop soon; everything so far is written.
+//! Ctrl-C, a request to terminate, a terminal that is closed or the clock asks a command to stop soon; everything so far is written.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use rustix::time::{ClockId, clock_gettime};
-use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag as raise, low_level};
 
@@ -101,7 +101,21 @@ fn raise_late(flag: &AtomicBool, program: bool) {
     flag.store(true, Ordering::Relaxed);
 }
 
-/// A flag that the first interrupt (or request to terminate) raises. A second one ends the program at once, and so does the first where the
+/// Signals that ask the program to stop. `nohup` starts it with a closed terminal ignored, and it stays ignored.
+fn requests() -> Vec<i32> {
+    let hangup = (!ignores(SIGHUP)).then_some(SIGHUP);
+    [SIGINT, SIGTERM].into_iter().chain(hangup).collect()
+}
+
+/// True if the program ignores a signal. Where the system does not report it as Linux does, the signal counts as ignored.
+fn ignores(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_none_or(|mask| mask & (1 << (signal - 1)) != 0)
+}
+
+/// A flag that the first interrupt (or request to terminate, or hangup) raises. A second one ends the program at once, and so does the first where the
 /// command does not look at it within [`PATIENCE`].
 pub fn flag() -> Arc<AtomicBool> {
     if let Some(theirs) = embedded::stop() {
@@ -115,11 +129,12 @@ pub fn flag() -> Arc<AtomicBool> {
             ..Asked::default()
         };
         // When a handler cannot be installed, the signal ends the program as it would without one.
-        for signal in [SIGINT, SIGTERM] {
+        let requests = requests();
+        for &signal in &requests {
             let _ = raise::register_usize(signal, Arc::clone(&asked.signal), signal as usize);
             let _ = raise::register(signal, Arc::clone(&asked.raised));
         }
-        if let Ok(signals) = Signals::new([SIGINT, SIGTERM]) {
+        if let Ok(signals) = Signals::new(&requests) {
             let halt = asked.halt.clone();
             let _ = thread::Builder::new().spawn(move || end_in_time(signals, &halt));
         }
@@ -132,7 +147,9 @@ pub fn flag() -> Arc<AtomicBool> {
 fn end_in_time(mut signals: Signals, halt: &Halt) {
     let Some(first) = signals.forever().next() else { return };
     let begin = Instant::now();
-    let again = || signals.pending().next().filter(|_| begin.elapsed() > ONE_REQUEST);
+    // kernel and shell may both report the closed terminal, at different times
+    let impatient = |signal: &i32| *signal != SIGHUP && begin.elapsed() > ONE_REQUEST;
+    let again = || signals.pending().find(impatient);
     end_unless_answered(halt, again, ("interrupted", SIGNAL + first));
 }
 
@@ -169,7 +186,7 @@ pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
     }
 }
 
-/// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate.
+/// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate, 129 after a hangup.
 fn code() -> Option<ExitCode> {
     let signal = ASKED.get()?.signal.load(Ordering::Relaxed);
     (signal > 0).then(|| ExitCode::from((SIGNAL as usize + signal) as u8))

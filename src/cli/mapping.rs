@@ -8,7 +8,7 @@ use super::arguments::{MappingArguments, Table};
 use super::size;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::run::observe::network_coordinate;
+use crate::model::mapping::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
 pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {

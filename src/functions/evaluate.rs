@@ -68,19 +68,21 @@ impl Signal {
 
     /// When the value first jumps until `end` [s], and what it is on both sides.
     pub fn first_jump(&self, end: f64) -> Option<[f64; 3]> {
+        self.each_jump(end).next()
+    }
+
+    /// When the value jumps until `end` [s], and what it is on both sides, in order of time.
+    pub fn each_jump(&self, end: f64) -> impl Iterator<Item = [f64; 3]> {
         let mut last: Option<f64> = None;
-        for (start, stop) in self.smooth_intervals(end) {
+        self.smooth_intervals(end).into_iter().filter_map(move |(start, stop)| {
             let at = |t: f64| {
                 let within = 0.5 * (start + stop);
                 self.jet(Clock { t, within }).value
             };
             let first = at(start);
-            if let Some(before) = last.filter(|before| (first - before).abs() > 1e-9 * (first.abs() + before.abs())) {
-                return Some([start, before, first]);
-            }
-            last = Some(at(stop));
-        }
-        None
+            let before = last.replace(at(stop))?;
+            ((first - before).abs() > 1e-9 * (first.abs() + before.abs())).then_some([start, before, first])
+        })
     }
 
     /// Shortest time scale [s]: period or start of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing

@@ -50,66 +50,152 @@ fn length(tube: &Link) -> f64 {
     tube.tube.map_or(0.0, |flow| flow.volume / area(tube))
 }
 
+/// A closing of a valve in a tube with inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closing {
+    /// Number of the tube among the links of the network.
+    pub link: usize,
+    /// When the valve begins to fall, and when it is shut [s].
+    pub times: [f64; 2],
+    /// Time from its largest opening at the steepest fall [s].
+    shuts: f64,
+}
+
+/// Every closing of every valve of the network of a case, in order of the links and of time.
+pub fn closings(case: &Case, model: &Model) -> Vec<Closing> {
+    let links = model.wet.iter().flat_map(|wet| wet.network.links.iter().enumerate());
+    let of = |(link, valve): (usize, &Link)| {
+        let opening = valve.opening.as_ref().filter(|_| valve.inertance() > 0.0);
+        let falls = opening
+            .map(|opening| falls(opening, case.time.end_s))
+            .unwrap_or_default();
+        falls
+            .into_iter()
+            .map(move |(times, shuts)| Closing { link, times, shuts })
+    };
+    links.flat_map(of).collect()
+}
+
 /// A warning for every valve that shuts in less than `2 l/c` where the tubes in front of it do not follow the wave: its pressure rises by
-/// `ρ c Δv` (Joukowsky 1898), `c = 1/√(ρ κ)`.
+/// `ρ c Δv` (Joukowsky 1898), `c = 1/√(ρ κ)`. Before a run `Δv` is bounded by that of the largest steady flow.
 pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
-    let (Some(wet), Some(fluid)) = (&model.wet, &case.fluid) else {
+    let Some(line) = Line::new(case, model) else {
         return vec![];
     };
-    let network = &wet.network;
-    let softness = Compression::new(fluid, 1.0).map_or(1.0 / WATER, |own| own.compliance(0.0));
-    let c = 1.0 / (fluid.density_kg_m3 * softness).sqrt();
-    let stiff = |end: &TubeEnd| {
-        let walls = end
-            .vessel
-            .map_or(0.0, |law| law.compliance(0.0) + law.volume_at_rest() * softness);
-        walls < end.in_tubes * softness
+    let of = |closing: Closing| line.hammer(&closing, None);
+    line.described(closings(case, model).into_iter().filter_map(of))
+}
+
+/// The same after a run that came to a time [s], from the flow through each valve as it shut [m^3/s], in the order of [`closings`].
+pub fn confirmed(case: &Case, model: &Model, reached: f64, flows: &[f64]) -> Vec<String> {
+    let Some(line) = Line::new(case, model) else {
+        return vec![];
     };
-    let ends: Vec<TubeEnd> = network.tube_ends().into_iter().filter(stiff).collect();
-    let of = |valve: &Link| {
-        let shuts = shuts_in(
-            valve.opening.as_ref().filter(|_| valve.inertance() > 0.0)?,
-            case.time.end_s,
-        )?;
-        let sides = [valve.from, valve.to].map(|node| column(network, &ends, valve, node));
-        let column = sides.into_iter().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    let all = closings(case, model).into_iter().zip(flows);
+    let begun = all.filter(|(closing, _)| closing.times[0] <= reached);
+    line.described(begun.filter_map(|(closing, flow)| line.hammer(&closing, Some(*flow))))
+}
+
+/// What all valves of a network share.
+struct Line<'a> {
+    network: &'a Network,
+    /// Stiff ends of tubes.
+    ends: Vec<TubeEnd>,
+    /// Density [kg/m^3] and velocity of sound [m/s].
+    density: f64,
+    c: f64,
+    /// Largest pressure difference [Pa].
+    drive: f64,
+    /// Most that prescribed flows bring in [m^3/s].
+    fed: f64,
+    /// True if the model has compressed fluid.
+    compressed: bool,
+}
+
+impl<'a> Line<'a> {
+    fn new(case: &Case, model: &'a Model) -> Option<Self> {
+        let (network, fluid) = (&model.wet.as_ref()?.network, case.fluid.as_ref()?);
+        let softness = Compression::new(fluid, 1.0).map_or(1.0 / WATER, |own| own.compliance(0.0));
+        let stiff = |end: &TubeEnd| {
+            let walls = end
+                .vessel
+                .map_or(0.0, |law| law.compliance(0.0) + law.volume_at_rest() * softness);
+            walls < end.in_tubes * softness
+        };
+        Some(Self {
+            network,
+            ends: network.tube_ends().into_iter().filter(stiff).collect(),
+            density: fluid.density_kg_m3,
+            c: 1.0 / (fluid.density_kg_m3 * softness).sqrt(),
+            drive: driving(case, network),
+            fed: network.fed_tubes(case.time.end_s),
+            compressed: model.effects.has(Effect::Compressibility),
+        })
+    }
+
+    /// A closing that stops a flow [m^3/s] faster than a wave returns, if it does so; without a flow the largest steady one.
+    fn hammer(&self, closing: &Closing, flow: Option<f64>) -> Option<Hammer> {
+        let (network, c) = (self.network, self.c);
+        let valve = &network.links[closing.link];
+        let sides = [valve.from, valve.to].map(|node| (node, column(network, &self.ends, valve, node)));
+        let (node, column) = sides
+            .into_iter()
+            .max_by(|(_, a), (_, b)| a.length().total_cmp(&b.length()))?;
         let l = column.length() + length(valve);
-        let drive = driving(case, network);
         let tubes = || column.tubes.iter().copied().chain([valve]);
-        let flow = steady_flow(tubes(), drive) + network.fed_tubes(case.time.end_s);
+        let begins = flow.map(|_| closing.times[0]);
+        let flow = flow.unwrap_or_else(|| steady_flow(tubes(), self.drive) + self.fed);
         let narrowest = tubes().map(area).fold(f64::INFINITY, f64::min);
-        let impedance = fluid.density_kg_m3 * c / column.tubes.first().map_or(narrowest, |tube| area(tube));
+        // the wave runs into all tubes in front of the valve
+        let front = match node {
+            Node::Junction(junction) if !column.tubes.is_empty() => {
+                let others = network.tubes_at(junction).filter(|tube| !std::ptr::eq(*tube, valve));
+                others.map(area).sum()
+            }
+            _ => narrowest,
+        };
+        let impedance = self.density * c / front;
         // a valve stops flow only where it resists more than waves do
         let resists = valve.resistance
             + valve
                 .tube
                 .map_or(0.0, |tube| tube.law.loss(flow) / flow.max(f64::MIN_POSITIVE));
         let hammer = Hammer {
-            valve,
+            link: closing.link,
             parts: column.tubes.len().max(1),
-            shuts,
-            stops: shuts * (THROTTLES * resists / impedance).min(1.0),
+            shuts: closing.shuts,
+            stops: closing.shuts * (THROTTLES * resists / impedance).min(1.0),
             l,
             c,
             rise: impedance * flow,
-            velocity: flow * impedance / (fluid.density_kg_m3 * c),
-            compressed: model.effects.has(Effect::Compressibility),
+            velocity: flow / front,
+            begins,
+            compressed: self.compressed,
         };
         let longest = column.longest().max(length(valve));
         let follows = hammer.compressed && RESOLVES * longest <= c * hammer.stops;
-        (hammer.stops < 2.0 * l / c && hammer.rise > SMALL * drive && !follows).then(|| hammer.describe(network))
-    };
-    network
-        .links
-        .iter()
-        .filter_map(of)
-        .map(|what| Code::WaterHammer.warning(what))
-        .collect()
+        (hammer.stops < 2.0 * l / c && hammer.rise > SMALL * self.drive && !follows).then_some(hammer)
+    }
+
+    /// A warning for each valve, of its closing that raises the pressure most.
+    fn described(&self, all: impl Iterator<Item = Hammer>) -> Vec<String> {
+        let mut worst: Vec<Hammer> = vec![];
+        for hammer in all {
+            match worst.last_mut().filter(|last| last.link == hammer.link) {
+                Some(last) if last.rise >= hammer.rise => {}
+                Some(last) => *last = hammer,
+                None => worst.push(hammer),
+            }
+        }
+        let told = worst.iter().map(|hammer| hammer.describe(self.network));
+        told.map(|what| Code::WaterHammer.warning(what)).collect()
+    }
 }
 
 /// A valve that shuts faster than a pressure wave returns.
-struct Hammer<'a> {
-    valve: &'a Link,
+struct Hammer {
+    /// Number of its tube among the links.
+    link: usize,
     /// Tubes in a row in front of it.
     parts: usize,
     /// Time in which it shuts, and in which it stops the flow [s].
@@ -123,14 +209,19 @@ struct Hammer<'a> {
     rise: f64,
     /// Velocity that is stopped [m/s].
     velocity: f64,
+    /// When the valve begins to shut [s], if the velocity is that of a run.
+    begins: Option<f64>,
     /// True if the model has compressed fluid.
     compressed: bool,
 }
 
-impl Hammer<'_> {
+impl Hammer {
     fn describe(&self, network: &Network) -> String {
-        let own = network.links.iter().position(|link| std::ptr::eq(link, self.valve));
-        let tube = own.map_or(0, |own| network.tube(own)) + 1;
+        let tube = network.tube(self.link) + 1;
+        let when = match self.begins {
+            Some(t) => format!("when the valve begins to shut at {}", quantity(t, "s", 3)),
+            None => "the largest steady velocity".into(),
+        };
         let needed = RESOLVES * self.l / (self.c * self.stops);
         let consequence = match (self.compressed, needed <= MOST_PARTS) {
             (false, _) => "No fluid is compressed in this model: pressures at the valve are those of a rigid column and grow as it shuts faster. Give \
@@ -151,7 +242,7 @@ impl Hammer<'_> {
         };
         format!(
             "water hammer: the valve of tube {tube} shuts in {} and stops the flow in {} (limit {}, the return of a pressure wave, 2 l/c with l = {}, \
-             c = {}). By Joukowsky the pressure rises by up to {} (rho c v, v = {}). {consequence}",
+             c = {}). By Joukowsky the pressure rises by up to {} (rho c v, v = {}, {when}). {consequence}",
             quantity(self.shuts, "s", 3),
             quantity(self.stops, "s", 3),
             quantity(2.0 * self.l / self.c, "s", 3),
@@ -163,12 +254,13 @@ impl Hammer<'_> {
     }
 }
 
-/// The time in which a valve shuts from its largest opening at its fastest until `end` [s]; none where it does not shut.
-fn shuts_in(opening: &Signal, end: f64) -> Option<f64> {
+/// Falls of a valve until `end` [s] that end shut: when each begins and ends, and the time from the largest opening at its steepest rate [s].
+fn falls(opening: &Signal, end: f64) -> Vec<([f64; 2], f64)> {
     let most = opening.largest(end).value;
     let mut before: Option<f64> = None;
-    // rate of the fall that goes on, and of the steepest one that ended shut
-    let (mut falling, mut steepest) = (0.0_f64, 0.0_f64);
+    // when the fall that goes on began, and its steepest rate
+    let mut falling: Option<(f64, f64)> = None;
+    let mut all: Vec<([f64; 2], f64)> = vec![];
     for (from, to) in opening.smooth_intervals(end) {
         let within = 0.5 * (from + to);
         for k in 0..=LOOKS {
@@ -176,20 +268,18 @@ fn shuts_in(opening: &Signal, end: f64) -> Option<f64> {
             let jet = opening.jet(Clock { t, within });
             let jumped = k == 0 && before.is_some_and(|before| jet.value < before - SHUT * most);
             let rate = if jumped { f64::INFINITY } else { -jet.rate };
-            falling = if rate > 0.0 {
-                falling.max(rate)
-            } else if jet.rate > 0.0 {
-                0.0
-            } else {
-                falling
-            };
-            if jet.value <= SHUT * most {
-                steepest = steepest.max(falling);
+            falling = (rate > 0.0).then(|| falling.map_or((t, rate), |(begin, steepest)| (begin, steepest.max(rate))));
+            if let Some((begin, steepest)) = falling.filter(|_| jet.value <= SHUT * most) {
+                let shuts = most / steepest;
+                match all.last_mut().filter(|([from, _], _)| *from == begin) {
+                    Some((_, fastest)) => *fastest = shuts,
+                    None => all.push(([begin, t], shuts)),
+                }
             }
             before = Some(jet.value);
         }
     }
-    (steepest > 0.0).then(|| most / steepest)
+    all
 }
 
 /// Tubes in a row from a side of a valve on, as far as nothing but their own fluid stores between them.

@@ -2,6 +2,7 @@
 
 use super::Wet;
 use super::network::Network;
+use crate::case::schema::Case;
 use crate::case::wiring::bladder_label;
 
 /// The paper's tables use a tube of 0.0184 m where its text says 0.020 m.
@@ -23,6 +24,16 @@ pub struct NetworkCoordinate {
     pub centres: Vec<f64>,
     /// Bladders in the order of `X_f`, array by array; unconnected ones are arrays of one.
     pub arrays: Vec<Vec<usize>>,
+}
+
+/// Length of the tubes of a case in the paper's tables [m].
+pub fn tube_length(case: &Case) -> f64 {
+    case.tubes.as_ref().map_or(0.0, |t| t.length_m)
+}
+
+/// The network's coordinate as the paper's tables have it.
+pub fn network_coordinate(case: &Case, wet: &Wet) -> NetworkCoordinate {
+    NetworkCoordinate::of(wet, tube_length(case))
 }
 
 impl NetworkCoordinate {

@@ -13,7 +13,7 @@ pub mod contact;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
-mod hammer;
+pub mod hammer;
 mod held;
 pub mod kinematics;
 pub mod loads;

@@ -22,6 +22,13 @@ pub fn lasting(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
     )
 }
 
+/// The same of a run, which observes the flows that its valves stop.
+pub fn before_a_run(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
+    let mut all = lasting(case, system, numbers);
+    all.retain(|warning| !warning.starts_with(Code::WaterHammer.id()));
+    all
+}
+
 /// The part of that which no mesh changes.
 pub fn on_any_mesh(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);

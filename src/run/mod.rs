@@ -35,6 +35,8 @@ pub mod stretch;
 pub mod strides;
 pub mod summary;
 pub mod track;
+pub mod unbounded;
 pub mod unphysical;
+pub mod valves;
 pub mod wall;
 pub mod waves;

@@ -10,7 +10,7 @@ use crate::discrete::quantities::{self, Extremes, Look, Observable, Row, probes,
 use crate::discrete::turns::Turns;
 use crate::discrete::{State, System, TimeData};
 use crate::error::Result;
-use crate::model::mapping::NetworkCoordinate;
+use crate::model::mapping::tube_length;
 
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,7 @@ use super::record::{Axis, Column, Field, Header, Recorder, Sampled};
 use super::residuals::Residuals;
 use super::step_response::StepResponses;
 use super::stretch::{self, Stretch, Stretches};
+use super::valves::ValveFlows;
 
 /// What may turn between two steps.
 const TURNING: [Watched; Watched::COUNT] = [
@@ -78,6 +79,9 @@ pub struct Observed {
     /// Outputs before the window that are not written one by one.
     #[serde(default)]
     stretch: Stretch,
+    /// Flows through valves as they shut [m^3/s].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub valve_flows: Vec<f64>,
 }
 
 /// Watches a run, samples it for its recorder and keeps what the summary needs.
@@ -91,6 +95,7 @@ pub struct Observer {
     before: Option<Glance>,
     turning: Vec<f64>,
     readings: Readings,
+    valves: ValveFlows,
     /// What has been seen so far.
     pub seen: Observed,
 }
@@ -109,6 +114,7 @@ impl Observer {
             before: None,
             turning: vec![],
             readings: Readings::new(case),
+            valves: ValveFlows::new(case, system),
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol, floors),
                 figures: Figures::new(case, system),
@@ -275,6 +281,7 @@ impl Observer {
             integrals,
             balance.residual,
         );
+        self.valves.add(glance.t, w, &mut self.seen.valve_flows);
         self.seen.figures.see(glance);
         self.seen.energies.see(glance.t, balance.residual);
         balance
@@ -382,13 +389,4 @@ impl Observer {
         all.extend(self.seen.range.warnings(&self.limits));
         all
     }
-}
-
-fn tube_length(case: &Case) -> f64 {
-    case.tubes.as_ref().map_or(0.0, |t| t.length_m)
-}
-
-/// The network's coordinate as the paper's tables have it.
-pub fn network_coordinate(case: &Case, wet: &crate::model::Wet) -> NetworkCoordinate {
-    NetworkCoordinate::of(wet, tube_length(case))
 }

@@ -36,6 +36,44 @@ fn interrupt_stops_with_everything_written() {
     assert!(out.join("fields.npz").exists());
 }
 
+/// Goal: a closed terminal ends a run as Ctrl-C does, with exit code 129, also where two hangups arrive; a run under `nohup` goes on until it is
+/// asked to terminate. Before, a hangup ended a run without summary.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hangup_stops_with_everything_written_except_under_nohup() {
+    for (disposition, signals, code) in [
+        ("--default-signal=HUP", ["-HUP", "-HUP"], 129),
+        ("--ignore-signal=HUP", ["-HUP", "-TERM"], 143),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("closed");
+        let mut child = Command::new("env")
+            .args([disposition, "--default-signal=TERM", env!("CARGO_BIN_EXE_slcbeam")])
+            .args(["run", "cases/bend-wet.json", "--quiet"])
+            .args(["--set", "/time/end_s=1000", "--set", "/time/output_interval_s=0.1"])
+            .arg("--out")
+            .arg(&out)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let deadline = Instant::now() + Duration::from_secs(60);
+        while !out.join("history.csv").exists() {
+            assert!(Instant::now() < deadline);
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        for name in signals {
+            // one that has ended is not waited for yet, so that its number stays its own
+            signal(child.id(), name);
+            std::thread::sleep(Duration::from_millis(400));
+        }
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{disposition}");
+        let summary = summary(&out);
+        assert_eq!(summary["status"], "stopped", "{disposition}");
+        assert!(summary["reason"].as_str().unwrap().contains("interrupted"));
+    }
+}
+
 /// Goal: a request to terminate has the exit code that shells give it, in every command that ends in order; here a path of equilibria, of which
 /// nothing is left to look at.
 #[cfg(unix)]

@@ -5,7 +5,7 @@
 
 use assert_cmd::Command;
 use slcbeam::model::Model;
-use slcbeam::run::observe::network_coordinate;
+use slcbeam::model::mapping::network_coordinate;
 
 use super::common::shipped;
 

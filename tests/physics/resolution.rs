@@ -3,12 +3,15 @@
 //! Tolerance: 5 % of the deflection is what is told; closed forms to round-off.
 
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use slcbeam::case::Case;
+use slcbeam::case::{self, Case};
 use slcbeam::discrete::{System, resolution, shapes};
+use slcbeam::run::dynamics;
+use slcbeam::run::record::Memory;
 
 use super::common::{EI, Run, run, shipped, within, written};
 use super::loads::{beside, pad, pressed, profiles};
@@ -313,5 +316,68 @@ fn findings_say_whether_states_at_rest_have_them() {
         );
         let told = resolution::warnings_at_rest(&case, &system);
         assert_eq!(told.len(), if at_rest { found.len() } else { 0 }, "{told:?}");
+    }
+}
+
+/// Goal: the largest flow of a port whose pressure jumps at the open end of a bladder grows without limit with the cells, so that the run has no such
+/// figure, and warns with the remedy; its pressure keeps its figures, and so does the flow of a ramp, behind a tube, and with inertia of the fluid.
+/// It doubled with each refinement, and was reported.
+#[test]
+fn a_flow_that_grows_with_the_mesh_is_no_figure() {
+    const FLOW: &str = "port_p_flow_m3_s";
+    let solved = |pressure: &str, more: &[&str]| {
+        let port = format!(
+            r#"/network={{"ports": [{{"name": "p", "at": {{"bladder": 1, "end": "inlet"}}, "pressure_pa": {pressure}}}]}}"#
+        );
+        let sets = [
+            &[
+                "/time={\"end_s\": 0.05, \"output_interval_s\": 0.00025, \"window_s\": 0.01}",
+                port.as_str(),
+            ],
+            more,
+        ]
+        .concat();
+        let sets: Vec<String> = sets.iter().map(|set| (*set).to_owned()).collect();
+        let text = r#"{"name": "jump", "preset": "matia-gat-beam", "bladders": {"coupling": "reciprocal"},
+            "ends": {"root": "clamped", "tip": "free"}, "effects": {"bladder_inertia": "off"}}"#;
+        let case = case::parse(text, Path::new("jump.json"), Path::new(""), &sets).unwrap();
+        let summary = dynamics::run(&case, &mut Memory::default()).unwrap().summary;
+        let told = summary
+            .warnings
+            .iter()
+            .find(|w| w.contains("grows without limit"))
+            .cloned();
+        (summary.ports[FLOW], summary.ports["port_p_pressure_pa"], told)
+    };
+    let late = r#"{"table": {"times_s": [0, 0.045, 0.045, 1], "values": [0, 0, 4e4, 4e4], "interpolation": "linear"}}"#;
+    for (pressure, in_window) in [("4e4", false), (late, true)] {
+        let (flow, given, told) = solved(pressure, &[]);
+        assert_eq!(
+            (flow.max_abs, flow.extreme, flow.max_abs_at_s),
+            (None, None, None),
+            "{pressure}"
+        );
+        assert!(
+            flow.last.is_some() && flow.window_max_abs.is_none() == in_window && flow.window_rms.is_none() == in_window
+        );
+        assert!((given.max_abs.unwrap() / 4e4 - 1.0).abs() < 1e-9, "{given:?}");
+        let told = told.unwrap();
+        assert!(
+            told.starts_with("W016") && told.contains("\"p\"") && told.contains("ramp"),
+            "{told}"
+        );
+    }
+    let ramp = r#"{"ramp": {"to": 4e4, "duration_s": 0.01}}"#;
+    let filled = r#"/start={"pressures": [{"bladders": [1], "pressure_pa": 4e4}]}"#;
+    for (pressure, more) in [
+        (ramp, &[][..]),
+        ("4e4", &[filled]),
+        ("4e4", &[r#"/effects/bladder_inertia="on""#]),
+    ] {
+        let (flow, _, told) = solved(pressure, more);
+        assert!(
+            flow.max_abs.is_some() && told.is_none(),
+            "{pressure} {more:?}: {told:?}"
+        );
     }
 }

@@ -21,6 +21,7 @@ use crate::model::{Load, Model, Storage};
 
 use super::{System, shapes};
 use begun::Begun;
+pub use ports::JumpIntoBladder;
 use statics::Shape;
 
 /// Share of a shape's effect beyond which leaving it out is told.
@@ -115,6 +116,13 @@ pub fn first_jump(case: &Case, model: &Model) -> Option<(String, f64)> {
     let wet = model.wet.as_ref()?;
     let all = follows.iter().all(|effect| model.effects.has(*effect));
     all.then(|| ports::first_jump(case, wet)).flatten()
+}
+
+/// Ports through which the largest flow grows without limit as the mesh is refined: their pressure jumps where the fluid has no inertia.
+pub fn jumps_into_bladders(case: &Case, model: &Model) -> Vec<JumpIntoBladder> {
+    let diffuses = model.effects.has(Effect::FlowAlongBladders) && !model.effects.has(Effect::BladderInertia);
+    let wet = model.wet.as_ref().filter(|_| diffuses);
+    wet.map(|wet| ports::jumps_into_bladders(case, wet)).unwrap_or_default()
 }
 
 /// What the mesh leaves out by more than [`LIMIT`].

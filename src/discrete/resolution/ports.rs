@@ -7,9 +7,10 @@ use std::f64::consts::{PI, TAU};
 
 use super::LeftOut;
 use crate::case::schema::{BladderEnd, Case, Effect};
+use crate::case::wiring::bladder_index;
 use crate::functions::signals::{Clock, Signal};
 use crate::model::network::{Feed, LinkKind, Node, PressurePort, Source};
-use crate::model::{Model, Wet, characteristic};
+use crate::model::{Model, Storage, Wet, characteristic};
 
 /// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
@@ -157,15 +158,9 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
     const REACHED: f64 = 0.9;
     let (end, network) = (case.time.end_s, &wet.network);
     let diffusivity = network.bladder_mobility / wet.compliance();
-    let mut at_bladder = vec![false; network.ports.len()];
-    for link in network.links.iter().filter(|link| link.kind == LinkKind::Opening) {
-        match (link.from, link.to) {
-            (Node::Port(k), Node::Cell { .. }) | (Node::Cell { .. }, Node::Port(k)) => at_bladder[k] = true,
-            _ => {}
-        }
-    }
-    let lag = |(port, at_bladder): (&PressurePort, bool)| {
-        if !at_bladder {
+    let open = at_open_ends(wet);
+    let lag = |(port, open): (&PressurePort, Option<(usize, BladderEnd)>)| {
+        if open.is_none() {
             return 0.0;
         }
         let signal = &port.pressure;
@@ -184,7 +179,74 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
         let time = (end - reached).max(0.25 * reached);
         0.5 * wet.bladder_length / (PI * diffusivity * time).sqrt()
     };
-    network.ports.iter().zip(at_bladder).map(lag).collect()
+    network.ports.iter().zip(open).map(lag).collect()
+}
+
+/// Of every port of pressure, the end of a bladder that it is at, with nothing in between.
+fn at_open_ends(wet: &Wet) -> Vec<Option<(usize, BladderEnd)>> {
+    let network = &wet.network;
+    let mut open = vec![None; network.ports.len()];
+    for link in network.links.iter().filter(|link| link.kind == LinkKind::Opening) {
+        match (link.from, link.to) {
+            (Node::Port(k), Node::Cell { bladder, end }) | (Node::Cell { bladder, end }, Node::Port(k)) => {
+                open[k] = Some((bladder, end));
+            }
+            _ => {}
+        }
+    }
+    open
+}
+
+/// A port whose pressure jumps at the open end of a bladder. After a jump by Δp the flow is, as long as the pressure has not come through,
+///
+/// ```text
+/// q(t) = Δp (q1b/μ)/(π D t)^(1/2)       D = q1b/(μ a_p)
+/// ```
+///
+/// so that there is no largest flow. On a mesh it is `2 Δp q1b/(μ Δs)`.
+pub struct JumpIntoBladder {
+    /// Number of the port among those of pressure.
+    pub port: usize,
+    /// Its name.
+    pub name: String,
+    /// Times of the first and the last jump [s].
+    pub times: [f64; 2],
+}
+
+impl JumpIntoBladder {
+    /// Of a port at an end of a bladder; none where pressure does not diffuse along the bladder, or does not jump.
+    fn new(case: &Case, wet: &Wet, port: usize, (bladder, end): (usize, BladderEnd)) -> Option<Self> {
+        let PressurePort { name, pressure, .. } = &wet.network.ports[port];
+        let begins = match case.start.pressures.is_empty() {
+            true => begins_with_jump(case, pressure),
+            false => pressure.value(0.0) != given_at_start(case, wet, bladder, end),
+        };
+        let later = pressure.each_jump(case.time.end_s).map(|[t, ..]| t);
+        let times: Vec<f64> = begins.then_some(0.0).into_iter().chain(later).collect();
+        let times = [*times.first()?, *times.last()?];
+        let name = name.clone();
+        (wet.storage[bladder] == Storage::Flowing).then_some(Self { port, name, times })
+    }
+}
+
+/// Every port whose pressure jumps at the open end of a bladder along which pressure diffuses.
+pub fn jumps_into_bladders(case: &Case, wet: &Wet) -> Vec<JumpIntoBladder> {
+    let open = at_open_ends(wet).into_iter().enumerate();
+    open.filter_map(|(port, open)| JumpIntoBladder::new(case, wet, port, open?))
+        .collect()
+}
+
+/// Pressure that the case gives at the start at an end of a bladder [Pa].
+fn given_at_start(case: &Case, wet: &Wet, bladder: usize, end: BladderEnd) -> f64 {
+    let own = |label: &i64| bladder_index(*label, wet.per_row) == Some(bladder);
+    let given = case
+        .start
+        .pressures
+        .iter()
+        .rev()
+        .find(|one| one.bladders.iter().any(own));
+    let place = if end == BladderEnd::Inlet { 0.0 } else { 1.0 };
+    given.map_or(0.0, |one| one.pressure_pa.value(place))
 }
 
 /// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is

@@ -3,13 +3,16 @@
 use super::{End, Outcome, Run};
 use crate::case::schema::Method;
 use crate::dae::BeamDae;
+use crate::discrete::System;
 use crate::discrete::quantities::{Group, Interest};
 use crate::error::Code;
 use crate::integrate::Wall;
+use crate::model::hammer;
 use crate::run::method::{Integrator, Options};
 use crate::run::order;
 use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::{Status, WallTimes};
+use crate::run::unbounded;
 
 impl Run<'_> {
     pub(super) fn count(&mut self, solver: &Integrator<BeamDae>) {
@@ -48,6 +51,16 @@ impl Run<'_> {
         wall.steps -= wall.residual + wall.jacobian + wall.linear_solver + integrands;
     }
 
+    /// Figures of ports, and what the run knows of flows that its valves stopped and of those that have no largest value.
+    pub(super) fn judge_network(&mut self, system: &System) {
+        let (s, seen) = (&mut self.summary, &self.observer.seen);
+        s.ports = seen.probes.ports.quantities();
+        let hammers = hammer::confirmed(self.case, &system.model, s.time_s, &seen.valve_flows);
+        s.warnings.extend(hammers);
+        let unbounded = unbounded::leave_out(self.case, system, s.time_s, &mut s.ports);
+        s.warnings.extend(unbounded);
+    }
+
     pub(super) fn finish(mut self, end: End) -> Outcome {
         let s = &mut self.summary;
         let fault = match end {
@@ -75,7 +88,6 @@ impl Run<'_> {
         let o = &self.observer.seen;
         s.quantities = o.figures.quantities();
         s.probes = o.probes.quantities();
-        s.ports = o.probes.ports.quantities();
         let finished = s.status == Status::Finished;
         s.step_response = o.steps.as_ref().map(|steps| steps.judge(finished)).unwrap_or_default();
         o.energies.complete(&mut s.quantities, self.case.solver.rtol);

@@ -131,7 +131,7 @@ impl<'a> Run<'a> {
         let interval = case.time.output_interval();
         let mathieu = characteristic::mathieu(&system.model);
         let characteristic = characteristic::numbers_with(case, &system.model, mathieu.as_ref());
-        let mut warnings = known::lasting(case, &system, &characteristic);
+        let mut warnings = known::before_a_run(case, &system, &characteristic);
         if !by.parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
             warnings.extend(inherited::varied(
@@ -319,6 +319,7 @@ impl Run<'_> {
                 self.spent(|wall| &mut wall.output);
                 self.count(&solver);
                 self.divide(&solver.wall());
+                self.judge_network(solver.dae().system());
                 Ok(end)
             }
         }

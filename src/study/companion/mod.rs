@@ -32,7 +32,7 @@ use std::time::{Duration, Instant};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::case::schema::Companion;
-use crate::discrete::System;
+use crate::discrete::{System, resolution};
 use crate::error::{Code, Error, Result};
 use crate::integrate::halt;
 use crate::numerics::threads::{self, Begun};
@@ -141,9 +141,14 @@ fn accompany(
         Ok((companion, of)) => {
             summary.errors = error::errors(summary, &of);
             // a measured error replaces one that the mesh was expected to make
-            summary
+            if summary
                 .warnings
-                .retain(|warning| !warning.starts_with(Code::Unresolved.id()));
+                .iter()
+                .any(|warning| warning.starts_with(Code::Unresolved.id()))
+            {
+                let expected = resolution::warnings(case, &System::new(case)?);
+                summary.warnings.retain(|warning| !expected.contains(warning));
+            }
             summary.companion = Some(companion);
             attribute(case, summary, recorder)?;
         }
