@@ -26,7 +26,7 @@ fn figure(case: &Case, what: What, changes: &[(&str, f64)], name: &str) -> f64 {
         accuracy: None,
         meshes: false,
     };
-    let found = compute::found(&case, ask, &|| false, &|case| compute::run(case, None, &|| false));
+    let found = compute::found(&case, ask, &|| false, &|case| compute::run(case, ask, &|| false));
     found.expect("no interruption").figure(name).expect("a figure")
 }
 
