@@ -185,7 +185,7 @@ fn compare(case: &Case, run: &Summary, reference: &Reference) -> Verdict {
     for one in off.iter().filter(|one| one.beyond(DEFAULT)) {
         // Causes take runs: those of the worst figure are taken for the others, unless they excuse too little.
         let told_of = |causes: &[Cause]| {
-            let names = |w: &String| trust::names(w, causes, &one.quantity, &one.figure);
+            let names = |w: &String| trust::names(w, causes, &one.quantity);
             run.warnings.iter().any(names)
         };
         if excused

@@ -57,7 +57,7 @@ fn code(warning: &str) -> Option<Code> {
 }
 
 /// Whether a warning names an error of these causes in this figure. Where no cause was found by itself any will do.
-pub fn names(warning: &str, causes: &[Cause], quantity: &str, figure: &str) -> bool {
+pub fn names(warning: &str, causes: &[Cause], quantity: &str) -> bool {
     let Some(code) = code(warning) else { return false };
     let energy = quantity.ends_with("_j") || quantity == "efficiency";
     let of = TRUST

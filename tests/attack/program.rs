@@ -158,6 +158,8 @@ pub fn same(a: &Path, b: &Path) -> Result<(), String> {
         let text = fs::read_to_string(dir.join("summary.json")).map_err(|e| format!("summary: {e}"))?;
         let mut value: Value = serde_json::from_str(&text).map_err(|e| format!("summary: {e}"))?;
         value.as_object_mut().map(|v| v.remove("wall_s"));
+        let companion = value.get_mut("companion").and_then(|of| of.as_object_mut());
+        companion.map(|of| of.remove("wall_s"));
         Ok(value)
     };
     if summary(a)? != summary(b)? {

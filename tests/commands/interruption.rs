@@ -44,6 +44,8 @@ pub(super) fn summary(dir: &Path) -> serde_json::Value {
 
 fn without_wall(mut summary: serde_json::Value) -> serde_json::Value {
     summary.as_object_mut().unwrap().remove("wall_s");
+    let companion = summary.get_mut("companion").and_then(|of| of.as_object_mut());
+    companion.map(|of| of.remove("wall_s"));
     summary
 }
 

@@ -1,5 +1,7 @@
 //! The box at the end of a run: what matters, in a glance.
 
+mod errors;
+
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -12,6 +14,7 @@ use crate::output::bands;
 use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed, with_error};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
+use errors::{errors, figure};
 
 /// Warnings shown; the rest is counted.
 const WARNINGS: usize = 3;
@@ -213,14 +216,6 @@ fn hold(text: String) -> String {
     text.replace(' ', "\u{a0}")
 }
 
-/// A figure with its error, where that is known.
-fn figure(summary: &Summary, (name, figure): (&str, &str), value: f64, unit: &str) -> String {
-    hold(match summary.error(name, figure) {
-        Some(error) => with_error(value, error, unit),
-        None => quantity(value, unit, 3),
-    })
-}
-
 fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
     summary.quantities.get(one.name())
 }
@@ -311,30 +306,6 @@ fn accuracy(summary: &Summary) -> Option<String> {
         significant(found.rtol, 1),
         found.pilots.len(),
         shown.collect::<Vec<_>>().join(" · ")
-    ))
-}
-
-/// How the errors of figures were measured, or why there are none.
-fn errors(summary: &Summary) -> Option<String> {
-    if summary.accuracy.is_some() || summary.status != Status::Finished {
-        return None;
-    }
-    let Some(companion) = &summary.companion else {
-        return Some("no error bars: no companion ran".into());
-    };
-    if let Some(reason) = &companion.reason {
-        return Some(format!("no error bars: {reason}"));
-    }
-    let effects = match companion.added_effects.len() {
-        0 => String::new(),
-        n => format!(", {} more", counted(n as u64, "effect")),
-    };
-    Some(format!(
-        "± by a companion run: {} a segment, {} a bladder, rtol {}{effects}{BETWEEN}{}",
-        counted(companion.cells_per_segment as u64, "cell"),
-        companion.cells_per_bladder,
-        significant(companion.rtol, 1),
-        hold(duration(companion.wall_s))
     ))
 }
 

@@ -17,8 +17,10 @@ use crate::run::summary::{Figures, Status, Summary};
 use crate::study::counted::Floors;
 use crate::study::target::models;
 
-/// Relative error above which a quantity is named.
+/// Relative error that is large.
 pub const LIMIT: f64 = 0.05;
+/// Error bar from which on a quantity may have a large error: bars may be too small by half.
+const NAMED_FROM: f64 = 0.5 * LIMIT;
 /// Largest work (steps times unknowns) of a run whose errors are attributed.
 const LARGEST_WORK: u64 = 20_000_000;
 /// Largest work of a run with one change, relative to that of the run.
@@ -39,7 +41,7 @@ pub fn unknown(status: Status, reason: &str) -> Option<String> {
 pub(super) fn attribute(case: &Case, summary: &mut Summary, recorder: &mut dyn Recorder) -> Result<()> {
     let relative = error::relative(summary, &Floors::of(case)?);
     let mut large: Vec<(&String, f64)> = relative.iter().map(|(name, e)| (name, *e)).collect();
-    large.retain(|(_, error)| *error > LIMIT);
+    large.retain(|(_, error)| *error > NAMED_FROM);
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
     if large.is_empty() {
         return Ok(());
@@ -115,10 +117,10 @@ fn shares(summary: &Summary, causes: &BTreeMap<Cause, Figures>) -> BTreeMap<Stri
 fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(Cause, f64)>>) -> String {
     let names: Vec<String> = large
         .iter()
-        .map(|(name, e)| format!("{name} {}", percent(*e)))
+        .map(|(name, e)| format!("{name} ± {}", percent(*e)))
         .collect();
     let found = format!(
-        "estimated errors above {} of the largest value: {}.",
+        "errors may exceed {} of the largest value: {}.",
         percent(LIMIT),
         names.join(", ")
     );
@@ -134,7 +136,7 @@ fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(C
     for (name, error) in large {
         let named = of(name).iter().filter(|(_, share)| *share >= NAMED * error);
         for (k, (cause, share)) in named.enumerate() {
-            if k == 0 || *share > LIMIT {
+            if k == 0 || *share > NAMED_FROM {
                 let most = wanted.entry(*cause).or_insert(0.0);
                 *most = most.max(*share);
             }
@@ -162,9 +164,9 @@ impl Cause {
         }
     }
 
-    /// The argument that takes an error of this size to the limit or below.
+    /// The argument that reduces an error of this size below that from which a quantity is named.
     fn remedy(self, case: &Case, error: f64) -> String {
-        let times = |order: f64| ((error / LIMIT).log2() / order).ceil().max(1.0).exp2() as usize;
+        let times = |order: f64| ((error / NAMED_FROM).log2() / order).ceil().max(1.0).exp2() as usize;
         match self {
             Self::BeamMesh => {
                 let cells = case.mesh.cells_per_segment;
@@ -177,7 +179,7 @@ impl Cause {
                 format!("--set {}={finer}", self.pointer())
             }
             Self::TimeSteps => {
-                let decades = (error / LIMIT).log10().ceil().max(1.0);
+                let decades = (error / NAMED_FROM).log10().ceil().max(1.0);
                 let tighter = (case.solver.rtol * 10_f64.powf(-decades)).max(TIGHTEST);
                 format!("--set {}={tighter:.0e}", self.pointer())
             }

@@ -79,8 +79,9 @@ fn words_of_others_are_not_obeyed() {
         .arg(&out)
         .output()
         .expect("it starts");
-    assert!(run.status.success(), "{}", stderr(&run));
+    assert_eq!(run.status.code(), Some(2), "{}", stderr(&run));
     harmless(&run, "a folder's name");
+    assert!(!out.exists());
     for arguments in [
         vec!["report"],
         vec!["explain"],
