@@ -148,7 +148,7 @@ pub struct CompanionRun {
     pub wall_s: f64,
     /// Its figures.
     pub figures: Figures,
-    /// Errors of figures by their cause, the JSON pointer of a setting; absent where no error is above 5 %.
+    /// Errors of figures by their cause, the JSON pointer of a setting; absent where no error may exceed 5 %.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub causes: BTreeMap<String, Figures>,
 }

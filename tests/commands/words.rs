@@ -5,9 +5,9 @@ use std::path::Path;
 use serde_json::Value;
 use slcbeam::cli::summary_box::render;
 use slcbeam::output::columns::aligned;
-use slcbeam::output::numbers::{count, duration, quantity, shortest, trimmed};
+use slcbeam::output::numbers::{count, duration, quantity, shortest, trimmed, with_error};
 use slcbeam::run::band::Band;
-use slcbeam::run::summary::{Balances, Counters, Quantity, Status, Summary, WallTimes};
+use slcbeam::run::summary::{Balances, CompanionRun, Counters, Quantity, Status, Summary, WallTimes};
 
 #[test]
 fn quantities_read_well() {
@@ -114,12 +114,30 @@ fn is_a_box(text: &str, width: usize) -> bool {
 
 #[test]
 fn a_finished_run_in_a_glance() {
-    let text = render(&summary(Status::Finished), Path::new("out/wiring-2"), true, false, 76);
+    let of = |figures: &[(&str, f64)]| figures.iter().map(|(name, e)| (name.to_string(), *e)).collect();
+    let finished = Summary {
+        errors: [
+            ("tip_u1_m".to_string(), of(&[("final", 4.2e-6), ("max_abs", 1.4e-6)])),
+            ("max_pressure_pa".to_string(), of(&[("max_abs", 210.0)])),
+        ]
+        .into(),
+        companion: Some(CompanionRun {
+            cells_per_segment: 2,
+            cells_per_bladder: 4,
+            rtol: 1e-4,
+            wall_s: 6.2,
+            ..CompanionRun::default()
+        }),
+        ..summary(Status::Finished)
+    };
+    let text = render(&finished, Path::new("out/wiring-2"), true, false, 76);
     insta::assert_snapshot!(text, @r"
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
-    │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm                           │
-    │             largest: u₁ 123 µm · u₃ 1.25 mm                              │
-    │ pressure    largest in a bladder: 9.01 kPa                               │
+    │ tip         at the end: u₁ 123 ± 5 µm · u₃ 1.25 mm                       │
+    │             largest: u₁ 123.0 ± 1.4 µm · u₃ 1.25 mm                      │
+    │ pressure    largest in a bladder: 9.0 ± 0.3 kPa                          │
+    │ errors      ± by a companion run: 2 cells a segment, 4 a bladder, rtol   │
+    │             1·10⁻⁴ · 6.20 s                                              │
     │ balances    open by (relative): energy 3.0·10⁻⁸                          │
     │ integrator  12 345 steps, mostly of order 4 · 0 rejected · 371 unknowns  │
     │ time        500 ms simulated in 12.3 s · 24.6 s for a simulated second   │
@@ -345,5 +363,23 @@ fn names_of_output_hold_no_control_characters() {
         let (code, _, err) = slcbeam(Path::new("."), &words);
         assert!(code == 2 && err.contains("control characters"), "{words:?}: {err}");
         assert!(!Path::new(name).exists(), "{words:?}");
+    }
+}
+
+/// Goal: value and error end at the same digit; the error is rounded up.
+#[test]
+fn a_value_and_its_error_are_rounded_alike() {
+    for (value, error, unit, text) in [
+        (0.0215123, 0.00037, "m", "21.5 ± 0.4 mm"),
+        (0.0215123, 0.00131, "m", "21.5 ± 1.4 mm"),
+        (-4072.0, 12.0, "Pa", "−4.072 ± 0.012 kPa"),
+        (9.1e-6, 6e-7, "m", "9.1 ± 0.6 µm"),
+        (2e-6, 4e-6, "J", "2 ± 4 µJ"),
+        (1.0, 0.0, "m", "1.000 ± 0.001 m"),
+        (0.0, 1e-3, "m", "0.0 ± 1.0 mm"),
+        (2.5e-6, 3e-8, "m^3/s", "(2.50 ± 0.03)·10⁻⁶ m³/s"),
+        (0.0, 0.0, "J", "0 J"),
+    ] {
+        assert_eq!(with_error(value, error, unit), text);
     }
 }

@@ -127,7 +127,11 @@ fn tubes_in_front_of_a_valve_share_the_rise() {
     let told = summary.warnings.iter().find(|w| w.starts_with("W038")).unwrap();
     let mut words = told.split_once("v = ").unwrap().1.split(' ');
     let number: f64 = words.next().unwrap().parse().unwrap();
-    let factor = if words.next().unwrap().starts_with("mm/s") { 1e-3 } else { 1.0 };
+    let factor = if words.next().unwrap().starts_with("mm/s") {
+        1e-3
+    } else {
+        1.0
+    };
     let velocity = factor * number;
     println!("{velocity} m/s, by the run {expected} m/s");
     assert!((velocity / expected - 1.0).abs() < 0.02, "{told}");

@@ -134,11 +134,14 @@ fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(C
     // the largest cause of each quantity, and others that are above the limit by themselves
     let mut wanted: BTreeMap<Cause, f64> = BTreeMap::new();
     for (name, error) in large {
+        let sum: f64 = of(name).iter().map(|(_, share)| share).sum();
         let named = of(name).iter().filter(|(_, share)| *share >= NAMED * error);
         for (k, (cause, share)) in named.enumerate() {
-            if k == 0 || *share > NAMED_FROM {
+            // the error bar is what has to become small
+            let part = share.max(error * share / sum);
+            if k == 0 || part > NAMED_FROM {
                 let most = wanted.entry(*cause).or_insert(0.0);
-                *most = most.max(*share);
+                *most = most.max(part);
             }
         }
     }

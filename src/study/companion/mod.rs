@@ -12,8 +12,8 @@
 //! With `x` a figure of the run and `x'` that of the companion, the error is the whole difference `|x - x'|`:
 //!
 //! ```text
-//! beam mesh    K/2 cells     e(K/2) - e(K) = 3 e(K) at second order;   2K where K cells leave out part of a load or of the start
-//! fluid mesh   2G cells      boundary layers in bladders, which coarser meshes do not show at all
+//! beam mesh    K/2 cells     e(K/2) - e(K) = 3 e(K) at second order;   2K to 4K where K cells leave out part of a load or of the start
+//! fluid mesh   2G cells      boundary layers in bladders, which coarser meshes do not show at all;   up to 4G where these are thin
 //! time         10 rtol       e(10 rtol) - e(rtol), several times e(rtol)
 //! effects      all           what the effects that are left out change
 //! ```

@@ -13,6 +13,9 @@ use crate::study::target::models;
 /// Loosest and tightest tolerance of a variant.
 const TOLERANCES: [f64; 2] = [1e-13, 0.1];
 
+/// Largest refinement of a mesh that does not resolve what the case gives.
+const FINEST: usize = 4;
+
 /// A case beside another.
 pub struct Variant {
     /// The case.
@@ -80,15 +83,21 @@ impl Variant {
 
     fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
         let mut case = alone(case);
-        let unresolved = !resolution::unresolved(&case, &System::new(&case)?).is_empty();
+        let unresolved = resolution::unresolved(&case, &System::new(&case)?);
+        let finer = |setting: &str, cells: usize| {
+            let of = unresolved.iter().filter(|finding| finding.setting == setting);
+            let wanted = of.map(|finding| finding.wanted.unwrap_or(usize::MAX)).max();
+            wanted.map(|wanted| wanted.clamp(2 * cells, FINEST * cells))
+        };
         case.solver.rtol = (10.0 * case.solver.rtol).min(TOLERANCES[1]);
         case.solver.max_step_s = case.solver.max_step_s.map(|step| 2.0 * step);
-        case.mesh.cells_per_segment = if unresolved {
-            2 * case.mesh.cells_per_segment
-        } else {
-            other_cells(&case).0
+        let [along, in_bladders] = [case.mesh.cells_per_segment, case.mesh.cells_per_bladder];
+        let other = match unresolved.is_empty() {
+            true => other_cells(&case).0,
+            false => 2 * along,
         };
-        case.mesh.cells_per_bladder *= 2;
+        case.mesh.cells_per_segment = finer("/mesh/cells_per_segment", along).unwrap_or(other);
+        case.mesh.cells_per_bladder = finer("/mesh/cells_per_bladder", in_bladders).unwrap_or(2 * in_bladders);
         Ok(Self { case, added })
     }
 
