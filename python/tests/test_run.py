@@ -23,6 +23,7 @@ def told(folder):
     summary = json.loads((folder / "summary.json").read_text())
     for key in ("wall_s", "provenance", "program", "written"):
         summary.pop(key, None)
+    summary.get("companion", {}).pop("wall_s", None)
     return summary
 
 
@@ -65,6 +66,17 @@ def test_what_an_accuracy_leads_to_is_that_of_the_command_line(program, quick, t
     for name in ("history.csv", "case.json"):
         assert (ours / name).read_bytes() == (theirs / name).read_bytes(), name
     assert result.quantities["tip_u1_m"]["error"] <= 0.05
+
+
+def test_every_figure_has_an_error_unless_the_companion_is_off(quick):
+    result = slcbeam.run(quick)
+    tip = result.quantities["tip_u1_m"]
+    errors = result.errors["tip_u1_m"]
+    assert set(errors) >= {"final", "max_abs", "window_rms"} and all(error > 0 for error in errors.values())
+    assert tip["error"] == max(errors.values()) / max(abs(tip[kind]) for kind in ("final", "max_abs", "window_max_abs", "window_rms"))
+    alone = slcbeam.run(quick.set({"/companion": "off"}))
+    assert alone.errors == {} and alone.quantities["tip_u1_m"]["error"] is None
+    assert alone.quantities["tip_u1_m"]["final"] == tip["final"]
 
 
 def test_derivatives_are_those_of_the_command_line(program, quick, tmp_path):

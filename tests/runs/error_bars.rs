@@ -93,7 +93,7 @@ fn bars_cover_the_stiff_beam() {
 }
 
 /// Free vibration on coarse meshes loses its phase; a loose tolerance does the same. Beyond 5 % the warning names what is wrong, its cause and
-/// a remedy that removes the warning.
+/// a remedy that brings all bars below 5 %.
 #[test]
 fn bars_cover_phases_that_mesh_and_steps_shift() {
     let fine = run(&cantilever("0.5", 24, 4.0, &["/solver/rtol=1e-8"]));
@@ -103,7 +103,15 @@ fn bars_cover_phases_that_mesh_and_steps_shift() {
     assert!(told.contains("tip_u1_m") && told.contains("beam mesh"), "{told}");
     let remedy = told.split("--set ").nth(1).expect("a remedy").trim_end_matches('.');
     let mended = with_errors(&cantilever("0.5", 2, 4.0, &[remedy]));
-    assert_eq!(warning(&mended, "W021"), None, "{remedy}");
+    let [before, after] = [&coarse, &mended].map(|summary| {
+        let bars = summary
+            .quantities
+            .keys()
+            .filter_map(|name| summary.relative_error(name));
+        bars.fold(0.0, f64::max)
+    });
+    println!("{remedy}: largest bar {before:.2e}, then {after:.2e}");
+    assert!(before > 0.4 && after < 0.05, "{remedy}: {before:e} {after:e}");
     let loose = with_errors(&cantilever("0.5", 24, 4.0, &["/solver/rtol=1e-2"]));
     assert!(assert_covered("loose", &loose, &fine, &MOTION) > 0.05);
     let told = warning(&loose, "W021").expect("a warning");
@@ -216,7 +224,7 @@ fn bars_cover_the_mesh_of_the_fluid() {
         told.contains("max_pressure_pa") && told.contains("/mesh/cells_per_bladder="),
         "{told}"
     );
-    assert_eq!(warning(&fine, "W021"), None);
+    assert!(!warning(&fine, "W021").is_some_and(|told| told.contains("max_pressure_pa")));
 }
 
 /// Forty waves of a load that the mesh sees as nothing: the companion has a mesh that sees it.

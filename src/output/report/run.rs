@@ -13,7 +13,7 @@ use crate::numerics::threads::begin;
 use crate::output::bands;
 use crate::output::envelope::History as Recorded;
 use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
-use crate::output::numbers::{counted, duration, percent, quantity, significant, trimmed};
+use crate::output::numbers::{counted, duration, percent, quantity, significant, trimmed, with_error};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
 use crate::results::cycles::Cycle;
@@ -187,21 +187,22 @@ impl Shown {
         Self { text, band: None }
     }
 
-    /// A figure of a quantity as it is told; the figures are those that it may be.
-    fn figure(
-        summary: &Summary,
-        (name, figures): (&str, &[&str]),
-        value: f64,
-        told: impl Fn(f64, usize) -> String,
-    ) -> Self {
+    /// A figure of a quantity in a unit, `%` for a share, with its error; the figures are those that it may be.
+    fn figure(summary: &Summary, (name, figures): (&str, &[&str]), value: f64, unit: &str) -> Self {
+        let told = |x: f64, digits: usize| match (unit, digits) {
+            ("%", 3) => percent(x),
+            ("%", _) => format!("{} %", significant(100.0 * x, digits)),
+            _ => quantity(x, unit, digits),
+        };
+        let with = |error: f64| match unit {
+            "%" => with_error(100.0 * value, 100.0 * error, "1") + " %",
+            _ => with_error(value, error, unit),
+        };
         let band = bands::of(&summary.bands, name, figures, value);
         let error = figures.iter().find_map(|figure| summary.error(name, figure));
         Self {
-            text: told(value, 3),
-            band: match band {
-                Some(band) => Some(bands::beside(band, value, &told)),
-                None => error.map(|error| format!("± {}", told(error, 2))),
-            },
+            text: error.map_or_else(|| told(value, 3), with),
+            band: band.map(|band| bands::beside(band, value, &told)),
         }
     }
 }
@@ -220,13 +221,11 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     };
     let last = |name: &str, unit: &str| {
         let value = summary.quantity(name)?.last?;
-        let told = |x: f64, digits| quantity(x, unit, digits);
-        Some(Shown::figure(summary, (name, &AT_THE_END), value, told))
+        Some(Shown::figure(summary, (name, &AT_THE_END), value, unit))
     };
     let most = |name: &str, unit: &str| {
         let value = settled(largest(name)?);
-        let told = |x: f64, digits| quantity(x, unit, digits);
-        Some(Shown::figure(summary, (name, &LARGEST), value, told))
+        Some(Shown::figure(summary, (name, &LARGEST), value, unit))
     };
     let tip = [
         (Interest::TipU1, "Tip, across", "largest deflection u₁"),
@@ -261,11 +260,10 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     );
     tile("Harvested", last("harvested_energy_j", "J"), "by the turbines");
     let power = |name: &str| summary.quantity(name)?.window_power_w;
-    let in_watt = |p: f64, digits| quantity(p, "W", digits);
     let harvested = power("harvested_energy_j").map(|p| {
-        let mean = Shown::figure(summary, ("harvested_power_w", &["mean"]), p, in_watt);
+        let mean = Shown::figure(summary, ("harvested_power_w", &["mean"]), p, "W");
         match mean.band {
-            None => Shown::figure(summary, ("harvested_energy_j", &["window_power_w"]), p, in_watt),
+            None => Shown::figure(summary, ("harvested_energy_j", &["window_power_w"]), p, "W"),
             Some(_) => mean,
         }
     });
@@ -274,7 +272,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
         harvested,
         &format!(
             "mean over the last part; put in: {}",
-            power("input_energy_j").map_or_else(|| "unknown".into(), |p| in_watt(p, 3))
+            power("input_energy_j").map_or_else(|| "unknown".into(), |p| quantity(p, "W", 3))
         ),
     );
     let efficiency = summary.quantity("efficiency");
@@ -286,13 +284,9 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     let window = efficiency.and_then(|q| q.window).map_or(without.into(), |e| {
         format!("{without}; {} in the last part", percent(e))
     });
-    let share = efficiency.and_then(|q| q.last).map(|e| {
-        let told = |e: f64, digits| match digits {
-            3 => percent(e),
-            _ => format!("{} %", significant(100.0 * e, digits)),
-        };
-        Shown::figure(summary, ("efficiency", &AT_THE_END), e, told)
-    });
+    let share = efficiency
+        .and_then(|q| q.last)
+        .map(|e| Shown::figure(summary, ("efficiency", &AT_THE_END), e, "%"));
     tile("Efficiency", share, &window);
     let open = summary.balances.energy_residual_relative;
     tile(
