@@ -1,7 +1,7 @@
 //! Which setting makes an error that is large, and the warning.
 //!
-//! Each setting is changed by itself: half the cells of the beam, twice those of a bladder, a tenth of the tolerance, each effect that is
-//! left out. These runs are made only where an error is above the limit and the run is small.
+//! Each setting is changed by itself: the cells of the beam and those of a bladder to those of the companion, a tenth of the tolerance, each
+//! effect that is left out. These runs are made only where an error is above the limit and the run is small.
 
 use std::collections::BTreeMap;
 
@@ -70,11 +70,13 @@ fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result
         cancelled: false.into(),
         work: (LONGEST * work(summary) + super::SMALL_WORK).into(),
     };
-    let own = error::figures(summary);
+    let (own, Some(companion)) = (error::figures(summary), &summary.companion) else {
+        return Ok(BTreeMap::new());
+    };
     let heard = halt::heard();
     let mut found = BTreeMap::new();
     for cause in all {
-        let Some((variant, factor)) = Variant::with_change(case, cause)? else {
+        let Some((variant, factor)) = Variant::with_change(case, companion, cause)? else {
             continue;
         };
         let (run, stopped) = std::thread::scope(|scope| {
@@ -100,11 +102,7 @@ fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result
 /// Shares of each cause in the largest error of each quantity.
 fn shares(summary: &Summary, causes: &BTreeMap<Cause, Figures>) -> BTreeMap<String, Vec<(Cause, f64)>> {
     let of = |name: &String| {
-        let size = |errors: &Figures| {
-            errors
-                .get(name)
-                .map_or(0.0, |all| all.values().fold(0.0, |a: f64, b| a.max(*b)))
-        };
+        let size = |errors: &Figures| errors.get(name).map_or(0.0, error::largest);
         let quantity = [&summary.quantities, &summary.probes, &summary.ports];
         let largest = quantity.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size());
         let mut all: Vec<(Cause, f64)> = causes.iter().map(|(c, errors)| (*c, size(errors) / largest)).collect();

@@ -29,10 +29,8 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
             .keys()
             .filter_map(|figure| Some((figure.clone(), apart(unsigned(figure))?)))
             .collect();
-        let alike = |figure: &str| figure != "window_power_w";
-        let largest = errors.iter().filter(|(figure, _)| alike(figure));
-        let largest = largest.map(|(_, error)| *error).fold(0.0, f64::max);
-        for (_, error) in errors.iter_mut().filter(|(figure, _)| alike(figure)) {
+        let largest = largest(&errors);
+        for (_, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
             *error = error.max(SHARED * largest);
         }
         Some((name.clone(), errors))
@@ -49,16 +47,22 @@ fn unsigned(figure: &str) -> &str {
     }
 }
 
+/// Largest error of figures in the unit of their quantity.
+pub fn largest(errors: &BTreeMap<String, f64>) -> f64 {
+    let alike = errors.iter().filter(|(figure, _)| has_unit_of_quantity(figure));
+    alike.fold(0.0, |largest, (_, error)| largest.max(*error))
+}
+
+/// True for figures in the unit of their quantity: all but mean powers.
+fn has_unit_of_quantity(figure: &str) -> bool {
+    figure != "window_power_w"
+}
+
 /// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
 pub fn relative(summary: &Summary, floors: &Floors) -> BTreeMap<String, f64> {
     let quantities = counted(summary, floors).map(|(name, q)| (name, q.size()));
     let probes = counted_of_probes(summary, floors).map(|(name, q)| (name, q.size()));
     let ports = counted_of_ports(summary, floors).map(|name| (name, summary.ports[name].size()));
-    let largest = |(name, size): (&String, f64)| {
-        let errors = summary.errors.get(name)?;
-        let alike = errors.iter().filter(|(figure, _)| *figure != "window_power_w");
-        let largest = alike.map(|(_, error)| *error).fold(0.0, f64::max);
-        Some((name.clone(), largest / size))
-    };
+    let largest = |(name, size): (&String, f64)| Some((name.clone(), self::largest(summary.errors.get(name)?) / size));
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
 }

@@ -93,7 +93,7 @@ impl Variant {
         case.solver.max_step_s = case.solver.max_step_s.map(|step| 2.0 * step);
         let [along, in_bladders] = [case.mesh.cells_per_segment, case.mesh.cells_per_bladder];
         let other = match unresolved.is_empty() {
-            true => other_cells(&case).0,
+            true => other_cells(&case),
             false => 2 * along,
         };
         case.mesh.cells_per_segment = finer("/mesh/cells_per_segment", along).unwrap_or(other);
@@ -101,26 +101,29 @@ impl Variant {
         Ok(Self { case, added })
     }
 
-    /// The case with one setting changed, and the error of the case over the difference that this makes. Nothing where the setting does
-    /// not apply.
+    /// The case with one setting changed to that of its companion, or to a tighter tolerance, and the error of the case over the difference
+    /// that this makes. Nothing where the setting does not apply.
     ///
     /// # Errors
     /// As [`System::new`].
-    pub fn with_change(case: &Case, cause: Cause) -> Result<Option<(Self, f64)>> {
+    pub fn with_change(case: &Case, companion: &CompanionRun, cause: Cause) -> Result<Option<(Self, f64)>> {
         let mut other = alone(case);
         let mut added = vec![];
         let factor = match cause {
             Cause::BeamMesh => {
-                let (cells, factor) = other_cells(case);
-                other.mesh.cells_per_segment = cells;
-                factor
+                other.mesh.cells_per_segment = companion.cells_per_segment;
+                share(
+                    case.mesh.cells_per_segment,
+                    companion.cells_per_segment,
+                    case.mesh.order(),
+                )
             }
             Cause::FluidMesh => {
                 if !has_cells_along_bladders(case)? {
                     return Ok(None);
                 }
-                other.mesh.cells_per_bladder *= 2;
-                4.0 / 3.0
+                other.mesh.cells_per_bladder = companion.cells_per_bladder;
+                share(case.mesh.cells_per_bladder, companion.cells_per_bladder, 1)
             }
             Cause::TimeSteps => {
                 other.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
@@ -167,17 +170,20 @@ fn alone(case: &Case) -> Case {
     case
 }
 
-/// Other cells of a segment, and the error of the case over the difference that they make: half as many at second order, three quarters at
-/// fourth, twice as many where there can be no fewer.
-fn other_cells(case: &Case) -> (usize, f64) {
-    let (cells, order) = (case.mesh.cells_per_segment, i32::from(case.mesh.order()));
+/// Other cells of a segment: half as many at second order, three quarters at fourth, twice as many where there can be no fewer.
+fn other_cells(case: &Case) -> usize {
+    let (cells, order) = (case.mesh.cells_per_segment, case.mesh.order());
     let fewer = if order == 4 {
         (3 * cells).div_ceil(4)
     } else {
         cells.div_ceil(2)
     };
     let possible = fewer < cells && fewer * case.segments() >= Mesh::fewest(case.mesh.order());
-    let other = if possible { fewer } else { 2 * cells };
-    let ratio = (cells as f64 / other as f64).powi(order);
-    (other, 1.0 / (ratio - 1.0).abs())
+    if possible { fewer } else { 2 * cells }
+}
+
+/// The error on a mesh of so many cells over its difference to another mesh.
+fn share(cells: usize, other: usize, order: u8) -> f64 {
+    let ratio = (cells as f64 / other as f64).powi(i32::from(order));
+    1.0 / (1.0 - ratio).abs()
 }
