@@ -7,7 +7,7 @@ use super::numbers::{shortest, significant};
 use super::plot::fitted::{self, Fitted as Drawn, Part};
 use super::records;
 use crate::case::Written;
-use crate::case::units;
+use crate::case::{readable, units};
 use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
@@ -111,7 +111,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
         Abscissa::Time(_) => ("time t".into(), "s".into()),
         Abscissa::Drives(_) => {
             let unit = units::of_pointer(name).map_or("1", |unit| unit.si);
-            (units::readable_pointer(name), unit.into())
+            (readable::pointer_name(name), unit.into())
         }
     };
     let part = |(k, one): (usize, &Matched)| {
@@ -136,7 +136,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
         let error = one
             .standard_error
             .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
-        let name = units::readable_pointer(&one.pointer);
+        let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}{error}", significant(one.value, 5))
     });
     Drawn {
