@@ -118,6 +118,39 @@ fn modes_stand_by_kind() {
     assert_eq!((&json["of_kind"], &json["stable"]), (&"growth".into(), &true.into()));
 }
 
+/// Goal: modes that swing are numbered from slow to fast, as sweeps number them: where one is damped strongly, too.
+#[test]
+fn modes_are_numbered_by_frequency() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("m");
+    let (code, said, _) = modes(&[
+        "cases/tour-harvester.json",
+        "--count",
+        "8",
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    let all = json["modes"].as_array().unwrap();
+    let frequencies: Vec<f64> = all.iter().filter_map(|mode| mode["frequency_hz"].as_f64()).collect();
+    assert!(code == 0 && frequencies.len() > 4, "{said}");
+    assert!(frequencies.is_sorted(), "{frequencies:?}");
+    // by the distance from zero they are in another order
+    let size = |mode: &Value| {
+        mode["growth_per_s"]
+            .as_f64()
+            .unwrap()
+            .hypot(mode["angular_frequency_per_s"].as_f64().unwrap())
+    };
+    let sizes: Vec<f64> = all
+        .iter()
+        .filter(|mode| mode["frequency_hz"].is_number())
+        .map(size)
+        .collect();
+    assert!(!sizes.is_sorted(), "{sizes:?}");
+}
+
 #[test]
 fn modes_near_a_frequency_as_json() {
     let dir = TempDir::new().unwrap();

@@ -90,7 +90,8 @@ impl Report<'_> {
                 None => "there are no modes".into(),
             },
             [] => {
-                let count = counted(self.found.modes.len() as u64, "mode");
+                let moving = self.found.modes.iter().filter(|mode| !mode.kind.stays()).count();
+                let count = counted(moving as u64, "mode");
                 let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
                 match self.sort {
                     None if !swings => format!(
