@@ -275,11 +275,6 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The last part of a pointer.
-fn last(pointer: &str) -> &str {
-    pointer.rsplit('/').next().unwrap_or_default()
-}
-
 /// What other programs call otherwise.
 fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String> {
     match text {

@@ -6,7 +6,7 @@ use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
 use super::plot::optimum::{self, Dot, Optimum as Drawn, Part};
 use super::records;
-use crate::case::{Written, readable, units};
+use crate::case::{Written, readable};
 use crate::error::{Result, visible};
 use crate::results;
 use crate::study::optimize::Optimised;
@@ -101,7 +101,7 @@ fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
     };
     let numbers = problem.spans.iter().enumerate().map(|(i, span)| Part {
         name: readable::pointer_name(&span.pointer),
-        unit: units::of_pointer(&span.pointer).map_or("1", |unit| unit.si).into(),
+        unit: readable::pointer_unit(&span.pointer).into(),
         logarithmic: span.logarithmic() && span.low > 0.0,
         dots: dots(&|_, one| one.values[i]),
         best: best(optimum.variables[i].value),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Survey, exchanged, numeric, table, unit};
-use crate::case::{readable, units};
+use crate::case::readable;
 use crate::error::Result;
 use crate::output::plot::designs::{self, Drawn, Numbers};
 use crate::results::sweep::Plan;
@@ -129,7 +129,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             .map(|&k| Numbers {
                 name: plan.axes[k].pointer.clone(),
                 label: readable::pointer_name(&plan.axes[k].pointer),
-                unit: units::of_pointer(&plan.axes[k].pointer).map_or(String::new(), |unit| unit.si.into()),
+                unit: readable::pointer_unit(&plan.axes[k].pointer).into(),
                 logarithmic: plan.logarithmic(k) || plan.listed(k) && by_factors(&varied[k]),
                 values: varied[k].iter().map(|x| x.unwrap_or(f64::NAN)).collect(),
             })
