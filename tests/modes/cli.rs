@@ -151,6 +151,30 @@ fn modes_are_numbered_by_frequency() {
     assert!(!sizes.is_sorted(), "{sizes:?}");
 }
 
+/// Goal: a beam with material damping on many cells, whose overdamped vibrations have nearly one rate, has its oscillations, and a warning says that
+/// others are not listed. Source: the same beam on a fourth of the cells, of which all eigenvalues are computed.
+#[test]
+fn oscillations_beside_a_cluster_are_found() {
+    let dir = TempDir::new().unwrap();
+    let found = |cells: &str| {
+        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_segment={cells}"));
+        let case = ["cases/tour-beam.json", "--set", &set, "--json", "--quiet"];
+        let (code, said, error) =
+            modes(&[&case[..], &["--kind", "oscillation", "--out", out.to_str().unwrap()]].concat());
+        assert_eq!(code, 0, "{error}");
+        let json: Value = serde_json::from_str(&said).unwrap();
+        let of = |mode: &Value| mode["frequency_hz"].as_f64();
+        let all: Vec<f64> = json["modes"].as_array().unwrap().iter().filter_map(of).collect();
+        (all, json["warnings"].to_string())
+    };
+    let ((coarse, silent), (fine, told)) = (found("1"), found("16"));
+    assert!(told.contains("W025") && !silent.contains("W025"), "{told} {silent}");
+    assert!(fine.len() >= 5 && coarse.len() >= 5, "{coarse:?} {fine:?}");
+    for (a, b) in coarse.iter().zip(&fine).take(3) {
+        assert!((a / b - 1.0).abs() < 0.05, "{coarse:?} {fine:?}");
+    }
+}
+
 #[test]
 fn modes_near_a_frequency_as_json() {
     let dir = TempDir::new().unwrap();

@@ -74,7 +74,8 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
                 false => Ok((found, plan)),
             };
         }
-        wider.count = (2 * wider.count).min(most);
+        // where all eigenvalues were computed at once there is nothing to save
+        wider.count = if found.dense { most } else { (2 * wider.count).min(most) };
         about = found.about;
     }
 }
