@@ -28,6 +28,16 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
             Suffix::None => {}
         }
     }
+    // before other words a unit is told by `in`
+    for sign in [" in ", "_in_"] {
+        let Some((name, rest)) = whole.split_once(sign) else {
+            continue;
+        };
+        let word = rest.split([' ', '_', ',']).next().unwrap_or_default();
+        if let (Suffix::Known(_, unit), true) = (of_end(word, si), word.len() > 1) {
+            return Suffix::Known(bare(name), unit);
+        }
+    }
     // a heading that is a unit and nothing else; two letters may be a name as well where they are SI units
     if let Some(unit) =
         units::bracketed(whole).filter(|unit| whole.len() > 1 && unit.scale != 1.0 && unit.name != "min")
@@ -120,6 +130,7 @@ mod tests {
             ("volume l", "volume", "l"),
             ("t h", "t", "h"),
             ("x µm", "x", "um"),
+            ("pressure in psi gauge", "pressure", "psi"),
             ("ms", "ms", "ms"),
             ("kPa", "kPa", "kPa"),
         ] {
