@@ -161,6 +161,14 @@ mod tests {
         }
     }
 
+    /// Goal: a logarithmic axis has a unit, too.
+    #[test]
+    fn logarithmic_axes_have_units() {
+        let scale = Scale::logarithmic((-11.0, -9.0), 0.02, &[1.0], ("m^3/(s Pa)", 7));
+        assert_eq!(scale.named("conductance"), "conductance [10⁻¹² m³/(s Pa)]");
+        assert_eq!(labels(&scale), ["10", "100", "1000"]);
+    }
+
     #[test]
     fn nothing_to_show_still_makes_an_axis() {
         assert!(!Scale::around(None, 0.0, "Pa", 4).ticks.is_empty());

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Number, Numbers};
 use crate::case::Case;
-use crate::discrete::quantities::probes;
+use crate::discrete::quantities::{Observable, probes};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::run::equilibrium::{self, Options, Path};
@@ -88,7 +88,14 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
             "N" => model.scales.force,
             _ => 0.0,
         };
-        Number::new(value, (BESIDE * largest(unit).max(acting)).max(floor(unit)) / factor)
+        // the largest of a field of pressures, which are all negative under suction, counts beside the field
+        let extreme = [Observable::MaxPressure, Observable::MinPressure].map(Observable::name);
+        let part = if extreme.contains(&column.name.as_str()) {
+            1.0
+        } else {
+            BESIDE
+        };
+        Number::new(value, (part * largest(unit).max(acting)).max(floor(unit)) / factor)
     };
     Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }
