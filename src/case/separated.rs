@@ -14,7 +14,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
         Suffix::Known(name, unit) => return Suffix::Known(bare(name), unit),
         unknown @ Suffix::Unknown(..) => return unknown,
     }
-    let signs = whole
+    let mut signs = whole
         .char_indices()
         .filter(|(_, sign)| !sign.is_alphanumeric() && !"_^⁻%°".contains(*sign));
     for (at, sign) in signs.clone() {
@@ -46,7 +46,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
     }
     // powers belong to a unit, which was not found
     let power = |sign: char| "^²³⁻".contains(sign);
-    let last = signs.filter(|(at, _)| whole[*at..].contains(power)).last();
+    let last = signs.filter(|(at, _)| whole[*at..].contains(power)).next_back();
     match last {
         Some((at, sign)) if sign.is_whitespace() => Suffix::Unknown(bare(&whole[..at]), whole[at..].trim()),
         _ => Suffix::None,
@@ -84,7 +84,8 @@ fn plain(sign: char) -> char {
 /// Whether a text may be a unit of this name for its capitals: all of its letters are small, or all are capitals and M is none for m.
 fn is_cased_as(text: &str, name: &str) -> bool {
     let small = !text.chars().any(char::is_uppercase);
-    let capital = !text.chars().any(char::is_lowercase) && !(text.starts_with('M') && name.starts_with('m'));
+    let milli_or_mega = text.starts_with('M') && name.starts_with('m');
+    let capital = !(milli_or_mega || text.chars().any(char::is_lowercase));
     small || capital
 }
 

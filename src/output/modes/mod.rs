@@ -86,6 +86,7 @@ impl Report<'_> {
             .collect();
         match growing.as_slice() {
             [] if self.found.modes.is_empty() => match self.sort {
+                Some(sort) if self.found.clustered => format!("no modes of the kind {} were found", sort.word()),
                 Some(sort) => format!("there are no modes of the kind {}", sort.word()),
                 None => "there are no modes".into(),
             },

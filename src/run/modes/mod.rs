@@ -250,6 +250,9 @@ fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> R
     }
 }
 
+/// Size up to which all eigenvalues are computed within a second or two, rather than those beside a cluster alone.
+const QUICK: usize = 500;
+
 /// Modes of entries A and B, as planned.
 fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let pencil = Pencil { a, b, ..about.pencil() };
@@ -259,10 +262,17 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
     } else {
         Complex::new(BESIDE * about.frequency(), 0.0)
     };
+    let options = match plan.near_hz > 0.0 {
+        true => Options::default(),
+        false => Options {
+            at_last_dense_up_to: QUICK,
+            ..Options::default()
+        },
+    };
     let mut asked = plan.count + 2;
     loop {
         // conjugates come along and count once
-        let (mut modes, complete) = match spectral::nearest(&pencil, shift, 2 * asked, &Options::default()) {
+        let (mut modes, complete) = match spectral::nearest(&pencil, shift, 2 * asked, &options) {
             Ok(found) => {
                 tally.factorizations += found.factorizations;
                 tally.solves += found.solves;
