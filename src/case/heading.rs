@@ -1,5 +1,6 @@
 //! Headings of tables: `angle_deg`, `pressure [kPa]`, `volume (ml)`.
 
+use super::separated;
 use super::units::{self, Suffix, Unit};
 use crate::error::visible;
 
@@ -21,10 +22,12 @@ pub struct Heading {
 impl Heading {
     /// Of a text.
     pub fn of(heading: &str) -> Self {
-        let brackets = [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
-            let (name, unit) = heading.trim_end().strip_suffix(close)?.rsplit_once(open)?;
-            Some((name.trim(), unit.trim()))
-        });
+        Self::sought(heading, None)
+    }
+
+    /// Of a text, where the dimension is known that is sought: an end of two dimensions (`_n_m`, `_in`) is then of that one.
+    fn sought(heading: &str, si: Option<&str>) -> Self {
+        let brackets = in_brackets(heading);
         let column = |name: &str, unit, unknown: Option<&str>| Self {
             heading: heading.into(),
             name: name.into(),
@@ -32,12 +35,12 @@ impl Heading {
             unknown: unknown.map(String::from),
             bracketed: brackets.is_some(),
         };
-        match brackets {
+        match &brackets {
             Some((name, unit)) => match units::bracketed(unit) {
                 Some(known) => column(name, Some(known), None),
                 None => column(name, None, Some(unit)),
             },
-            None => match units::suffix(heading, None) {
+            None => match separated::suffix(heading, si) {
                 Suffix::Known(name, unit) => column(name, Some(unit), None),
                 Suffix::Unknown(name, unit) => column(name, None, Some(unit)),
                 Suffix::None => column(heading, None, None),
@@ -55,28 +58,27 @@ impl Heading {
     /// # Errors
     /// It names another dimension, or a unit that is not known.
     pub fn scale(&self, si: &str, what: &str) -> Result<f64, String> {
-        // an end of a name that may be of two dimensions is of the one that is sought
-        let (unit, unknown) = match units::suffix(&self.heading, Some(si)) {
-            _ if self.bracketed => (self.unit, self.unknown.as_deref()),
-            Suffix::Known(_, unit) => (Some(unit), None),
-            Suffix::Unknown(_, unit) => (None, Some(unit)),
-            Suffix::None => (None, None),
-        };
+        let Self { unit, unknown, .. } = Self::sought(&self.heading, Some(si));
         let heading = visible(&self.heading);
         let known = || {
             let names: Vec<&str> = units::of_dimension(si).map(|unit| unit.name).collect();
             names.join(", ")
         };
+        let remedy = || {
+            let first = units::of_dimension(si).map(|unit| unit.name).nth(1).unwrap_or(si);
+            format!("{} [{first}]", visible(&self.name))
+        };
         if let Some(unknown) = unknown {
-            let unknown = visible(unknown);
+            let unknown = visible(&unknown);
             return Err(match self.bracketed {
                 true => format!(
                     "the unit [{unknown}] of the column {heading} is not known; for {what} there are {}",
                     known()
                 ),
                 false => format!(
-                    "the unit {unknown} at the end of {heading} is not known; for {what} there are {}",
-                    known()
+                    "the unit {unknown} at the end of {heading} is not known; for {what} there are {}, written as in {}",
+                    known(),
+                    remedy()
                 ),
             });
         }
@@ -90,6 +92,24 @@ impl Heading {
             )),
         }
     }
+}
+
+/// Name and unit of a heading with a unit between brackets: at its end whatever stands there, before it a unit that is known.
+fn in_brackets(heading: &str) -> Option<(String, String)> {
+    let pairs = [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')];
+    let whole = heading.trim_end();
+    let last = pairs.into_iter().find_map(|(open, close)| {
+        let (name, unit) = whole.strip_suffix(close)?.rsplit_once(open)?;
+        Some((name.trim().to_owned(), unit.trim().to_owned()))
+    });
+    last.or_else(|| {
+        pairs.into_iter().find_map(|(open, close)| {
+            let (before, rest) = whole.split_once(open)?;
+            let (unit, after) = rest.split_once(close)?;
+            let known = units::bracketed(unit).is_some_and(|unit| unit.name != "1");
+            known.then(|| (format!("{} {}", before.trim(), after.trim()), unit.trim().to_owned()))
+        })
+    })
 }
 
 #[cfg(test)]
@@ -112,6 +132,10 @@ mod tests {
             ("p [mmHg]", "Pa", 133.322_387_415),
             ("time (in ms)", "s", 1e-3),
             ("flow_ml_h", "m^3/s", 1e-6 / 3600.0),
+            ("flow (mL/h)", "m^3/s", 1e-6 / 3600.0),
+            ("p (kPa) of bladder 1", "Pa", 1e3),
+            ("bladder (1) pressure", "Pa", 1.0),
+            ("t {ms}", "s", 1e-3),
         ] {
             assert_eq!(scale(heading, si), Ok(factor), "{heading}");
         }

@@ -11,8 +11,23 @@ const LONGEST: usize = 160;
 /// Most bladders of a range that are written out.
 const MOST: i64 = 40;
 
-/// What to write for a value of none of these kinds; `schema` is what may stand there, `key` its name.
-pub fn hint(key: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Option<String> {
+/// Parts of a case that have one value along the whole beam.
+const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
+
+/// What to write where one number is wanted.
+fn one_number(pointer: &str) -> String {
+    let part = pointer.split('/').nth(1).unwrap_or_default();
+    match UNIFORM.contains(&part) {
+        true => "one number is wanted: beam, bladders and fluid are the same all along, so take a mean value; a load may change along the beam \
+                 by its \"profile\""
+            .to_owned(),
+        false => "one number is wanted, without brackets".to_owned(),
+    }
+}
+
+/// What to write for a value of none of these kinds; `schema` is what may stand there, `pointer` the place.
+pub fn hint(pointer: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Option<String> {
+    let key = pointer.rsplit('/').next().unwrap_or_default();
     let kinds = |wanted: &str| branches.iter().any(|branch| branch["type"] == wanted);
     let words: Vec<&str> = branches
         .iter()
@@ -55,13 +70,10 @@ pub fn hint(key: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Op
                 );
             }
             if items.len() > 1 {
-                return Some(
-                    "one number is wanted: beam, bladders and fluid are the same all along, so take a mean value; a load may change along the \
-                     beam by its \"profile\""
-                        .to_owned(),
-                );
+                return Some(one_number(pointer));
             }
         }
+        Value::Object(_) if kinds("number") && !kinds("object") && !kinds("array") => return Some(one_number(pointer)),
         _ => {}
     }
     let array = branches.iter().find(|branch| branch["type"] == "array");

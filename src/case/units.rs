@@ -131,6 +131,9 @@ const ELSE_NAMES: [(&str, &str); 6] = [
     ("seconds", "s"),
 ];
 
+/// What may stand before the whole word of a unit.
+const PREFIXES: [&str; 6] = ["nano", "micro", "milli", "centi", "kilo", "mega"];
+
 /// What stands before a unit that is only the end of a longer one, such as N s/m, Pa s/m^3 and m^2/Pa.
 const BEGUN: [&str; 14] = [
     "kg", "pa", "kpa", "mpa", "gpa", "m2", "m3", "mm2", "mm3", "n_s", "n_m", "pa_s", "mpa_s", "per",
@@ -153,6 +156,8 @@ pub fn bracketed(text: &str) -> Option<Unit> {
         .replace(['µ', 'μ'], "u")
         .replace('²', "^2")
         .replace('³', "^3");
+    // a litre by its capital letter, which no other unit has
+    let plain = plain.replace('L', "l");
     let plain = match plain.as_str() {
         "°" => "deg",
         "" | "-" | "–" => "1",
@@ -219,7 +224,11 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
     let Some((unit, at)) = found else {
         let names = ELSE_NAMES.iter().filter(|(_, of)| si == Some(of));
         let named = names.map(|(word, _)| *word).find_map(cut);
+        let last = lower.rsplit('_').next().unwrap_or("");
+        let whole = PREFIXES.iter().find_map(|prefix| last.strip_prefix(prefix));
+        let prefixed = whole.is_some_and(|word| FOREIGN.contains(&word) || ["second", "seconds"].contains(&word));
         let known = FOREIGN.into_iter().find_map(cut);
+        let known = known.or_else(|| prefixed.then(|| cut(last)).flatten());
         return match named.or(known) {
             Some(at) => Suffix::Unknown(&name[..at], &name[at + 1..]),
             None => Suffix::None,
@@ -259,27 +268,6 @@ pub fn told_by(pointer: &str) -> Suffix<'_> {
     ends.find(|end| *end != Suffix::None).unwrap_or(Suffix::None)
 }
 
-/// The name of a figure as people read it, without units: `harvested energy, final` for `harvested_energy_j.final`.
-pub fn readable(figure: &str) -> String {
-    let part = |part: &str| suffixed(part).map_or(part, |(name, _)| name).replace('_', " ");
-    figure.split('.').map(part).collect::<Vec<_>>().join(", ")
-}
-
-/// The name of a number of a case as people read it, without units: `fluid: viscosity` for `/fluid/viscosity_pa_s`.
-pub fn readable_pointer(pointer: &str) -> String {
-    let keys: Vec<&str> = pointer.split('/').skip(1).collect();
-    let Some((last, before)) = keys.split_last() else {
-        return pointer.into();
-    };
-    let index = |key: &str| !key.is_empty() && key.bytes().all(|b| b.is_ascii_digit());
-    let from = before.iter().rposition(|key| !index(key)).unwrap_or(0);
-    let parent = before[from..].join(" ").replace('_', " ");
-    match parent.is_empty() {
-        true => readable(last),
-        false => format!("{parent}: {}", readable(last)),
-    }
-}
-
 /// The unit in which the numbers below a JSON pointer are, as far as its keys tell.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
     match told_by(pointer) {
@@ -290,23 +278,7 @@ pub fn of_pointer(pointer: &str) -> Option<Unit> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Suffix, bracketed, of_pointer, readable, readable_pointer, suffix, suffixed};
-
-    /// Goal: axes and titles show names, not pointers and keys.
-    #[test]
-    fn names_are_read_without_units() {
-        assert_eq!(readable("harvested_energy_j.final"), "harvested energy, final");
-        assert_eq!(
-            readable("max_pressure_pa.window_max_abs"),
-            "max pressure, window max abs"
-        );
-        assert_eq!(readable_pointer("/fluid/viscosity_pa_s"), "fluid: viscosity");
-        assert_eq!(readable_pointer("/loads/0/force_n"), "loads 0: force");
-        assert_eq!(
-            readable_pointer("/network/permeability_factor"),
-            "network: permeability factor"
-        );
-    }
+    use super::{Suffix, bracketed, of_pointer, suffix, suffixed};
 
     #[test]
     fn headings_tell_their_units() {

@@ -76,7 +76,7 @@ impl<'a> Walk<'a> {
         let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
             Value::String(text) => {
-                let other = || mistyped::hint(last(pointer), value, schema, branches);
+                let other = || mistyped::hint(pointer, value, schema, branches);
                 self.choose_word(text, &fitting, branches, pointer, other)
             }
             // what has no alternative has no form to be named by, however few its keys are
@@ -88,7 +88,7 @@ impl<'a> Walk<'a> {
                 None => {
                     let fault = Violation::new(Code::Kind, pointer, format!("found {}", found(value)));
                     let fault = fault.allowed(kinds(branches));
-                    let hint = mistyped::hint(last(pointer), value, schema, branches);
+                    let hint = mistyped::hint(pointer, value, schema, branches);
                     self.faults.push(Violation { hint, ..fault });
                     None
                 }
@@ -273,11 +273,6 @@ impl<'a> Walk<'a> {
         self.faults
             .push(Violation::new(Code::Count, pointer, what).allowed(allowed));
     }
-}
-
-/// The last part of a pointer.
-fn last(pointer: &str) -> &str {
-    pointer.rsplit('/').next().unwrap_or_default()
 }
 
 /// What other programs call otherwise.

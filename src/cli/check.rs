@@ -12,7 +12,7 @@ use super::arguments::CheckArguments;
 use super::size;
 use crate::discrete::System;
 use crate::error::Result;
-use crate::model::effects::Cause;
+use crate::model::effects::{Cause, Decision};
 use crate::model::{audit, characteristic};
 use crate::output::columns::aligned;
 use crate::output::machine;
@@ -139,10 +139,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     text += "\neffects\n";
     let by_case = |cause: &Cause| matches!(cause, Cause::Given(_) | Cause::Filled(_)) && !asked.verbose;
     let (given, decided): (Vec<_>, Vec<_>) = system.model.effects.decisions.iter().partition(|d| by_case(&d.cause));
-    text += &listed(decided.iter().map(|d| {
-        let on = if d.on { "on" } else { "off" };
-        [d.effect.to_string(), on.into(), d.cause.to_string()]
-    }));
+    text += &listed(decisions(&decided, asked.verbose).into_iter());
     for (on, what) in [(true, "  given: "), (false, "  not given: ")] {
         let names: Vec<_> = given
             .iter()
@@ -182,6 +179,23 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     }
     super::print(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// Effects as name, state and cause; neighbours with the same state and cause share a line, unless all are asked for.
+fn decisions(decided: &[&Decision], all: bool) -> Vec<[String; 3]> {
+    let mut lines: Vec<[String; 3]> = vec![];
+    for one in decided {
+        let on = if one.on { "on" } else { "off" };
+        let (name, cause) = (one.effect.to_string(), one.cause.to_string());
+        match lines
+            .last_mut()
+            .filter(|last| !all && last[1] == on && last[2] == cause)
+        {
+            Some(last) => last[0] = format!("{}, {name}", last[0]),
+            None => lines.push([name, on.into(), cause]),
+        }
+    }
+    lines
 }
 
 /// Lines under a heading, indented.

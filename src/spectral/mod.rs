@@ -54,6 +54,8 @@ pub const AT_LAST_DENSE: usize = 1000;
 pub struct Options {
     /// Size of the operator up to which it is written out and all its eigenvalues are computed.
     pub dense_up_to: usize,
+    /// The same where the Krylov space does not converge.
+    pub at_last_dense_up_to: usize,
     /// Residual of a Schur vector, relative to its θ, below which it counts as found; pairs are refined afterwards.
     pub tolerance: f64,
     /// Restarts allowed.
@@ -64,6 +66,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             dense_up_to: DENSE,
+            at_last_dense_up_to: AT_LAST_DENSE,
             // refinement converges cubically: half of the digits are enough
             tolerance: 1e-9,
             max_restarts: 100,
@@ -181,7 +184,7 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
         (dense::pairs(&mut shifted)?, 0)
     } else {
         match krylov::pairs(&mut shifted, count, options) {
-            Err(SpectralError::Slow { restarts, .. }) if size <= AT_LAST_DENSE => {
+            Err(SpectralError::Slow { restarts, .. }) if size <= options.at_last_dense_up_to => {
                 (dense::pairs(&mut shifted)?, restarts)
             }
             found => found?,

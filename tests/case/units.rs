@@ -37,6 +37,10 @@ fn tables_from_files_are_in_the_units_of_their_headings() {
         ),
         (pump, "time,pressure_in\n0,0\n0.5,60000\n", "", [0.0, 60e3]),
         (pump, "t,p\n0,0\n0.5,60000\n", "", [0.0, 60e3]),
+        (pump, "t in ms,p in kPa\n0,0\n500,60\n", "", [0.0, 60e3]),
+        (pump, "t ms,p kpa\n0,0\n500,60\n", "", [0.0, 60e3]),
+        (pump, "\"t, ms\",p / kPa\n0,0\n500,60\n", "", [0.0, 60e3]),
+        (pump, "t {ms},p-kPa\n0,0\n500,60\n", "", [0.0, 60e3]),
         (times_product, "t_s,share_percent\n0,0\n0.5,50\n", "", [0.0, 0.5]),
         (syringe, "t_ms,volume_ml\n0,0\n500,2\n", "", [0.0, 2e-6]),
         (valve, "t_s,opening [%]\n0,0\n0.5,40\n", "", [0.0, 0.4]),
@@ -88,6 +92,12 @@ fn tables_from_files_are_in_the_units_of_their_headings() {
             "",
         ),
         (pump, "t_s,p [atm]\n0,0\n1,1\n", "the unit [atm] of the column", ""),
+        (
+            pump,
+            "t in ms,p in mPa\n0,0\n1,1\n",
+            "the unit mPa at the end of p in mPa is not known; for pressure_pa there are Pa, kPa",
+            "",
+        ),
         (valve, "t_s,opening_mm\n0,0\n1,1\n", "but opening is in no unit", ""),
         (
             times_product,

@@ -238,7 +238,7 @@ fn check_prints_and_writes_nothing() {
 /// Goal: without `--verbose` a terminal shows all of it, columns of words begin at one place, and equal networks share a line.
 #[test]
 fn check_fits_into_sixty_lines() {
-    for name in ["wiring-1", "tour-harvester", "harvester-crossover-wave", "tour-sensor"] {
+    for name in ["wiring-1", "tour-harvester", "wiring-2", "valves-half", "tour-sensor"] {
         let output = slcbeam(&["check", &format!("cases/{name}.json")]).output().unwrap();
         let text = String::from_utf8(output.stdout).unwrap();
         assert!(text.lines().count() < 60, "{}: {text}", text.lines().count());

@@ -315,3 +315,26 @@ fn the_sentence_says_what_an_accuracy_costs() {
     found.feet = vec![];
     assert_eq!(files::sentence(&found), "no setting has 1 % of tip deflection.");
 }
+
+/// Goal: a quantity that a driven end prescribes has no error, and no setting is judged by it.
+#[test]
+fn what_an_end_prescribes_is_not_judged() {
+    let driven = DRY.replace(
+        r#""tip": "free""#,
+        r#""tip": {"guided": {"u3_m": {"ramp": {"to": -1e-4, "duration_s": 0.01}}}}"#,
+    );
+    assert_ne!(driven, DRY);
+    let found = studied(&driven, plan(&[1e-3, 1e-4], &[2, 4], &[2], PLENTY));
+    assert!(
+        found.left_out.iter().any(|name| name == "tip_u3"),
+        "{:?}",
+        found.left_out
+    );
+    let judged = found.measures.iter().map(|limit| limit.name.as_str());
+    assert!(
+        judged.clone().count() > 0
+            && judged
+                .clone()
+                .all(|name| !name.starts_with("tip_u3") && !name.starts_with("tip_angle"))
+    );
+}

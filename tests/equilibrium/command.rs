@@ -54,6 +54,31 @@ fn command_fills_its_folder() {
     assert_eq!(table.lines().next(), Some(head));
 }
 
+/// Goal: a figure that is next to nothing beside others of its kind is judged beside these. Under suction the largest pressure of a cell tends
+/// to zero beside an open port as cells are added, and no mesh would do.
+#[test]
+fn next_to_nothing_is_judged_beside_its_kind() {
+    let out = tempfile::tempdir().expect("a folder");
+    let suck = [
+        "equilibrium",
+        "cases/tour-actuator.json",
+        "--set",
+        "/network/chains/0/ends/0={\"pressure_pa\":-20000}",
+        "--set",
+        "/network/chains/1/ends/0={\"pressure_pa\":-10000}",
+    ];
+    for more in [&[][..], &["--accuracy", "0.05"]] {
+        let run = slcbeam(&[&suck[..], more].concat(), out.path());
+        let text = [run.stdout, run.stderr].concat();
+        let text = String::from_utf8_lossy(&text);
+        assert!(
+            run.status.success() && !text.contains("max_pressure may be off"),
+            "{text}"
+        );
+        assert!(!text.contains("is not reached"), "{text}");
+    }
+}
+
 /// Goal: files, words and page know of stages.
 #[test]
 fn command_tells_stages() {

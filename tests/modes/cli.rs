@@ -118,6 +118,63 @@ fn modes_stand_by_kind() {
     assert_eq!((&json["of_kind"], &json["stable"]), (&"growth".into(), &true.into()));
 }
 
+/// Goal: modes that swing are numbered from slow to fast, as sweeps number them: where one is damped strongly, too.
+#[test]
+fn modes_are_numbered_by_frequency() {
+    let dir = TempDir::new().unwrap();
+    let out = dir.path().join("m");
+    let (code, said, _) = modes(&[
+        "cases/tour-harvester.json",
+        "--count",
+        "8",
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    let json: Value = serde_json::from_str(&said).unwrap();
+    let all = json["modes"].as_array().unwrap();
+    let frequencies: Vec<f64> = all.iter().filter_map(|mode| mode["frequency_hz"].as_f64()).collect();
+    assert!(code == 0 && frequencies.len() > 4, "{said}");
+    assert!(frequencies.is_sorted(), "{frequencies:?}");
+    // by the distance from zero they are in another order
+    let size = |mode: &Value| {
+        mode["growth_per_s"]
+            .as_f64()
+            .unwrap()
+            .hypot(mode["angular_frequency_per_s"].as_f64().unwrap())
+    };
+    let sizes: Vec<f64> = all
+        .iter()
+        .filter(|mode| mode["frequency_hz"].is_number())
+        .map(size)
+        .collect();
+    assert!(!sizes.is_sorted(), "{sizes:?}");
+}
+
+/// Goal: a beam with material damping on many cells, whose overdamped vibrations have nearly one rate, has its oscillations, and a warning says that
+/// others are not listed. Source: the same beam on a fourth of the cells, of which all eigenvalues are computed.
+#[test]
+fn oscillations_beside_a_cluster_are_found() {
+    let dir = TempDir::new().unwrap();
+    let found = |cells: &str| {
+        let (out, set) = (dir.path().join(cells), format!("/mesh/cells_per_segment={cells}"));
+        let case = ["cases/tour-beam.json", "--set", &set, "--json", "--quiet"];
+        let (code, said, error) =
+            modes(&[&case[..], &["--kind", "oscillation", "--out", out.to_str().unwrap()]].concat());
+        assert_eq!(code, 0, "{error}");
+        let json: Value = serde_json::from_str(&said).unwrap();
+        let of = |mode: &Value| mode["frequency_hz"].as_f64();
+        let all: Vec<f64> = json["modes"].as_array().unwrap().iter().filter_map(of).collect();
+        (all, json["warnings"].to_string())
+    };
+    let ((coarse, silent), (fine, told)) = (found("1"), found("16"));
+    assert!(told.contains("W025") && !silent.contains("W025"), "{told} {silent}");
+    assert!(fine.len() >= 5 && coarse.len() >= 5, "{coarse:?} {fine:?}");
+    for (a, b) in coarse.iter().zip(&fine).take(3) {
+        assert!((a / b - 1.0).abs() < 0.05, "{coarse:?} {fine:?}");
+    }
+}
+
 #[test]
 fn modes_near_a_frequency_as_json() {
     let dir = TempDir::new().unwrap();

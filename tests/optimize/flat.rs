@@ -64,3 +64,26 @@ fn a_number_that_does_nothing_has_no_band() {
     );
     assert_eq!(found["variables"][0]["within_1_percent"], Value::Null, "{found}");
 }
+
+/// Source: the frequency of a beam does not depend on its width. Goal: a warning says so, and no bound is told as the best in silence.
+#[test]
+fn a_figure_that_depends_on_nothing_is_told() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let case = cantilever(&dir);
+    let width = [
+        "--vary",
+        "/beam/width_m=0.012:0.044",
+        "--method",
+        "cma-es",
+        "--starts",
+        "1",
+    ];
+    let plain = ["--command", "modes", "--maximize", "mode_1.frequency_hz"];
+    let found = best(&dir, &[&[case.as_str()], &plain[..], &width[..]].concat());
+    let warnings = found["warnings"].as_array().expect("warnings");
+    let told = |what: &Value| {
+        what.as_str()
+            .is_some_and(|text| text.contains("does not depend on the numbers that were sought"))
+    };
+    assert!(warnings.iter().any(told), "{found}");
+}

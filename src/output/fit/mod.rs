@@ -7,7 +7,7 @@ use super::numbers::{shortest, significant};
 use super::plot::fitted::{self, Fitted as Drawn, Part};
 use super::records;
 use crate::case::Written;
-use crate::case::units;
+use crate::case::readable;
 use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
@@ -109,10 +109,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
     let (name, xs) = &aside[0];
     let x = match &problem.abscissa {
         Abscissa::Time(_) => ("time t".into(), "s".into()),
-        Abscissa::Drives(_) => {
-            let unit = units::of_pointer(name).map_or("1", |unit| unit.si);
-            (units::readable_pointer(name), unit.into())
-        }
+        Abscissa::Drives(_) => (readable::pointer_name(name), readable::pointer_unit(name).into()),
     };
     let part = |(k, one): (usize, &Matched)| {
         let places = places(problem, k);
@@ -136,7 +133,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
         let error = one
             .standard_error
             .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
-        let name = units::readable_pointer(&one.pointer);
+        let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}{error}", significant(one.value, 5))
     });
     Drawn {

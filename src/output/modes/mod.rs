@@ -86,11 +86,13 @@ impl Report<'_> {
             .collect();
         match growing.as_slice() {
             [] if self.found.modes.is_empty() => match self.sort {
+                Some(sort) if self.found.clustered => format!("no modes of the kind {} were found", sort.word()),
                 Some(sort) => format!("there are no modes of the kind {}", sort.word()),
                 None => "there are no modes".into(),
             },
             [] => {
-                let count = counted(self.found.modes.len() as u64, "mode");
+                let moving = self.found.modes.iter().filter(|mode| !mode.kind.stays()).count();
+                let count = counted(moving as u64, "mode");
                 let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
                 match self.sort {
                     None if !swings => format!(

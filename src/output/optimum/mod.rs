@@ -6,7 +6,7 @@ use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
 use super::plot::optimum::{self, Dot, Optimum as Drawn, Part};
 use super::records;
-use crate::case::{Written, units};
+use crate::case::{Written, readable};
 use crate::error::{Result, visible};
 use crate::results;
 use crate::study::optimize::Optimised;
@@ -100,20 +100,20 @@ fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
         best: None,
     };
     let numbers = problem.spans.iter().enumerate().map(|(i, span)| Part {
-        name: units::readable_pointer(&span.pointer),
-        unit: units::of_pointer(&span.pointer).map_or("1", |unit| unit.si).into(),
+        name: readable::pointer_name(&span.pointer),
+        unit: readable::pointer_unit(&span.pointer).into(),
         logarithmic: span.logarithmic() && span.low > 0.0,
         dots: dots(&|_, one| one.values[i]),
         best: best(optimum.variables[i].value),
     });
     let numbers_told = optimum.variables.iter().map(|one| {
-        let name = units::readable_pointer(&one.pointer);
+        let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}", significant(one.value, 5))
     });
     Drawn {
         name: format!("{}, {}", optimum.case, optimum.goal.figure),
         about: numbers_told.collect::<Vec<_>>().join(", "),
-        figure: units::readable(&optimum.goal.figure),
+        figure: readable::figure_name(&optimum.goal.figure),
         unit: unit(&optimum.goal.figure).into(),
         parts: std::iter::once(designs).chain(numbers).collect(),
     }

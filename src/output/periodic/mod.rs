@@ -12,6 +12,7 @@ use super::folder::ResultFolder;
 use super::numbers::{counted, quantity, shortest, significant};
 use super::plot::cycles::{self, Cycles, Quantity};
 use super::records;
+use crate::case::readable;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
@@ -124,7 +125,8 @@ pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
     let growth = found.members.iter().map(|m| m.floquet.verdict.growth_per_s);
     let picture = cycles::draw(&Cycles {
         case: found.case.clone(),
-        pointer: found.pointer.clone(),
+        parameter_name: readable::pointer_name(&found.pointer),
+        parameter_unit: readable::pointer_unit(&found.pointer).into(),
         logarithmic: found.logarithmic,
         parameter: found.members.iter().map(|m| m.value).collect(),
         stable: found

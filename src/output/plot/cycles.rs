@@ -23,7 +23,9 @@ pub struct Cycles {
     /// Name of the case.
     pub case: String,
     /// The parameter.
-    pub pointer: String,
+    pub parameter_name: String,
+    /// Its unit.
+    pub parameter_unit: String,
     /// Whether its axis is logarithmic.
     pub logarithmic: bool,
     /// Its values.
@@ -49,9 +51,9 @@ pub fn draw(data: &Cycles) -> Option<String> {
     let (lo, hi) = extent(xs.iter().copied())?;
     let margin = 0.03 * (hi - lo).max(1e-12);
     let x = if data.logarithmic {
-        Scale::logarithmic((lo, hi), margin, &[1.0, 2.0, 5.0], 7)
+        Scale::logarithmic((lo, hi), margin, &[1.0, 2.0, 5.0], (&data.parameter_unit, 7))
     } else {
-        Scale::exact(lo - margin, hi + margin, "1", 7)
+        Scale::exact(lo - margin, hi + margin, &data.parameter_unit, 7)
     };
     let count = data.quantities.len() as f64;
     let height = TOP + count * HEIGHT + (count - 1.0) * GAP + 52.0;
@@ -77,7 +79,7 @@ pub fn draw(data: &Cycles) -> Option<String> {
                 canvas.ring(panel.at(point), 3.4, Stroke::solid(colour, 1.4));
             }
             let last = k + 1 == data.quantities.len();
-            panel.axes(canvas, last.then_some(data.pointer.as_str()), &quantity.name);
+            panel.axes(canvas, last.then_some(data.parameter_name.as_str()), &quantity.name);
         }
     }))
 }

@@ -76,7 +76,7 @@ pub fn draw(data: &Optimum) -> Option<String> {
                 continue;
             };
             let x = match part.logarithmic {
-                true => Scale::logarithmic(range, 0.03, &[1.0, 2.0, 5.0], 8),
+                true => Scale::logarithmic(range, 0.03, &[1.0, 2.0, 5.0], (&part.unit, 8)),
                 false => Scale::around(Some(range), 0.0, &part.unit, 8),
             };
             let panel = Panel::new(place, x, Scale::around(Some(y), 0.0, &data.unit, 5));

@@ -2,6 +2,7 @@
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words};
 use super::colour::{self, Colour};
+use super::labels::LabelRoom;
 use super::ticks::Scale;
 
 const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
@@ -91,10 +92,13 @@ impl Panel {
     pub fn axes(&self, canvas: &mut Canvas, x_name: Option<&str>, y_name: &str) {
         let p = self.place;
         canvas.frame((p.left, p.top), (p.right(), p.bottom()), Stroke::solid(FRAME, 0.8));
+        let mut above = LabelRoom::new((0.0, SMALL));
         for (y, label) in &self.y.ticks {
             let at = self.at((self.x.lo, *y)).1;
             canvas.line(&[(p.left - 4.0, at), (p.left, at)], Stroke::solid(FRAME, 0.8));
-            canvas.text((p.left - 7.0, at), label, Words::new(SMALL, Anchor::Right));
+            if above.claim((p.left, at)) {
+                canvas.text((p.left - 7.0, at), label, Words::new(SMALL, Anchor::Right));
+            }
         }
         let words = Words {
             upright: true,
@@ -103,10 +107,13 @@ impl Panel {
         let longest = self.y.ticks.iter().map(|(_, label)| label.chars().count()).max();
         let beside = (20.0 + 6.4 * longest.unwrap_or(0) as f64).max(52.0);
         canvas.text((p.left - beside, p.top + 0.5 * p.height), &self.y.named(y_name), words);
+        // labels of one axis are about as long as the longest
+        let longest = self.x.ticks.iter().map(|(_, label)| label.chars().count()).max();
+        let mut beside = LabelRoom::new((4.0 + 5.8 * longest.unwrap_or(0) as f64, SMALL));
         for (x, label) in &self.x.ticks {
             let at = self.at((*x, self.y.lo)).0;
             canvas.line(&[(at, p.bottom()), (at, p.bottom() + 4.0)], Stroke::solid(FRAME, 0.8));
-            if x_name.is_some() {
+            if x_name.is_some() && beside.claim((at, p.bottom())) {
                 canvas.text((at, p.bottom() + 13.0), label, Words::new(SMALL, Anchor::Centre));
             }
         }

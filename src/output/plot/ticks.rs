@@ -47,19 +47,21 @@ impl Scale {
         }
     }
 
-    /// Of logarithms from `lo` to `hi`, with a margin, and ticks at these multiples of powers of ten.
-    pub fn logarithmic((lo, hi): (f64, f64), margin: f64, multiples: &[f64], count: usize) -> Self {
+    /// Of logarithms of values in a unit from `lo` to `hi`, with a margin, and about `count` ticks at these multiples of powers of ten.
+    pub fn logarithmic((lo, hi): (f64, f64), margin: f64, multiples: &[f64], (unit, count): (&str, usize)) -> Self {
         let mut scale = Self::exact(lo - margin, hi + margin, "1", count);
+        let (factor, shown_unit) = scaled_unit(10_f64.powf(0.5 * (lo + hi)), unit);
+        scale.unit = shown_unit;
         let decades = lo.floor() as i32..=hi.ceil() as i32;
         let marks = decades.flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
         let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
-        let ticks: Vec<_> = seen.map(|v| (v.log10(), significant(v, 1))).collect();
+        let ticks: Vec<_> = seen.map(|v| (v.log10(), significant(v / factor, 1))).collect();
         // within less than a decade there may be none of them
         scale.ticks = match ticks.len() {
             0 | 1 => scale
                 .ticks
                 .into_iter()
-                .map(|(x, _)| (x, significant(10_f64.powf(x), 3)))
+                .map(|(x, _)| (x, significant(10_f64.powf(x) / factor, 3)))
                 .collect(),
             _ => ticks,
         };
@@ -152,11 +154,19 @@ mod tests {
                 for width in [0.3, 0.95, 1.9, 3.9, 4.9, 1234.5] {
                     let scale = Scale::exact(lo, lo + width, "m", count);
                     assert!(scale.ticks.len() >= 2, "{lo} {width} {count}: {:?}", scale.ticks);
-                    let scale = Scale::logarithmic((lo, lo + 0.1 * width), 0.02, &[1.0, 2.0, 5.0], count);
+                    let scale = Scale::logarithmic((lo, lo + 0.1 * width), 0.02, &[1.0, 2.0, 5.0], ("Pa", count));
                     assert!(scale.ticks.len() >= 2, "{lo} {width} {count}: {:?}", scale.ticks);
                 }
             }
         }
+    }
+
+    /// Goal: a logarithmic axis has a unit, too.
+    #[test]
+    fn logarithmic_axes_have_units() {
+        let scale = Scale::logarithmic((-11.0, -9.0), 0.02, &[1.0], ("m^3/(s Pa)", 7));
+        assert_eq!(scale.named("conductance"), "conductance [10⁻¹² m³/(s Pa)]");
+        assert_eq!(labels(&scale), ["10", "100", "1000"]);
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub fn data(place: &Place) -> Result<Page> {
         ],
     );
     let table = sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name));
-    page.put("table", with_bands(table, &found));
+    page.put("table", moving_alone(with_bands(table, &found), &found));
     page.put("modes", json!(found.modes));
     page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
@@ -85,6 +85,15 @@ pub fn data(place: &Place) -> Result<Page> {
         format!("slcbeam modes {CASE}{at} --count {moving}{near}{kind}"),
     );
     Ok(page)
+}
+
+/// The table without what stays as it is, which the answer counts.
+fn moving_alone(mut table: Value, found: &Modes) -> Value {
+    if let Some(rows) = table["rows"].as_array_mut() {
+        let mut kinds = found.modes.iter().map(|mode| mode.kind);
+        rows.retain(|_| kinds.next().is_none_or(|kind| !kind.stays()));
+    }
+    table
 }
 
 /// The table with the bands of frequencies and rates behind them, where something is uncertain.

@@ -152,7 +152,11 @@ fn limits(study: &Study) -> String {
     let mut text = format!("\n{}", aligned(&lines, &[0, 2, 5]));
     text += "~ errors in time are above a tenth of the differences between meshes\n";
     if !study.left_out.is_empty() {
-        let _ = writeln!(text, "nothing beside others of its unit: {}", study.left_out.join(", "));
+        let _ = writeln!(
+            text,
+            "not compared, since prescribed or nothing beside others of its unit: {}",
+            study.left_out.join(", ")
+        );
     }
     text
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Survey, exchanged, numeric, table, unit};
-use crate::case::units;
+use crate::case::readable;
 use crate::error::Result;
 use crate::output::plot::designs::{self, Drawn, Numbers};
 use crate::results::sweep::Plan;
@@ -115,7 +115,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
         let values = figures.remove(name)?;
         (!values.is_empty() && differs(&values)).then(|| Numbers {
             name: (*name).into(),
-            label: units::readable(name),
+            label: readable::figure_name(name),
             unit: unit(name).into(),
             logarithmic: false,
             values,
@@ -128,8 +128,8 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             .iter()
             .map(|&k| Numbers {
                 name: plan.axes[k].pointer.clone(),
-                label: units::readable_pointer(&plan.axes[k].pointer),
-                unit: units::of_pointer(&plan.axes[k].pointer).map_or(String::new(), |unit| unit.si.into()),
+                label: readable::pointer_name(&plan.axes[k].pointer),
+                unit: readable::pointer_unit(&plan.axes[k].pointer).into(),
                 logarithmic: plan.logarithmic(k) || plan.listed(k) && by_factors(&varied[k]),
                 values: varied[k].iter().map(|x| x.unwrap_or(f64::NAN)).collect(),
             })

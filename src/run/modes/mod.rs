@@ -4,6 +4,7 @@
 //! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
 //! shape       displacements and pressures of an eigenvector; likeness of two
 //! meshes       the same modes on other meshes
+//! clustered    those beside a cluster of decays
 //! relaxing     those of a solid that relaxes
 //! sensitivity  derivatives by numbers of the case
 //! kind        oscillation, decay, growth, rigid motion, kept volume
@@ -11,6 +12,7 @@
 //! warnings    what to know before trusting them
 //! ```
 
+mod clustered;
 pub mod kind;
 pub mod linearise;
 pub mod meshes;
@@ -28,6 +30,7 @@ use crate::error::{At, Code, Error, Result, SolverError};
 use crate::run::null;
 use crate::spectral::{self, Options, Pair, Pencil, SpectralError};
 
+use clustered::Clustered;
 pub use kind::Kind;
 pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
 pub use meshes::{ByMesh, compare_meshes};
@@ -166,6 +169,8 @@ pub struct Modes {
     pub dense: bool,
     /// Modes of the long term that were not found again where the solid relaxes.
     pub lost: usize,
+    /// Whether decays lie in a cluster at which the search from zero ended.
+    pub clustered: bool,
     /// Whether there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
 }
@@ -185,7 +190,7 @@ pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
 pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
     let mut tally = Tally::default();
     let mut modes = search(&about, Fluid::Flowing, plan, &mut tally)?;
-    let lost = tally.lost;
+    let (lost, clustered) = (tally.lost, tally.clustered);
     if plan.limits && about.flows() {
         let wider = Plan {
             count: plan.count + 4,
@@ -218,6 +223,7 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
         solves: tally.solves,
         dense: tally.dense,
         lost,
+        clustered,
         bladders_compared: false,
     })
 }
@@ -229,6 +235,7 @@ struct Tally {
     solves: u64,
     dense: bool,
     lost: usize,
+    clustered: bool,
 }
 
 /// Share of the beam's own frequency at which a search from zero begins: beside zero, where closed networks and free beams
@@ -243,6 +250,9 @@ fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> R
     }
 }
 
+/// Size up to which all eigenvalues are computed within a second or two, rather than those beside a cluster alone.
+const QUICK: usize = 500;
+
 /// Modes of entries A and B, as planned.
 fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let pencil = Pencil { a, b, ..about.pencil() };
@@ -252,18 +262,39 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
     } else {
         Complex::new(BESIDE * about.frequency(), 0.0)
     };
+    let options = match plan.near_hz > 0.0 {
+        true => Options::default(),
+        false => Options {
+            at_last_dense_up_to: QUICK,
+            ..Options::default()
+        },
+    };
     let mut asked = plan.count + 2;
     loop {
         // conjugates come along and count once
-        let found = spectral::nearest(&pencil, shift, 2 * asked, &Options::default()).map_err(|f| failed(about, &f))?;
-        tally.factorizations += found.factorizations;
-        tally.solves += found.solves;
-        if fluid == Fluid::Flowing {
-            (tally.finite, tally.dense) = (found.finite, found.dense);
-        }
-        let complete = found.pairs.len() < 2 * asked;
-        let mut shapes = Shapes::new(about);
-        let mut modes: Vec<Mode> = found.pairs.iter().filter_map(|p| mode(about, &mut shapes, p)).collect();
+        let (mut modes, complete) = match spectral::nearest(&pencil, shift, 2 * asked, &options) {
+            Ok(found) => {
+                tally.factorizations += found.factorizations;
+                tally.solves += found.solves;
+                if fluid == Fluid::Flowing {
+                    (tally.finite, tally.dense) = (found.finite, found.dense);
+                }
+                let mut shapes = Shapes::new(about);
+                let modes: Vec<Mode> = found.pairs.iter().filter_map(|p| mode(about, &mut shapes, p)).collect();
+                (modes, found.pairs.len() < 2 * asked)
+            }
+            Err(SpectralError::Slow { converged, .. }) if plan.near_hz == 0.0 && converged > 1 => {
+                tally.clustered |= fluid == Fluid::Flowing;
+                let wanted = plan.count;
+                let search = Clustered {
+                    shift,
+                    converged,
+                    wanted,
+                };
+                (search.modes(about, fluid, &pencil, tally)?, true)
+            }
+            Err(failure) => return Err(failed(about, &failure)),
+        };
         let far = |mode: &Mode| (mode.s - target).norm();
         modes.sort_by(|a, b| far(a).total_cmp(&far(b)));
         let moving = modes.iter().filter(|mode| !mode.kind.stays()).count();

@@ -74,28 +74,33 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
                 false => Ok((found, plan)),
             };
         }
-        wider.count = (2 * wider.count).min(most);
+        // where all eigenvalues were computed at once there is nothing to save
+        wider.count = if found.dense { most } else { (2 * wider.count).min(most) };
         about = found.about;
     }
 }
 
-/// Puts modes into the order in which they are told: what grows, what swings, what decays, what stays as it is, each in the order in which they
-/// were found; so many alone, of a sort where one is asked for.
+/// Puts modes into the order in which they are told: what grows, what swings, what decays, what stays as it is, each from slow to fast: what
+/// swings by its frequency, as sweeps number it, what does not by its rate; so many alone, of a sort where one is asked for.
 pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
     if let Some(sort) = sort {
         modes.retain(|mode| sort.has(mode.kind));
     }
-    modes.sort_by_key(|mode| match mode.kind {
+    let group = |mode: &Mode| match mode.kind {
         Kind::Flutter | Kind::Divergence => 0,
         Kind::Oscillation => 1,
         Kind::Decay => 2,
         Kind::Rigid => 3,
         Kind::Volume => 4,
-    });
+    };
+    let pace = |mode: &Mode| if mode.kind.swings() { mode.s.im } else { mode.s.norm() };
+    // of modes beside a frequency the nearest are told
+    modes.sort_by_key(group);
     let mut left = count;
     modes.retain(|mode| {
         let kept = left > 0 || (sort.is_none() && mode.kind.stays());
         left -= usize::from(kept && (sort.is_some() || !mode.kind.stays()));
         kept
     });
+    modes.sort_by(|a, b| group(a).cmp(&group(b)).then(pace(a).total_cmp(&pace(b))));
 }

@@ -21,7 +21,12 @@ impl Modes {
             ))
         });
         let by_mesh = meshes::warning(self).into_iter().chain(self.forgotten());
-        moving.into_iter().chain(by_mesh).chain(self.missing()).collect()
+        moving
+            .into_iter()
+            .chain(by_mesh)
+            .chain(self.missing())
+            .chain(self.beside())
+            .collect()
     }
 
     /// That modes of a solid that relaxes are missing, where some are.
@@ -32,6 +37,16 @@ impl Modes {
                  swing, or lie far from where they were expected",
                 self.lost
             ))
+        })
+    }
+
+    /// That decays of a cluster are left out, where there is one.
+    pub fn beside(&self) -> Option<String> {
+        self.clustered.then(|| {
+            Code::LostModes.warning(
+                "many decays have nearly the same rate, as those of an overdamped solid, and the search does not converge among them: decays beyond \
+                 the first ones are not listed, and oscillations beyond were searched along the imaginary axis; fewer cells, or --near, show more",
+            )
         })
     }
 

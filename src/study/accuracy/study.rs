@@ -11,7 +11,8 @@ use super::scheme::Scheme;
 use super::signals::{self, Kind, Signal};
 use super::sweep::{self, Watch};
 use super::trial::{Role, Trial};
-use crate::case::Case;
+use crate::case::units::suffixed;
+use crate::case::{Case, Rotation, Translation};
 use crate::discrete::quantities::Observable;
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
@@ -114,7 +115,7 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evalu
         )));
     }
     let (mut trials, spent) = sweep::sweep(case, &plan, evaluations, watch)?;
-    let (left_out, sizes) = agree(&mut trials);
+    let (left_out, sizes) = agree(&mut trials, &prescribed(case));
     let names: Vec<String> = best(&trials)
         .iter()
         .flat_map(|s| s.iter().map(|s| s.name.clone()))
@@ -189,9 +190,22 @@ fn best(trials: &[Trial]) -> Option<&Vec<Signal>> {
     finest.and_then(|t| t.signals.as_ref())
 }
 
-/// Keeps the signals that all finished runs have and that are more than round-off, in the same order everywhere;
+/// Names of what a driven or held tip prescribes: no setting has an error there.
+fn prescribed(case: &Case) -> Vec<&'static str> {
+    let tip = case.ends.tip.resolve();
+    let moved = |direction: &Translation| matches!(direction, Translation::Displacement(_));
+    let all = [
+        (moved(&tip.transverse), Observable::TipU1),
+        (moved(&tip.axial), Observable::TipU3),
+        (matches!(tip.rotation, Rotation::Slope(_)), Observable::TipAngle),
+    ];
+    let names = all.into_iter().filter(|(given, _)| *given).map(|(_, one)| one.name());
+    names.collect()
+}
+
+/// Keeps the signals that all finished runs have, that are not prescribed and that are more than round-off, in the same order everywhere;
 /// returns the names of the others, and the sizes of those kept.
-fn agree(trials: &mut [Trial]) -> (Vec<String>, Vec<Norms>) {
+fn agree(trials: &mut [Trial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>) {
     let Some(best) = best(trials) else {
         return (vec![], vec![]);
     };
@@ -209,7 +223,13 @@ fn agree(trials: &mut [Trial]) -> (Vec<String>, Vec<Norms>) {
     };
     let counts = |s: &&Signal| {
         let size = size(s).max;
-        size > 0.0 && size >= NOTHING * largest(&s.unit) && everywhere(s)
+        // a figure of a quantity is named `tip_u3_m.max_abs`
+        let name = s
+            .name
+            .split('.')
+            .next()
+            .map_or("", |name| suffixed(name).map_or(name, |(plain, _)| plain));
+        !prescribed.contains(&name) && size > 0.0 && size >= NOTHING * largest(&s.unit) && everywhere(s)
     };
     let (kept, others): (Vec<&Signal>, Vec<&Signal>) = best.iter().partition(counts);
     let left_out = others.iter().map(|s| s.name.clone()).collect();

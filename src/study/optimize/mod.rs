@@ -250,13 +250,15 @@ fn finish(
     }
     let own = checked.into_iter().flat_map(|plain| plain.told);
     optimum.warnings.extend(own);
-    if reached.sloped && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
+    let flat = told::flat(problem, &optimum, &history);
+    if flat.is_none() && reached.sloped && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
             "{} does not change there with any number that was sought",
             problem.goal.figure
         );
         optimum.warnings.push(Code::Optimum.warning(what));
     }
+    optimum.warnings.extend(flat);
     optimum.wall_s = begin.elapsed().as_secs_f64();
     Ok(Optimised {
         optimum,

@@ -1,12 +1,13 @@
 //! What to know of a best before it is believed.
 
 use super::REACHED;
-use super::found::{Derivatives, Held, Optimum};
+use super::found::{Derivatives, Design, Held, Optimum};
 use super::problem::{Limit, Method, Problem};
 use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::error::numbers::counted;
 use crate::numerics::sqp::Ended;
+use crate::study::span::Span;
 use crate::study::sweep::row::Found;
 
 /// What the plain command may differ by without a word.
@@ -111,4 +112,40 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
         _ => {}
     }
     all
+}
+
+/// Part of a figure below which its changes are the rounding of the program.
+const ROUNDING: f64 = 1e-6;
+/// Part of the bounds that designs have to cover before a figure is called independent.
+const COVERED: f64 = 0.1;
+
+/// That the figure does not depend on what is sought, where designs across the bounds differ by no more than its error.
+pub(super) fn flat(problem: &Problem, found: &Optimum, history: &[Design]) -> Option<String> {
+    if !found.alternatives.is_empty() {
+        return None;
+    }
+    let finished = || history.iter().filter(|design| design.figures.is_some());
+    let range = |of: &dyn Fn(&Design) -> f64| {
+        let all = finished().map(of);
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        })
+    };
+    let covers = |(k, span): (usize, &Span)| {
+        let (low, high) = range(&|design| design.values.get(k).copied().unwrap_or(f64::NAN));
+        high - low >= COVERED * (span.high - span.low)
+    };
+    let (low, high) = range(&|design| design.figures.as_ref().map_or(f64::NAN, |figures| figures[0]));
+    let size = low.abs().max(high.abs());
+    let error = found.error.unwrap_or(0.0).max(ROUNDING * size);
+    let flat = high - low <= error && problem.spans.iter().enumerate().any(covers);
+    flat.then(|| {
+        Code::Optimum.warning(format!(
+            "{} does not depend on the numbers that were sought: over {} it differs by {:.1e}, and its error is {error:.1e}. The best is one of \
+             many; seek another figure or other numbers",
+            found.goal.figure,
+            counted(finished().count() as u64, "design"),
+            high - low,
+        ))
+    })
 }

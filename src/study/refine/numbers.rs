@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Number, Numbers};
 use crate::case::Case;
-use crate::discrete::quantities::probes;
+use crate::discrete::quantities::{Observable, probes};
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::run::equilibrium::{self, Options, Path};
@@ -19,8 +19,8 @@ use crate::study::counted::{Floors, counted};
 
 /// Numbers of a unit below this part of others are round-off.
 const NOTHING: f64 = 1e-6;
-/// An angle below this part of the largest displacement over the length moves nothing by more than this part of that displacement.
-const SLOPE: f64 = 1e-3;
+/// A number counts beside this part of the largest of its kind: its error is relative to the larger of both.
+const BESIDE: f64 = 0.01;
 /// Strain that is round-off beside moving as a whole.
 const STRAIN: f64 = 1e-9;
 /// Multipliers below this are of what is gone after a period.
@@ -82,8 +82,20 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
     };
     let number = |column: &Column, value: f64| {
         let (unit, factor) = alike(column);
-        let part = if column.unit == "rad" { SLOPE } else { NOTHING };
-        Number::new(value, (part * largest(unit)).max(floor(unit)) / factor)
+        // a pressure counts beside those of ports, a force beside those that act
+        let acting = match unit {
+            "Pa" => model.scales.pressure,
+            "N" => model.scales.force,
+            _ => 0.0,
+        };
+        // the largest of a field of pressures, which are all negative under suction, counts beside the field
+        let extreme = [Observable::MaxPressure, Observable::MinPressure].map(Observable::name);
+        let part = if extreme.contains(&column.name.as_str()) {
+            1.0
+        } else {
+            BESIDE
+        };
+        Number::new(value, (part * largest(unit).max(acting)).max(floor(unit)) / factor)
     };
     Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }

@@ -15,7 +15,7 @@ pub const PUMP: &str = "/network/chains/0/ends/0/pressure_pa";
 
 /// What is replaced by what; the pointer of the fault, the text that is marked (of a place between two letters what stands before it, behind `|`),
 /// and what is said to do.
-pub const OF_TEXT: [(&str, &str, &str, &str, &str); 50] = [
+pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
     // numbers with units
     ("60000", "60kPa", PUMP, "60kPa", "60kPa is 60000 here"),
     ("60000", "60 kPa", PUMP, "60 kPa", "60 kPa is 60000 here"),
@@ -262,6 +262,27 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 50] = [
         "/beam/damping",
         "0.1",
         "such as {\"bending_time_s\": 0.002",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"height_m\": {\"taper\": [0.01, 0.005]}}, \"ends\": {",
+        "/beam/height_m",
+        "{\"taper\": [0.01, 0.005]}",
+        "one number is wanted: beam, bladders and fluid are the same all along",
+    ),
+    (
+        "\"ends\": {",
+        "\"beam\": {\"height_m\": [0.01, 0.005]}, \"ends\": {",
+        "/beam/height_m",
+        "[0.01, 0.005]",
+        "one number is wanted: beam, bladders and fluid are the same all along",
+    ),
+    (
+        "0.5,",
+        "[0, 2],",
+        "/time/end_s",
+        "[0, 2]",
+        "one number is wanted, without brackets",
     ),
     // files
     (

@@ -58,6 +58,16 @@ fn modes_move() {
     sorted_both_ways(&mut browser);
 }
 
+/// Goal: the table of a page has the modes that the terminal shows, and the sentence counts them.
+#[test]
+fn a_page_of_modes_lists_what_moves() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let page = made(folder.path(), &["modes", "cases/wiring-2.json", "--count", "4"]);
+    let text = std::fs::read_to_string(page).expect("a page");
+    assert!(text.contains("none of the 4 modes shown grows"));
+    assert!(!text.contains("\"kept volume\""));
+}
+
 #[test]
 fn studies_say_what_they_found_first() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -132,7 +132,7 @@ impl Numbers {
         }
         let margin = 0.04 * (hi - lo).max(0.1);
         let multiples: &[f64] = if hi - lo > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        Some(Scale::logarithmic((lo, hi), margin, multiples, count))
+        Some(Scale::logarithmic((lo, hi), margin, multiples, (unit, count)))
     }
 }
 

@@ -134,7 +134,7 @@ function showModes() {
     const name = (m, k) => `${k + 1} · ${m.kind}${m.frequency_hz ? ` ${quantity(m.frequency_hz, "Hz", 4)}` : m.time_s ? `, ${quantity(m.time_s, "s")}` : ""}`;
     const first = Math.max(modes.findIndex((m) => m.kind === "oscillation" || m.kind === "flutter"), 0);
     const body = section("shapes", "How the modes move", "Every small motion is a sum of these. Amplitudes are drawn as large as can be seen; what counts is the shape, and where the pressure is.");
-    const select = el("select", { "aria-label": "Mode", id: "mode" }, modes.map((m, k) => el("option", { value: k, text: name(m, k), selected: k === first })));
+    const select = el("select", { "aria-label": "Mode", id: "mode" }, modes.map((m, k) => el("option", { value: k, text: name(m, k), selected: k === first })).filter((_, k) => !["rigid", "volume"].includes(modes[k].kind)));
     const canvas = el("canvas", { role: "img", "aria-label": "The moving shape of the mode" });
     const words = el("p", { class: "caption" });
     let phase = 0;

@@ -1,0 +1,83 @@
+//! Modes beside a cluster of decays, such as the overdamped vibrations of a solid with material damping, whose rates tend to one value: a
+//! search from zero does not tell these apart and ends at them. Oscillations beyond are looked for one by one along the imaginary axis, from which the
+//! cluster is far.
+
+use nalgebra::Complex;
+
+use super::{Fluid, Linearised, Mode, Shapes, Tally, failed, mode};
+use crate::error::Result;
+use crate::spectral::{self, Options, Pencil, SpectralError};
+
+/// Pairs looked for beside a place on the imaginary axis: several, or where they do not converge fewer.
+const BESIDE: [usize; 3] = [4, 2, 1];
+/// Ratio of neighbouring places.
+const STEP: f64 = 1.25;
+/// Places without a new oscillation after which none is expected.
+const PATIENCE: usize = 8;
+/// Distance of two equal eigenvalues, relative.
+const SAME: f64 = 1e-6;
+
+/// A search from zero of which so many eigenvalues converged, and so many modes are wanted.
+pub struct Clustered {
+    /// Where it began.
+    pub shift: Complex<f64>,
+    /// Eigenvalues that converged.
+    pub converged: usize,
+    /// Modes that are wanted.
+    pub wanted: usize,
+}
+
+impl Clustered {
+    /// The modes nearer than the cluster, and the oscillations beyond it.
+    ///
+    /// # Errors
+    /// The search was interrupted.
+    pub fn modes(&self, about: &Linearised, fluid: Fluid, pencil: &Pencil, tally: &mut Tally) -> Result<Vec<Mode>> {
+        let fewer = |count: &usize| (*count > 3).then_some(count / 2);
+        let counts: Vec<usize> = std::iter::successors(Some(self.converged), fewer).collect();
+        let mut modes = near(about, fluid, pencil, (self.shift, &counts), tally)?;
+        let size = |modes: &[Mode]| modes.iter().map(|mode| mode.s.norm()).fold(0.0, f64::max);
+        let moving = |modes: &[Mode]| modes.iter().filter(|mode| !mode.kind.stays()).count();
+        let (mut place, mut without) = (STEP * size(&modes), 0);
+        while moving(&modes) < self.wanted && without < PATIENCE && place > 0.0 {
+            let found = near(about, fluid, pencil, (Complex::new(0.0, place), &BESIDE), tally)?;
+            let before = modes.len();
+            for one in found.into_iter().filter(|one| one.kind.swings()) {
+                let known = |own: &Mode| (own.s - one.s).norm() <= SAME * one.s.norm();
+                if !modes.iter().any(known) {
+                    modes.push(one);
+                }
+            }
+            without = if modes.len() > before { 0 } else { without + 1 };
+            place *= STEP;
+        }
+        Ok(modes)
+    }
+}
+
+/// Modes nearest a place: as many as converge of these counts.
+fn near(
+    about: &Linearised,
+    fluid: Fluid,
+    pencil: &Pencil,
+    (shift, counts): (Complex<f64>, &[usize]),
+    tally: &mut Tally,
+) -> Result<Vec<Mode>> {
+    for &count in counts {
+        match spectral::nearest(pencil, shift, count, &Options::default()) {
+            Ok(found) => {
+                tally.factorizations += found.factorizations;
+                tally.solves += found.solves;
+                if fluid == Fluid::Flowing {
+                    tally.finite = found.finite;
+                }
+                let mut shapes = Shapes::new(about);
+                let modes = found.pairs.iter().filter_map(|pair| mode(about, &mut shapes, pair));
+                return Ok(modes.collect());
+            }
+            Err(SpectralError::Interrupted) => return Err(failed(about, &SpectralError::Interrupted)),
+            Err(_) => {}
+        }
+    }
+    Ok(vec![])
+}
