@@ -14,7 +14,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
         Suffix::Known(name, unit) => return Suffix::Known(bare(name), unit),
         unknown @ Suffix::Unknown(..) => return unknown,
     }
-    let mut signs = whole
+    let signs = whole
         .char_indices()
         .filter(|(_, sign)| !sign.is_alphanumeric() && !"_^⁻%°".contains(*sign));
     for (at, sign) in signs.clone() {
@@ -98,8 +98,7 @@ fn bare(name: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::super::units::Suffix;
-    use super::suffix;
+    use super::{Suffix, suffix};
 
     #[test]
     fn units_stand_behind_blanks_and_other_signs() {

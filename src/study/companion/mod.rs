@@ -212,10 +212,12 @@ fn work(summary: &Summary) -> u64 {
     summary.solver.steps * summary.unknowns as u64
 }
 
+/// Makes a companion of a case, where that applies.
+type Attempt = fn(&Case) -> Result<Option<Variant>>;
+
 /// The companion of a case with its summary, or the reason why there is none.
 fn companion_of(case: &Case, limits: &Limits) -> std::result::Result<(CompanionRun, Summary), String> {
-    let attempts: [fn(&Case) -> Result<Option<Variant>>; 3] =
-        [Variant::with_all_effects, Variant::with_its_effects, Variant::tighter];
+    let attempts: [Attempt; 3] = [Variant::with_all_effects, Variant::with_its_effects, Variant::tighter];
     let mut reason = String::new();
     for attempt in attempts {
         let variant = match attempt(case) {

@@ -141,7 +141,7 @@ pub(super) fn flat(problem: &Problem, found: &Optimum, history: &[Design]) -> Op
     let flat = high - low <= error && problem.spans.iter().enumerate().any(covers);
     flat.then(|| {
         Code::Optimum.warning(format!(
-            "{} does not depend on the numbers that were sought: over {} it differs by {:.1e}, and its error is {error:.1e}. The best is one of \
+            "{} does not depend on the numbers that were sought, within its error: over {} it differs by {:.1e}, and its error is {error:.1e}. The best is one of \
              many; seek another figure or other numbers",
             found.goal.figure,
             counted(finished().count() as u64, "design"),
