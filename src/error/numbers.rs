@@ -114,6 +114,7 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     if largest == 0.0 {
         return quantity(value, unit, 3);
     }
+    let plain = unit.to_string();
     let (factor, unit) = scaled_unit(largest, unit);
     let (value, error) = (value / factor, error / factor);
     let place = |x: f64| x.abs().log10().floor() as i32;
@@ -126,6 +127,15 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
         }
         false => last,
     };
+    // an error above the value leaves the value two digits
+    let last = match value != 0.0 && error >= value.abs() {
+        true => last.min(place(value) - 1).max(place(error) - 2),
+        false => last,
+    };
+    if last < -MOST_DIGITS {
+        let pair = [(value, 2), (error, 1)].map(|(x, digits)| quantity(x * factor, &plain, digits));
+        return pair.join(" ± ");
+    }
     let step = 10_f64.powi(last);
     let error = ((error / step - 1e-9).ceil().max(1.0)) * step;
     let decimals = (-last).max(0) as usize;

@@ -245,6 +245,39 @@ fn bars_cover_a_load_that_the_mesh_does_not_see() {
     assert!(warning(&summary, "W008").is_none() && warning(&summary, "W020").is_none());
 }
 
+/// Source: a run with 16 cells a segment and a bladder at rtol 1e-7: -40.0 um. Goal: changes of the two meshes cancel in the companion; each by itself
+/// shows the error.
+#[test]
+fn bars_cover_changes_that_cancel() {
+    let summary = with_errors(&shipped("pluck", &["/fluid/viscosity_pa_s=0.001"]));
+    let value = summary.quantities["tip_u3_m"].last.expect("a tip");
+    let bar = summary.error("tip_u3_m", "final").expect("a bar");
+    println!("{value:.3e} ± {bar:.1e}, right -4.00e-5");
+    assert!(3.0 * bar > (value + 4.0e-5).abs());
+}
+
+/// Source: runs with 16, 64 and 256 cells a bladder: 1.36, 1.87 and 1.88 uJ harvested in place of 32 nJ. Goal: an energy that is next to nothing is named
+/// where its error is not.
+#[test]
+fn a_small_harvest_with_a_large_error_is_named() {
+    let summary = with_errors(&shipped("tip-mass", &["/fluid/viscosity_pa_s=100"]));
+    let told = warning(&summary, "W021").expect("a warning");
+    assert!(told.contains("harvested_energy_j"), "{told}");
+}
+
+/// Source: a run at rtol 1e-8, 25.27 J. Goal: the companion's looser tolerance puts its energy off by hundreds of joules; the runs that differ in one setting
+/// show that the run is right to a few per cent.
+#[test]
+fn an_error_of_the_companion_alone_is_not_reported() {
+    let summary = with_errors(&shipped("hard/quasi-static-buckling", &[]));
+    let (value, bar) = (
+        summary.quantities["input_energy_j"].last.expect("an energy"),
+        summary.error("input_energy_j", "final").expect("a bar"),
+    );
+    println!("{value:.4e} ± {bar:.1e}");
+    assert!((value - 25.27).abs() < 0.05 && bar < 5.0, "{value:e} ± {bar:e}");
+}
+
 /// Effects that the run leaves out are in the companion. `"companion": "off"` gives the same figures without errors.
 #[test]
 fn a_companion_has_all_effects_and_changes_no_figure() {

@@ -1,7 +1,8 @@
 //! Which setting makes an error that is large, and the warning.
 //!
 //! Each setting is changed by itself: the cells of the beam and those of a bladder to those of the companion, a tenth of the tolerance, each
-//! effect that is left out. These runs are made only where an error is above the limit and the run is small.
+//! effect that is left out. These runs are made only where an error is above the limit and the run is small. Their errors, added, replace
+//! those of the companion, in which changes may cancel and whose looser tolerance may err more than the run.
 
 use std::collections::BTreeMap;
 
@@ -22,13 +23,14 @@ pub const LIMIT: f64 = 0.05;
 /// Error bar from which on a quantity may have a large error: bars may be too small by half.
 const NAMED_FROM: f64 = 0.5 * LIMIT;
 /// Largest work (steps times unknowns) of a run whose errors are attributed.
-const LARGEST_WORK: u64 = 20_000_000;
+const LARGEST_WORK: u64 = 5_000_000;
 /// Largest work of a run with one change, relative to that of the run.
 const LONGEST: u64 = 20;
 /// Smallest share of an error at which a cause is named.
 const NAMED: f64 = 0.1;
-/// Finest meshes and tightest tolerance that are proposed.
-const FINEST: usize = 256;
+/// Largest refinement of a mesh and of the tolerance that is proposed at once, and the tightest tolerance.
+const FINER: usize = 8;
+const DECADES: f64 = 2.0;
 const TIGHTEST: f64 = 1e-12;
 
 /// Warning of figures without errors.
@@ -37,32 +39,75 @@ pub fn unknown(status: Status, reason: &str) -> Option<String> {
         .then(|| Code::ErrorEstimate.warning(format!("errors of figures are not known: {reason}. Use --accuracy.")))
 }
 
+/// Errors of all figures by their causes, as far as they are measured.
+enum Causes {
+    /// All that apply.
+    Complete(BTreeMap<Cause, Figures>),
+    /// Some, since a run did not reach its end.
+    Partial(BTreeMap<Cause, Figures>),
+    Interrupted,
+    TooLarge,
+}
+
+impl Causes {
+    fn known(&self) -> Option<&BTreeMap<Cause, Figures>> {
+        match self {
+            Self::Complete(causes) | Self::Partial(causes) => Some(causes),
+            Self::Interrupted | Self::TooLarge => None,
+        }
+    }
+}
+
 /// Warns of errors above the limit, with their causes and a remedy.
 pub(super) fn attribute(case: &Case, summary: &mut Summary, recorder: &mut dyn Recorder) -> Result<()> {
-    let relative = error::relative(summary, &Floors::of(case)?);
-    let mut large: Vec<(&String, f64)> = relative.iter().map(|(name, e)| (name, *e)).collect();
-    large.retain(|(_, error)| *error > NAMED_FROM);
-    large.sort_by(|a, b| b.1.total_cmp(&a.1));
-    if large.is_empty() {
+    let floors = Floors::of(case)?;
+    if large(summary, &floors).is_empty() {
         return Ok(());
     }
     let causes = match work(summary) <= LARGEST_WORK {
         true => causes(case, summary, recorder)?,
-        false => BTreeMap::new(),
+        false => Causes::TooLarge,
     };
-    let warning = words(case, &large, &shares(summary, &causes));
-    summary.warnings.insert(0, warning);
-    if let Some(companion) = &mut summary.companion {
-        companion.causes = causes
-            .into_iter()
-            .map(|(cause, errors)| (cause.pointer(), errors))
-            .collect();
+    if let Some(known) = causes.known() {
+        let of_companion = std::mem::take(&mut summary.errors);
+        summary.errors = added(&of_companion, known, matches!(causes, Causes::Complete(_)));
+    }
+    let large = large(summary, &floors);
+    if !large.is_empty() {
+        let warning = words(case, &large, &causes, &shares(summary, causes.known()));
+        summary.warnings.insert(0, warning);
+    }
+    if let (Some(companion), Some(known)) = (&mut summary.companion, causes.known()) {
+        let by_pointer = known.iter().map(|(cause, errors)| (cause.pointer(), errors.clone()));
+        companion.causes = by_pointer.collect();
     }
     Ok(())
 }
 
-/// Errors of all figures by each cause.
-fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result<BTreeMap<Cause, Figures>> {
+/// Quantities whose error may be above the limit, the largest first.
+fn large(summary: &Summary, floors: &Floors) -> Vec<(String, f64)> {
+    let mut large: Vec<(String, f64)> = error::relative(summary, floors).into_iter().collect();
+    large.retain(|(_, error)| *error > NAMED_FROM);
+    large.sort_by(|a, b| b.1.total_cmp(&a.1));
+    large
+}
+
+/// Errors of all causes, added; where not all are known, at least those of the companion.
+fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, complete: bool) -> Figures {
+    let sum = |name: &String, figure: &String, error: f64| {
+        let parts = causes.values().filter_map(|errors| errors.get(name)?.get(figure));
+        let sum: f64 = parts.sum();
+        if complete { sum } else { sum.max(error) }
+    };
+    let of = |(name, errors): (&String, &BTreeMap<String, f64>)| {
+        let all = errors.iter().map(|(figure, e)| (figure.clone(), sum(name, figure, *e)));
+        (name.clone(), all.collect())
+    };
+    of_companion.iter().map(of).collect()
+}
+
+/// Errors of all figures by each cause, two runs at a time.
+fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result<Causes> {
     let effects = models::full(case)?.map_or(vec![], |full| full.left_out);
     let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
     let all = settings.into_iter().chain(effects.into_iter().map(Cause::Effect));
@@ -71,48 +116,71 @@ fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result
         work: (LONGEST * work(summary) + super::SMALL_WORK).into(),
     };
     let (own, Some(companion)) = (error::figures(summary), &summary.companion) else {
-        return Ok(BTreeMap::new());
+        return Ok(Causes::TooLarge);
     };
-    let heard = halt::heard();
-    let mut found = BTreeMap::new();
+    let mut variants = vec![];
     for cause in all {
-        let Some((variant, factor)) = Variant::with_change(case, companion, cause)? else {
-            continue;
-        };
-        let (run, stopped) = std::thread::scope(|scope| {
-            let task = threads::begin(scope, || heard.during(|| finish(&variant, &limits)));
-            let stopped = super::wait(&task, &limits, &progress(summary), recorder);
-            (task.join(), stopped)
-        });
-        if stopped?.is_some() {
-            break;
-        }
-        if let Ok(run) = run {
-            let mut errors = error::differences(&own, &error::figures(&run));
-            errors
-                .values_mut()
-                .flat_map(BTreeMap::values_mut)
-                .for_each(|error| *error *= factor);
-            found.insert(cause, errors);
+        if let Some((variant, factor)) = Variant::with_change(case, companion, cause)? {
+            variants.push((cause, variant, factor));
         }
     }
-    Ok(found)
+    let heard = &halt::heard();
+    let limits = &limits;
+    let (mut found, mut complete) = (BTreeMap::new(), true);
+    for pair in variants.chunks(2) {
+        let (ended, stopped) = std::thread::scope(|scope| {
+            let tasks: Vec<_> = pair
+                .iter()
+                .map(|(_, variant, _)| threads::begin(scope, move || heard.during(|| finish(variant, limits))))
+                .collect();
+            let mut stopped = Ok(None);
+            for task in &tasks {
+                let now = super::wait(task, limits, &progress(summary), recorder);
+                stopped = stopped.and_then(|before: Option<String>| Ok(before.or(now?)));
+            }
+            let ended: Vec<_> = tasks.into_iter().map(threads::Begun::join).collect();
+            (ended, stopped)
+        });
+        if stopped?.is_some() || halt::asked() {
+            return Ok(Causes::Interrupted);
+        }
+        for ((cause, _, factor), run) in pair.iter().zip(ended) {
+            let Ok(run) = run else {
+                complete = false;
+                continue;
+            };
+            let mut errors = error::differences(&own, &error::figures(&run));
+            let all = errors.values_mut().flat_map(BTreeMap::values_mut);
+            all.for_each(|error| *error *= factor);
+            found.insert(*cause, errors);
+        }
+    }
+    Ok(match complete {
+        true => Causes::Complete(found),
+        false => Causes::Partial(found),
+    })
 }
 
 /// Shares of each cause in the largest error of each quantity.
-fn shares(summary: &Summary, causes: &BTreeMap<Cause, Figures>) -> BTreeMap<String, Vec<(Cause, f64)>> {
+fn shares(summary: &Summary, causes: Option<&BTreeMap<Cause, Figures>>) -> BTreeMap<String, Vec<(Cause, f64)>> {
     let of = |name: &String| {
         let size = |errors: &Figures| errors.get(name).map_or(0.0, error::largest);
         let quantity = [&summary.quantities, &summary.probes, &summary.ports];
         let largest = quantity.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size());
-        let mut all: Vec<(Cause, f64)> = causes.iter().map(|(c, errors)| (*c, size(errors) / largest)).collect();
+        let each = causes.into_iter().flatten();
+        let mut all: Vec<(Cause, f64)> = each.map(|(c, errors)| (*c, size(errors) / largest)).collect();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         (name.clone(), all)
     };
     summary.errors.keys().map(of).collect()
 }
 
-fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(Cause, f64)>>) -> String {
+fn words(
+    case: &Case,
+    large: &[(String, f64)],
+    measured: &Causes,
+    shares: &BTreeMap<String, Vec<(Cause, f64)>>,
+) -> String {
     let names: Vec<String> = large
         .iter()
         .map(|(name, e)| format!("{name} ± {}", percent(*e)))
@@ -123,7 +191,7 @@ fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(C
         names.join(", ")
     );
     let of = |name: &str| shares.get(name).map_or(&[][..], Vec::as_slice);
-    let (worst, error) = (large[0].0, large[0].1);
+    let (worst, error) = (&large[0].0, large[0].1);
     let causes: Vec<String> = of(worst)
         .iter()
         .filter(|(_, share)| *share >= NAMED * error)
@@ -144,7 +212,11 @@ fn words(case: &Case, large: &[(&String, f64)], shares: &BTreeMap<String, Vec<(C
         }
     }
     if causes.is_empty() {
-        let what = "The causes are not measured for a run of this size, or stand below a tenth of the error";
+        let what = match measured {
+            Causes::Interrupted => "The measurement of their causes was interrupted",
+            Causes::TooLarge => "The run is too large to measure their causes",
+            Causes::Complete(_) | Causes::Partial(_) => "No setting by itself makes a tenth of them",
+        };
         return Code::ErrorEstimate.warning(format!("{found} {what}. Use --accuracy {LIMIT}."));
     }
     let set: Vec<String> = wanted.iter().map(|(cause, error)| cause.remedy(case, *error)).collect();
@@ -171,16 +243,16 @@ impl Cause {
         match self {
             Self::BeamMesh => {
                 let cells = case.mesh.cells_per_segment;
-                let finer = (cells * times(f64::from(case.mesh.order()))).min(FINEST.max(2 * cells));
+                let finer = cells * times(f64::from(case.mesh.order())).min(FINER);
                 format!("--set {}={finer}", self.pointer())
             }
             Self::FluidMesh => {
                 let cells = case.mesh.cells_per_bladder;
-                let finer = (cells * times(1.0)).min(FINEST.max(2 * cells));
+                let finer = cells * times(1.0).min(FINER);
                 format!("--set {}={finer}", self.pointer())
             }
             Self::TimeSteps => {
-                let decades = (error / NAMED_FROM).log10().ceil().max(1.0);
+                let decades = (error / NAMED_FROM).log10().ceil().clamp(1.0, DECADES);
                 let tighter = (case.solver.rtol * 10_f64.powf(-decades)).max(TIGHTEST);
                 format!("--set {}={tighter:.0e}", self.pointer())
             }

@@ -58,11 +58,30 @@ fn has_unit_of_quantity(figure: &str) -> bool {
     figure != "window_power_w"
 }
 
+/// A summary whose figures are as large as their errors allow: a figure that is next to nothing counts where its error does.
+fn with_errors_added(summary: &Summary) -> Summary {
+    let mut added = summary.clone();
+    let Summary {
+        quantities,
+        probes,
+        ports,
+        ..
+    } = &mut added;
+    for (name, quantity) in quantities.iter_mut().chain(probes).chain(ports) {
+        let error = summary.errors.get(name).map_or(0.0, largest);
+        for figure in [&mut quantity.last, &mut quantity.max_abs].into_iter().flatten() {
+            *figure = figure.abs() + error;
+        }
+    }
+    added
+}
+
 /// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
 pub fn relative(summary: &Summary, floors: &Floors) -> BTreeMap<String, f64> {
-    let quantities = counted(summary, floors).map(|(name, q)| (name, q.size()));
-    let probes = counted_of_probes(summary, floors).map(|(name, q)| (name, q.size()));
-    let ports = counted_of_ports(summary, floors).map(|name| (name, summary.ports[name].size()));
+    let added = &with_errors_added(summary);
+    let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
+    let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
+    let ports = counted_of_ports(added, floors).map(|name| (name, summary.ports[name].size()));
     let largest = |(name, size): (&String, f64)| Some((name.clone(), self::largest(summary.errors.get(name)?) / size));
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
 }

@@ -185,7 +185,8 @@ fn wait<T>(
                 Ok(Control::Continue) => {}
                 Ok(Control::Stop(reason)) => {
                     limits.cancel();
-                    stopped.get_or_insert(reason);
+                    let words = reason.split(" at t = ").next().unwrap_or_default();
+                    stopped.get_or_insert(format!("{words} while the companion ran"));
                 }
                 Err(error) => {
                     limits.cancel();
@@ -260,7 +261,9 @@ fn finish(variant: &Variant, limits: &Limits) -> std::result::Result<Summary, St
         return Err("the companion was cancelled".into());
     }
     if too_long(summary.solver.steps) {
-        return Err("the companion takes more work than the run".into());
+        return Err(format!(
+            "the companion takes more than {LARGEST_WORK} times the work of the run"
+        ));
     }
     if summary.status != Status::Finished {
         let reason = summary.reason.unwrap_or_default();
