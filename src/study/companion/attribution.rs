@@ -1,8 +1,9 @@
 //! Which setting makes an error that is large, and the warning.
 //!
 //! Each setting is changed by itself: the cells of the beam and those of a bladder to those of the companion, a tenth of the tolerance, each
-//! effect that is left out. These runs are made only where an error is above the limit and the run is small. Their errors, added, replace
-//! those of the companion, in which changes may cancel and whose looser tolerance may err more than the run.
+//! effect that is left out. These runs are made only where an error is above the limit and the run is small. Changes may cancel in the
+//! companion, and its looser tolerance may err more than the run: an error is at least the sum over all causes, and at most
+//! [`TRUSTED`] times that.
 
 use std::collections::BTreeMap;
 
@@ -26,6 +27,8 @@ const NAMED_FROM: f64 = 0.5 * LIMIT;
 const LARGEST_WORK: u64 = 5_000_000;
 /// Largest work of a run with one change, relative to that of the run.
 const LONGEST: u64 = 20;
+/// Largest error of a companion beside the sum over all causes.
+const TRUSTED: f64 = 4.0;
 /// Smallest share of an error at which a cause is named.
 const NAMED: f64 = 0.1;
 /// Largest refinement of a mesh and of the tolerance that is proposed at once, and the tightest tolerance.
@@ -92,12 +95,13 @@ fn large(summary: &Summary, floors: &Floors) -> Vec<(String, f64)> {
     large
 }
 
-/// Errors of all causes, added; where not all are known, at least those of the companion.
+/// Errors of the companion, bounded by the sums over all causes; below by those over the causes that are known where some are not.
 fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, complete: bool) -> Figures {
     let sum = |name: &String, figure: &String, error: f64| {
         let parts = causes.values().filter_map(|errors| errors.get(name)?.get(figure));
         let sum: f64 = parts.sum();
-        if complete { sum } else { sum.max(error) }
+        let most = if complete { TRUSTED * sum } else { f64::INFINITY };
+        sum.max(error.min(most))
     };
     let of = |(name, errors): (&String, &BTreeMap<String, f64>)| {
         let all = errors.iter().map(|(figure, e)| (figure.clone(), sum(name, figure, *e)));
