@@ -14,7 +14,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
         Suffix::Known(name, unit) => return Suffix::Known(bare(name), unit),
         unknown @ Suffix::Unknown(..) => return unknown,
     }
-    let signs = whole
+    let mut signs = whole
         .char_indices()
         .filter(|(_, sign)| !sign.is_alphanumeric() && !"_^⁻%°".contains(*sign));
     for (at, sign) in signs.clone() {
@@ -46,7 +46,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
     }
     // powers belong to a unit, which was not found
     let power = |sign: char| "^²³⁻".contains(sign);
-    let last = signs.filter(|(at, _)| whole[*at..].contains(power)).next_back();
+    let last = signs.rfind(|(at, _)| whole[*at..].contains(power));
     match last {
         Some((at, sign)) if sign.is_whitespace() => Suffix::Unknown(bare(&whole[..at]), whole[at..].trim()),
         _ => Suffix::None,

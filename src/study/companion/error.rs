@@ -8,6 +8,12 @@ use crate::study::counted::{Floors, counted, counted_of_ports, counted_of_probes
 /// Smallest error of a figure, relative to the largest error among the figures of its quantity.
 pub const SHARED: f64 = 0.3;
 
+/// Largest displacements anywhere along the beam, which are no more certain than those at the places that are watched.
+const ANYWHERE: [(&str, &[&str]); 2] = [
+    ("largest_u1_m", &["tip_u1_m", "midspan_u1_m"]),
+    ("largest_u3_m", &["tip_u3_m"]),
+];
+
 /// Figures of quantities, probes and ports.
 pub fn figures(summary: &Summary) -> Figures {
     let all = summary.quantities.iter().chain(&summary.probes).chain(&summary.ports);
@@ -35,7 +41,18 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
         }
         Some((name.clone(), errors))
     };
-    run.iter().filter_map(of).collect()
+    let mut all: Figures = run.iter().filter_map(of).collect();
+    for (anywhere, places) in ANYWHERE {
+        let Some(mut errors) = all.remove(anywhere) else {
+            continue;
+        };
+        for (figure, error) in &mut errors {
+            let there = places.iter().filter_map(|place| all.get(*place)?.get(figure));
+            *error = there.fold(*error, |most, there| most.max(*there));
+        }
+        all.insert(anywhere.into(), errors);
+    }
+    all
 }
 
 /// The figure without sign that stands for an extreme: the sides of a vibration change places from run to run.
