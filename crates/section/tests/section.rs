@@ -279,7 +279,10 @@ proptest! {
             section.regions = vec![Region { shape, material }];
         }
         prop_assert_eq!(section.faults(), vec![]);
-        let c = coarse(&section);
+        // of flat shapes the coarsest mesh may fold, which is reported
+        let found = section.coefficients(&Options { meshes: 1, ..Options::default() });
+        prop_assume!(!found.as_ref().is_err_and(|error| error.to_string().contains("folded")));
+        let c = found.unwrap();
         prop_assert!(c.asymmetry < 1e-12, "{}", c.asymmetry);
         prop_assert!(is_positive_definite(c.numbers.compliance, 4));
         prop_assert!(c.numbers.shear_stiffness_n > 0.0 && c.numbers.permeability_m4 > 0.0);

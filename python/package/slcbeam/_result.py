@@ -236,7 +236,8 @@ class Result:
         >>> slcbeam.run("bend-wet").errors["tip_u1_m"]["final"] < 1e-3
         True
         """
-        return self.summary.get("errors", {})
+        errors: dict[str, dict[str, float]] = self.summary.get("errors", {})
+        return errors
 
     @property
     def sensitivities(self) -> dict[str, dict[str, Any]]:
