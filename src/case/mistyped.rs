@@ -14,7 +14,7 @@ const MOST: i64 = 40;
 /// Parts of a case that have one value along the whole beam.
 const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
 
-/// What to write where one number is wanted.
+/// Remedy for a value in place of one number.
 fn one_number(pointer: &str) -> String {
     let part = pointer.split('/').nth(1).unwrap_or_default();
     match UNIFORM.contains(&part) {
@@ -25,7 +25,7 @@ fn one_number(pointer: &str) -> String {
     }
 }
 
-/// What to write for a value of none of these kinds; `schema` is what may stand there, `pointer` the place.
+/// Remedy for a value of a kind that its place does not allow; `schema` describes the allowed values, `pointer` the place.
 pub fn hint(pointer: &str, value: &Value, schema: &Value, branches: &[&Value]) -> Option<String> {
     let key = pointer.rsplit('/').next().unwrap_or_default();
     let kinds = |wanted: &str| branches.iter().any(|branch| branch["type"] == wanted);

@@ -78,7 +78,7 @@ pub fn key_unit(key: &str) -> Option<(&str, &'static str)> {
     Some((end.trim_end_matches('_'), unit))
 }
 
-/// Whether a key counts members of a list.
+/// True if a key is the index of a list member.
 fn is_index(key: &str) -> bool {
     !key.is_empty() && key.bytes().all(|b| b.is_ascii_digit())
 }

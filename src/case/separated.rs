@@ -2,11 +2,11 @@
 
 use super::units::{self, Suffix};
 
-/// What stands before a unit in this place: any name.
+/// Name before a unit; any name serves.
 const ANY: &str = "x_";
 
 /// The unit that a heading ends with, behind an underscore, a blank or another sign. Where an end may be of two dimensions it is that of the
-/// quantity, as far as this is told by its SI unit.
+/// quantity, if its SI unit `si` determines that.
 pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
     let whole = heading.trim();
     match units::suffix(whole, si) {
@@ -28,7 +28,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
             Suffix::None => {}
         }
     }
-    // before other words a unit is told by `in`
+    // the word `in` marks a unit before further words
     for sign in [" in ", "_in_"] {
         let Some((name, rest)) = whole.split_once(sign) else {
             continue;
@@ -81,7 +81,7 @@ fn plain(sign: char) -> char {
     }
 }
 
-/// Whether a text may be a unit of this name for its capitals: all of its letters are small, or all are capitals and M is none for m.
+/// True if the capitals of a text allow this unit: all letters are small, or all are capitals and no M stands for m.
 fn is_cased_as(text: &str, name: &str) -> bool {
     let small = !text.chars().any(char::is_uppercase);
     let milli_or_mega = text.starts_with('M') && name.starts_with('m');

@@ -32,10 +32,9 @@ use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
-use crate::study::companion;
 use crate::study::compare::changes::changes;
 use crate::study::sweep::What;
-use crate::study::target;
+use crate::study::{companion, target};
 
 /// Differences between two cases that are told.
 const DIFFERENCES: usize = 4;
@@ -61,6 +60,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,
+        error_bars: !asked.lean && asked.accuracy.is_none(),
         before: WallTimes {
             start_up,
             set_up: laps.lap(),
@@ -143,7 +143,16 @@ fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<(
 struct Way {
     hook: SharedHook,
     lean: bool,
+    /// False for lean runs, and for an accuracy, whose runs measure each other.
+    error_bars: bool,
     before: WallTimes,
+}
+
+impl Way {
+    /// True if a run with derivatives by some numbers has a companion: if it has error bars and the memory holds both.
+    fn has_companion(&self, case: &Case, by: &[Parameter]) -> bool {
+        self.error_bars && size::holds_companion(case, by.len())
+    }
 }
 
 /// Asked after every step of every run: progress, Ctrl-C, wall time.
@@ -184,6 +193,7 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
             }
         }))),
         lean,
+        error_bars: !lean && accuracy.is_none(),
         before: WallTimes::default(),
     };
     let folder = ResultFolder::claim(dir, Kind::Run, true)?;
@@ -218,20 +228,13 @@ struct Recorded {
     written: Result<()>,
 }
 
-/// Runs a case into a folder, with error bars unless it is lean or the memory does not hold a companion.
+/// Runs a case into a folder.
 fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
-    if way.lean || !size::holds_companion(case, by.len()) {
-        return record_alone(case, system, by, folder, way);
-    }
-    let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook));
-    let outcome = companion::run(case, system, by, &mut recorder)?;
-    complete(recorder, outcome, way)
-}
-
-/// Runs a case into a folder, without error bars.
-fn record_alone(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
-    let outcome = dynamics::run_with(case, system, by, &mut recorder)?;
+    let outcome = match way.has_companion(case, by) {
+        true => companion::run(case, system, by, &mut recorder)?,
+        false => dynamics::run_with(case, system, by, &mut recorder)?,
+    };
     complete(recorder, outcome, way)
 }
 
@@ -269,7 +272,7 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Res
             finished,
             written,
             ..
-        } = record_alone(case, System::new(case)?, &[], folder, way)?;
+        } = record(case, System::new(case)?, &[], folder, way)?;
         if written.is_err() {
             unwritten = written;
             return Ok(outcome);
@@ -329,9 +332,9 @@ fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Wa
     let header = Observer::header(case, &system);
     let mut recorder =
         FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
-    let outcome = match way.lean {
-        true => dynamics::resume(case, system, &saved.run, &mut recorder)?,
-        false => companion::resume(case, system, &saved.run, &mut recorder)?,
+    let outcome = match way.has_companion(case, kept) {
+        true => companion::resume(case, system, &saved.run, &mut recorder)?,
+        false => dynamics::resume(case, system, &saved.run, &mut recorder)?,
     };
     complete(recorder, outcome, way)
 }

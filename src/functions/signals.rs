@@ -146,7 +146,7 @@ pub(super) struct TableText {
     /// Values at these times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
-    /// CSV file to take the points from, relative to the case file: a line of headings, then numbers. A heading tells the unit of its column behind
+    /// CSV file to take the points from, relative to the case file: a line of headings, then numbers. A heading gives the unit of its column behind
     /// its name or in brackets (`t_ms`, `p_kpa`, `flow [ml/min]`); without one it is in SI units.
     #[serde(default, skip_serializing)]
     csv: Option<String>,

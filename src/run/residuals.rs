@@ -68,7 +68,7 @@ impl Residuals {
         balance: &EnergyBalance,
         [first, invariants]: [&Invariants; 2],
         integrals: &[f64],
-    ) -> f64 {
+    ) {
         self.energy = self.energy.max(balance.residual.abs());
         let put_in = [EnergyRate::Loads, EnergyRate::Ends, EnergyRate::Ports].map(|f| integrals[f as usize].abs());
         let stored = balance.stored.total().abs();
@@ -89,7 +89,7 @@ impl Residuals {
         }
         displaced(system, &w.fluid.area, &w.fluid.pressure, &mut self.volume_seen);
         if !system.layout.inertia {
-            return 0.0;
+            return;
         }
         // The momentum that the largest energy could carry: loads and reactions may cancel all along.
         let model = &system.model;
@@ -110,7 +110,6 @@ impl Residuals {
             .angular_seen
             .max(invariants.angular_momentum.abs())
             .max(gained.abs());
-        lost
     }
 
     /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.

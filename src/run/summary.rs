@@ -345,6 +345,17 @@ pub struct Summary {
     pub warnings: Vec<String>,
 }
 
+/// True for figures in the unit of their quantity: all but mean powers.
+pub fn has_unit_of_quantity(figure: &str) -> bool {
+    figure != "window_power_w"
+}
+
+/// Largest of the errors of figures in the unit of their quantity.
+pub fn largest_error(errors: &BTreeMap<String, f64>) -> Option<f64> {
+    let alike = errors.iter().filter(|(figure, _)| has_unit_of_quantity(figure));
+    alike.map(|(_, error)| *error).reduce(f64::max)
+}
+
 impl Summary {
     /// Largest error of a quantity or probe over its largest figure; nothing where it is not known.
     pub fn relative_error(&self, name: &str) -> Option<f64> {
@@ -352,9 +363,8 @@ impl Summary {
             return found.quantities.get(name)?.total;
         }
         let quantity = self.quantities.get(name).or_else(|| self.probes.get(name))?;
-        let errors = self.errors.get(name)?.iter();
-        let largest = errors.filter(|(figure, _)| *figure != "window_power_w");
-        Some(largest.map(|(_, error)| *error).reduce(f64::max)? / quantity.size()).filter(|e| e.is_finite())
+        let largest = largest_error(self.errors.get(name)?)?;
+        Some(largest / quantity.size()).filter(|e| e.is_finite())
     }
 
     /// Absolute error of a figure of a quantity or probe, in its unit; nothing where it is not known.

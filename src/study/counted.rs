@@ -5,6 +5,7 @@ pub use crate::run::floors::Floors;
 use crate::run::floors::NOTHING;
 use crate::run::ports::unit;
 use crate::run::summary::{Quantity, Summary};
+use crate::study::sweep::unit as figures;
 
 /// Flows and pressures of ports and accumulators that are more than round-off, by name: beside others of their unit, pressures also beside what the
 /// case is expected to do.
@@ -28,22 +29,17 @@ pub fn counted_of_probes<'a>(
     summary: &'a Summary,
     floors: &'a Floors,
 ) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
-    let of = |name: &str| match name.rsplit('_').next() {
-        Some("pa") => "Pa",
-        Some("m") => "m",
-        Some("rad") => "rad",
-        _ => "1",
-    };
-    let largest = move |unit: &str| {
-        let alike = summary.probes.iter().filter(|(name, _)| of(name) == unit);
+    let largest = move |of: &str| {
+        let alike = summary.probes.iter().filter(|(name, _)| figures::unit(name) == of);
         alike.map(|(_, q)| q.size()).fold(0.0, f64::max)
     };
     let counts = move |(name, q): &(&'a String, &'a Quantity)| {
-        let floor = match of(name) {
+        let unit = figures::unit(name);
+        let floor = match unit {
             "rad" => floors.displacement / floors.length,
             unit => floors.of_unit(unit, 0.0),
         };
-        q.size() > (NOTHING * largest(of(name))).max(floor)
+        q.size() > (NOTHING * largest(unit)).max(floor)
     };
     summary.probes.iter().filter(counts)
 }

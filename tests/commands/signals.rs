@@ -1,6 +1,7 @@
 //! Commands that are asked to stop: Ctrl-C, requests to terminate, once and twice.
 
 use std::fs;
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -9,6 +10,15 @@ use super::interruption::{program, summary};
 fn signal(process: u32, name: &str) {
     let sent = Command::new("kill").args([name, &process.to_string()]).status();
     assert!(sent.unwrap().success());
+}
+
+/// Waits until a run has begun to write its history.
+fn wait_for_history(out: &Path) {
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !out.join("history.csv").exists() {
+        assert!(Instant::now() < deadline);
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 #[cfg(unix)]
@@ -23,11 +33,7 @@ fn interrupt_stops_with_everything_written() {
         .arg(&out)
         .spawn()
         .unwrap();
-    let deadline = Instant::now() + Duration::from_secs(60);
-    while !out.join("history.csv").exists() {
-        assert!(Instant::now() < deadline);
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_history(&out);
     signal(child.id(), "-INT");
     assert_eq!(child.wait().unwrap().code(), Some(130), "as shells say it");
     let summary = summary(&out);
@@ -57,11 +63,7 @@ fn a_hangup_stops_with_everything_written_except_under_nohup() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        let deadline = Instant::now() + Duration::from_secs(60);
-        while !out.join("history.csv").exists() {
-            assert!(Instant::now() < deadline);
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        wait_for_history(&out);
         for name in signals {
             // one that has ended is not waited for yet, so that its number stays its own
             signal(child.id(), name);

@@ -32,6 +32,14 @@ pub fn refined(case: &Case, cells: usize, rtol: f64) -> Case {
     case
 }
 
+/// The case for its figures alone: without checkpoints, each of which is a fresh start of the integrator, and thinned outputs.
+pub fn unrecorded(case: &Case) -> Case {
+    let mut case = case.clone();
+    case.time.checkpoint_interval_s = None;
+    case.time.history = Default::default();
+    case
+}
+
 /// The case on meshes of fourth order, where it does not name an order and can be computed so.
 pub fn of_best_order(case: &Case) -> Case {
     let mut fourth = case.clone();
@@ -44,13 +52,11 @@ pub fn of_best_order(case: &Case) -> Case {
 }
 
 impl Setting {
-    /// The case so computed. No checkpoints: each is a fresh start of the integrator.
+    /// The case so computed.
     pub fn case(&self, case: &Case) -> Case {
         let mut case = refined(case, self.cells, self.rtol);
         self.scheme.apply(&mut case.solver);
-        case.time.checkpoint_interval_s = None;
-        case.time.history = Default::default();
-        case
+        unrecorded(&case)
     }
 }
 

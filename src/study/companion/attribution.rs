@@ -15,7 +15,7 @@ use crate::error::{Code, Result};
 use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::run::record::Recorder;
-use crate::run::summary::{Figures, Status, Summary};
+use crate::run::summary::{Figures, Status, Summary, largest_error};
 use crate::study::counted::Floors;
 use crate::study::target::models;
 
@@ -168,7 +168,7 @@ fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result
 /// Shares of each cause in the largest error of each quantity.
 fn shares(summary: &Summary, causes: Option<&BTreeMap<Cause, Figures>>) -> BTreeMap<String, Vec<(Cause, f64)>> {
     let of = |name: &String| {
-        let size = |errors: &Figures| errors.get(name).map_or(0.0, error::largest);
+        let size = |errors: &Figures| errors.get(name).and_then(largest_error).unwrap_or(0.0);
         let quantity = [&summary.quantities, &summary.probes, &summary.ports];
         let largest = quantity.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size());
         let each = causes.into_iter().flatten();

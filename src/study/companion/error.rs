@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::run::summary::{Figures, Quantity, Summary};
+use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
 use crate::study::counted::{Floors, counted, counted_of_ports, counted_of_probes};
 
 /// Smallest error of a figure, relative to the largest error among the figures of its quantity.
@@ -35,7 +35,7 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
             .keys()
             .filter_map(|figure| Some((figure.clone(), apart(unsigned(figure))?)))
             .collect();
-        let largest = largest(&errors);
+        let largest = largest_error(&errors).unwrap_or(0.0);
         for (_, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
             *error = error.max(SHARED * largest);
         }
@@ -64,17 +64,6 @@ fn unsigned(figure: &str) -> &str {
     }
 }
 
-/// Largest error of figures in the unit of their quantity.
-pub fn largest(errors: &BTreeMap<String, f64>) -> f64 {
-    let alike = errors.iter().filter(|(figure, _)| has_unit_of_quantity(figure));
-    alike.fold(0.0, |largest, (_, error)| largest.max(*error))
-}
-
-/// True for figures in the unit of their quantity: all but mean powers.
-fn has_unit_of_quantity(figure: &str) -> bool {
-    figure != "window_power_w"
-}
-
 /// A summary whose figures are as large as their errors allow: a figure that is next to nothing counts where its error does.
 fn with_errors_added(summary: &Summary) -> Summary {
     let mut added = summary.clone();
@@ -85,7 +74,7 @@ fn with_errors_added(summary: &Summary) -> Summary {
         ..
     } = &mut added;
     for (name, quantity) in quantities.iter_mut().chain(probes).chain(ports) {
-        let error = summary.errors.get(name).map_or(0.0, largest);
+        let error = summary.errors.get(name).and_then(largest_error).unwrap_or(0.0);
         for figure in [&mut quantity.last, &mut quantity.max_abs].into_iter().flatten() {
             *figure = figure.abs() + error;
         }
@@ -99,6 +88,6 @@ pub fn relative(summary: &Summary, floors: &Floors) -> BTreeMap<String, f64> {
     let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
     let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
     let ports = counted_of_ports(added, floors).map(|name| (name, summary.ports[name].size()));
-    let largest = |(name, size): (&String, f64)| Some((name.clone(), self::largest(summary.errors.get(name)?) / size));
+    let largest = |(name, size): (&String, f64)| Some((name.clone(), largest_error(summary.errors.get(name)?)? / size));
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
 }

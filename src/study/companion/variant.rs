@@ -1,10 +1,11 @@
 //! Cases beside a case: its companion, and those that differ from it in one setting.
 
 use crate::case::Case;
-use crate::case::schema::{Choice, Companion, Effect, Effects};
+use crate::case::schema::{Choice, Effect, Effects};
 use crate::discrete::{Mesh, System, resolution};
 use crate::error::Result;
 use crate::run::summary::{CompanionRun, Summary};
+use crate::study::accuracy::plan::unrecorded;
 use crate::study::companion::error;
 use crate::study::effects::choices::with;
 use crate::study::refine::has_cells_along_bladders;
@@ -74,7 +75,7 @@ impl Variant {
     /// # Errors
     /// As [`System::new`].
     pub fn tighter(case: &Case) -> Result<Option<Self>> {
-        let mut case = alone(case);
+        let mut case = unrecorded(case);
         case.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
         case.mesh.cells_per_segment *= 2;
         case.mesh.cells_per_bladder *= 2;
@@ -82,7 +83,7 @@ impl Variant {
     }
 
     fn discretized(case: &Case, added: Vec<Effect>) -> Result<Self> {
-        let mut case = alone(case);
+        let mut case = unrecorded(case);
         let unresolved = resolution::unresolved(&case, &System::new(&case)?);
         let finer = |setting: &str, cells: usize| {
             let of = unresolved.iter().filter(|finding| finding.setting == setting);
@@ -107,7 +108,7 @@ impl Variant {
     /// # Errors
     /// As [`System::new`].
     pub fn with_change(case: &Case, companion: &CompanionRun, cause: Cause) -> Result<Option<(Self, f64)>> {
-        let mut other = alone(case);
+        let mut other = unrecorded(case);
         let mut added = vec![];
         let factor = match cause {
             Cause::BeamMesh => {
@@ -159,15 +160,6 @@ impl Variant {
             causes: Default::default(),
         }
     }
-}
-
-/// A case that runs beside another: without a companion, checkpoints and thinned outputs.
-fn alone(case: &Case) -> Case {
-    let mut case = case.clone();
-    case.companion = Companion::Off;
-    case.time.checkpoint_interval_s = None;
-    case.time.history = Default::default();
-    case
 }
 
 /// Other cells of a segment: half as many at second order, three quarters at fourth, twice as many where there can be no fewer.

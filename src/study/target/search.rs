@@ -133,10 +133,7 @@ impl<'a> Search<'a> {
             }
             control
         });
-        let mut case = case.clone();
-        case.time.checkpoint_interval_s = None;
-        case.time.history = Default::default();
-        let summary = dynamics::run(&case, &mut watch)?.summary;
+        let summary = dynamics::run(&plan::unrecorded(case), &mut watch)?.summary;
         self.pilots.push(pilot(self.with(way), at, &summary));
         Ok((summary, stopped))
     }
