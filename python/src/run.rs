@@ -12,11 +12,12 @@ use slcbeam::output::folder::ResultFolder;
 use slcbeam::output::kind::Kind;
 use slcbeam::output::recorder::{FolderRecorder, Labels};
 use slcbeam::output::{report, summary};
-use slcbeam::run::dynamics::{self, Outcome};
+use slcbeam::run::dynamics::Outcome;
 use slcbeam::run::observe::Observer;
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
-use slcbeam::study::{companion, refine, target};
+use slcbeam::study::companion::{self, Accurate};
+use slcbeam::study::{refine, target};
 
 use crate::case::Case;
 use crate::errors::{broken, raised, told};
@@ -60,7 +61,7 @@ pub fn run<'py>(
     let (ended, stopped) = py.detach(|| {
         let watch = Watch::new(progress);
         let ended = match accuracy {
-            None => once(case, &sensitivities, &watch, companion::run),
+            None => settle(case, &sensitivities, &watch),
             Some(accuracy) => reach(case, accuracy, &watch),
         };
         (ended, (watch.stopped(), watch.end()))
@@ -111,7 +112,7 @@ pub fn again(
 }
 
 /// A run with or without error bars.
-type Run = fn(&slcbeam::case::Case, System, &[Parameter], &mut dyn Recorder) -> Result<Outcome>;
+type Run<'a> = &'a dyn Fn(&slcbeam::case::Case, System, &[Parameter], &mut dyn Recorder) -> Result<Outcome>;
 
 /// One run on the mesh of the case.
 fn once(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch, run: Run) -> Result<Ended> {
@@ -126,19 +127,35 @@ fn once(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch, run
     })
 }
 
+/// One run, and again with effects that its companion shows to matter.
+fn settle(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch) -> Result<Ended> {
+    let mut ended = once(case, sensitivities, watch, &companion::run)?;
+    let first = ended.outcome.clone();
+    let mut again = |case: &slcbeam::case::Case| -> Result<Outcome> {
+        let repeated = once(case, sensitivities, watch, &companion::run)?;
+        let outcome = repeated.outcome.clone();
+        if outcome.summary.status == Status::Finished {
+            ended = repeated;
+        }
+        Ok(outcome)
+    };
+    let outcome = target::effects::settle(case, first, &mut again)?;
+    Ok(Ended { outcome, ..ended })
+}
+
 /// Runs until every figure is known well enough; the last candidate that finished is the result, or the first.
 fn reach(case: &slcbeam::case::Case, accuracy: f64, watch: &Watch) -> Result<Ended> {
     let mut placed: Option<Ended> = None;
-    let hook = |progress: &Progress| watch.step(progress);
-    let mut candidate = |case: &slcbeam::case::Case| -> Result<Outcome> {
-        let ended = once(case, &[], watch, dynamics::run_with)?;
+    let mut candidate = |case: &slcbeam::case::Case, accuracy: &Accurate| -> Result<Outcome> {
+        let measured: Run = &|case, system, _, recorder| companion::measured(case, system, accuracy, recorder);
+        let ended = once(case, &[], watch, measured)?;
         let outcome = ended.outcome.clone();
         if outcome.summary.status == Status::Finished || placed.is_none() {
             placed = Some(ended);
         }
         Ok(outcome)
     };
-    let outcome = target::reach(case, accuracy, &hook, &mut candidate)?;
+    let outcome = target::reach(case, accuracy, None, &mut candidate)?;
     Ok(match placed {
         Some(ended) => Ended { outcome, ..ended },
         None => Ended {

@@ -63,7 +63,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let columns = equilibrium::columns(&system);
     let meshes = if path.fault.is_none() && accuracy.is_none() {
         let here = refine::numbers::of_path(case, &columns, &path)?;
-        Some(refine::meshes::judge(case, &here, &mut of)?)
+        Some(refine::meshes::judge_at_rest(case, &here, &mut of)?)
     } else {
         None
     };

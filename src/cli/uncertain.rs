@@ -114,6 +114,7 @@ impl Uncertain {
         let ask = Ask {
             what: self.what,
             accuracy: None,
+            from: None,
             meshes,
         };
         let stop = || self.stopped();

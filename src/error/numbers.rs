@@ -185,6 +185,18 @@ pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))
 }
 
+/// A relative error as percent, with digits as far as they say something: `4 %`, `42 %`.
+pub fn error_percent(error: f64) -> String {
+    let digits = match error {
+        x if x >= 10.0 => return "over 1000 %".into(),
+        x if x < 1e-12 => return "0 %".into(),
+        x if x < 0.095 => 1,
+        x if x < 1.0 => 2,
+        _ => 3,
+    };
+    format!("{} %", significant(100.0 * error, digits))
+}
+
 /// A count with its thousands set apart: `1 234 567`.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();

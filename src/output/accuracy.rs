@@ -1,37 +1,56 @@
 //! An accuracy that was asked for, in words.
 
-use super::numbers::{counted, significant};
-use crate::run::summary::Accuracy;
+use super::numbers::{counted, error_percent, significant};
+use crate::run::summary::{Accuracy, Estimate};
 
-/// Estimates told.
+/// Errors told.
 const TOLD: usize = 4;
 
 /// What was asked, what is known of the worst numbers, and how it was reached; a line each.
 pub fn words(found: &Accuracy) -> String {
-    let mut worst: Vec<_> = found.quantities.iter().collect();
-    worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
-    let told = worst
-        .iter()
-        .take(TOLD)
-        .map(|(name, e)| match (e.total, e.time, e.space) {
-            (Some(_), Some(time), Some(space)) => {
-                format!(
-                    "{name} {} by steps, {} by the mesh",
-                    significant(time, 2),
-                    significant(space, 2)
-                )
-            }
-            (Some(total), ..) => format!("{name} {}", significant(total, 2)),
-            _ => format!("{name} unknown"),
-        });
     format!(
-        "accuracy {} {}; estimated relative errors: {}\nwith {}, {} a bladder, rtol {}, after {}\n",
-        significant(found.asked, 2),
-        if found.reached { "reached" } else { "not reached" },
-        told.collect::<Vec<_>>().join("; "),
+        "accuracy {}; largest errors: {}\nwith {}\n",
+        reached(found),
+        largest(found).join("; "),
+        setting(found)
+    )
+}
+
+/// The accuracy, and whether it is reached.
+pub fn reached(found: &Accuracy) -> String {
+    let verb = if found.reached { "reached" } else { "not reached" };
+    format!("{} {verb}", error_percent(found.asked))
+}
+
+/// Mesh, tolerance and the number of runs.
+pub fn setting(found: &Accuracy) -> String {
+    format!(
+        "{}, {} a bladder, rtol {}, after {}",
         found.cells(),
         found.cells_per_bladder,
         significant(found.rtol, 1),
-        counted(found.pilots.len() as u64, "computation")
+        counted(found.pilots.len() as u64, "coarser computation")
     )
+}
+
+/// The largest errors, with what makes them where that is known.
+pub fn largest(found: &Accuracy) -> Vec<String> {
+    let mut worst: Vec<(&String, &Estimate)> = found.quantities.iter().collect();
+    worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
+    let told = worst.into_iter().take(TOLD).map(|(name, e)| {
+        let Some(total) = e.total else {
+            return format!("{name} unknown");
+        };
+        let parts = [("steps", e.time), ("meshes", e.space), ("effects", e.effects)];
+        let parts = parts
+            .iter()
+            .filter_map(|(what, part)| Some(format!("{what} {}", error_percent((*part)?))));
+        let parts: Vec<String> = parts.collect();
+        let parts = match parts.len() {
+            0 => String::new(),
+            _ => format!(" ({})", parts.join(", ")),
+        };
+        format!("{name} {}{parts}", error_percent(total))
+    });
+    told.collect()
 }

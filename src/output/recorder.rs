@@ -291,6 +291,16 @@ impl Finished {
         }
     }
 
+    /// Takes over the result in another folder, in place of its own.
+    ///
+    /// # Errors
+    /// It cannot be moved.
+    pub fn replace(&mut self, with: &Path) -> Result<()> {
+        self.folder.replace(with)?;
+        (self.resumable, self.history) = (true, None);
+        Ok(())
+    }
+
     /// Writes the page.
     ///
     /// # Errors

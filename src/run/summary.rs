@@ -151,6 +151,24 @@ pub struct CompanionRun {
     /// Errors of figures by their cause, the JSON pointer of a setting; absent where no error may exceed 5 %.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub causes: BTreeMap<String, Figures>,
+    /// Runs before the run, without effects that their companions showed to matter.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub earlier_runs: Vec<EarlierRun>,
+}
+
+/// A run that was repeated with more effects.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EarlierRun {
+    /// Effects that it leaves out and the next run does not.
+    pub added_effects: Vec<String>,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Steps.
+    pub steps: u64,
+    /// Wall time [s].
+    pub wall_s: f64,
+    /// Its figures.
+    pub figures: Figures,
 }
 
 /// Whether the balances close.
@@ -192,31 +210,28 @@ pub struct Chosen {
     pub reason: String,
 }
 
-/// Estimated errors of a quantity, relative to its largest figure; absent where nothing is known.
+/// Errors of a quantity, relative to its largest figure; absent where they are not known.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Of the time integration.
     pub time: Option<f64>,
     /// Of the mesh.
     pub space: Option<f64>,
-    /// What the effects that are left out change; absent where none is left out that is not exact, or where that is not known.
+    /// Of the effects that are left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<f64>,
-    /// Distance to another method at the same tolerance, which the error of the time integration is not taken below.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub method: Option<f64>,
     /// Of time, mesh and effects together.
     pub total: Option<f64>,
 }
 
-/// A run that others were judged by.
+/// A coarser or looser run before a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pilot {
-    /// What it is, besides coarser or looser: another method, or with effects that were left out. Empty: nothing else.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub with: String,
     /// Beam cells per segment.
     pub cells_per_segment: usize,
+    /// Fluid cells per bladder.
+    #[serde(default)]
+    pub cells_per_bladder: usize,
     /// Tolerance.
     pub rtol: f64,
     /// Unknowns.
@@ -228,23 +243,12 @@ pub struct Pilot {
     pub wall_s: f64,
 }
 
-/// Which figures of the quantities an accuracy is about.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Judged {
-    /// All of them.
-    #[default]
-    Figures,
-    /// Those over the window alone: root mean squares and increments.
-    WindowStatistics,
-}
-
 /// What an accuracy asked for led to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// Relative error asked for.
     pub asked: f64,
-    /// Whether every estimate is known and not above it, and the effects that are left out are among what was judged.
+    /// Whether every error is known and not above it.
     pub reached: bool,
     /// Mesh chosen: beam cells per segment.
     pub cells_per_segment: usize,
@@ -255,15 +259,12 @@ pub struct Accuracy {
     pub order: u8,
     /// Tolerance chosen.
     pub rtol: f64,
-    /// What is judged: every figure, or statistics alone where the motion cannot be followed that far.
-    #[serde(default)]
-    pub judged_by: Judged,
-    /// What was found of the effects that are left out, in words.
+    /// Effects that were added, and those that are left out, in words.
     #[serde(default)]
     pub effects: String,
-    /// Estimates by quantity.
+    /// Errors by quantity, probe and port.
     pub quantities: BTreeMap<String, Estimate>,
-    /// The runs that led there, the result's own not among them.
+    /// The runs before the result.
     pub pilots: Vec<Pilot>,
 }
 

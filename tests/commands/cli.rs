@@ -555,7 +555,7 @@ fn an_accuracy_is_asked_for() {
         "0.05",
     ]);
     assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("asked 0.05"), "{}", said.out);
+    assert!(said.out.contains("5 % reached with "), "{}", said.out);
     let summary = json(&folder.join("summary.json"));
     assert_eq!(summary["accuracy"]["reached"], true, "{summary:#}");
     let case = json(&folder.join("case.json"));

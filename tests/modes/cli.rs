@@ -243,7 +243,7 @@ fn an_accuracy_is_reached_or_not() {
     ];
     let (code, said, error) = modes(&asked);
     assert_eq!((code, error.as_str()), (0, ""));
-    assert!(said.contains("accuracy 0.010 reached"), "{said}");
+    assert!(said.contains("accuracy 1 % reached"), "{said}");
     let json: Value = serde_json::from_str(&fs::read_to_string(dir.path().join("modes.json")).unwrap()).unwrap();
     let accuracy = &json["accuracy"];
     assert_eq!(accuracy["reached"], true);

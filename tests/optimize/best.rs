@@ -24,6 +24,7 @@ fn figure(case: &Case, what: What, changes: &[(&str, f64)], name: &str) -> f64 {
     let ask = Ask {
         what,
         accuracy: None,
+        from: None,
         meshes: false,
     };
     let found = compute::found(&case, ask, &|| false, &|case| compute::run(case, ask, &|| false));

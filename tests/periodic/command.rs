@@ -68,7 +68,7 @@ fn multipliers_and_cycles_know_an_accuracy() {
     let asked = ["floquet", "cases/wiring-1.json", "--count", "2", "--accuracy"];
     let said = say(&[&asked[..], &["0.1"]].concat(), dir.path());
     assert_eq!(said.code, 0, "{}", said.err);
-    assert!(said.out.contains("accuracy 0.10 reached"), "{}", said.out);
+    assert!(said.out.contains("accuracy 10 % reached"), "{}", said.out);
     let found = json(&dir.path().join("floquet.json"));
     assert_eq!(found["accuracy"]["reached"], true);
     let estimates = found["accuracy"]["quantities"].as_object().unwrap();

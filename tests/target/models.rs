@@ -4,10 +4,9 @@ use std::path::Path;
 
 use slcbeam::case::Case;
 use slcbeam::case::schema::Effect;
-use slcbeam::discrete::{System, resolution};
-use slcbeam::study::effects::choices::effects;
-use slcbeam::study::target::first::{LEAST, least_cells};
-use slcbeam::study::target::models::{full, more, of_best_order, tighter};
+use slcbeam::discrete::System;
+use slcbeam::study::effects::full::full;
+use slcbeam::study::target::first::{LEAST, least_cells, of_best_order};
 
 fn case(more: &str) -> Case {
     let text = format!(
@@ -35,10 +34,6 @@ fn the_full_case_has_what_was_left_to_the_program() {
     let off = full(&case(r#", "effects": {"solid_inertia": "off"}"#)).expect("something left out");
     assert!(!off.left_out.contains(&Effect::SolidInertia), "{:?}", off.left_out);
     assert!(full(&case(r#", "effects": "full""#)).is_none());
-    for tighter in tighter(&case(""), &found).expect("effects") {
-        let effects = |case: &Case| effects(case).expect("effects");
-        assert!(!more(&effects(&case("")), &effects(&tighter)).is_empty());
-    }
 }
 
 /// Goal: meshes are of fourth order where the case does not say otherwise, also where shear is left out of it, but not where it is of second order.
@@ -70,28 +65,6 @@ fn a_search_begins_with_a_mesh_that_has_a_quarter() {
             );
         }
     }
-}
-
-/// Goal: a port's pressure that jumps is found, at the start too unless the bladders begin with it, and no other.
-#[test]
-fn jumps_of_ports_are_found() {
-    let jumps = |pressure: &str, start: &str| {
-        let text = format!(
-            r#"{{"name": "jump", "preset": "matia-gat-beam", "ends": {{"root": "clamped", "tip": "free"}},
-            "network": {{"chains": [{{"bladders": [1, 2, 3], "ends": [{{"pressure_pa": {pressure}}}, "sealed"]}}]}},
-            "formulation": "conservative", "effects": "full", "time": {{"end_s": 1}}{start}}}"#
-        );
-        let case = slcbeam::case::parse(&text, Path::new("jump.json"), Path::new("."), &[]);
-        let case = case.unwrap_or_else(|error| panic!("{error}: {error:?}"));
-        let found = resolution::first_jump(&case, &System::new(&case).expect("a system").model);
-        found.map(|(_, t)| t)
-    };
-    assert_eq!(jumps("3000", ""), Some(0.0));
-    assert_eq!(jumps("3000", r#", "start": {"equilibrium": {}}"#), None);
-    assert_eq!(jumps(r#"{"ramp": {"to": 3000, "duration_s": 0.1}}"#, ""), None);
-    let step = r#"{"ramp": {"to": 3000, "start_s": 0.25, "duration_s": 0}}"#;
-    assert_eq!(jumps(step, ""), Some(0.25));
-    assert_eq!(jumps(r#"{"sine": {"amplitude": 3000, "frequency_hz": 5}}"#, ""), None);
 }
 
 /// Goal: a pad of a hundredth of the length beside a broad load is right on any mesh; twenty waves over ten segments want

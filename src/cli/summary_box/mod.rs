@@ -10,8 +10,8 @@ use textwrap::{Options, WordSplitter};
 
 use crate::discrete::quantities::Interest;
 use crate::error::visible;
-use crate::output::bands;
 use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed, with_error};
+use crate::output::{accuracy, bands};
 use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 use errors::{errors, figure};
@@ -281,31 +281,14 @@ fn energy(summary: &Summary) -> Option<String> {
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
 }
 
-/// What was asked, the estimates of the worst quantities first, and how it was reached.
+/// What was asked, the largest errors, and how it was reached.
 fn accuracy(summary: &Summary) -> Option<String> {
     let found = summary.accuracy.as_ref()?;
-    let mut worst: Vec<_> = found.quantities.iter().collect();
-    worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
-    let shown = worst.iter().take(3).map(|(name, e)| match (e.total, e.time, e.space) {
-        (Some(total), Some(time), Some(space)) => format!(
-            "{name} {} (time {}, space {}{})",
-            significant(total, 2),
-            significant(time, 2),
-            significant(space, 2),
-            e.effects.map_or(String::new(), |effects| format!(
-                ", effects {}",
-                significant(effects, 2)
-            ))
-        ),
-        _ => format!("{name} unknown"),
-    });
+    let errors = accuracy::largest(found).join(BETWEEN);
     Some(format!(
-        "asked {}, with {}, rtol {}, after {} pilot runs · estimated errors: {}",
-        significant(found.asked, 2),
-        found.cells(),
-        significant(found.rtol, 1),
-        found.pilots.len(),
-        shown.collect::<Vec<_>>().join(" · ")
+        "{} with {}{BETWEEN}largest errors: {errors}",
+        accuracy::reached(found),
+        accuracy::setting(found)
     ))
 }
 

@@ -24,6 +24,7 @@ use crate::results::sweep::Plan;
 use crate::run::dynamics::Outcome;
 use crate::run::summary::Status;
 use crate::study::sweep::{Ask, Row, What, compute, pool, row::Found};
+use crate::study::target::Setting;
 use progress::Counter;
 use source::Source;
 
@@ -206,11 +207,19 @@ fn compute_all(
 ) -> Result<bool> {
     let plan = &source.plan;
     let stop = || interrupt::raised(flag);
-    let ask = Ask {
+    let mut ask = Ask {
         what: plan.command,
         accuracy: plan.accuracy,
+        from: None,
         meshes: plan.mesh_errors,
     };
+    // the first design tells where searches begin, whichever are left
+    if let (Some(_), What::Run, Ok(case)) = (ask.accuracy, ask.what, source.case(&source.designs.design(0))) {
+        let first = compute::run(&case, ask, &stop)
+            .ok()
+            .and_then(|outcome| outcome.summary.accuracy);
+        ask.from = first.as_ref().map(Setting::found);
+    }
     let mut journal = done.go_on(folder)?;
     let mut counter = Counter::new(asked.quiet, "done", left.len());
     let unkept: Mutex<Option<Error>> = Mutex::new(None);
@@ -297,7 +306,7 @@ impl Keep<'_> {
             return compute::run(case, ask, stop);
         }
         let dir = self.folder.path(FOLDERS).join(files::numbered(self.plan, self.number));
-        run::into(case, ask.accuracy, &dir, self.asked.lean, self.flag)
+        run::into(case, ask, &dir, self.asked.lean, self.flag)
     }
 }
 

@@ -109,15 +109,6 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     all
 }
 
-/// A port whose pressure jumps, and when [s], where pressures along bladders and inertia follow it: by how much pressures go beyond it no
-/// mesh of few cells shows.
-pub fn first_jump(case: &Case, model: &Model) -> Option<(String, f64)> {
-    let follows = [Effect::FlowAlongBladders, Effect::SolidInertia];
-    let wet = model.wet.as_ref()?;
-    let all = follows.iter().all(|effect| model.effects.has(*effect));
-    all.then(|| ports::first_jump(case, wet)).flatten()
-}
-
 /// Ports through which the largest flow grows without limit as the mesh is refined: their pressure jumps where the fluid has no inertia.
 pub fn jumps_into_bladders(case: &Case, model: &Model) -> Vec<JumpIntoBladder> {
     let diffuses = model.effects.has(Effect::FlowAlongBladders) && !model.effects.has(Effect::BladderInertia);

@@ -249,21 +249,6 @@ fn given_at_start(case: &Case, wet: &Wet, bladder: usize, end: BladderEnd) -> f6
     given.map_or(0.0, |one| one.pressure_pa.value(place))
 }
 
-/// The first port of a pressure that jumps, and when [s]: at the start where bladders do not begin with it. What runs into a bladder then is
-/// thinner than any cell.
-pub fn first_jump(case: &Case, wet: &Wet) -> Option<(String, f64)> {
-    let end = case.time.end_s;
-    wet.network.ports.iter().find_map(|port| {
-        let later = || port.pressure.first_jump(end).map(|[t, ..]| t);
-        let t = if begins_with_jump(case, &port.pressure) {
-            0.0
-        } else {
-            later()?
-        };
-        Some((port.name.clone(), t))
-    })
-}
-
 /// Of every port, those of pressure first, the largest fall along the bladder behind it, over the largest pressure: from a port of
 /// pressure `|p - p'| r/R`; from one of flow that goes out at a port of pressure `q r/(q R + p')`, and `2 r/R` where it is taken out as
 /// a flow, as half of what falls between the two is above the mean at least.

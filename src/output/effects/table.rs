@@ -7,9 +7,9 @@ use crate::case::schema::Effect;
 use crate::output::columns::aligned;
 use crate::output::numbers::{counted, percent, significant};
 use crate::output::records::{self, number};
-use crate::run::summary::Judged;
 use crate::study::accuracy::trial::Ending;
 use crate::study::effects::ablation::Compared;
+use crate::study::effects::change::Judged;
 use crate::study::effects::{Ablation, Row, Verdict};
 
 const HEADINGS: [&str; 10] = [

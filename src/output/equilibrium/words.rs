@@ -4,7 +4,7 @@ use super::Found;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
 use crate::output::columns::aligned;
-use crate::output::numbers::{counted, quantity, significant};
+use crate::output::numbers::{counted, quantity, significant, with_error};
 use crate::run::equilibrium::State;
 use crate::run::record::Column;
 use crate::study::refine::meshes::Meshes;
@@ -34,7 +34,7 @@ pub fn words(found: &Found) -> String {
         ));
     }
     if let Some(words) = found.meshes.and_then(Meshes::words) {
-        text.push_str(&format!("\n{words}\n"));
+        text.push_str(&format!("\n{}{words}\n", last_with_errors(found)));
     }
     for warning in found.warnings {
         text.push_str(&format!("warning: {warning}\n"));
@@ -97,6 +97,22 @@ pub fn words(found: &Found) -> String {
         text.push_str(&crate::output::accuracy::words(accuracy));
     }
     text
+}
+
+/// Tip and pressures of the last state with their errors.
+fn last_with_errors(found: &Found) -> String {
+    let row = found.path.states.last().map_or(&[][..], |state| &state.row);
+    let error = |column: &Column| found.meshes?.errors.get(&column.name).copied();
+    let told = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
+        let group = Observable::named(&column.name).map(Observable::group);
+        let counts = matches!(group, Some(Group::Tip | Group::Pressure)) && value.abs() > floor(found, column.unit);
+        let error = error(column).filter(|_| counts)?;
+        Some(format!("{} {}", column.name, with_error(*value, error, column.unit)))
+    });
+    match told.collect::<Vec<_>>() {
+        told if told.is_empty() => String::new(),
+        told => format!("last state: {}\n", told.join(" · ")),
+    }
 }
 
 /// Which loads the last state bears.

@@ -13,7 +13,7 @@ use crate::numerics::threads::begin;
 use crate::output::bands;
 use crate::output::envelope::History as Recorded;
 use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
-use crate::output::numbers::{counted, duration, percent, quantity, significant, trimmed, with_error};
+use crate::output::numbers::{counted, duration, error_percent, percent, quantity, significant, trimmed, with_error};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
 use crate::results::cycles::Cycle;
@@ -310,11 +310,11 @@ fn remarks(summary: &Summary) -> Vec<Value> {
         let errors = found
             .quantities
             .iter()
-            .filter_map(|(name, e)| Some(format!("{name} {}", percent(e.total?))));
+            .filter_map(|(name, e)| Some(format!("{name} {}", error_percent(e.total?))));
         all.push(json!({"title": if found.reached { "The accuracy asked for is reached" } else { "The accuracy asked for is not reached" },
             "text": format!(
-                "Asked for were {}; the estimated errors are {}. Used were {} and a tolerance of {}.",
-                percent(found.asked), errors.collect::<Vec<_>>().join(", "), found.cells(), significant(found.rtol, 2)
+                "Asked for were {}; the errors are {}. Used were {} and a tolerance of {}.",
+                error_percent(found.asked), errors.collect::<Vec<_>>().join(", "), found.cells(), significant(found.rtol, 2)
             )}));
     }
     for (pointer, s) in &summary.sensitivities {

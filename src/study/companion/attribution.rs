@@ -8,16 +8,16 @@
 use std::collections::BTreeMap;
 
 use super::variant::{Cause, Variant};
-use super::{Limits, error, finish, progress, work};
+use super::{Accurate, Limits, error, finish, progress, work};
 use crate::case::Case;
-use crate::error::numbers::significant;
+use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::run::record::Recorder;
 use crate::run::summary::{Figures, Status, Summary, largest_error};
 use crate::study::counted::Floors;
-use crate::study::target::models;
+use crate::study::effects::full::full;
 
 /// Relative error that is large.
 pub const LIMIT: f64 = 0.05;
@@ -27,8 +27,11 @@ const NAMED_FROM: f64 = 0.5 * LIMIT;
 const LARGEST_WORK: u64 = 5_000_000;
 /// Largest work of a run with one change, relative to that of the run.
 const LONGEST: u64 = 20;
-/// Largest error of a companion beside the sum over all causes.
+/// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
 const TRUSTED: f64 = 4.0;
+const TRUSTED_OF_ACCURACY: f64 = 2.0;
+/// Most steps of a companion over those of the run where the tolerance decides on them.
+const BINDING: f64 = 0.65;
 /// Smallest share of an error at which a cause is named.
 const NAMED: f64 = 0.1;
 /// Largest refinement of a mesh and of the tolerance that is proposed at once, and the tightest tolerance.
@@ -61,22 +64,50 @@ impl Causes {
     }
 }
 
-/// Warns of errors above the limit, with their causes and a remedy.
-pub(super) fn attribute(case: &Case, summary: &mut Summary, recorder: &mut dyn Recorder) -> Result<()> {
-    let floors = Floors::of(case)?;
-    if large(summary, &floors).is_empty() {
+/// Adds to a summary the causes of errors that are larger than an accuracy; or, without one, of those above the limit, with a warning.
+pub(super) fn attribute(
+    case: &Case,
+    summary: &mut Summary,
+    accuracy: Option<&Accurate>,
+    recorder: &mut dyn Recorder,
+) -> Result<()> {
+    let floors = &Floors::of(case)?;
+    let least = accuracy.map_or(NAMED_FROM, |accuracy| accuracy.asked);
+    if accuracy.is_some() && !tolerance_binds(summary) {
+        let mut by_steps = BTreeMap::new();
+        changes(case, summary, vec![Cause::TimeSteps], &mut by_steps, recorder)?;
+        let of_companion = std::mem::take(&mut summary.errors);
+        summary.errors = added(&of_companion, &by_steps, f64::INFINITY);
+    }
+    if large(summary, floors, least).is_empty() {
         return Ok(());
     }
-    let causes = match work(summary) <= LARGEST_WORK {
-        true => causes(case, summary, recorder)?,
+    let causes = match accuracy.is_some() || work(summary) <= LARGEST_WORK {
+        true => causes(
+            case,
+            summary,
+            floors,
+            (least, accuracy.map(|accuracy| &accuracy.settled)),
+            recorder,
+        )?,
         false => Causes::TooLarge,
     };
     if let Some(known) = causes.known() {
+        let trusted = if accuracy.is_some() {
+            TRUSTED_OF_ACCURACY
+        } else {
+            TRUSTED
+        };
+        let most = if matches!(causes, Causes::Complete(_)) {
+            trusted
+        } else {
+            f64::INFINITY
+        };
         let of_companion = std::mem::take(&mut summary.errors);
-        summary.errors = added(&of_companion, known, matches!(causes, Causes::Complete(_)));
+        summary.errors = added(&of_companion, known, most);
     }
-    let large = large(summary, &floors);
-    if !large.is_empty() {
+    let large = large(summary, floors, least);
+    if accuracy.is_none() && !large.is_empty() {
         let warning = words(case, &large, &causes, &shares(summary, causes.known()));
         summary.warnings.insert(0, warning);
     }
@@ -87,21 +118,26 @@ pub(super) fn attribute(case: &Case, summary: &mut Summary, recorder: &mut dyn R
     Ok(())
 }
 
-/// Quantities whose error may be above the limit, the largest first.
-fn large(summary: &Summary, floors: &Floors) -> Vec<(String, f64)> {
-    let mut large: Vec<(String, f64)> = error::relative(summary, floors).into_iter().collect();
-    large.retain(|(_, error)| *error > NAMED_FROM);
+/// Whether a looser tolerance makes the companion take larger steps, so that its figures tell of those of the run.
+fn tolerance_binds(summary: &Summary) -> bool {
+    let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
+    steps as f64 <= BINDING * summary.solver.steps as f64
+}
+
+/// Quantities whose error is above a limit, the largest first.
+fn large(summary: &Summary, floors: &Floors, least: f64) -> Vec<(String, f64)> {
+    let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors).into_iter().collect();
+    large.retain(|(_, error)| *error > least);
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
     large
 }
 
-/// Errors of the companion, bounded by the sums over all causes; below by those over the causes that are known where some are not.
-fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, complete: bool) -> Figures {
+/// Errors of the companion, bounded by the sums over causes, and by so many times these.
+fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, most: f64) -> Figures {
     let sum = |name: &String, figure: &String, error: f64| {
         let parts = causes.values().filter_map(|errors| errors.get(name)?.get(figure));
         let sum: f64 = parts.sum();
-        let most = if complete { TRUSTED * sum } else { f64::INFINITY };
-        sum.max(error.min(most))
+        sum.max(error.min(most * sum))
     };
     let of = |(name, errors): (&String, &BTreeMap<String, f64>)| {
         let all = errors.iter().map(|(figure, e)| (figure.clone(), sum(name, figure, *e)));
@@ -110,27 +146,77 @@ fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, complete: bo
     of_companion.iter().map(of).collect()
 }
 
-/// Errors of all figures by each cause, two runs at a time.
-fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result<Causes> {
-    let effects = models::full(case)?.map_or(vec![], |full| full.left_out);
-    let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
-    let all = settings.into_iter().chain(effects.into_iter().map(Cause::Effect));
-    let limits = Limits {
+/// Errors of all figures by each cause. All effects that are left out are one cause where they make no large error together.
+fn causes(
+    case: &Case,
+    summary: &Summary,
+    floors: &Floors,
+    (least, settled): (f64, Option<&BTreeMap<String, Figures>>),
+    recorder: &mut dyn Recorder,
+) -> Result<Causes> {
+    let effects = full(case)?.map_or(vec![], |full| full.left_out);
+    let mut first = vec![Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
+    first.extend(match effects.as_slice() {
+        [] => None,
+        [one] => Some(Cause::Effect(*one)),
+        _ => Some(Cause::Effects),
+    });
+    let settled = |cause: &Cause| settled?.get(&cause.pointer());
+    let mut found: BTreeMap<Cause, Figures> = first
+        .iter()
+        .filter_map(|cause| Some((*cause, settled(cause)?.clone())))
+        .collect();
+    first.retain(|cause| !found.contains_key(cause));
+    let mut causes = changes(case, summary, first, &mut found, recorder)?;
+    let together = found.get(&Cause::Effects);
+    let share = |errors: &Figures| {
+        error::relative(summary, errors, floors)
+            .into_values()
+            .fold(0.0, f64::max)
+    };
+    if effects.len() > 1 && together.is_none_or(|errors| share(errors) > NAMED * least) && causes != Ended::Interrupted
+    {
+        found.remove(&Cause::Effects);
+        let each = effects.into_iter().map(Cause::Effect).collect();
+        causes = causes.max(changes(case, summary, each, &mut found, recorder)?);
+    }
+    Ok(match causes {
+        Ended::All => Causes::Complete(found),
+        Ended::Some => Causes::Partial(found),
+        Ended::Interrupted => Causes::Interrupted,
+    })
+}
+
+/// How runs with one change ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Ended {
+    All,
+    Some,
+    Interrupted,
+}
+
+/// Errors of all figures by some causes, two runs at a time.
+fn changes(
+    case: &Case,
+    summary: &Summary,
+    causes: Vec<Cause>,
+    found: &mut BTreeMap<Cause, Figures>,
+    recorder: &mut dyn Recorder,
+) -> Result<Ended> {
+    let limits = &Limits {
         cancelled: false.into(),
         work: (LONGEST * work(summary) + super::SMALL_WORK).into(),
     };
-    let (own, Some(companion)) = (error::figures(summary), &summary.companion) else {
-        return Ok(Causes::TooLarge);
-    };
+    let own = error::figures(summary);
+    let companion = summary.companion.clone().unwrap_or_default();
     let mut variants = vec![];
-    for cause in all {
-        if let Some((variant, factor)) = Variant::with_change(case, companion, cause)? {
+    for cause in causes {
+        if let Some((variant, factor)) = Variant::with_change(case, &companion, cause)? {
             variants.push((cause, variant, factor));
         }
     }
     let heard = &halt::heard();
-    let limits = &limits;
-    let (mut found, mut complete) = (BTreeMap::new(), true);
+    let mut all = Ended::All;
     for pair in variants.chunks(2) {
         let (ended, stopped) = std::thread::scope(|scope| {
             let tasks: Vec<_> = pair
@@ -146,23 +232,20 @@ fn causes(case: &Case, summary: &Summary, recorder: &mut dyn Recorder) -> Result
             (ended, stopped)
         });
         if stopped?.is_some() || halt::asked() {
-            return Ok(Causes::Interrupted);
+            return Ok(Ended::Interrupted);
         }
         for ((cause, _, factor), run) in pair.iter().zip(ended) {
             let Ok(run) = run else {
-                complete = false;
+                all = Ended::Some;
                 continue;
             };
             let mut errors = error::differences(&own, &error::figures(&run));
-            let all = errors.values_mut().flat_map(BTreeMap::values_mut);
-            all.for_each(|error| *error *= factor);
+            let values = errors.values_mut().flat_map(BTreeMap::values_mut);
+            values.for_each(|error| *error *= factor);
             found.insert(*cause, errors);
         }
     }
-    Ok(match complete {
-        true => Causes::Complete(found),
-        false => Causes::Partial(found),
-    })
+    Ok(all)
 }
 
 /// Shares of each cause in the largest error of each quantity.
@@ -237,6 +320,7 @@ impl Cause {
             Self::BeamMesh => "beam mesh".into(),
             Self::FluidMesh => "fluid mesh".into(),
             Self::TimeSteps => "time steps".into(),
+            Self::Effects => "effects left out".into(),
             Self::Effect(effect) => format!("{effect} left out"),
         }
     }
@@ -260,17 +344,8 @@ impl Cause {
                 let tighter = (case.solver.rtol * 10_f64.powf(-decades)).max(TIGHTEST);
                 format!("--set {}={tighter:.0e}", self.pointer())
             }
+            Self::Effects => format!("--set '{}=\"full\"'", self.pointer()),
             Self::Effect(_) => format!("--set '{}=\"on\"'", self.pointer()),
         }
     }
-}
-
-fn percent(x: f64) -> String {
-    let digits = match x {
-        x if x >= 10.0 => return "over 1000 %".into(),
-        x if x < 0.095 => 1,
-        x if x < 1.0 => 2,
-        _ => 3,
-    };
-    format!("{} %", significant(100.0 * x, digits))
 }

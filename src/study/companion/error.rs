@@ -26,6 +26,20 @@ pub fn errors(run: &Summary, companion: &Summary) -> Figures {
     differences(&figures(run), &figures(companion))
 }
 
+/// Errors of energies that are no smaller than what the balance leaves open.
+pub fn raise_to_balance(summary: &mut Summary) {
+    for (name, quantity) in &summary.quantities {
+        let Some(errors) = summary.errors.get_mut(name) else {
+            continue;
+        };
+        for (figure, open) in [("final", quantity.final_error), ("window", quantity.window_error)] {
+            if let (Some(error), Some(open)) = (errors.get_mut(figure), open) {
+                *error = error.max(open);
+            }
+        }
+    }
+}
+
 /// The same of figures.
 pub fn differences(run: &Figures, companion: &Figures) -> Figures {
     let of = |(name, own): (&String, &BTreeMap<String, f64>)| {
@@ -65,7 +79,7 @@ fn unsigned(figure: &str) -> &str {
 }
 
 /// A summary whose figures are as large as their errors allow: a figure that is next to nothing counts where its error does.
-fn with_errors_added(summary: &Summary) -> Summary {
+fn with_errors_added(summary: &Summary, errors: &Figures) -> Summary {
     let mut added = summary.clone();
     let Summary {
         quantities,
@@ -74,7 +88,7 @@ fn with_errors_added(summary: &Summary) -> Summary {
         ..
     } = &mut added;
     for (name, quantity) in quantities.iter_mut().chain(probes).chain(ports) {
-        let error = summary.errors.get(name).and_then(largest_error).unwrap_or(0.0);
+        let error = errors.get(name).and_then(largest_error).unwrap_or(0.0);
         for figure in [&mut quantity.last, &mut quantity.max_abs].into_iter().flatten() {
             *figure = figure.abs() + error;
         }
@@ -83,11 +97,11 @@ fn with_errors_added(summary: &Summary) -> Summary {
 }
 
 /// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
-pub fn relative(summary: &Summary, floors: &Floors) -> BTreeMap<String, f64> {
-    let added = &with_errors_added(summary);
+pub fn relative(summary: &Summary, errors: &Figures, floors: &Floors) -> BTreeMap<String, f64> {
+    let added = &with_errors_added(summary, errors);
     let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
     let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
     let ports = counted_of_ports(added, floors).map(|name| (name, summary.ports[name].size()));
-    let largest = |(name, size): (&String, f64)| Some((name.clone(), largest_error(summary.errors.get(name)?)? / size));
+    let largest = |(name, size): (&String, f64)| Some((name.clone(), largest_error(errors.get(name)?)? / size));
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
 }

@@ -25,6 +25,7 @@ pub mod attribution;
 pub mod error;
 pub mod variant;
 
+use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -39,7 +40,8 @@ use crate::numerics::threads::{self, Begun};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress, Recorder, Unrecorded};
-use crate::run::summary::{CompanionRun, Status, Summary};
+use crate::run::summary::{CompanionRun, Figures, Status, Summary};
+use crate::study::counted::Floors;
 use attribution::attribute;
 use variant::Variant;
 
@@ -57,8 +59,18 @@ const UNFINISHED: &str = "the run did not reach its end";
 /// # Errors
 /// As [`dynamics::run_with`].
 pub fn run(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    accompany(case, recorder, |recorder| {
+    accompany(case, None, recorder, |recorder| {
         dynamics::run_with(case, system, by, recorder)
+    })
+}
+
+/// Runs a case as [`run`], with the causes of errors that are larger than an accuracy, and without a warning of them.
+///
+/// # Errors
+/// As [`dynamics::run`].
+pub fn measured(case: &Case, system: System, accuracy: &Accurate, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    accompany(case, Some(accuracy), recorder, |recorder| {
+        dynamics::run_with(case, system, &[], recorder)
     })
 }
 
@@ -68,9 +80,42 @@ pub fn run(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Rec
 /// # Errors
 /// As [`dynamics::resume`].
 pub fn resume(case: &Case, system: System, from: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    accompany(case, recorder, |recorder| {
+    accompany(case, None, recorder, |recorder| {
         dynamics::resume(case, system, from, recorder)
     })
+}
+
+/// An accuracy that is asked for.
+#[derive(Clone, Debug)]
+pub struct Accurate {
+    /// Relative error.
+    pub asked: f64,
+    /// Causes whose errors are known to be small, by their pointer; they are not measured again.
+    settled: BTreeMap<String, Figures>,
+}
+
+impl Accurate {
+    /// Part of an accuracy below which a cause is not measured again on finer meshes.
+    const SETTLED: f64 = 0.1;
+
+    /// Nothing is settled yet.
+    pub fn new(asked: f64) -> Self {
+        Self {
+            asked,
+            settled: BTreeMap::new(),
+        }
+    }
+
+    /// Takes over from a coarser run which causes are settled.
+    pub fn settle(&mut self, coarser: &Summary, floors: &Floors) {
+        let causes = coarser.companion.iter().flat_map(|companion| &companion.causes);
+        let small = causes.filter(|(_, errors)| {
+            let mut errors = error::relative(coarser, errors, floors).into_values();
+            errors.all(|error| error <= Self::SETTLED * self.asked)
+        });
+        let small = small.map(|(pointer, errors)| (pointer.clone(), errors.clone()));
+        self.settled.extend(small.collect::<Vec<_>>());
+    }
 }
 
 /// Limits of a run beside another.
@@ -109,6 +154,7 @@ impl Drop for Cancel<'_> {
 /// Runs a case and its companion side by side.
 fn accompany(
     case: &Case,
+    accuracy: Option<&Accurate>,
     recorder: &mut dyn Recorder,
     run: impl FnOnce(&mut dyn Recorder) -> Result<Outcome>,
 ) -> Result<Outcome> {
@@ -150,14 +196,19 @@ fn accompany(
                 summary.warnings.retain(|warning| !expected.contains(warning));
             }
             summary.companion = Some(companion);
-            attribute(case, summary, recorder)?;
+            if accuracy.is_some() {
+                error::raise_to_balance(summary);
+            }
+            attribute(case, summary, accuracy, recorder)?;
         }
         Err(reason) => {
             let reason = match summary.status {
                 Status::Finished => reason,
                 _ => UNFINISHED.into(),
             };
-            summary.warnings.extend(attribution::unknown(summary.status, &reason));
+            if accuracy.is_none() {
+                summary.warnings.extend(attribution::unknown(summary.status, &reason));
+            }
             summary.companion = Some(CompanionRun {
                 reason: Some(reason),
                 ..CompanionRun::default()

@@ -8,8 +8,8 @@ use crate::run::summary::{CompanionRun, Summary};
 use crate::study::accuracy::plan::unrecorded;
 use crate::study::companion::error;
 use crate::study::effects::choices::with;
+use crate::study::effects::full::full;
 use crate::study::refine::has_cells_along_bladders;
-use crate::study::target::models;
 
 /// Loosest and tightest tolerance of a variant.
 const TOLERANCES: [f64; 2] = [1e-13, 0.1];
@@ -34,7 +34,9 @@ pub enum Cause {
     FluidMesh,
     /// `/solver/rtol`.
     TimeSteps,
-    /// An effect that is left out.
+    /// All effects that are left out.
+    Effects,
+    /// One of them.
     Effect(Effect),
 }
 
@@ -45,6 +47,7 @@ impl Cause {
             Self::BeamMesh => "/mesh/cells_per_segment".into(),
             Self::FluidMesh => "/mesh/cells_per_bladder".into(),
             Self::TimeSteps => "/solver/rtol".into(),
+            Self::Effects => "/effects".into(),
             Self::Effect(effect) => format!("/effects/{effect}"),
         }
     }
@@ -56,7 +59,7 @@ impl Variant {
     /// # Errors
     /// As [`System::new`].
     pub fn with_all_effects(case: &Case) -> Result<Option<Self>> {
-        Ok(Some(match models::full(case)? {
+        Ok(Some(match full(case)? {
             Some(full) => Self::discretized(&full.case, full.left_out)?,
             None => Self::discretized(case, vec![])?,
         }))
@@ -67,7 +70,7 @@ impl Variant {
     /// # Errors
     /// As [`System::new`].
     pub fn with_its_effects(case: &Case) -> Result<Option<Self>> {
-        models::full(case)?.map(|_| Self::discretized(case, vec![])).transpose()
+        full(case)?.map(|_| Self::discretized(case, vec![])).transpose()
     }
 
     /// A companion with a tighter tolerance and a finer mesh, for cases that looser ones do not reach the end of.
@@ -130,6 +133,13 @@ impl Variant {
                 other.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
                 1.0
             }
+            Cause::Effects => {
+                let Some(full) = full(case)? else {
+                    return Ok(None);
+                };
+                (other, added) = (unrecorded(&full.case), full.left_out);
+                1.0
+            }
             Cause::Effect(effect) => {
                 let mut choices = case.effects.choices();
                 choices.set(effect, Choice::On);
@@ -158,6 +168,7 @@ impl Variant {
             wall_s: summary.wall_s.total,
             figures: error::figures(summary),
             causes: Default::default(),
+            earlier_runs: vec![],
         }
     }
 }

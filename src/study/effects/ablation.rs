@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Changes, Measure, Reference, Size, judge, largest};
+use super::change::{Changes, Judged, Measure, Reference, Size, judge, largest};
 use super::choices::{Out, candidates, effects, guards, whole, with, without};
 use super::recommend::{Recommendation, recommend};
 use super::trial::{Plan, Runs, Trial, Watch};
@@ -10,13 +10,13 @@ use crate::case::Case;
 use crate::case::schema::{Effect, Effects};
 use crate::error::{Error, Result};
 use crate::run::null;
-use crate::run::summary::Judged;
 use crate::study::counted::Floors;
 use crate::study::evaluations::Evaluations;
-use crate::study::target::estimates::LOST;
 
 /// Tightest tolerance that is allowed.
 const TIGHTEST: f64 = 1e-13;
+/// Own error of the full model beyond which its motion cannot be followed.
+const LOST: f64 = 0.3;
 /// Part of the work, and of the time, that is worth leaving something out for.
 pub const WORTH: f64 = 0.05;
 

@@ -5,8 +5,19 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::run::null;
-use crate::run::summary::{Judged, Quantity, Summary};
+use crate::run::summary::{Quantity, Summary};
 use crate::study::counted::{Floors, counted};
+
+/// Which figures of quantities are compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Judged {
+    /// All of them.
+    #[default]
+    Figures,
+    /// Those over the window alone: root mean squares and increments.
+    WindowStatistics,
+}
 
 /// Relative changes by quantity.
 pub type Changes = BTreeMap<String, f64>;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! choices      which effects can be left out, and which others that takes
+//! full         the case with all effects that it leaves to the program
 //! trial        one run: work, time, figures; every set of effects is run once
 //! change       how far the figures of two runs are apart, beside the integrator's own error
 //! ablation     everything in order
@@ -15,6 +16,7 @@
 pub mod ablation;
 pub mod change;
 pub mod choices;
+pub mod full;
 mod recommend;
 pub mod trial;
 

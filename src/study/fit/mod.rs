@@ -330,6 +330,7 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
     let ask = Ask {
         what: problem.through().command(),
         accuracy: None,
+        from: None,
         meshes: true,
     };
     let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));

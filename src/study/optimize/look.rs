@@ -177,6 +177,7 @@ fn computed(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::
     let ask = Ask {
         what: problem.what,
         accuracy: None,
+        from: None,
         meshes: false,
     };
     let run = |case: &Case| run(problem, case, stop);

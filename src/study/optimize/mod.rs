@@ -288,6 +288,7 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
     let ask = Ask {
         what: problem.what,
         accuracy: None,
+        from: None,
         meshes: true,
     };
     let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));

@@ -1,4 +1,5 @@
-//! What the meshes of a case do to its numbers: half the cells of the beam, and twice those of a bladder, beside it.
+//! What the meshes of a case do to its numbers, and the effects that it leaves out: half the cells of the beam, twice those of a bladder, and all
+//! effects beside it.
 //!
 //! ```text
 //! beam      second order   e = S |x(K) - x(K/2)|/3,  or 4 S |x(2K) - x(K)|/3 where cells cannot be halved
@@ -15,7 +16,9 @@ use serde::{Deserialize, Serialize};
 use super::{Numbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
 use crate::discrete::resolution::LIMIT as LARGE;
+use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
+use crate::study::effects::full::full;
 
 /// What meshes do to one number, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -24,12 +27,16 @@ pub struct Share {
     pub beam: Option<f64>,
     /// Cells along bladders, likewise.
     pub bladders: Option<f64>,
+    /// Effects that are left out, of equilibria.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub effects: Option<f64>,
 }
 
 impl Share {
-    /// Both.
+    /// All together.
     pub fn total(&self) -> f64 {
-        self.beam.unwrap_or(0.0) + self.bladders.unwrap_or(0.0)
+        let parts = [self.beam, self.bladders, self.effects];
+        parts.into_iter().flatten().sum()
     }
 
     /// Whether one of them is.
@@ -43,12 +50,31 @@ impl Share {
 pub struct Meshes {
     /// By name.
     pub quantities: BTreeMap<String, Share>,
+    /// Absolute errors by name, each in the unit of its number.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub errors: BTreeMap<String, f64>,
     /// Why a mesh could not be compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<String>,
 }
 
+/// Computes a state at rest on other meshes, and with the effects that the case leaves out; `here` are its numbers.
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
+pub fn judge_at_rest(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<Meshes> {
+    let mut found = judge(case, here, compute)?;
+    if let Some(full) = full(case)? {
+        found.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
+        found.sum(here);
+    }
+    Ok(found)
+}
+
 /// Computes a case on other meshes; `here` are its numbers on its own.
+///
+/// # Errors
+/// As [`System::new`](crate::discrete::System::new).
 pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<Meshes> {
     let mut found = Meshes::default();
     let mut other = case.clone();
@@ -66,6 +92,7 @@ pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Resu
         other.mesh.cells_per_bladder *= 2;
         found.compare("bladders", here, compute(&other), 2.0, |share| &mut share.bladders);
     }
+    found.sum(here);
     Ok(found)
 }
 
@@ -90,12 +117,19 @@ impl Meshes {
             }
         };
         for (name, number) in here {
-            let size = number.value.abs().max(number.size).max(f64::MIN_POSITIVE);
+            let size = number.counted();
             let error = there
                 .get(name)
                 .map(|other| factor * (other.value - number.value).abs() / size);
             *part(self.quantities.entry(name.clone()).or_default()) = error.filter(|e| e.is_finite());
         }
+    }
+
+    /// Takes over absolute errors.
+    fn sum(&mut self, here: &Numbers) {
+        let known = self.quantities.iter().filter(|(_, share)| share.known());
+        let error = known.filter_map(|(name, share)| Some((name.clone(), share.total() * here.get(name)?.counted())));
+        self.errors = error.filter(|(_, error)| error.is_finite()).collect();
     }
 
     fn worst(&self) -> Option<(&String, &Share)> {
@@ -108,7 +142,7 @@ impl Meshes {
     pub fn words(&self) -> Option<String> {
         let (name, share) = self.worst()?;
         Some(format!(
-            "mesh error: at most about {}, that of {name}{}",
+            "largest error: about {}, that of {name}{}",
             percent(share.total()),
             share.parts()
         ))
@@ -118,10 +152,13 @@ impl Meshes {
     pub fn warning(&self) -> Option<String> {
         let large = self.worst().filter(|(_, share)| share.total() > LARGE);
         let large = large.map(|(name, share)| {
-            let cells = if share.bladders > share.beam {
-                "/mesh/cells_per_bladder"
+            let by_meshes = share.beam.unwrap_or(0.0).max(share.bladders.unwrap_or(0.0));
+            let remedy = if share.effects.unwrap_or(0.0) > by_meshes {
+                "\"effects\": \"full\""
+            } else if share.bladders > share.beam {
+                "more /mesh/cells_per_bladder"
             } else {
-                "/mesh/cells_per_segment"
+                "more /mesh/cells_per_segment"
             };
             let many = self.quantities.values().filter(|share| share.total() > LARGE).count();
             let others = match many {
@@ -130,7 +167,7 @@ impl Meshes {
                 _ => format!(", and {} other figures by more than 5 %", many - 1),
             };
             format!(
-                "{name} may be off by about {} of itself{}{others}; more {cells}",
+                "{name} may be off by about {} of itself{}{others}; {remedy}",
                 percent(share.total()),
                 share.parts()
             )
@@ -151,23 +188,20 @@ impl Meshes {
 
 impl Share {
     fn parts(&self) -> String {
-        match self.bladders {
-            None => " (by the cells of the beam)".into(),
-            Some(bladders) => format!(
-                " ({} by the cells of the beam, {} by those along bladders)",
-                percent(self.beam.unwrap_or(0.0)),
-                percent(bladders)
-            ),
+        let parts = [
+            (self.beam, "the cells of the beam"),
+            (self.bladders, "those along bladders"),
+            (self.effects, "effects left out"),
+        ];
+        let parts = parts.into_iter().filter_map(|(part, what)| Some((part?, what)));
+        let parts: Vec<_> = parts.collect();
+        match parts.as_slice() {
+            [] => String::new(),
+            [(_, what)] => format!(" (by {what})"),
+            all => {
+                let each = all.iter().map(|(part, what)| format!("{} by {what}", percent(*part)));
+                format!(" ({})", each.collect::<Vec<_>>().join(", "))
+            }
         }
-    }
-}
-
-fn percent(x: f64) -> String {
-    if x < 0.1 {
-        format!("{:.1} %", 100.0 * x)
-    } else if x < 10.0 {
-        format!("{:.0} %", 100.0 * x)
-    } else {
-        "all".into()
     }
 }

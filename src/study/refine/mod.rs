@@ -20,9 +20,10 @@ use super::accuracy::plan;
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::discrete::{Mesh, System};
+use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::model::Model;
-use crate::run::summary::{Accuracy, Estimate, Judged, Pilot};
+use crate::run::summary::{Accuracy, Estimate, Pilot};
 
 /// Finest meshes and tightest tolerance that are tried: cells a segment, cells a bladder, decades.
 const FINEST: usize = 64;
@@ -98,6 +99,11 @@ impl Number {
     pub fn new(value: f64, size: f64) -> Self {
         Self { value, size }
     }
+
+    /// The size beside which its errors count.
+    pub fn counted(&self) -> f64 {
+        self.value.abs().max(self.size).max(f64::MIN_POSITIVE)
+    }
 }
 
 /// Numbers by name.
@@ -159,7 +165,6 @@ pub fn refine(
         cells_per_bladder: case.mesh.cells_per_bladder,
         order: case.mesh.order(),
         rtol: case.solver.rtol,
-        judged_by: Judged::Figures,
         effects: String::new(),
         quantities: estimates,
         pilots: search.pilots,
@@ -174,27 +179,43 @@ pub fn sensible(asked: f64) -> bool {
 
 /// What to say where an accuracy is not reached.
 pub fn warning(found: &Accuracy) -> Option<String> {
-    let short = found.quantities.iter().filter_map(|(name, e)| match e.total {
-        Some(total) if total <= found.asked => None,
-        Some(total) => Some(format!("{name} {total:.1e}")),
-        None => Some(format!("{name} unknown")),
-    });
-    let short: Vec<String> = short.collect();
+    let short = |(name, e): (&String, &Estimate)| {
+        let parts = [
+            ("time steps", e.time),
+            ("meshes", e.space),
+            ("effects left out", e.effects),
+        ];
+        let parts = parts.into_iter().filter_map(|(cause, part)| Some((cause, part?)));
+        let worst = parts.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, part)| *part > 0.0);
+        let by = worst.map_or(String::new(), |(cause, _)| format!(", limited by {cause}"));
+        match e.total {
+            Some(total) if total <= found.asked => None,
+            Some(total) => Some(format!("{name} ± {}{by}", percent(total))),
+            None => Some(format!("{name} unknown")),
+        }
+    };
+    let short: Vec<String> = found.quantities.iter().filter_map(short).collect();
+    let what = match short.as_slice() {
+        [] => "no error is known".into(),
+        all => all.join("; "),
+    };
     (!found.reached).then(|| {
         Code::Accuracy.warning(format!(
-            "accuracy: {:e} is not reached with {}, {} a bladder and rtol {:e}: {}",
+            "accuracy: {:e} is not reached with {}, {} a bladder and rtol {:e}: {what}",
             found.asked,
             found.cells(),
             found.cells_per_bladder,
             found.rtol,
-            short.join(", ")
         ))
     })
 }
 
 /// Whether a case has cells along its bladders: flows within them, and effects that keep these.
 pub fn has_cells_along_bladders(case: &Case) -> Result<bool> {
-    let system = System::with(case, Model::whole(case, true)?)?;
+    // meshes of second order are there for every model
+    let mut second = case.clone();
+    second.mesh.order = None;
+    let system = System::with(&second, Model::whole(&second, true)?)?;
     let flows = system.fluid.as_ref().is_some_and(|fluid| !fluid.flowing.is_empty());
     Ok(flows && system.model.effects.has(Effect::FlowAlongBladders))
 }
@@ -283,9 +304,9 @@ impl Search<'_> {
         let numbers = compute(&case)?;
         self.runs.insert(at, numbers);
         self.pilots.push(Pilot {
-            with: String::new(),
             unknowns: 0,
             cells_per_segment: at.cells,
+            cells_per_bladder: case.mesh.cells_per_bladder,
             rtol: case.solver.rtol,
             steps: 0,
             wall_s: begin.elapsed().as_secs_f64(),
@@ -339,7 +360,7 @@ impl Search<'_> {
         } else {
             most
         };
-        let size = number.value.abs().max(number.size).max(f64::MIN_POSITIVE);
+        let size = number.counted();
         Some(SAFETY * ratio / (1.0 - ratio) * last / size).filter(|e| e.is_finite())
     }
 }

@@ -44,6 +44,8 @@ pub struct Ask {
     pub what: What,
     /// Relative error below which every figure is wanted.
     pub accuracy: Option<f64>,
+    /// Mesh and tolerance with which a search for it begins.
+    pub from: Option<target::Setting>,
     /// True if errors are measured: by a companion of a run, by two or three meshes of what other commands compute.
     pub meshes: bool,
 }
@@ -103,11 +105,15 @@ pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
             false => Control::Continue,
         }
     };
-    let alone = |case: &Case| dynamics::run(case, &mut Unrecorded(hook));
     match ask.accuracy {
-        None if ask.meshes => companion::run(case, System::new(case)?, &[], &mut Unrecorded(hook)),
-        None => alone(case),
-        Some(accuracy) => target::reach(case, accuracy, &hook, &mut |case| alone(case)),
+        None if ask.meshes => {
+            let mut run = |case: &Case| companion::run(case, System::new(case)?, &[], &mut Unrecorded(hook));
+            target::effects::settle(case, run(case)?, &mut run)
+        }
+        None => dynamics::run(case, &mut Unrecorded(hook)),
+        Some(accuracy) => target::reach(case, accuracy, ask.from.as_ref(), &mut |case, accuracy| {
+            companion::measured(case, System::new(case)?, accuracy, &mut Unrecorded(hook))
+        }),
     }
 }
 
@@ -277,7 +283,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
         reached(&mut found, accuracy, &key);
     } else if ask.meshes && path.fault.is_none() {
         let here = numbers::of_path(case, &columns, &path)?;
-        let by_mesh = meshes::judge(case, &here, &mut of)?;
+        let by_mesh = meshes::judge_at_rest(case, &here, &mut of)?;
         off(&mut found, &by_mesh, &key);
     }
     found.warn(&known::at_rest(case, &system));

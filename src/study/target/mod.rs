@@ -1,115 +1,127 @@
-//! The cheapest run that has an accuracy: mesh, tolerance and effects chosen by error estimates from a few cheaper runs.
+//! The cheapest run that has an accuracy: mesh, tolerance and effects are refined where measured errors say so.
 //!
 //! ```text
-//! first       the mesh to begin with, which sees every load
-//! estimates   what runs tell of each other's errors
-//! search      the runs that a candidate is judged by, and what to try next
-//! models      which effects are left out, and the cases that have them
-//! left_out    what they change, and whether to take them in
-//! verdict     what is said in the end
+//! first     the setting to begin with, which sees every load
+//! effects   effects that are left out and measured to matter
+//! levers    what to refine next, by the causes of errors
+//! verdict   what is reached
 //! ```
+//!
+//! Every run has a companion ([`companion`](super::companion)). Where that shows errors above the accuracy, each cause is measured by a
+//! run with one change; orders of methods tell how far each has to be refined, and the run is repeated there. A search ends where all
+//! errors are small enough, where a refinement does not make them smaller, or where the next one is too expensive.
 
-pub mod estimates;
+pub mod effects;
 pub mod first;
-mod left_out;
-pub mod models;
-mod search;
+pub mod levers;
 mod verdict;
 
 use crate::case::Case;
+use crate::case::schema::Effect;
+use crate::discrete::System;
 use crate::error::{Code, Result};
 use crate::run::dynamics::Outcome;
-use crate::run::record::{Control, Progress};
-use crate::run::summary::Status;
-
-use estimates::{At, Way, numerical};
-use left_out::Look;
-use search::{FILL, Ran, Search};
+use crate::run::floors::Floors;
+use crate::run::summary::{Accuracy, Pilot, Status, Summary};
+use crate::study::companion::Accurate;
+use crate::study::effects::full::full;
+use levers::Levers;
 
 /// Part of the accuracy asked that leaving out an effect may take by its number, unless the case says.
 const EFFECTS: f64 = 0.1;
-/// Tolerance to begin with, in decades.
-const LOOSEST: i32 = 3;
+/// Most runs of a search.
+const RUNS: usize = 7;
 
-/// Asked before every step whether to go on.
-pub type Hook<'a> = &'a dyn Fn(&Progress) -> Control;
-/// Runs a case into a result and returns how it ended.
-pub type Record<'a> = &'a mut dyn FnMut(&Case) -> Result<Outcome>;
+/// Runs a case into a result, with its errors and their causes ([`companion::measured`](super::companion::measured)).
+pub type Record<'a> = &'a mut dyn FnMut(&Case, &Accurate) -> Result<Outcome>;
 
-/// Runs the case so that the estimated error of each of its quantities is below `asked`, relative to the quantity's size.
+/// Runs the case so that the measured error of each of its quantities, probes and ports is below `asked`, relative to its size.
 ///
-/// `record` runs a case into a result, over an earlier one only when it finishes; the last that finished counts, and its
-/// summary carries the estimates. `hook` may stop everything: what was recorded then stands, with what is known of it.
-pub fn reach(case: &Case, asked: f64, hook: Hook, record: Record) -> Result<Outcome> {
+/// `record` runs a case into a result, over an earlier one only when it finishes; the last that finished counts. A search begins with the
+/// setting that a similar case needed, where one is given.
+///
+/// # Errors
+/// Those of `record`.
+pub fn reach(case: &Case, asked: f64, from: Option<&Setting>, record: Record) -> Result<Outcome> {
     let mut case = case.clone();
     case.effects_tolerance.get_or_insert(EFFECTS * asked);
-    let mut search = Search::new(models::of_best_order(case)?, asked, hook)?;
-    let mut at: At = (first::least_cells(&search.case)?, LOOSEST);
-    let mut outcome = record(&search.variant(at))?;
-    if outcome.summary.status == Status::Failed && search.take_all_effects() {
-        outcome = record(&search.variant(at))?;
+    let mut case = first::setting(&case, asked)?;
+    if let Some(from) = from {
+        case = from.of(&case).unwrap_or(case);
+    }
+    let mut wanted = Accurate::new(asked);
+    let mut outcome = record(&case, &wanted)?;
+    let mut added: Vec<Effect> = vec![];
+    if outcome.summary.status == Status::Failed
+        && let Some(full) = full(&case)?
+    {
+        (case, added) = (full.case, full.left_out);
+        outcome = record(&case, &wanted)?;
     }
     if outcome.summary.status != Status::Finished {
         let why = "accuracy: nothing is known of the errors of a run that did not finish";
         outcome.summary.warnings.push(Code::Accuracy.warning(why));
         return Ok(outcome);
     }
-    search.runs.take(Way::Candidate, at, &outcome.summary);
-    // What is recorded, and whether with the effects of the present candidates.
-    let (mut recorded, mut present) = (at, true);
-    let mut begins = true;
-    let cut_short = loop {
-        if let Some(reason) = search.compare_with_cheaper(at)? {
-            break Some(reason);
-        }
-        search.runs.lose_sight(at);
-        let estimates = search.runs.estimates(at);
-        let fill = numerical(&estimates) / asked;
-        let next = if fill > FILL {
-            search.cheapest(at, &estimates)
-        } else {
-            None
+    let floors = Floors::of(&case)?;
+    let mut levers = Levers::new(asked);
+    let (mut pilots, mut cut_short) = (vec![], None);
+    while pilots.len() + 1 < RUNS {
+        let Some(next) = levers.next(&case, &outcome.summary, &floors)? else {
+            break;
         };
-        let judge = next.is_none() && fill <= 1.0 && (present && recorded == at);
-        if judge || std::mem::take(&mut begins) {
-            match search.look_at_effects(at, judge)? {
-                Look::Stopped(reason) => break Some(reason),
-                Look::Known => {}
-                Look::MoreEffects => present = false,
-            }
-        }
-        if judge && present {
-            match search.compare_with_coarsest(at)? {
-                Ran::Stopped(reason) => break Some(reason),
-                Ran::Finished => continue,
-                Ran::Known => {}
-            }
-            match search.compare_methods(at)? {
-                Ran::Stopped(reason) => break Some(reason),
-                Ran::Finished => continue,
-                Ran::Known => break None,
-            }
-        }
-        match next {
-            Some((finer, _)) if present => at = finer,
-            None if present && recorded == at => break None,
-            _ => {}
-        }
-        let sure = !present || next.is_none_or(|(_, sure)| sure);
-        if !sure {
-            if let Ran::Stopped(reason) = search.run(Way::Candidate, at)? {
-                break Some(reason);
-            }
-            continue;
-        }
-        let finer = record(&search.variant(at))?;
+        wanted.settle(&outcome.summary, &floors);
+        let finer = record(&next.case, &wanted)?;
         if finer.summary.status != Status::Finished {
-            break finer.summary.reason;
+            cut_short = finer.summary.reason;
+            break;
         }
-        search.replace(recorded, &outcome.summary);
-        search.runs.take(Way::Candidate, at, &finer.summary);
-        (recorded, present, outcome) = (at, true, finer);
-    };
-    search.conclude(recorded, present, cut_short, &mut outcome.summary);
+        added.extend(next.added);
+        pilots.push(pilot(&case, &outcome.summary));
+        (case, outcome) = (next.case, finer);
+    }
+    verdict::conclude(&case, asked, &floors, pilots, &added, cut_short, &mut outcome.summary);
     Ok(outcome)
+}
+
+/// Mesh and tolerance that an accuracy led to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    cells_per_segment: usize,
+    cells_per_bladder: usize,
+    order: u8,
+    rtol: f64,
+}
+
+impl Setting {
+    /// That of a search.
+    pub fn found(accuracy: &Accuracy) -> Self {
+        Self {
+            cells_per_segment: accuracy.cells_per_segment,
+            cells_per_bladder: accuracy.cells_per_bladder,
+            order: accuracy.order,
+            rtol: accuracy.rtol,
+        }
+    }
+
+    /// A case so computed; nothing where it cannot be.
+    fn of(&self, case: &Case) -> Option<Case> {
+        let mut case = case.clone();
+        case.mesh.cells_per_segment = self.cells_per_segment;
+        case.mesh.cells_per_bladder = self.cells_per_bladder;
+        case.mesh.order = Some(self.order);
+        case.solver.rtol = self.rtol;
+        System::new(&case).is_ok().then_some(case)
+    }
+}
+
+fn pilot(case: &Case, summary: &Summary) -> Pilot {
+    Pilot {
+        cells_per_segment: case.mesh.cells_per_segment,
+        cells_per_bladder: case.mesh.cells_per_bladder,
+        rtol: case.solver.rtol,
+        unknowns: summary.unknowns,
+        steps: summary.solver.steps,
+        wall_s: summary.wall_s.total,
+    }
 }

@@ -1,5 +1,7 @@
 //! `slcbeam run`.
 
+mod resume;
+
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -7,8 +9,6 @@ use std::rc::Rc;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
-
-use serde_json::Value;
 
 use super::arguments::RunArguments;
 use super::interrupt::WallArguments;
@@ -20,24 +20,21 @@ use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::output::checkpoint;
-use crate::output::folder::{CASE, FIELDS, HISTORY, ResultFolder, SUMMARY, text_of};
+use crate::output::folder::{FIELDS, HISTORY, ResultFolder, SUMMARY};
 use crate::output::kind::Kind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
 use crate::output::summary;
 use crate::output::uncertainty as files;
 use crate::run::dynamics::{self, Outcome};
-use crate::run::observe::Observer;
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
-use crate::study::compare::changes::changes;
+use crate::study::companion::{self, Accurate};
 use crate::study::sweep::What;
-use crate::study::{companion, target};
-
-/// Differences between two cases that are told.
-const DIFFERENCES: usize = 4;
+use crate::study::sweep::compute::Ask;
+use crate::study::target::{self, Setting};
+use resume::resume;
 
 /// Runs a case into a result folder; the program began at an instant.
 pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
@@ -60,7 +57,6 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,
-        error_bars: !asked.lean && asked.accuracy.is_none(),
         before: WallTimes {
             start_up,
             set_up: laps.lap(),
@@ -75,10 +71,10 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => {
             drop(system);
-            reach(case, accuracy, asked.place.claim(case, Kind::Run)?, &way)?
+            reach(case, accuracy, None, asked.place.claim(case, Kind::Run)?, &way)?
         }
         (None, true) => resume(case, system, &parameters, &out, &way)?,
-        (None, false) => record(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
+        (None, false) => settle(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
     };
     // what is told stands below no bar
     drop(way);
@@ -143,15 +139,13 @@ fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<(
 struct Way {
     hook: SharedHook,
     lean: bool,
-    /// False for lean runs, and for an accuracy, whose runs measure each other.
-    error_bars: bool,
     before: WallTimes,
 }
 
 impl Way {
     /// True if a run with derivatives by some numbers has a companion: if it has error bars and the memory holds both.
     fn has_companion(&self, case: &Case, by: &[Parameter]) -> bool {
-        self.error_bars && size::holds_companion(case, by.len())
+        !self.lean && size::holds_companion(case, by.len())
     }
 }
 
@@ -182,7 +176,7 @@ fn own(hook: &SharedHook) -> Hook {
 }
 
 /// Runs a case of many into a folder of its own, which may hold what an interrupted one left.
-pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
+pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
     let mut laps = Laps::since(Instant::now());
     let interrupted = Arc::clone(stop);
     let way = Way {
@@ -193,7 +187,6 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
             }
         }))),
         lean,
-        error_bars: !lean && accuracy.is_none(),
         before: WallTimes::default(),
     };
     let folder = ResultFolder::claim(dir, Kind::Run, true)?;
@@ -202,9 +195,9 @@ pub fn into(case: &Case, accuracy: Option<f64>, dir: &Path, lean: bool, stop: &A
         finished,
         written,
         ..
-    } = match accuracy {
-        Some(accuracy) => reach(case, accuracy, folder, &way)?,
-        None => record(case, System::new(case)?, &[], folder, &way)?,
+    } = match ask.accuracy {
+        Some(accuracy) => reach(case, accuracy, ask.from.as_ref(), folder, &way)?,
+        None => settle(case, System::new(case)?, &[], folder, &way)?,
     };
     written?;
     if let Some(finished) = finished {
@@ -238,6 +231,28 @@ fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, w
     complete(recorder, outcome, way)
 }
 
+/// Runs a case into a folder, and again with effects that its companion shows to matter. Repeated runs are recorded inside the folder and take
+/// the result's place when they finish.
+fn settle(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
+    let mut first = record(case, system, by, folder, way)?;
+    let (Some(finished), Ok(())) = (&mut first.finished, &first.written) else {
+        return Ok(first);
+    };
+    let mut again = |case: &Case| -> Result<Outcome> {
+        let inside = finished.folder().candidate()?;
+        let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
+        let repeated = record(case, System::new(case)?, by, folder, way)?;
+        repeated.written?;
+        repeated.finished.map(Finished::close).transpose()?;
+        if repeated.outcome.summary.status == Status::Finished {
+            finished.replace(inside.path())?;
+        }
+        Ok(repeated.outcome)
+    };
+    first.outcome = target::effects::settle(case, first.outcome, &mut again)?;
+    Ok(first)
+}
+
 fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result<Recorded> {
     let wall = &mut outcome.summary.wall_s;
     wall.begin_with(&way.before);
@@ -260,19 +275,20 @@ fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result
 
 /// Candidates are recorded inside the folder and take the result's place when they finish, so that one that is stopped leaves the
 /// one before. The first may end early: then it is all there is.
-fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
+fn reach(case: &Case, accuracy: f64, from: Option<&Setting>, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
     let began = Instant::now();
-    let ask = |progress: &Progress| way.hook.borrow_mut()(progress);
     let (mut placed, mut aside, mut unwritten) = (false, None, Ok(()));
-    let mut candidate = |case: &Case| -> Result<Outcome> {
+    let mut candidate = |case: &Case, accuracy: &Accurate| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
+        let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
+        let outcome = companion::measured(case, System::new(case)?, accuracy, &mut recorder)?;
         let Recorded {
             outcome,
             finished,
             written,
             ..
-        } = record(case, System::new(case)?, &[], folder, way)?;
+        } = complete(recorder, outcome, way)?;
         if written.is_err() {
             unwritten = written;
             return Ok(outcome);
@@ -291,7 +307,7 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Res
         }
         Ok(outcome)
     };
-    let mut outcome = target::reach(case, accuracy, &ask, &mut candidate)?;
+    let mut outcome = target::reach(case, accuracy, from, &mut candidate)?;
     let wall = &mut outcome.summary.wall_s;
     let before = way.before.start_up + way.before.set_up;
     wall.pilots = before + began.elapsed().as_secs_f64() - wall.known() - wall.pictures - wall.files;
@@ -305,96 +321,4 @@ fn reach(case: &Case, accuracy: f64, mut result: ResultFolder, way: &Way) -> Res
         aside,
         written: unwritten,
     })
-}
-
-/// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
-fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Way) -> Result<Recorded> {
-    let folder = ResultFolder::again(out)?;
-    let Some((saved, damage)) = checkpoint::read(out)? else {
-        return Ok(Recorded {
-            outcome: ended(case, asked, &folder)?,
-            finished: None,
-            aside: None,
-            written: Ok(()),
-        });
-    };
-    if saved.run.case != case.resolved_json() {
-        return Err(another_case(&saved.run.case, case, "the checkpoint"));
-    }
-    saved.run.fits(case, &system)?;
-    let kept = saved.run.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
-    if !asked.is_empty() && asked != kept {
-        return Err(other_derivatives(kept));
-    }
-    if let Some(damage) = damage {
-        terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
-    }
-    let header = Observer::header(case, &system);
-    let mut recorder =
-        FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
-    let outcome = match way.has_companion(case, kept) {
-        true => companion::resume(case, system, &saved.run, &mut recorder)?,
-        false => dynamics::resume(case, system, &saved.run, &mut recorder)?,
-    };
-    complete(recorder, outcome, way)
-}
-
-/// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.
-fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outcome> {
-    let summary = summary::read(folder.dir())
-        .ok()
-        .filter(|s| s.status == Status::Finished);
-    let summary = summary.ok_or_else(|| {
-        let dir = folder.dir().display();
-        Error::Usage(format!(
-            "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
-        ))
-    })?;
-    let there = text_of(&folder.path(CASE))?;
-    if there != case.resolved_json() {
-        return Err(another_case(&there, case, "the result"));
-    }
-    if !asked.iter().all(|p| summary.sensitivities.contains_key(&p.pointer)) {
-        return Err(Error::Usage(
-            "--sensitivity: the run had ended without these derivatives; run it again without --resume".into(),
-        ));
-    }
-    folder.remove_raw()?;
-    terminal::tell("slcbeam: the run had ended; nothing to resume");
-    Ok(Outcome { summary, fault: None })
-}
-
-/// Says by what numbers the run that is gone on with is differentiated.
-fn other_derivatives(kept: &[Parameter]) -> Error {
-    let kept: Vec<&str> = kept.iter().map(|p| p.pointer.as_str()).collect();
-    let kept = match kept.is_empty() {
-        true => "no number".into(),
-        false => kept.join(", "),
-    };
-    Error::Usage(format!(
-        "--sensitivity: the run in the folder is differentiated by {kept}, which goes on without naming it again; nothing was changed"
-    ))
-}
-
-/// Says where two cases differ.
-fn another_case(there: &str, here: &Case, whose: &str) -> Error {
-    let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
-    let (physics, numerics) = changes(&value(there), &value(&here.resolved_json()));
-    let mut told: Vec<String> = physics
-        .iter()
-        .chain(&numerics)
-        .map(|c| format!("{} is {} there and {} here", c.pointer, c.a, c.b))
-        .collect();
-    let more = told.len().saturating_sub(DIFFERENCES);
-    told.truncate(DIFFERENCES);
-    if more > 0 {
-        told.push(format!("and {more} more"));
-    }
-    if told.is_empty() {
-        told.push("name or words differ".into());
-    }
-    Error::Usage(format!(
-        "{whose} belongs to another case: {}; nothing was changed",
-        told.join(", ")
-    ))
 }

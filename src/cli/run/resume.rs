@@ -1,0 +1,116 @@
+//! Going on with a run that was interrupted.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::{Recorded, Way, complete, own};
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::cli::terminal;
+use crate::discrete::System;
+use crate::error::{Error, Result};
+use crate::output::checkpoint;
+use crate::output::folder::{CASE, ResultFolder, text_of};
+use crate::output::recorder::{FolderRecorder, Labels};
+use crate::output::summary;
+use crate::run::dynamics::{self, Outcome};
+use crate::run::observe::Observer;
+use crate::run::summary::Status;
+use crate::study::companion;
+use crate::study::compare::changes::changes;
+
+/// Differences between two cases that are told.
+const DIFFERENCES: usize = 4;
+
+/// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
+pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Way) -> Result<Recorded> {
+    let folder = ResultFolder::again(out)?;
+    let Some((saved, damage)) = checkpoint::read(out)? else {
+        return Ok(Recorded {
+            outcome: ended(case, asked, &folder)?,
+            finished: None,
+            aside: None,
+            written: Ok(()),
+        });
+    };
+    if saved.run.case != case.resolved_json() {
+        return Err(another_case(&saved.run.case, case, "the checkpoint"));
+    }
+    saved.run.fits(case, &system)?;
+    let kept = saved.run.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
+    if !asked.is_empty() && asked != kept {
+        return Err(other_derivatives(kept));
+    }
+    if let Some(damage) = damage {
+        terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
+    }
+    let header = Observer::header(case, &system);
+    let mut recorder =
+        FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
+    let outcome = match way.has_companion(case, kept) {
+        true => companion::resume(case, system, &saved.run, &mut recorder)?,
+        false => dynamics::resume(case, system, &saved.run, &mut recorder)?,
+    };
+    complete(recorder, outcome, way)
+}
+
+/// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.
+fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outcome> {
+    let summary = summary::read(folder.dir())
+        .ok()
+        .filter(|s| s.status == Status::Finished);
+    let summary = summary.ok_or_else(|| {
+        let dir = folder.dir().display();
+        Error::Usage(format!(
+            "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
+        ))
+    })?;
+    let there = text_of(&folder.path(CASE))?;
+    if there != case.resolved_json() {
+        return Err(another_case(&there, case, "the result"));
+    }
+    if !asked.iter().all(|p| summary.sensitivities.contains_key(&p.pointer)) {
+        return Err(Error::Usage(
+            "--sensitivity: the run had ended without these derivatives; run it again without --resume".into(),
+        ));
+    }
+    folder.remove_raw()?;
+    terminal::tell("slcbeam: the run had ended; nothing to resume");
+    Ok(Outcome { summary, fault: None })
+}
+
+/// Says by what numbers the run that is gone on with is differentiated.
+fn other_derivatives(kept: &[Parameter]) -> Error {
+    let kept: Vec<&str> = kept.iter().map(|p| p.pointer.as_str()).collect();
+    let kept = match kept.is_empty() {
+        true => "no number".into(),
+        false => kept.join(", "),
+    };
+    Error::Usage(format!(
+        "--sensitivity: the run in the folder is differentiated by {kept}, which goes on without naming it again; nothing was changed"
+    ))
+}
+
+/// Says where two cases differ.
+fn another_case(there: &str, here: &Case, whose: &str) -> Error {
+    let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
+    let (physics, numerics) = changes(&value(there), &value(&here.resolved_json()));
+    let mut told: Vec<String> = physics
+        .iter()
+        .chain(&numerics)
+        .map(|c| format!("{} is {} there and {} here", c.pointer, c.a, c.b))
+        .collect();
+    let more = told.len().saturating_sub(DIFFERENCES);
+    told.truncate(DIFFERENCES);
+    if more > 0 {
+        told.push(format!("and {more} more"));
+    }
+    if told.is_empty() {
+        told.push("name or words differ".into());
+    }
+    Error::Usage(format!(
+        "{whose} belongs to another case: {}; nothing was changed",
+        told.join(", ")
+    ))
+}

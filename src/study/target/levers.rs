@@ -1,0 +1,200 @@
+//! What to refine next.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::effects;
+use crate::case::Case;
+use crate::case::schema::Effect;
+use crate::error::Result;
+use crate::run::floors::Floors;
+use crate::run::summary::Summary;
+use crate::study::companion::error::relative;
+use crate::study::companion::variant::Cause;
+
+/// Part of the accuracy that a refinement aims at.
+const FILL: f64 = 0.7;
+/// Part of the accuracy from which on an effect is simulated.
+const SHARE: f64 = 0.25;
+/// Largest refinement at once: doublings of the cells of a segment, of those of a bladder, and decades of the tolerance.
+const FARTHEST: [i32; 3] = [2, 3, 3];
+/// Finest meshes, and the tightest tolerance in decades.
+const FINEST: [usize; 2] = [128, 64];
+const TIGHTEST: i32 = 10;
+/// Error after a decade of the tolerance over that before.
+const DECADE: f64 = 0.25;
+/// The same of twice the fluid cells: boundary layers at first order.
+const FLUID: f64 = 0.5;
+/// The same of twice the beam cells, at second and at fourth order: these meshes have quantities of second order too.
+const BEAM: [f64; 2] = [0.25, 0.125];
+/// Work after twice the beam cells, twice the fluid cells and a decade, over that before.
+const WORK: [f64; 3] = [3.0, 2.0, 1.8];
+/// Largest cost of a refinement, over that of the run before.
+const AT_ONCE: f64 = 5.0;
+/// A refinement pays where errors fall at least as the work to this power; and it is preferred to a cheaper one where it leaves less than so
+/// much of the error of that.
+const PAYS: f64 = -0.25;
+const PREFERRED: f64 = 0.8;
+/// Work without a smaller error, over that with the smallest.
+const PATIENCE: f64 = 4.0;
+/// Error over the smallest before, from which on that says nothing.
+const SHOWN: f64 = 2.0;
+/// Error beyond which a figure does not tell how far it is off.
+const SATURATED: f64 = 0.3;
+/// Largest work (steps times unknowns) that a refinement is expected to do: so many times that of the first run, and so much.
+const LARGEST_WORK: (f64, f64) = (15.0, 3e6);
+
+/// Refinements of a search.
+pub struct Levers {
+    asked: f64,
+    /// Work of the first run.
+    first: Option<f64>,
+    /// Work and error of each quantity when it last became smaller.
+    best: BTreeMap<String, (f64, f64)>,
+    /// Quantities whose errors coarse runs do not show.
+    shown: BTreeSet<String>,
+    /// Steps and decades of the tolerance before the last refinement.
+    before: Option<(f64, f64)>,
+}
+
+/// A finer case.
+pub struct Finer {
+    /// The case.
+    pub case: Case,
+    /// Effects that it has more.
+    pub added: Vec<Effect>,
+}
+
+impl Levers {
+    /// For an accuracy.
+    pub fn new(asked: f64) -> Self {
+        Self {
+            asked,
+            first: None,
+            best: BTreeMap::new(),
+            shown: BTreeSet::new(),
+            before: None,
+        }
+    }
+
+    /// The cheapest finer case whose errors should be small enough; nothing where no refinement is wanted, or pays.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn next(&mut self, case: &Case, summary: &Summary, floors: &Floors) -> Result<Option<Finer>> {
+        let Some(causes) = summary.companion.as_ref().map(|companion| &companion.causes) else {
+            return Ok(None);
+        };
+        let work = (summary.solver.steps * summary.unknowns as u64) as f64;
+        let first = *self.first.get_or_insert(work);
+        let errors = relative(summary, &summary.errors, floors);
+        let large: Vec<&String> = errors
+            .iter()
+            .filter(|(_, e)| **e > self.asked)
+            .map(|(name, _)| name)
+            .collect();
+        let stuck: Vec<&String> = large
+            .iter()
+            .copied()
+            .filter(|name| self.is_stuck(name, work, errors[*name]))
+            .collect();
+        let now = (summary.solver.steps as f64, -case.solver.rtol.log10());
+        let per_decade = match self.before.replace(now) {
+            Some(before) if now.1 > before.1 + 0.5 => (now.0 / before.0).powf(1.0 / (now.1 - before.1)),
+            _ => WORK[2],
+        };
+        let by_cause = |pointer: &str| causes.get(pointer).map(|errors| relative(summary, errors, floors));
+        let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
+        let parts: Vec<BTreeMap<String, f64>> = settings
+            .iter()
+            .map(|cause| by_cause(&cause.pointer()).unwrap_or_default())
+            .collect();
+        // for each quantity what its error is made of, so that the parts add up to it
+        let wanted: Vec<[f64; 3]> = large
+            .iter()
+            .filter(|name| !stuck.contains(name))
+            .map(|name| {
+                let all: f64 = causes
+                    .keys()
+                    .filter_map(|pointer| by_cause(pointer)?.get(*name).copied())
+                    .sum();
+                let scale = if all > 0.0 {
+                    errors[*name].min(SATURATED) / all
+                } else {
+                    0.0
+                };
+                [0, 1, 2].map(|k| scale * parts[k].get(*name).copied().unwrap_or(0.0))
+            })
+            .collect();
+        let more = effects::needed(case, summary, floors, SHARE * self.asked)?;
+        if large.is_empty() || (wanted.iter().all(|parts| parts.iter().sum::<f64>() == 0.0) && more.is_none()) {
+            return Ok(None);
+        }
+        let budget = ((LARGEST_WORK.0 * first + LARGEST_WORK.1) / work).min(AT_ONCE);
+        let [beam, fluid, decades] = self.refinement(case, &wanted, budget, per_decade.max(WORK[2]));
+        if [beam, fluid, decades] == [0; 3] && more.is_none() {
+            return Ok(None);
+        }
+        let (mut finer, added) = match more {
+            Some(needed) => (needed.case, needed.added.into_keys().collect()),
+            None => (case.clone(), vec![]),
+        };
+        finer.mesh.cells_per_segment <<= beam;
+        finer.mesh.cells_per_bladder <<= fluid;
+        finer.solver.rtol = rounded(case.solver.rtol * 10_f64.powi(-decades));
+        Ok(Some(Finer { case: finer, added }))
+    }
+
+    /// Whether the error of a quantity is no longer worth the work; takes over what is. An error that a finer run shows to be much larger than
+    /// it was begins anew, once.
+    fn is_stuck(&mut self, name: &str, work: f64, error: f64) -> bool {
+        let best = self.best.entry(name.into()).or_insert((work, error));
+        let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0) || SATURATED < error && error < best.1;
+        if falls || error > SHOWN * best.1 && self.shown.insert(name.into()) {
+            *best = (work, error);
+        }
+        work > PATIENCE * best.0
+    }
+
+    /// Doublings of the beam's cells, of a bladder's cells, and decades: the cheapest that should do, or those that come nearest.
+    fn refinement(&self, case: &Case, wanted: &[[f64; 3]], budget: f64, decade: f64) -> [i32; 3] {
+        let ratios = [BEAM[usize::from(case.mesh.order() == 4)], FLUID, DECADE];
+        let left = |finer: [i32; 3]| {
+            let of = |parts: &[f64; 3]| (0..3).map(|k| parts[k] * ratios[k].powi(finer[k])).sum::<f64>();
+            most(wanted.iter().map(of).collect::<Vec<_>>().iter()) / (FILL * self.asked)
+        };
+        let cost = |[beam, fluid, decades]: [i32; 3]| WORK[0].powi(beam) * WORK[1].powi(fluid) * decade.powi(decades);
+        let now = -case.solver.rtol.log10();
+        let possible = |[beam, fluid, decades]: [i32; 3]| {
+            (case.mesh.cells_per_segment << beam) <= FINEST[0]
+                && (case.mesh.cells_per_bladder << fluid) <= FINEST[1]
+                && now + f64::from(decades) <= f64::from(TIGHTEST) + 0.5
+        };
+        let mut best = ([0; 3], left([0; 3]), 1.0);
+        for beam in 0..=FARTHEST[0] {
+            for fluid in 0..=FARTHEST[1] {
+                for decades in 0..=FARTHEST[2] {
+                    let finer = [beam, fluid, decades];
+                    let (fill, cost) = (left(finer), cost(finer));
+                    let better = if fill <= 1.0 {
+                        best.1 > 1.0 || cost < best.2
+                    } else {
+                        fill < PREFERRED * best.1
+                    };
+                    if possible(finer) && cost <= budget && better {
+                        best = (finer, fill, cost);
+                    }
+                }
+            }
+        }
+        best.0
+    }
+}
+
+/// A tolerance without the rounding of its product.
+fn rounded(rtol: f64) -> f64 {
+    format!("{rtol:.3e}").parse().unwrap_or(rtol)
+}
+
+fn most<'a>(errors: impl Iterator<Item = &'a f64>) -> f64 {
+    errors.copied().fold(0.0, f64::max)
+}
