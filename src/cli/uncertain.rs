@@ -16,7 +16,7 @@ use crate::output::ResultFolder;
 use crate::output::uncertainty as files;
 use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
-use crate::run::summary::Status;
+use crate::run::summary::{CompanionRun, Status};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::designs::pairs;
 use crate::study::sweep::row::Found;
@@ -76,6 +76,13 @@ impl Uncertain {
         };
         one.check()?;
         Ok(Some(one))
+    }
+
+    /// Gives samples the effects that a run was repeated with.
+    pub fn with_effects(&mut self, companion: &CompanionRun) {
+        let added = companion.earlier_runs.iter().flat_map(|run| &run.added_effects);
+        self.sets
+            .extend(added.map(|effect| format!("/effects/{effect}=\"on\"")));
     }
 
     fn case(&self, own: Vec<String>) -> Result<Case> {

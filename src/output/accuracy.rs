@@ -24,12 +24,15 @@ pub fn reached(found: &Accuracy) -> String {
 
 /// Mesh, tolerance and the number of runs.
 pub fn setting(found: &Accuracy) -> String {
+    let before = match found.pilots.len() {
+        0 => String::new(),
+        n => format!(", after {}", counted(n as u64, "coarser computation")),
+    };
+    let rtol = significant(found.rtol, 1);
     format!(
-        "{}, {} a bladder, rtol {}, after {}",
+        "{}, {} a bladder, rtol {rtol}{before}",
         found.cells(),
-        found.cells_per_bladder,
-        significant(found.rtol, 1),
-        counted(found.pilots.len() as u64, "coarser computation")
+        found.cells_per_bladder
     )
 }
 

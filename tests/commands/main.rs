@@ -11,6 +11,7 @@ mod names;
 mod output;
 #[path = "../common/program.rs"]
 mod program;
+mod repeated;
 mod report;
 mod signals;
 mod study;

@@ -33,6 +33,7 @@ use crate::run::wall::{Laps, WallTimes};
 use crate::study::companion::{self, Accurate};
 use crate::study::sweep::What;
 use crate::study::sweep::compute::Ask;
+use crate::study::target::effects::Tell;
 use crate::study::target::{self, Setting};
 use resume::resume;
 
@@ -53,7 +54,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Run, asked.quiet)?;
+    let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Run, asked.quiet)?;
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,
@@ -74,13 +75,24 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
             reach(case, accuracy, None, asked.place.claim(case, Kind::Run)?, &way)?
         }
         (None, true) => resume(case, system, &parameters, &out, &way)?,
-        (None, false) => settle(case, system, &parameters, asked.place.claim(case, Kind::Run)?, &way)?,
+        (None, false) => {
+            let folder = asked.place.claim(case, Kind::Run)?;
+            settle(
+                case,
+                record(case, system, &parameters, folder, &way)?,
+                &parameters,
+                &way,
+            )?
+        }
     };
     // what is told stands below no bar
     drop(way);
     laps.lap();
     let mut uncertainty = None;
     let left = asked.max_wall.map(|seconds| seconds - began.elapsed().as_secs_f64());
+    if let (Some(asked), Some(companion)) = (&mut uncertain, &summary.companion) {
+        asked.with_effects(companion);
+    }
     if let (Some(asked), Some(finished), Status::Finished) = (&uncertain, &finished, summary.status) {
         let max_wall = left.map(|seconds| seconds.max(0.0));
         WallArguments { max_wall }.flag();
@@ -197,7 +209,7 @@ pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool
         ..
     } = match ask.accuracy {
         Some(accuracy) => reach(case, accuracy, ask.from.as_ref(), folder, &way)?,
-        None => settle(case, System::new(case)?, &[], folder, &way)?,
+        None => settle(case, record(case, System::new(case)?, &[], folder, &way)?, &[], &way)?,
     };
     written?;
     if let Some(finished) = finished {
@@ -223,25 +235,37 @@ struct Recorded {
 
 /// Runs a case into a folder.
 fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
+    record_told(case, system, by, folder, way, &|_| ())
+}
+
+/// The same with a summary that is told more before it is written.
+fn record_told(
+    case: &Case,
+    system: System,
+    by: &[Parameter],
+    folder: ResultFolder,
+    way: &Way,
+    tell: Tell,
+) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
-    let outcome = match way.has_companion(case, by) {
+    let mut outcome = match way.has_companion(case, by) {
         true => companion::run(case, system, by, &mut recorder)?,
         false => dynamics::run_with(case, system, by, &mut recorder)?,
     };
+    tell(&mut outcome.summary);
     complete(recorder, outcome, way)
 }
 
-/// Runs a case into a folder, and again with effects that its companion shows to matter. Repeated runs are recorded inside the folder and take
-/// the result's place when they finish.
-fn settle(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
-    let mut first = record(case, system, by, folder, way)?;
-    let (Some(finished), Ok(())) = (&mut first.finished, &first.written) else {
-        return Ok(first);
+/// Repeats a run with effects that its companion shows to matter. Repeated runs are recorded inside the folder and take the result's place when
+/// they finish.
+fn settle(case: &Case, mut run: Recorded, by: &[Parameter], way: &Way) -> Result<Recorded> {
+    let (Some(finished), Ok(())) = (&mut run.finished, &run.written) else {
+        return Ok(run);
     };
-    let mut again = |case: &Case| -> Result<Outcome> {
+    let mut again = |case: &Case, tell: Tell| -> Result<Outcome> {
         let inside = finished.folder().candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let repeated = record(case, System::new(case)?, by, folder, way)?;
+        let repeated = record_told(case, System::new(case)?, by, folder, way, tell)?;
         repeated.written?;
         repeated.finished.map(Finished::close).transpose()?;
         if repeated.outcome.summary.status == Status::Finished {
@@ -249,8 +273,8 @@ fn settle(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, w
         }
         Ok(repeated.outcome)
     };
-    first.outcome = target::effects::settle(case, first.outcome, &mut again)?;
-    Ok(first)
+    run.outcome = target::effects::settle(case, run.outcome, &mut again)?;
+    Ok(run)
 }
 
 fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result<Recorded> {

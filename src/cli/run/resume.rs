@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{Recorded, Way, complete, own};
+use super::{Recorded, Way, complete, own, settle};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::cli::terminal;
@@ -52,7 +52,7 @@ pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Pat
         true => companion::resume(case, system, &saved.run, &mut recorder)?,
         false => dynamics::resume(case, system, &saved.run, &mut recorder)?,
     };
-    complete(recorder, outcome, way)
+    settle(case, complete(recorder, outcome, way)?, kept, way)
 }
 
 /// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.

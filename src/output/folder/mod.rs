@@ -293,12 +293,15 @@ impl ResultFolder {
         inside.map_err(|e| fault("create", &self.dir, e))
     }
 
-    /// Takes over the result in another folder of the same file system, in place of its own.
+    /// Takes over the result in another folder of the same file system, in place of its own. Its summary goes first and comes last: without one
+    /// nothing passes for a result.
     pub fn replace(&mut self, with: &Path) -> Result<()> {
         self.clear()?;
+        self.remove_all(&[SUMMARY, CHECKPOINT_BEFORE, CHECKPOINT])?;
+        self.remove_raw()?;
         let mut names: Vec<String> = entries(with)?.iter().map(|path| name_of(path)).collect();
         names.retain(|name| !name.starts_with('.'));
-        names.sort_by_key(|name| name == self.kind.sign());
+        names.sort_by_key(|name| (name == self.kind.sign(), name == SUMMARY));
         for name in names {
             let target = self.path(&name);
             fs::rename(with.join(&name), &target).map_err(|e| fault("write", &target, e))?;

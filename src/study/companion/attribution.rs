@@ -30,6 +30,8 @@ const LONGEST: u64 = 20;
 /// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
 const TRUSTED: f64 = 4.0;
 const TRUSTED_OF_ACCURACY: f64 = 2.0;
+/// Part of an accuracy below which a companion alone shows that it is reached.
+const SURE: f64 = 0.7;
 /// Most steps of a companion over those of the run where the tolerance decides on them.
 const BINDING: f64 = 0.65;
 /// Smallest share of an error at which a cause is named.
@@ -72,7 +74,7 @@ pub(super) fn attribute(
     recorder: &mut dyn Recorder,
 ) -> Result<()> {
     let floors = &Floors::of(case)?;
-    let least = accuracy.map_or(NAMED_FROM, |accuracy| accuracy.asked);
+    let least = accuracy.map_or(NAMED_FROM, |accuracy| SURE * accuracy.asked);
     if accuracy.is_some() && !tolerance_binds(summary) {
         let mut by_steps = BTreeMap::new();
         changes(case, summary, vec![Cause::TimeSteps], &mut by_steps, recorder)?;

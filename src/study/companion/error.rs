@@ -32,9 +32,13 @@ pub fn raise_to_balance(summary: &mut Summary) {
         let Some(errors) = summary.errors.get_mut(name) else {
             continue;
         };
-        for (figure, open) in [("final", quantity.final_error), ("window", quantity.window_error)] {
-            if let (Some(error), Some(open)) = (errors.get_mut(figure), open) {
-                *error = error.max(open);
+        let open = [
+            ("final", quantity.last, quantity.final_error),
+            ("window", quantity.window, quantity.window_error),
+        ];
+        for (figure, value, open) in open {
+            if let (Some(error), Some(value), Some(open)) = (errors.get_mut(figure), value, open) {
+                *error = error.max(open * value.abs());
             }
         }
     }
@@ -45,10 +49,8 @@ pub fn differences(run: &Figures, companion: &Figures) -> Figures {
     let of = |(name, own): (&String, &BTreeMap<String, f64>)| {
         let other = companion.get(name)?;
         let apart = |figure: &str| Some((own.get(figure)? - other.get(figure)?).abs()).filter(|e| e.is_finite());
-        let mut errors: BTreeMap<String, f64> = own
-            .keys()
-            .filter_map(|figure| Some((figure.clone(), apart(unsigned(figure))?)))
-            .collect();
+        let of = |figure: &String| Some((figure.clone(), apart(unsigned(figure))?));
+        let mut errors: BTreeMap<String, f64> = own.keys().filter_map(of).collect();
         let largest = largest_error(&errors).unwrap_or(0.0);
         for (_, error) in errors.iter_mut().filter(|(figure, _)| has_unit_of_quantity(figure)) {
             *error = error.max(SHARED * largest);

@@ -200,6 +200,9 @@ fn accompany(
                 error::raise_to_balance(summary);
             }
             attribute(case, summary, accuracy, recorder)?;
+            if accuracy.is_some() {
+                error::raise_to_balance(summary);
+            }
         }
         Err(reason) => {
             let reason = match summary.status {

@@ -106,10 +106,7 @@ pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
         }
     };
     match ask.accuracy {
-        None if ask.meshes => {
-            let mut run = |case: &Case| companion::run(case, System::new(case)?, &[], &mut Unrecorded(hook));
-            target::effects::settle(case, run(case)?, &mut run)
-        }
+        None if ask.meshes => target::effects::run(case, &mut Unrecorded(hook)),
         None => dynamics::run(case, &mut Unrecorded(hook)),
         Some(accuracy) => target::reach(case, accuracy, ask.from.as_ref(), &mut |case, accuracy| {
             companion::measured(case, System::new(case)?, accuracy, &mut Unrecorded(hook))

@@ -9,7 +9,9 @@ use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::run::dynamics::Outcome;
 use crate::run::floors::Floors;
+use crate::run::record::Recorder;
 use crate::run::summary::{EarlierRun, Status, Summary};
+use crate::study::companion;
 use crate::study::companion::error::{figures, relative};
 use crate::study::companion::variant::Cause;
 use crate::study::effects::choices::with;
@@ -26,23 +28,39 @@ pub struct Needed {
     pub added: BTreeMap<Effect, (String, f64)>,
 }
 
+/// Runs a case with its companion, and again with effects that matter; the recorder sees one run after the other.
+///
+/// # Errors
+/// As [`companion::run`].
+pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let mut run = |case: &Case, tell: Tell| {
+        let mut outcome = companion::run(case, System::new(case)?, &[], recorder)?;
+        tell(&mut outcome.summary);
+        Ok(outcome)
+    };
+    let first = run(case, &|_| ())?;
+    settle(case, first, &mut run)
+}
+
+/// Writes into the summary of a repeated run what is known of the runs before.
+pub type Tell<'a> = &'a dyn Fn(&mut Summary);
+
 /// Repeats a run that had a companion with the effects whose errors exceed `effects_tolerance`, at most twice. `record` runs a case into a
-/// result, over an earlier one only when it finishes.
+/// result, over an earlier one only when it finishes, and lets its summary be told before that is written.
 ///
 /// # Errors
 /// Those of `record`.
-pub fn settle(case: &Case, run: Outcome, record: &mut dyn FnMut(&Case) -> Result<Outcome>) -> Result<Outcome> {
+pub fn settle(case: &Case, run: Outcome, record: &mut dyn FnMut(&Case, Tell) -> Result<Outcome>) -> Result<Outcome> {
     let (mut case, mut outcome) = (case.clone(), run);
     for _ in 0..REPEATS {
         let floors = Floors::of(&case)?;
         let Some(needed) = needed(&case, &outcome.summary, &floors, case.effects_tolerance())? else {
             break;
         };
-        let mut again = record(&needed.case)?;
+        let again = record(&needed.case, &|summary| tell(summary, &needed, &outcome.summary))?;
         if again.summary.status != Status::Finished {
             break;
         }
-        tell(&mut again.summary, &needed, &outcome.summary);
         (case, outcome) = (needed.case, again);
     }
     Ok(outcome)

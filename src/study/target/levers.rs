@@ -81,54 +81,21 @@ impl Levers {
     /// # Errors
     /// As [`System::new`].
     pub fn next(&mut self, case: &Case, summary: &Summary, floors: &Floors) -> Result<Option<Finer>> {
-        let Some(causes) = summary.companion.as_ref().map(|companion| &companion.causes) else {
-            return Ok(None);
-        };
         let work = (summary.solver.steps * summary.unknowns as u64) as f64;
         let first = *self.first.get_or_insert(work);
-        let errors = relative(summary, &summary.errors, floors);
-        let large: Vec<&String> = errors
-            .iter()
-            .filter(|(_, e)| **e > self.asked)
-            .map(|(name, _)| name)
-            .collect();
-        let stuck: Vec<&String> = large
-            .iter()
-            .copied()
-            .filter(|name| self.is_stuck(name, work, errors[*name]))
-            .collect();
+        let mut large = relative(summary, &summary.errors, floors);
+        large.retain(|_, error| *error > self.asked);
+        if large.is_empty() {
+            return Ok(None);
+        }
+        large.retain(|name, error| !self.is_stuck(name, work, *error));
         let now = (summary.solver.steps as f64, -case.solver.rtol.log10());
         let per_decade = match self.before.replace(now) {
             Some(before) if now.1 > before.1 + 0.5 => (now.0 / before.0).powf(1.0 / (now.1 - before.1)),
             _ => WORK[2],
         };
-        let by_cause = |pointer: &str| causes.get(pointer).map(|errors| relative(summary, errors, floors));
-        let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
-        let parts: Vec<BTreeMap<String, f64>> = settings
-            .iter()
-            .map(|cause| by_cause(&cause.pointer()).unwrap_or_default())
-            .collect();
-        // for each quantity what its error is made of, so that the parts add up to it
-        let wanted: Vec<[f64; 3]> = large
-            .iter()
-            .filter(|name| !stuck.contains(name))
-            .map(|name| {
-                let all: f64 = causes
-                    .keys()
-                    .filter_map(|pointer| by_cause(pointer)?.get(*name).copied())
-                    .sum();
-                let scale = if all > 0.0 {
-                    errors[*name].min(SATURATED) / all
-                } else {
-                    0.0
-                };
-                [0, 1, 2].map(|k| scale * parts[k].get(*name).copied().unwrap_or(0.0))
-            })
-            .collect();
+        let wanted = parts(summary, floors, &large);
         let more = effects::needed(case, summary, floors, SHARE * self.asked)?;
-        if large.is_empty() || (wanted.iter().all(|parts| parts.iter().sum::<f64>() == 0.0) && more.is_none()) {
-            return Ok(None);
-        }
         let budget = ((LARGEST_WORK.0 * first + LARGEST_WORK.1) / work).min(AT_ONCE);
         let [beam, fluid, decades] = self.refinement(case, &wanted, budget, per_decade.max(WORK[2]));
         if [beam, fluid, decades] == [0; 3] && more.is_none() {
@@ -188,6 +155,22 @@ impl Levers {
         }
         best.0
     }
+}
+
+/// What the errors of quantities are made of: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
+fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
+    let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
+    let causes: BTreeMap<&str, BTreeMap<String, f64>> = causes
+        .map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors)))
+        .collect();
+    let of = |(name, error): (&String, &f64)| {
+        let part = |errors: &BTreeMap<String, f64>| errors.get(name).copied().unwrap_or(0.0);
+        let all: f64 = causes.values().map(part).sum();
+        let scale = if all > 0.0 { error.min(SATURATED) / all } else { 0.0 };
+        let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
+        settings.map(|cause| scale * causes.get(cause.pointer().as_str()).map_or(0.0, part))
+    };
+    errors.iter().map(of).collect()
 }
 
 /// A tolerance without the rounding of its product.

@@ -20,6 +20,7 @@ use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::error::{Code, Result};
+use crate::integrate::halt;
 use crate::run::dynamics::Outcome;
 use crate::run::floors::Floors;
 use crate::run::summary::{Accuracy, Pilot, Status, Summary};
@@ -79,6 +80,9 @@ pub fn reach(case: &Case, asked: f64, from: Option<&Setting>, record: Record) ->
         added.extend(next.added);
         pilots.push(pilot(&case, &outcome.summary));
         (case, outcome) = (next.case, finer);
+    }
+    if halt::asked() {
+        cut_short.get_or_insert("interrupted".into());
     }
     verdict::conclude(&case, asked, &floors, pilots, &added, cut_short, &mut outcome.summary);
     Ok(outcome)
