@@ -79,7 +79,7 @@ impl Levers {
     /// The cheapest finer case whose errors should be small enough; nothing where no refinement is wanted, or pays.
     ///
     /// # Errors
-    /// As [`System::new`].
+    /// As [`System::new`](crate::discrete::System::new).
     pub fn next(&mut self, case: &Case, summary: &Summary, floors: &Floors) -> Result<Option<Finer>> {
         let work = (summary.solver.steps * summary.unknowns as u64) as f64;
         let first = *self.first.get_or_insert(work);
