@@ -1,7 +1,6 @@
 //! Coverage of error bars: errors of figures beside the bars that runs give them.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde_json::{Value, json};
 use slcbeam::discrete::System;
@@ -10,7 +9,7 @@ use slcbeam::study::companion;
 
 use crate::judge::{self, KNOWN, errors, guess};
 use crate::reference::Found;
-use crate::run::{figures, finished, steps};
+use crate::run::{each_seed, figures, finished, steps};
 use crate::scene::{self, Kind};
 
 /// Steps times unknowns of a scene's run, and of its reference.
@@ -27,20 +26,10 @@ pub struct Covered {
 
 /// Errors and bars of the scenes of seeds.
 pub fn run(kind: Kind, first: u64, count: u64) -> Vec<Covered> {
-    let (next, all) = (AtomicU64::new(first), Mutex::new(vec![]));
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed >= first + count {
-                        break;
-                    }
-                    let found = one(kind, seed);
-                    all.lock().expect("no thread panics").extend(found);
-                }
-            });
-        }
+    let (seeds, all): (Vec<u64>, _) = ((first..first + count).collect(), Mutex::new(vec![]));
+    each_seed(&seeds, |seed| {
+        let found = one(kind, seed);
+        all.lock().expect("no thread panics").extend(found);
     });
     all.into_inner().expect("no thread panics")
 }

@@ -1,7 +1,6 @@
 //! Whether an accuracy that was promised is kept.
 
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use slcbeam::case::Case;
 use slcbeam::discrete::System;
@@ -11,7 +10,7 @@ use slcbeam::study::target;
 
 use crate::judge::{self, KNOWN, Verdict, Word, errors, guess, should_end, unknown};
 use crate::reference::{Found, Reference};
-use crate::run::{BUDGET, figures, finished, steps};
+use crate::run::{BUDGET, each_seed, figures, finished, steps};
 use crate::scene::{self, Kind};
 
 /// Steps times unknowns of a run that is kept.
@@ -91,20 +90,8 @@ pub struct Tally {
 
 /// Asks for 1 % in the scenes of seeds, two at a time.
 pub fn run(kind: Kind, first: u64, count: u64) -> Tally {
-    let (next, tally) = (AtomicU64::new(first), Mutex::new(Tally::default()));
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                loop {
-                    let seed = next.fetch_add(1, Ordering::Relaxed);
-                    if seed >= first + count {
-                        break;
-                    }
-                    one(kind, seed, &tally);
-                }
-            });
-        }
-    });
+    let (seeds, tally): (Vec<u64>, _) = ((first..first + count).collect(), Mutex::new(Tally::default()));
+    each_seed(&seeds, |seed| one(kind, seed, &tally));
     tally.into_inner().expect("no thread panics")
 }
 

@@ -1,6 +1,7 @@
 //! One run within a budget that is counted, not timed, so that it is the same on every machine.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use slcbeam::case::Case;
 use slcbeam::case::schema::{Effects, Method};
@@ -108,4 +109,18 @@ pub fn figures(summary: &Summary) -> Figures {
 /// Whether a run reached its end.
 pub fn finished(summary: &Summary) -> bool {
     summary.status == Status::Finished
+}
+
+/// Evaluates seeds on two threads.
+pub fn each_seed(seeds: &[u64], evaluate: impl Fn(u64) + Sync) {
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    evaluate(seed);
+                }
+            });
+        }
+    });
 }

@@ -5,12 +5,13 @@ use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use crate::judge::{self, Both, DEFAULT, KNOWN, NEEDLESS, Word};
+use crate::run::each_seed;
 use crate::scene::{self, Kind};
 
 /// Where scenes that fail, and the tally, are written.
@@ -31,32 +32,25 @@ pub fn run(kind: Kind, first: u64, count: u64, resume: bool) -> Vec<Value> {
     let seeds: Vec<u64> = (first..first + count)
         .filter(|seed| !earlier.contains_key(seed))
         .collect();
-    let next = AtomicUsize::new(0);
     let lines: Vec<Value> = earlier
         .into_iter()
         .filter(|(s, _)| (first..first + count).contains(s))
         .map(|(_, l)| l)
         .collect();
     let lines = Mutex::new(lines);
-    std::thread::scope(|scope| {
-        for _ in 0..2 {
-            scope.spawn(|| {
-                while let Some(&seed) = seeds.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let line = one(kind, seed, &build);
-                    println!("{}", told(&line));
-                    let mut lines = lines.lock().expect("no thread panics while it writes");
-                    if resume {
-                        let mut file = OpenOptions::new()
-                            .create(true)
-                            .append(true)
-                            .open(&file)
-                            .expect("the tally");
-                        writeln!(file, "{line}").expect("the tally");
-                    }
-                    lines.push(line);
-                }
-            });
+    each_seed(&seeds, |seed| {
+        let line = one(kind, seed, &build);
+        println!("{}", told(&line));
+        let mut lines = lines.lock().expect("no thread panics while it writes");
+        if resume {
+            let mut file = OpenOptions::new()
+                .create(true)
+                .append(true)
+                .open(&file)
+                .expect("the tally");
+            writeln!(file, "{line}").expect("the tally");
         }
+        lines.push(line);
     });
     let mut lines = lines.into_inner().expect("no thread panics while it writes");
     lines.sort_by_key(|line| line["seed"].as_u64());
