@@ -17,7 +17,7 @@ use slcbeam::run::observe::Observer;
 use slcbeam::run::record::{Control, Header, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::companion::{self, Accurate};
-use slcbeam::study::target::effects::Tell;
+use slcbeam::study::target::effects::Annotate;
 use slcbeam::study::{refine, target};
 
 use crate::case::Case;
@@ -132,9 +132,9 @@ fn once(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch, run
 fn settle(case: &slcbeam::case::Case, sensitivities: &[String], watch: &Watch) -> Result<Ended> {
     let mut ended = once(case, sensitivities, watch, &companion::run)?;
     let first = ended.outcome.clone();
-    let mut again = |case: &slcbeam::case::Case, tell: Tell| -> Result<Outcome> {
+    let mut again = |case: &slcbeam::case::Case, annotate: Annotate| -> Result<Outcome> {
         let mut repeated = once(case, sensitivities, watch, &companion::run)?;
-        tell(&mut repeated.outcome.summary);
+        annotate(&mut repeated.outcome.summary);
         let outcome = repeated.outcome.clone();
         if outcome.summary.status == Status::Finished {
             ended = repeated;

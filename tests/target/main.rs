@@ -18,7 +18,7 @@ use slcbeam::run::summary::{Status, Summary};
 use slcbeam::study::accuracy::plan;
 use slcbeam::study::companion::{self, Accurate};
 use slcbeam::study::target;
-use slcbeam::study::target::effects::Tell;
+use slcbeam::study::target::effects::Annotate;
 
 fn load(name: &str, sets: &[&str]) -> Case {
     let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
@@ -339,10 +339,10 @@ fn a_run_is_repeated_with_effects_that_matter() {
     let flow = |summary: &Summary| summary.ports[FLOW].max_abs.expect("known");
     let before = flow(&first.summary);
     let mut runs = 0;
-    let mut again = |case: &Case, tell: Tell| {
+    let mut again = |case: &Case, annotate: Annotate| {
         runs += 1;
         let mut outcome = run(case)?;
-        tell(&mut outcome.summary);
+        annotate(&mut outcome.summary);
         Ok(outcome)
     };
     let summary = target::effects::settle(&case, first, &mut again)

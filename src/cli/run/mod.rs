@@ -33,7 +33,7 @@ use crate::run::wall::{Laps, WallTimes};
 use crate::study::companion::{self, Accurate};
 use crate::study::sweep::What;
 use crate::study::sweep::compute::Ask;
-use crate::study::target::effects::Tell;
+use crate::study::target::effects::Annotate;
 use crate::study::target::{self, Setting};
 use resume::resume;
 
@@ -77,12 +77,8 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         (None, true) => resume(case, system, &parameters, &out, &way)?,
         (None, false) => {
             let folder = asked.place.claim(case, Kind::Run)?;
-            settle(
-                case,
-                record(case, system, &parameters, folder, &way)?,
-                &parameters,
-                &way,
-            )?
+            let first = record(case, system, &parameters, folder, &way, &|_| ())?;
+            settle(case, first, &parameters, &way)?
         }
     };
     // what is told stands below no bar
@@ -209,7 +205,10 @@ pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool
         ..
     } = match ask.accuracy {
         Some(accuracy) => reach(case, accuracy, ask.from.as_ref(), folder, &way)?,
-        None => settle(case, record(case, System::new(case)?, &[], folder, &way)?, &[], &way)?,
+        None => {
+            let first = record(case, System::new(case)?, &[], folder, &way, &|_| ())?;
+            settle(case, first, &[], &way)?
+        }
     };
     written?;
     if let Some(finished) = finished {
@@ -233,26 +232,21 @@ struct Recorded {
     written: Result<()>,
 }
 
-/// Runs a case into a folder.
-fn record(case: &Case, system: System, by: &[Parameter], folder: ResultFolder, way: &Way) -> Result<Recorded> {
-    record_told(case, system, by, folder, way, &|_| ())
-}
-
-/// The same with a summary that is told more before it is written.
-fn record_told(
+/// Runs a case into a folder, and annotates the summary before it is written.
+fn record(
     case: &Case,
     system: System,
     by: &[Parameter],
     folder: ResultFolder,
     way: &Way,
-    tell: Tell,
+    annotate: Annotate,
 ) -> Result<Recorded> {
     let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
     let mut outcome = match way.has_companion(case, by) {
         true => companion::run(case, system, by, &mut recorder)?,
         false => dynamics::run_with(case, system, by, &mut recorder)?,
     };
-    tell(&mut outcome.summary);
+    annotate(&mut outcome.summary);
     complete(recorder, outcome, way)
 }
 
@@ -262,10 +256,10 @@ fn settle(case: &Case, mut run: Recorded, by: &[Parameter], way: &Way) -> Result
     let (Some(finished), Ok(())) = (&mut run.finished, &run.written) else {
         return Ok(run);
     };
-    let mut again = |case: &Case, tell: Tell| -> Result<Outcome> {
+    let mut again = |case: &Case, annotate: Annotate| -> Result<Outcome> {
         let inside = finished.folder().candidate()?;
         let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
-        let repeated = record_told(case, System::new(case)?, by, folder, way, tell)?;
+        let repeated = record(case, System::new(case)?, by, folder, way, annotate)?;
         repeated.written?;
         repeated.finished.map(Finished::close).transpose()?;
         if repeated.outcome.summary.status == Status::Finished {

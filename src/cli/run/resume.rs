@@ -20,10 +20,10 @@ use crate::run::summary::Status;
 use crate::study::companion;
 use crate::study::compare::changes::changes;
 
-/// Differences between two cases that are told.
+/// Most differences between two cases that a message lists.
 const DIFFERENCES: usize = 4;
 
-/// Goes on from the newest checkpoint. What does not fit is told before anything is touched; a run that has ended is left as it is.
+/// Resumes from the newest checkpoint. A checkpoint that does not fit is rejected before any file changes; a finished run stays as it is.
 pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Path, way: &Way) -> Result<Recorded> {
     let folder = ResultFolder::again(out)?;
     let Some((saved, damage)) = checkpoint::read(out)? else {
@@ -55,7 +55,7 @@ pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Pat
     settle(case, complete(recorder, outcome, way)?, kept, way)
 }
 
-/// A run without a checkpoint that has ended: its outcome as it was told; leftovers of its raw arrays go.
+/// Outcome of a finished run without a checkpoint, from its summary; remaining raw arrays are removed.
 fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outcome> {
     let summary = summary::read(folder.dir())
         .ok()
@@ -96,21 +96,21 @@ fn other_derivatives(kept: &[Parameter]) -> Error {
 fn another_case(there: &str, here: &Case, whose: &str) -> Error {
     let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
     let (physics, numerics) = changes(&value(there), &value(&here.resolved_json()));
-    let mut told: Vec<String> = physics
+    let mut differences: Vec<String> = physics
         .iter()
         .chain(&numerics)
         .map(|c| format!("{} is {} there and {} here", c.pointer, c.a, c.b))
         .collect();
-    let more = told.len().saturating_sub(DIFFERENCES);
-    told.truncate(DIFFERENCES);
+    let more = differences.len().saturating_sub(DIFFERENCES);
+    differences.truncate(DIFFERENCES);
     if more > 0 {
-        told.push(format!("and {more} more"));
+        differences.push(format!("and {more} more"));
     }
-    if told.is_empty() {
-        told.push("name or words differ".into());
+    if differences.is_empty() {
+        differences.push("name or words differ".into());
     }
     Error::Usage(format!(
         "{whose} belongs to another case: {}; nothing was changed",
-        told.join(", ")
+        differences.join(", ")
     ))
 }

@@ -213,8 +213,9 @@ fn compute_all(
         from: None,
         meshes: plan.mesh_errors,
     };
-    // the first design tells where searches begin, whichever are left
-    if let (Some(_), What::Run, Ok(case)) = (ask.accuracy, ask.what, source.case(&source.designs.design(0))) {
+    // searches begin with the setting of the first design, whichever designs are left
+    let searches = ask.accuracy.is_some() && ask.what == What::Run && !left.is_empty();
+    if searches && let Ok(case) = source.case(&source.designs.design(0)) {
         let first = compute::run(&case, ask, &stop)
             .ok()
             .and_then(|outcome| outcome.summary.accuracy);

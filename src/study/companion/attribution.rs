@@ -74,24 +74,18 @@ pub(super) fn attribute(
     recorder: &mut dyn Recorder,
 ) -> Result<()> {
     let floors = &Floors::of(case)?;
-    let least = accuracy.map_or(NAMED_FROM, |accuracy| SURE * accuracy.asked);
+    let least = least(accuracy);
+    let mut found = BTreeMap::new();
     if accuracy.is_some() && !tolerance_binds(summary) {
-        let mut by_steps = BTreeMap::new();
-        changes(case, summary, vec![Cause::TimeSteps], &mut by_steps, recorder)?;
+        changes(case, summary, vec![Cause::TimeSteps], &mut found, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
-        summary.errors = added(&of_companion, &by_steps, f64::INFINITY);
+        summary.errors = added(&of_companion, &found, f64::INFINITY);
     }
     if large(summary, floors, least).is_empty() {
         return Ok(());
     }
     let causes = match accuracy.is_some() || work(summary) <= LARGEST_WORK {
-        true => causes(
-            case,
-            summary,
-            floors,
-            (least, accuracy.map(|accuracy| &accuracy.settled)),
-            recorder,
-        )?,
+        true => causes(case, summary, floors, accuracy, found, recorder)?,
         false => Causes::TooLarge,
     };
     if let Some(known) = causes.known() {
@@ -118,6 +112,11 @@ pub(super) fn attribute(
         companion.causes = by_pointer.collect();
     }
     Ok(())
+}
+
+/// Error from which on causes are measured.
+fn least(accuracy: Option<&Accurate>) -> f64 {
+    accuracy.map_or(NAMED_FROM, |accuracy| SURE * accuracy.asked)
 }
 
 /// Whether a looser tolerance makes the companion take larger steps, so that its figures tell of those of the run.
@@ -148,12 +147,14 @@ fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, most: f64) -
     of_companion.iter().map(of).collect()
 }
 
-/// Errors of all figures by each cause. All effects that are left out are one cause where they make no large error together.
+/// Errors of all figures by each cause, beside those that are found already. All effects that are left out are one cause where they make no large
+/// error together.
 fn causes(
     case: &Case,
     summary: &Summary,
     floors: &Floors,
-    (least, settled): (f64, Option<&BTreeMap<String, Figures>>),
+    accuracy: Option<&Accurate>,
+    mut found: BTreeMap<Cause, Figures>,
     recorder: &mut dyn Recorder,
 ) -> Result<Causes> {
     let effects = full(case)?.map_or(vec![], |full| full.left_out);
@@ -163,11 +164,8 @@ fn causes(
         [one] => Some(Cause::Effect(*one)),
         _ => Some(Cause::Effects),
     });
-    let settled = |cause: &Cause| settled?.get(&cause.pointer());
-    let mut found: BTreeMap<Cause, Figures> = first
-        .iter()
-        .filter_map(|cause| Some((*cause, settled(cause)?.clone())))
-        .collect();
+    let settled = |cause: &Cause| Some((*cause, accuracy?.settled.get(&cause.pointer())?.clone()));
+    found.extend(first.iter().filter_map(settled));
     first.retain(|cause| !found.contains_key(cause));
     let mut causes = changes(case, summary, first, &mut found, recorder)?;
     let together = found.get(&Cause::Effects);
@@ -176,7 +174,9 @@ fn causes(
             .into_values()
             .fold(0.0, f64::max)
     };
-    if effects.len() > 1 && together.is_none_or(|errors| share(errors) > NAMED * least) && causes != Ended::Interrupted
+    if effects.len() > 1
+        && together.is_none_or(|errors| share(errors) > NAMED * least(accuracy))
+        && causes != Ended::Interrupted
     {
         found.remove(&Cause::Effects);
         let each = effects.into_iter().map(Cause::Effect).collect();

@@ -5,6 +5,9 @@ use std::collections::BTreeMap;
 use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
 use crate::study::counted::{Floors, counted, counted_of_ports, counted_of_probes};
 
+/// Errors by the name of a quantity, probe or port, relative to its largest figure.
+pub type Relative = BTreeMap<String, f64>;
+
 /// Smallest error of a figure, relative to the largest error among the figures of its quantity.
 pub const SHARED: f64 = 0.3;
 
@@ -99,11 +102,18 @@ fn with_errors_added(summary: &Summary, errors: &Figures) -> Summary {
 }
 
 /// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
-pub fn relative(summary: &Summary, errors: &Figures, floors: &Floors) -> BTreeMap<String, f64> {
+pub fn relative(summary: &Summary, errors: &Figures, floors: &Floors) -> Relative {
     let added = &with_errors_added(summary, errors);
     let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
     let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
     let ports = counted_of_ports(added, floors).map(|name| (name, summary.ports[name].size()));
     let largest = |(name, size): (&String, f64)| Some((name.clone(), largest_error(errors.get(name)?)? / size));
     quantities.chain(probes).chain(ports).filter_map(largest).collect()
+}
+
+/// Errors of a run by their cause, the JSON pointer of a setting, as [`relative`] gives them; empty where no cause is measured.
+pub fn relative_by_cause<'a>(summary: &'a Summary, floors: &Floors) -> BTreeMap<&'a str, Relative> {
+    let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
+    let relative = causes.map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors)));
+    relative.collect()
 }

@@ -108,13 +108,12 @@ impl Accurate {
 
     /// Takes over from a coarser run which causes are settled.
     pub fn settle(&mut self, coarser: &Summary, floors: &Floors) {
-        let causes = coarser.companion.iter().flat_map(|companion| &companion.causes);
-        let small = causes.filter(|(_, errors)| {
-            let mut errors = error::relative(coarser, errors, floors).into_values();
-            errors.all(|error| error <= Self::SETTLED * self.asked)
-        });
-        let small = small.map(|(pointer, errors)| (pointer.clone(), errors.clone()));
-        self.settled.extend(small.collect::<Vec<_>>());
+        let Some(companion) = &coarser.companion else { return };
+        for (pointer, errors) in error::relative_by_cause(coarser, floors) {
+            if errors.values().all(|error| *error <= Self::SETTLED * self.asked) {
+                self.settled.insert(pointer.into(), companion.causes[pointer].clone());
+            }
+        }
     }
 }
 

@@ -41,6 +41,11 @@ pub enum Cause {
 }
 
 impl Cause {
+    /// True if the cause at a pointer is an effect that is left out, or all of them.
+    pub fn is_effect(pointer: &str) -> bool {
+        pointer.starts_with(&Self::Effects.pointer())
+    }
+
     /// JSON pointer of the setting.
     pub fn pointer(self) -> String {
         match self {

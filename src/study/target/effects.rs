@@ -12,7 +12,7 @@ use crate::run::floors::Floors;
 use crate::run::record::Recorder;
 use crate::run::summary::{EarlierRun, Status, Summary};
 use crate::study::companion;
-use crate::study::companion::error::{figures, relative};
+use crate::study::companion::error::{figures, relative_by_cause};
 use crate::study::companion::variant::Cause;
 use crate::study::effects::choices::with;
 use crate::study::effects::full::full;
@@ -33,31 +33,36 @@ pub struct Needed {
 /// # Errors
 /// As [`companion::run`].
 pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let mut run = |case: &Case, tell: Tell| {
+    let mut run = |case: &Case, annotate: Annotate| {
         let mut outcome = companion::run(case, System::new(case)?, &[], recorder)?;
-        tell(&mut outcome.summary);
+        annotate(&mut outcome.summary);
         Ok(outcome)
     };
     let first = run(case, &|_| ())?;
     settle(case, first, &mut run)
 }
 
-/// Writes into the summary of a repeated run what is known of the runs before.
-pub type Tell<'a> = &'a dyn Fn(&mut Summary);
+/// Adds to the summary of a repeated run what the runs before have shown.
+pub type Annotate<'a> = &'a dyn Fn(&mut Summary);
 
 /// Repeats a run that had a companion with the effects whose errors exceed `effects_tolerance`, at most twice. `record` runs a case into a
-/// result, over an earlier one only when it finishes, and lets its summary be told before that is written.
+/// result, over an earlier one only when it finishes, and annotates its summary before it writes it.
 ///
 /// # Errors
 /// Those of `record`.
-pub fn settle(case: &Case, run: Outcome, record: &mut dyn FnMut(&Case, Tell) -> Result<Outcome>) -> Result<Outcome> {
+pub fn settle(
+    case: &Case,
+    run: Outcome,
+    record: &mut dyn FnMut(&Case, Annotate) -> Result<Outcome>,
+) -> Result<Outcome> {
     let (mut case, mut outcome) = (case.clone(), run);
     for _ in 0..REPEATS {
-        let floors = Floors::of(&case)?;
-        let Some(needed) = needed(&case, &outcome.summary, &floors, case.effects_tolerance())? else {
+        let Some(needed) = needed(&case, &outcome.summary, case.effects_tolerance())? else {
             break;
         };
-        let again = record(&needed.case, &|summary| tell(summary, &needed, &outcome.summary))?;
+        let again = record(&needed.case, &|summary| {
+            add_earlier_runs(summary, &needed, &outcome.summary)
+        })?;
         if again.summary.status != Status::Finished {
             break;
         }
@@ -70,17 +75,17 @@ pub fn settle(case: &Case, run: Outcome, record: &mut dyn FnMut(&Case, Tell) -> 
 ///
 /// # Errors
 /// As [`System::new`].
-pub fn needed(case: &Case, summary: &Summary, floors: &Floors, limit: f64) -> Result<Option<Needed>> {
-    let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
-    let by_effects = causes.filter(|(pointer, _)| pointer.starts_with(&Cause::Effects.pointer()));
-    let errors: BTreeMap<&String, BTreeMap<String, f64>> = by_effects
-        .map(|(pointer, errors)| (pointer, relative(summary, errors, floors)))
-        .collect();
-    let Some(full) = full(case)?.filter(|_| !errors.is_empty()) else {
+pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Needed>> {
+    let mut causes = summary.companion.iter().flat_map(|companion| companion.causes.keys());
+    if !causes.any(|pointer| Cause::is_effect(pointer)) {
+        return Ok(None);
+    }
+    let errors = relative_by_cause(summary, &Floors::of(case)?);
+    let Some(full) = full(case)? else {
         return Ok(None);
     };
     let most = |cause: Cause| {
-        let errors = errors.get(&cause.pointer())?.iter();
+        let errors = errors.get(cause.pointer().as_str())?.iter();
         let worst = errors
             .max_by(|a, b| a.1.total_cmp(b.1))
             .filter(|(_, error)| **error > limit)?;
@@ -113,8 +118,8 @@ pub fn needed(case: &Case, summary: &Summary, floors: &Floors, limit: f64) -> Re
     }))
 }
 
-/// Tells in the summary of a repeated run of the run before, and why effects were added.
-fn tell(summary: &mut Summary, needed: &Needed, before: &Summary) {
+/// Adds to the summary of a repeated run the runs before, and the reasons of effects that were turned on.
+fn add_earlier_runs(summary: &mut Summary, needed: &Needed, before: &Summary) {
     for (effect, (quantity, error)) in &needed.added {
         if let Some(chosen) = summary.effects.get_mut(&effect.to_string()) {
             chosen.reason = format!("measured: without it {quantity} changes by {}", error_percent(*error));
@@ -124,6 +129,11 @@ fn tell(summary: &mut Summary, needed: &Needed, before: &Summary) {
         .companion
         .as_ref()
         .map_or(vec![], |companion| companion.earlier_runs.clone());
+    for name in earlier.iter().flat_map(|run| &run.added_effects) {
+        if let Some(chosen) = before.effects.get(name) {
+            summary.effects.insert(name.clone(), chosen.clone());
+        }
+    }
     earlier.push(EarlierRun {
         added_effects: needed.added.keys().map(Effect::to_string).collect(),
         unknowns: before.unknowns,
@@ -131,15 +141,6 @@ fn tell(summary: &mut Summary, needed: &Needed, before: &Summary) {
         wall_s: before.wall_s.total,
         figures: figures(before),
     });
-    for run in &earlier {
-        let again = run
-            .added_effects
-            .iter()
-            .filter_map(|name| Some((name, before.effects.get(name)?)));
-        for (name, chosen) in again.filter(|(_, chosen)| chosen.reason.starts_with("measured")) {
-            summary.effects.insert(name.clone(), chosen.clone());
-        }
-    }
     summary.wall_s.pilots += before.wall_s.total;
     if let Some(companion) = &mut summary.companion {
         companion.earlier_runs = earlier;

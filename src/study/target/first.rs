@@ -7,16 +7,15 @@ use crate::error::Result;
 use crate::study::accuracy::plan;
 use crate::study::effects::full::full;
 
-/// Cells a segment to begin with where nothing asks for more: a quarter of them is a mesh too, without which nothing is promised.
+/// Cells a segment to begin with: where nothing asks for more, and at most. A quarter of them is a mesh too.
 pub const LEAST: usize = 4;
+const MOST: usize = 32;
 /// Cells of the whole beam: two meshes of fewer may agree by chance about what neither has.
 const LEAST_IN_ALL: usize = 8;
 /// Cells a bladder to begin with.
 const LEAST_IN_BLADDERS: usize = 2;
 /// Tolerance to begin with.
 const LOOSEST: f64 = 1e-3;
-/// And where much does.
-const MOST: usize = 32;
 
 /// Fewest cells a segment, a power of two, that resolve every load and every shape at the start. What comes of them is right on
 /// every mesh; what they do between nodes is not, and two meshes that both leave that out agree about it.

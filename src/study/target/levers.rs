@@ -8,7 +8,7 @@ use crate::case::schema::Effect;
 use crate::error::Result;
 use crate::run::floors::Floors;
 use crate::run::summary::Summary;
-use crate::study::companion::error::relative;
+use crate::study::companion::error::{relative, relative_by_cause};
 use crate::study::companion::variant::Cause;
 
 /// Part of the accuracy that a refinement aims at.
@@ -95,7 +95,7 @@ impl Levers {
             _ => WORK[2],
         };
         let wanted = parts(summary, floors, &large);
-        let more = effects::needed(case, summary, floors, SHARE * self.asked)?;
+        let more = effects::needed(case, summary, SHARE * self.asked)?;
         let budget = ((LARGEST_WORK.0 * first + LARGEST_WORK.1) / work).min(AT_ONCE);
         let [beam, fluid, decades] = self.refinement(case, &wanted, budget, per_decade.max(WORK[2]));
         if [beam, fluid, decades] == [0; 3] && more.is_none() {
@@ -159,10 +159,7 @@ impl Levers {
 
 /// What the errors of quantities are made of: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
 fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
-    let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
-    let causes: BTreeMap<&str, BTreeMap<String, f64>> = causes
-        .map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors)))
-        .collect();
+    let causes = relative_by_cause(summary, floors);
     let of = |(name, error): (&String, &f64)| {
         let part = |errors: &BTreeMap<String, f64>| errors.get(name).copied().unwrap_or(0.0);
         let all: f64 = causes.values().map(part).sum();

@@ -7,7 +7,7 @@ use crate::case::schema::Effect;
 use crate::error::Code;
 use crate::run::floors::Floors;
 use crate::run::summary::{Accuracy, Estimate, Pilot, Summary};
-use crate::study::companion::error::relative;
+use crate::study::companion::error::{relative, relative_by_cause};
 use crate::study::companion::variant::Cause;
 use crate::study::effects::full::full;
 use crate::study::refine;
@@ -24,18 +24,11 @@ pub fn conclude(
 ) {
     let errors = relative(summary, &summary.errors, floors);
     let known = !summary.errors.is_empty();
-    let causes: BTreeMap<String, BTreeMap<String, f64>> = summary
-        .companion
-        .iter()
-        .flat_map(|companion| &companion.causes)
-        .map(|(pointer, errors)| (pointer.clone(), relative(summary, errors, floors)))
-        .collect();
-    let part = |cause: Cause, name: &str| causes.get(&cause.pointer())?.get(name).copied();
+    let causes = relative_by_cause(summary, floors);
+    let part = |cause: Cause, name: &str| causes.get(cause.pointer().as_str())?.get(name).copied();
     let estimate = |(name, total): (&String, &f64)| {
         let [beam, fluid, time] = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps].map(|cause| part(cause, name));
-        let effects = causes
-            .iter()
-            .filter(|(pointer, _)| pointer.starts_with(&Cause::Effects.pointer()));
+        let effects = causes.iter().filter(|(pointer, _)| Cause::is_effect(pointer));
         let effects = effects
             .filter_map(|(_, errors)| errors.get(name))
             .copied()
