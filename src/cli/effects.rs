@@ -27,11 +27,11 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         repeats: asked.repeats,
         budget_s: super::study::seconds(&asked.budget)?,
     };
-    let mut folder = asked.place.claim(&case, Kind::Effects)?;
+    let mut folder = asked.result.place.claim(&case, Kind::Effects)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("effects", &case, &format!("{plan:?}")))?;
-    let flag = asked.wall.flag();
-    let progress = Shown::new(asked.quiet, line::PLAIN);
+    let flag = asked.result.wall.flag();
+    let progress = Shown::new(asked.result.quiet, line::PLAIN);
     let found = ablate(&case, plan, asked.measure.as_deref(), &evaluations, &|event| {
         show(&progress, event);
     });

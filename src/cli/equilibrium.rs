@@ -38,9 +38,15 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
                     --keep-branch or --accuracy; loads of another instant are those of --set /time/end_s=SECONDS";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Equilibrium, asked.quiet)?;
-    let mut folder = asked.place.claim(case, Kind::Equilibrium)?;
-    let stop = asked.wall.flag();
+    let uncertain = Uncertain::new(
+        &asked.uncertain,
+        &asked.case,
+        case,
+        What::Equilibrium,
+        asked.result.quiet,
+    )?;
+    let mut folder = asked.result.place.claim(case, Kind::Equilibrium)?;
+    let stop = asked.result.wall.flag();
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
@@ -49,7 +55,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         .transpose()?;
     let case = found.as_ref().map_or(case, |(chosen, _)| chosen);
     let accuracy = found.as_ref().map(|(_, accuracy)| accuracy);
-    let bar = line::line(asked.quiet);
+    let bar = line::line(asked.result.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
         bar.set_message(options.place(state.stage, &format!("{:.4}", state.share)));
         bar.tick();

@@ -23,9 +23,9 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
     sweep::overridden(&asked.case.sets, &driven, |drive| format!("every row sets {drive}"))?;
     let problem = Problem::new(&case, &table, &wanted)?;
-    let flag = asked.wall.flag();
+    let flag = asked.result.wall.flag();
     let stop = || interrupt::raised(&flag);
-    let mut folder = asked.place.claim(&case, Kind::Fit)?;
+    let mut folder = asked.result.place.claim(&case, Kind::Fit)?;
     let settings = format!(
         "{} {:?}",
         table.crc32,
@@ -35,7 +35,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
         }
     );
     journal::begin(&problem.evaluations, &folder, ("fit", &case, &settings))?;
-    let bar = line::line(asked.quiet);
+    let bar = line::line(asked.result.quiet);
     let tell = |count: usize, squares: f64| {
         bar.set_message(format!(
             "{}, sum of squares {}",

@@ -48,9 +48,9 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --accuracy nor --period; the mesh and tolerance that an accuracy led to stand in floquet.json";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Floquet, asked.quiet)?;
-    let mut folder = asked.place.claim(case, Kind::Floquet)?;
-    let stop = asked.wall.stop();
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Floquet, asked.result.quiet)?;
+    let mut folder = asked.result.place.claim(case, Kind::Floquet)?;
+    let stop = asked.result.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
     let refined = accuracy
         .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
@@ -59,7 +59,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let scene = Scene::new(case, asked.period)?.heeding(&stop);
     scene.held(&case.name)?;
-    let bar = line::line(asked.quiet);
+    let bar = line::line(asked.result.quiet);
     bar.set_message("looking for the cycle");
     let mut cycle = interrupt::before_a_cycle(shoot(&scene, None).map_err(fault), &stop)?;
     bar.set_message("carrying disturbances over the period");
@@ -110,11 +110,11 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
         )));
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
-    let mut folder = asked.place.claim(case, Kind::Map)?;
+    let mut folder = asked.result.place.claim(case, Kind::Map)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("map", case, &format!("{plan:?}")))?;
-    let stop = asked.wall.stop();
-    let bar = line::line(asked.quiet);
+    let stop = asked.result.wall.stop();
+    let bar = line::line(asked.result.quiet);
     let found = tongue::map(case, &plan, &evaluations, &stop, &|done, count| {
         bar.set_message(format!("{done} of {}", counted(count as u64, "column")));
         bar.tick();

@@ -35,9 +35,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
             accuracy: None,
             map: asked.map.clone(),
             uncertain: asked.uncertain.clone(),
-            place: asked.place.clone(),
-            wall: asked.wall.clone(),
-            quiet: asked.quiet,
+            result: asked.result.clone(),
             json: asked.json,
         });
     }
@@ -50,10 +48,10 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         let what = "--uncertain is about the lowest modes that swing about the start: it does not go with --at, --near or --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Modes, asked.quiet)?;
-    let mut folder = asked.place.claim(&case, Kind::Modes)?;
-    asked.wall.flag();
-    if !asked.quiet {
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Modes, asked.result.quiet)?;
+    let mut folder = asked.result.place.claim(&case, Kind::Modes)?;
+    asked.result.wall.flag();
+    if !asked.result.quiet {
         terminal::tell(&format!("modes of {}", case.name));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;

@@ -36,7 +36,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     };
     let candidates = candidates(&choice, &make)?;
     let figure = &candidates[0].problem.goal.figure;
-    let mut folder = asked.place.claim(&case, Kind::Optimum)?;
+    let mut folder = asked.result.place.claim(&case, Kind::Optimum)?;
     let settings = format!(
         "{:?} {:?} {:?}",
         asked.choose,
@@ -47,8 +47,8 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         }
     );
     journal::begin(&evaluations, &folder, ("optimize", &case, &settings))?;
-    let flag = asked.wall.flag();
-    let bar = line::line(asked.quiet);
+    let flag = asked.result.wall.flag();
+    let bar = line::line(asked.result.quiet);
     let tell = |count: usize, best: Option<f64>| {
         let best = best.map_or("none within the limits yet".into(), |best| {
             format!("best {figure} {}", significant(best, 5))

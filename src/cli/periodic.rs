@@ -58,15 +58,15 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --periods nor --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Periodic, asked.quiet)?;
+    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Periodic, asked.result.quiet)?;
     let parameters = Parameter::all(&case, &asked.sensitivities)?;
     if !parameters.is_empty() {
         sensitivity::allowed(&case, &Scene::new(&case, None)?, &parameters)?;
     }
-    let result = asked.place.claim(&case, Kind::Cycle)?;
+    let result = asked.result.place.claim(&case, Kind::Cycle)?;
     let out = result.dir().to_path_buf();
-    let stop = asked.wall.stop();
-    let bar = line::line(asked.quiet);
+    let stop = asked.result.wall.stop();
+    let bar = line::line(asked.result.quiet);
     bar.set_message("looking for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let asked_for = accuracy
@@ -169,13 +169,13 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let Some((_, first)) = cases.first() else {
         return Err(Error::Usage(format!("--sweep {text}: no values")));
     };
-    let mut folder = asked.place.claim(first, Kind::Sweep)?;
+    let mut folder = asked.result.place.claim(first, Kind::Sweep)?;
     let first = first.clone();
     let evaluations = Evaluations::default();
     let settings = format!("{:?} {text}", asked.case.sets);
     journal::begin(&evaluations, &folder, ("periodic --sweep", &first, &settings))?;
-    let stop = asked.wall.stop();
-    let bar = line::line(asked.quiet);
+    let stop = asked.result.wall.stop();
+    let bar = line::line(asked.result.quiet);
     let found = along((&pointer, logarithmic), &cases, &evaluations, &stop, &|done| {
         bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();

@@ -30,11 +30,11 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
             "--noise: the measurements have columns with the deviation of each pressure; leave out one of the two";
         return Err(Error::Usage(what.into()));
     }
-    let mut folder = asked.place.claim(case, Kind::Sense)?;
-    let bar = line::line(asked.quiet);
+    let mut folder = asked.result.place.claim(case, Kind::Sense)?;
+    let bar = line::line(asked.result.quiet);
     bar.set_message("looking for the loads");
     bar.tick();
-    let flag = asked.wall.flag();
+    let flag = asked.result.wall.flag();
     let found = find(case, measured.as_ref(), &question, &|| interrupt::raised(&flag));
     bar.finish_and_clear();
     let mut found = found?;

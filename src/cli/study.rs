@@ -32,11 +32,11 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
         parallel: asked.parallel,
     }
     .checked()?;
-    let mut folder = asked.place.claim(case, Kind::Study)?;
+    let mut folder = asked.result.place.claim(case, Kind::Study)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("study", case, &format!("{plan:?}")))?;
-    let flag = asked.wall.flag();
-    let progress = Progress::new(asked.quiet);
+    let flag = asked.result.wall.flag();
+    let progress = Progress::new(asked.result.quiet);
     // a run that has begun answers late: the program ends in time without it, and goes on from its journal
     let found = halt::heard().during(|| {
         run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {

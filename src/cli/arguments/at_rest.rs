@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, MapArguments, PlaceArguments, UncertainArguments, WallArguments};
+use super::{CaseArguments, MapArguments, ResultArguments, UncertainArguments};
 use crate::run::modes::Sort;
 
 /// Of which kind modes are.
@@ -57,15 +57,9 @@ pub struct EquilibriumArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print equilibrium.json instead of the table
     #[arg(long)]
     pub json: bool,
@@ -102,15 +96,9 @@ pub struct ModesArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print modes.json instead of the table
     #[arg(long)]
     pub json: bool,

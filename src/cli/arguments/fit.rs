@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, PlaceArguments, WallArguments};
+use super::{CaseArguments, ResultArguments};
 use crate::study::fit::robust::Loss;
 
 /// What large residuals count.
@@ -69,15 +69,9 @@ pub struct FitArguments {
     /// Simulations at once [default: one for every core]
     #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
     pub jobs: Option<usize>,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print fit.json instead of the words
     #[arg(long)]
     pub json: bool,

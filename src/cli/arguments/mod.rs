@@ -139,6 +139,20 @@ pub struct CaseArguments {
     pub sets: Vec<String>,
 }
 
+/// What becomes of the result of a computation.
+#[derive(Clone, Debug, Args)]
+pub struct ResultArguments {
+    /// Where its result goes.
+    #[command(flatten)]
+    pub place: PlaceArguments,
+    /// How long it may take.
+    #[command(flatten)]
+    pub wall: WallArguments,
+    /// No progress
+    #[arg(long)]
+    pub quiet: bool,
+}
+
 /// `check`.
 #[derive(Debug, Args)]
 pub struct CheckArguments {
@@ -159,12 +173,6 @@ pub struct StudyArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
     /// Wall time for everything, such as 90s or 2m; half of it is for points, the rest for their references
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -194,9 +202,9 @@ pub struct StudyArguments {
     /// Run on all cores at once; times suffer
     #[arg(long)]
     pub parallel: bool,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    /// Its result.
+    #[command(flatten)]
+    pub result: ResultArguments,
     /// Print study.json instead of the table
     #[arg(long)]
     pub json: bool,
@@ -208,12 +216,6 @@ pub struct EffectsArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Where its result goes.
-    #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
     /// Wall time for everything, such as 90s or 2m
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
@@ -227,9 +229,9 @@ pub struct EffectsArguments {
     /// Write what is recommended into the case file, as its "effects"
     #[arg(long, conflicts_with = "sets")]
     pub write: bool,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    /// Its result.
+    #[command(flatten)]
+    pub result: ResultArguments,
     /// Print effects.json instead of the table
     #[arg(long)]
     pub json: bool,
@@ -256,15 +258,9 @@ pub struct FloquetArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print floquet.json or map.json instead of the table
     #[arg(long)]
     pub json: bool,

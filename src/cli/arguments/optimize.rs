@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::{CaseArguments, PlaceArguments, Through, WallArguments};
+use super::{CaseArguments, ResultArguments, Through};
 use crate::study::optimize::problem::Method;
 
 /// `optimize`.
@@ -46,15 +46,9 @@ pub struct OptimizeArguments {
     /// Searches at once [default: one for every core]
     #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
     pub jobs: Option<usize>,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print optimum.json instead of the words
     #[arg(long)]
     pub json: bool,

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CaseArguments, PlaceArguments, UncertainArguments, WallArguments};
+use super::{CaseArguments, ResultArguments, UncertainArguments};
 
 /// `periodic`.
 #[derive(Debug, Args)]
@@ -26,15 +26,9 @@ pub struct PeriodicArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print cycle.json or sweep.json instead of the words
     #[arg(long)]
     pub json: bool,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::{CaseArguments, PlaceArguments, WallArguments};
+use super::{CaseArguments, ResultArguments};
 
 /// `sense`.
 #[derive(Debug, Args)]
@@ -42,15 +42,9 @@ pub struct SenseArguments {
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "variances",
           value_parser = ["variances", "volume"])]
     pub choose: Option<String>,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print sense.json instead of the table
     #[arg(long)]
     pub json: bool,

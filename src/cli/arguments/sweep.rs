@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{PlaceArguments, WallArguments};
+use super::{PlaceArguments, ResultArguments};
 use crate::study::sweep::{Shard, What};
 
 /// Commands that a design can go through.
@@ -99,15 +99,9 @@ pub struct SweepArguments {
     /// Begin again where the folder holds another sweep, or a part of this one
     #[arg(long)]
     pub restart: bool,
-    /// Where its result goes.
+    /// Its result.
     #[command(flatten)]
-    pub place: PlaceArguments,
-    /// How long it may take.
-    #[command(flatten)]
-    pub wall: WallArguments,
-    /// No progress
-    #[arg(long)]
-    pub quiet: bool,
+    pub result: ResultArguments,
     /// Print sweep.json instead of the words
     #[arg(long)]
     pub json: bool,

@@ -70,11 +70,11 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let left: Vec<usize> = (0..plan.designs)
         .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
         .collect();
-    let flag = asked.wall.flag();
-    check(&source, &left, jobs, asked.quiet, &flag)?;
+    let flag = asked.result.wall.flag();
+    check(&source, &left, jobs, asked.result.quiet, &flag)?;
     if before.is_none() {
         files::begin(&mut folder, plan, &source.first.written())?;
-    } else if !asked.quiet && done.count() > 0 {
+    } else if !asked.result.quiet && done.count() > 0 {
         terminal::tell(&format!(
             "slcbeam: there already: {}; going on with {}",
             words::several(done.count()),
@@ -143,7 +143,7 @@ pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> Strin
 }
 
 fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
-    let mut place = asked.place.clone();
+    let mut place = asked.result.place.clone();
     if let (None, Some(shard)) = (&place.out, asked.shard) {
         let dir = place.folder(&source.first.name, Kind::Designs);
         let dir = PathBuf::from(format!("{}-{}-of-{}", dir.display(), shard.index, shard.of));
@@ -222,7 +222,7 @@ fn compute_all(
         ask.from = first.as_ref().map(Setting::found);
     }
     let mut journal = done.go_on(folder)?;
-    let mut counter = Counter::new(asked.quiet, "done", left.len());
+    let mut counter = Counter::new(asked.result.quiet, "done", left.len());
     let unkept: Mutex<Option<Error>> = Mutex::new(None);
     let work = |number: usize| {
         let begin = Instant::now();
@@ -318,7 +318,7 @@ fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Resul
         ));
     }
     let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
-    let out = asked.place.folder(&plan.case, Kind::Designs);
+    let out = asked.result.place.folder(&plan.case, Kind::Designs);
     let files = asked.cases.iter().chain(&asked.designs);
     for path in files.chain([&program, &out]) {
         if path.to_str().is_none_or(|name| name.contains(char::is_control)) {
