@@ -15,9 +15,8 @@ use crate::results;
 use crate::study::evaluations::Evaluations;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
-use crate::study::optimize::choice::{Choice, Part};
-use crate::study::optimize::problem::{Asked, Goal, Limit, Method, Problem};
-use crate::study::optimize::wiring::{Alternative, Crossing, choices};
+use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
+use crate::study::optimize::wiring::{Alternative, choices, combinations, crossings};
 use crate::study::span::Span;
 
 /// Exit code where no design holds the limits: that of a computation without the result that was asked for.
@@ -27,14 +26,15 @@ const NOTHING_HOLDS: u8 = 4;
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let wanted = wanted(asked)?;
-    let choice = choice(asked, &case, &wanted)?;
     let evaluations = Evaluations::default();
-    let make = |alternative: &Alternative| {
+    let candidate = |alternative: Alternative| {
         let evaluations = evaluations.scoped(&alternative.sets.join(" "));
-        let problem = problem(asked, &case, &wanted, alternative)?;
-        Ok(Problem { evaluations, ..problem })
+        let problem = problem(asked, &case, &wanted, &alternative)?;
+        let problem = Problem { evaluations, ..problem };
+        Ok(Candidate { alternative, problem })
     };
-    let candidates = candidates(&choice, &make)?;
+    let alternatives = alternatives(asked, &case, &wanted)?;
+    let candidates: Vec<Candidate> = alternatives.into_iter().map(candidate).collect::<Result<_>>()?;
     let figure = &candidates[0].problem.goal.figure;
     let mut folder = asked.result.place.claim(&case, Kind::Optimum)?;
     let settings = format!(
@@ -57,10 +57,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         bar.tick();
     };
     let stop = || interrupt::raised(&flag);
-    let found = match choice.is_large() {
-        true => study::explore(&choice, &make, &wanted, &stop, &tell),
-        false => study::optimise(&candidates, &wanted, &stop, &tell),
-    };
+    let found = study::optimise(&candidates, &wanted, &stop, &tell);
     bar.finish_and_clear();
     let stopped = stop();
     let found = journal::outcome(found, &folder, stopped)?;
@@ -76,42 +73,21 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     })
 }
 
-/// What is to be chosen from.
-fn choice(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Choice> {
-    let lists = asked.choose.iter().map(|text| choices(text).map(Part::Of));
-    let crossing = asked
-        .crossovers
-        .map(|most| Crossing::of(case, most).map(Part::Crossovers));
-    let parts: Vec<Part> = lists.chain(crossing).collect::<Result<_>>()?;
-    if wanted.spans.is_empty() && parts.is_empty() {
+/// All that is to be chosen from; the case itself where there is nothing.
+fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Vec<Alternative>> {
+    let lists = asked.choose.iter().map(|text| choices(text));
+    let wirings = asked.crossovers.map(|most| crossings(case, most));
+    let sets: Vec<_> = lists.chain(wirings).collect::<Result<_>>()?;
+    if wanted.spans.is_empty() && sets.is_empty() {
         let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or --choose, --crossovers";
         return Err(Error::Usage(what.into()));
     }
-    if wanted.spans.is_empty() && wanted.method == Method::CmaEs {
-        let what =
-            "--method cma-es is for numbers that are sought (--vary); alternatives are all computed, or searched among";
-        return Err(Error::Usage(what.into()));
-    }
-    let choice = Choice(parts);
-    apart(&choice.at(&choice.first()), wanted)?;
-    Ok(choice)
-}
-
-/// All that is to be chosen from, the case itself where there is nothing; of more than can be computed those that differ from the first in one
-/// place, so that what makes no case is told before anything is computed.
-fn candidates(choice: &Choice, make: &dyn Fn(&Alternative) -> Result<Problem>) -> Result<Vec<Candidate>> {
-    let mut all: Vec<Alternative> = match choice.is_large() {
-        true => choice.singles().iter().map(|digits| choice.at(digits)).collect(),
-        false => choice.all()?,
-    };
+    let mut all = combinations(sets)?;
     if all.is_empty() {
         all.push(Alternative::default());
     }
-    let candidate = |alternative: Alternative| {
-        let problem = make(&alternative)?;
-        Ok(Candidate { alternative, problem })
-    };
-    all.into_iter().map(candidate).collect()
+    apart(&all[0], wanted)?;
+    Ok(all)
 }
 
 /// What is sought in the case with an alternative.
@@ -161,8 +137,7 @@ fn wanted(asked: &OptimizeArguments) -> Result<Asked> {
             .iter()
             .map(|text| Limit::parse(text))
             .collect::<Result<_>>()?,
-        starts: asked.starts.map(|starts| starts as usize),
-        method: asked.method.into(),
+        starts: asked.starts as usize,
         jobs: sweep::jobs(asked.jobs)?,
     })
 }

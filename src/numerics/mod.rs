@@ -15,17 +15,13 @@
 //! | [`levenberg`] | nonlinear least squares between bounds |
 //! | [`inverse`] | linear problems whose answer may not be told by their data: what is, and how surely |
 //! | [`sqp`] | least values between bounds under inequalities |
-//! | [`cma`] | the same by values alone, where these are rugged |
-//! | [`exchange`] | the best of many combinations, from one to the next |
 //! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
 //! | [`normal`] | quantiles of the normal distribution |
 //! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
 
 pub mod angle;
 pub mod chance;
-pub mod cma;
 pub mod dual;
-pub mod exchange;
 pub mod gauss;
 pub mod inverse;
 pub mod kernels;

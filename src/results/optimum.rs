@@ -3,4 +3,6 @@
 use super::Kept;
 pub use crate::study::optimize::found::*;
 
-impl Kept for Optimum {}
+impl Kept for Optimum {
+    const FORMAT: u32 = 2;
+}

@@ -129,12 +129,6 @@ pub fn changed(sound: &[u8], random: &mut Random) -> (Vec<u8>, usize, usize) {
 
 #[test]
 fn a_killed_optimization_goes_on() {
-    let asked = format!("optimize {SMALL} --vary {MODULUS} --minimize tip_u1_m.max_abs --method cma-es --jobs 1");
-    killed_and_resumed(&asked, "optimum.json");
-}
-
-#[test]
-fn a_killed_optimization_by_slopes_goes_on() {
     let asked = format!("optimize {SMALL} --vary {MODULUS} --minimize tip_u1_m.max_abs --starts 6 --jobs 1");
     killed_and_resumed(&asked, "optimum.json");
 }

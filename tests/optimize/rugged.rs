@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use serde_json::Value;
 use slcbeam::case;
-use slcbeam::study::optimize::problem::{Asked, Goal, Method, Problem};
+use slcbeam::study::optimize::problem::{Asked, Goal, Problem};
 use slcbeam::study::optimize::wiring::Alternative;
 use slcbeam::study::optimize::{Candidate, optimise};
 use slcbeam::study::span::Span;
@@ -35,100 +35,32 @@ fn lowered(from: &str, more: &[&str]) -> (Value, String) {
     let coarse = ["--set", "/mesh/cells_per_segment=1"];
     let found = best(&dir, &[&asked[..], &coarse, more].concat());
     let designs = fs::read_to_string(path(&dir, "out/designs.csv")).expect("a table");
-    let page = fs::read_to_string(path(&dir, "out/report.html")).expect("a page");
-    assert_eq!(page.contains("no proof"), found["method"] == "cma-es");
     // all but the wall time
     let rows = designs.lines().map(|line| line.rsplit_once(',').expect("columns").0);
     (found, rows.collect::<Vec<_>>().join("\n"))
 }
 
 /// Source: the frequencies of 91 places from 0.1 to 1 (`slcbeam sweep`), least at 0.3. Goal: from 0.7, a hollow of its own, slopes lead to a
-/// worse place, and figures alone to the best, the same on one thread and on two; what it did is told, and that it is no proof.
+/// worse place, and four starts to the best, the same on one thread and on two.
 #[test]
 fn hollows_are_passed_over() {
     let (slopes, _) = lowered("0.7", &[]);
-    let (found, designs) = lowered("0.7", &["--method", "cma-es", "--jobs", "2"]);
+    let (found, designs) = lowered("0.7", &["--starts", "4", "--jobs", "2"]);
     let [worse, value] = [&slopes, &found].map(|one| number(&one["value"]));
     assert!(value < 0.97 * worse, "{value} and {worse}");
     assert!((number(&found["variables"][0]["value"]) - 0.3).abs() < 2e-3, "{found}");
-    assert!(found["method"] == "cma-es" && slopes["method"] == "gradient");
-    assert!(
-        found["found"] == true && found["ended"] == "its designs no longer differ",
-        "{found}"
-    );
     assert_eq!(designs.lines().count() as f64, 1.0 + number(&found["evaluations"]));
-    let (_, alone) = lowered("0.7", &["--method", "cma-es", "--jobs", "1"]);
-    assert_eq!(designs, alone);
-    // where slopes and figure contradict each other, it is offered
+    let (again, alone) = lowered("0.7", &["--starts", "4", "--jobs", "1"]);
+    assert_eq!(found["value"], again["value"]);
+    assert_eq!(designs.lines().count(), alone.lines().count());
+    // where slopes and figure contradict each other, other starts are offered
     let (kink, _) = lowered("0.4", &[]);
-    assert!(kink["warnings"].to_string().contains("--method cma-es"), "{kink}");
+    assert!(kink["warnings"].to_string().contains("--starts"), "{kink}");
 }
 
-/// Goal: limits and bounds hold the search by figures alone as they hold that by slopes, at the same price of the limit, and alternatives
-/// are ranked by it.
+/// Goal: a search that is interrupted has the best so far.
 #[test]
-fn limits_hold_it_and_alternatives_are_chosen() {
-    let dir = tempfile::tempdir().expect("a folder");
-    let height = [
-        "--vary",
-        "/beam/height_m=0.01:0.05",
-        "--minimize",
-        "mode_2",
-        "--command",
-        "modes",
-    ];
-    let coarse = ["--set", "/mesh/cells_per_segment=1"];
-    let limit = ["--subject-to", "mode_1.frequency_hz>=12"];
-    let asked = [&[CANTILEVER], &height[..], &coarse].concat();
-    let [by_slopes, found] =
-        ["gradient", "cma-es"].map(|method| best(&dir, &[&asked[..], &limit, &["--method", method]].concat()));
-    let (own, wanted) = (&found["limits"][0], &by_slopes["limits"][0]);
-    assert!(
-        own["reached"] == true && number(&own["value"]) > 12.0 * (1.0 - 2e-6),
-        "{found}"
-    );
-    assert!(
-        (number(&found["value"]) / number(&by_slopes["value"]) - 1.0).abs() < 1e-4,
-        "{found}"
-    );
-    assert!(
-        (number(&own["gain"]) / number(&wanted["gain"]) - 1.0).abs() < 1e-2,
-        "{own} {wanted}"
-    );
-    let chosen = best(
-        &dir,
-        &[
-            &asked[..],
-            &["--method", "cma-es", "--choose", "/beam/density_kg_m3=900|1100"],
-        ]
-        .concat(),
-    );
-    assert_eq!(number(&chosen["chosen"]), 1.0, "{chosen}");
-    assert!(chosen["variables"][0]["at_bound"] == "low" && number(&chosen["variables"][0]["value"]) == 0.01);
-    let out = path(&dir, "none");
-    let choose = [
-        "--choose",
-        "/beam/height_m=0.01|0.02",
-        "--minimize",
-        "mode_1",
-        "--command",
-        "modes",
-    ];
-    let said = say(&[
-        &["optimize", CANTILEVER, "--method", "cma-es", "--out", &out],
-        &choose[..],
-    ]
-    .concat());
-    assert!(
-        said.code == 2 && said.err.contains("--method cma-es is for numbers"),
-        "{}",
-        said.err
-    );
-}
-
-/// Goal: a search by figures alone that is interrupted has the best so far, that of a generation which is not whole too.
-#[test]
-fn an_interrupted_search_by_figures_has_the_best_so_far() {
+fn an_interrupted_search_has_the_best_so_far() {
     let asked = Asked {
         what: What::Modes,
         spans: vec![Span {
@@ -141,8 +73,7 @@ fn an_interrupted_search_by_figures_has_the_best_so_far() {
             largest: false,
         },
         limits: vec![],
-        starts: None,
-        method: Method::CmaEs,
+        starts: 1,
         jobs: 1,
     };
     let sets = [
@@ -155,7 +86,7 @@ fn an_interrupted_search_by_figures_has_the_best_so_far() {
         problem: Problem::new(&case, &asked).expect("a problem"),
     };
     let count = AtomicUsize::new(0);
-    let early = optimise(&[candidate], &asked, &|| count.load(Relaxed) >= 13, &|_, _| {
+    let early = optimise(&[candidate], &asked, &|| count.load(Relaxed) >= 3, &|_, _| {
         count.fetch_add(1, Relaxed);
     });
     let early = early.expect("a best");

@@ -291,7 +291,7 @@ def optimize(
     :param vary: bounds by JSON pointer.
     :param maximize: a figure as the table of a sweep names it: ``harvested_power_w``, ``tip_u1_m.max_abs``; or ``minimize``.
     :param subject_to: limits to figures: ``["max_pressure_pa<=5e4"]``.
-    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``starts``, ``method="gradient"|"cma-es"``, ``crossovers``, ``choose=[..]``, ``jobs``.
+    :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``starts``, ``crossovers``, ``choose=[..]``, ``jobs``.
     :returns: ``optimum.json``; ``tables["designs"]``; the case of the best is ``optimum-case.json`` of the ``folder``.
     """
     asked = {"maximize": maximize, "minimize": minimize, "subject_to": [subject_to] if isinstance(subject_to, str) else list(subject_to)}

@@ -1,9 +1,8 @@
 //! What `optimize` can be asked for.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::{CaseArguments, ResultArguments, Through};
-use crate::study::optimize::problem::Method;
 
 /// `optimize`.
 #[derive(Debug, Args)]
@@ -34,15 +33,12 @@ pub struct OptimizeArguments {
     /// What another figure has to hold, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
     pub subject_to: Vec<String>,
-    /// How numbers are sought: by slopes, or by figures alone, which takes more designs and passes over ripples
-    #[arg(long, value_enum, default_value_t = Seek::Gradient)]
-    pub method: Seek,
     /// What every design goes through
     #[arg(long, value_enum, default_value_t = Through::Run)]
     pub command: Through,
-    /// Searches, from the case's own numbers and from places between the bounds [default: 1, or 8 among many alternatives]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    pub starts: Option<u32>,
+    /// Searches, from the case's own numbers and from places between the bounds
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub starts: u32,
     /// Searches at once [default: one for every core]
     #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
     pub jobs: Option<usize>,
@@ -52,22 +48,4 @@ pub struct OptimizeArguments {
     /// Print optimum.json instead of the words
     #[arg(long)]
     pub json: bool,
-}
-
-/// How numbers are sought.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Seek {
-    /// Sequential quadratic programming with exact derivatives where there are some
-    Gradient,
-    /// CMA-ES: evolution of designs, without derivatives
-    CmaEs,
-}
-
-impl From<Seek> for Method {
-    fn from(asked: Seek) -> Self {
-        match asked {
-            Seek::Gradient => Self::Gradient,
-            Seek::CmaEs => Self::CmaEs,
-        }
-    }
 }

@@ -14,7 +14,7 @@ use crate::study::optimize::found::Design;
 use crate::study::optimize::problem::Problem;
 use crate::study::sweep::unit::unit;
 
-pub use words::{by_values, place, ranked, searched, words};
+pub use words::{place, ranked, words};
 
 /// Everything that was found.
 pub const JSON: &str = "optimum.json";

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::error::visible;
 use crate::output::columns::aligned;
-use crate::output::numbers::{count, counted, duration, percent, significant};
+use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::words::several;
-use crate::results::optimum::{Bound, Compared, Derivatives, Held, Method, Optimum, Variable};
+use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
 
 /// Alternatives that are told.
 const SHOWN: usize = 12;
@@ -58,9 +58,6 @@ pub fn words(found: &Optimum) -> String {
         how(found),
         duration(found.wall_s)
     );
-    if let Some(told) = by_values(found) {
-        text += &format!("{told}\n");
-    }
     for (reason, n) in alike(&found.failed) {
         text += &format!("{n} of {failed} that failed: {reason}\n");
     }
@@ -93,21 +90,11 @@ fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
 
 /// By what designs were chosen; nothing where no numbers were sought.
 fn how(found: &Optimum) -> &'static str {
-    match (found.method, found.derivatives) {
+    match found.derivatives {
         _ if found.variables.is_empty() => "",
-        (Method::CmaEs, Derivatives::Nowhere) => " by CMA-ES, without derivatives",
-        (Method::CmaEs, _) => " by CMA-ES, with exact derivatives at the best alone",
-        (_, Derivatives::Differences) => " with derivatives by differences",
-        (_, Derivatives::Exact | Derivatives::Nowhere) => " with exact derivatives",
+        Derivatives::Differences => " with derivatives by differences",
+        Derivatives::Exact => " with exact derivatives",
     }
-}
-
-/// Why a search by figures alone ended, and how far that goes; nothing of other searches.
-pub fn by_values(found: &Optimum) -> Option<String> {
-    let ended = found.ended.as_ref().filter(|_| found.method == Method::CmaEs)?;
-    Some(format!(
-        "a search by figures alone, which ended since {ended}: no proof that there is nothing better"
-    ))
 }
 
 /// Alternatives at their best, the best first.
@@ -132,25 +119,7 @@ fn alternatives(found: &Optimum) -> String {
         0 => String::new(),
         n => format!("  and {n} more in optimum.json\n"),
     };
-    let searched = searched(found).map_or(String::new(), |searched| searched + "\n");
-    format!("\n{}{more}{searched}", aligned(&lines, &[1, 3]))
-}
-
-/// That alternatives were searched among, and how far that goes; nothing where all were computed.
-pub fn searched(found: &Optimum) -> Option<String> {
-    let one = found.explored?;
-    let of = match one.of < 1e9 {
-        true => count(one.of as u64),
-        false => significant(one.of, 3),
-    };
-    Some(format!(
-        "a search, not all of them: {} of {of} alternatives were computed; {} of {} from different ones came to this best, {} ended where \
-         nothing next to it is better",
-        count(one.tried as u64),
-        one.came_to_best,
-        counted(one.searches as u64, "search"),
-        one.ended
-    ))
+    format!("\n{}{more}", aligned(&lines, &[1, 3]))
 }
 
 /// Alternatives from the best on: those that hold the limits before those that do not, and what has nothing last.
@@ -228,16 +197,7 @@ fn starts(found: &Optimum) -> String {
     others.sort_by(f64::total_cmp);
     others.dedup_by(|a, b| (*a - *b).abs() <= SAME * a.abs());
     let others: Vec<String> = others.iter().map(|value| significant(*value, 5)).collect();
-    // of the alternatives others searched
-    let sought = if found.explored.is_some() {
-        "for its numbers "
-    } else {
-        ""
-    };
-    let mut text = format!(
-        "{sought}{same} of {} came to it",
-        counted(found.starts.len() as u64, "search")
-    );
+    let mut text = format!("{same} of {} came to it", counted(found.starts.len() as u64, "search"));
     if !others.is_empty() {
         text += &format!("; others ended at {}", others.join(", "));
     }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, by_values, place as told, ranked, searched};
+use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told, ranked};
 use crate::output::sweep::unit;
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Derivatives, Optimum, Variable};
@@ -37,7 +37,6 @@ pub fn data(place: &Place) -> Result<Page> {
         match found.derivatives {
             Derivatives::Exact => "exact derivatives".into(),
             Derivatives::Differences => "derivatives by differences".into(),
-            Derivatives::Nowhere => "no derivatives".into(),
         },
         match found.starts.len() {
             1 => "one search".into(),
@@ -49,8 +48,6 @@ pub fn data(place: &Place) -> Result<Page> {
         let words = percent(error / found.value.abs());
         facts.insert(0, format!("estimated error of the simulation {words}"));
     }
-    facts.extend(searched(&found));
-    facts.extend(by_values(&found));
     page.put("facts", facts);
     let tile = |one: &Variable| {
         let note = match one.within_1_percent {

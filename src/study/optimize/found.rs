@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::REACHED;
-pub use super::problem::Method;
 use super::problem::{Goal, Limit};
 use super::search::Reached;
 use super::wiring::Alternative;
@@ -39,9 +38,6 @@ pub struct Optimum {
     /// Which of them is best, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<usize>,
-    /// How they were found, where there were too many to compute all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub explored: Option<Explored>,
     /// Numbers that were sought.
     pub variables: Vec<Variable>,
     /// What was to be held.
@@ -49,13 +45,10 @@ pub struct Optimum {
     /// Second derivatives of the figure by numbers between their bounds; nothing where a limit is reached, or where they were not to be
     /// had.
     pub curvature: Option<Curvature>,
-    /// How numbers were sought.
-    #[serde(default)]
-    pub method: Method,
     /// Why the search that found the best ended, in words; nothing where no numbers were sought.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
-    /// Where derivatives came from: those of the search, or, where that was by figures alone, those at the best.
+    /// Where derivatives came from.
     pub derivatives: Derivatives,
     /// Searches, the first from the case's own numbers.
     pub starts: Vec<Start>,
@@ -101,21 +94,6 @@ impl Compared {
     }
 }
 
-/// A search among alternatives of which only a part was computed: from one to a better one next to it, from several starts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Explored {
-    /// How many there are.
-    pub of: f64,
-    /// How many were computed.
-    pub tried: usize,
-    /// Searches, each from another start.
-    pub searches: usize,
-    /// Of these, those that ended where nothing next to it is better.
-    pub ended: usize,
-    /// Of these, those that came to the best figure.
-    pub came_to_best: usize,
-}
-
 /// Where derivatives of figures came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -124,8 +102,6 @@ pub enum Derivatives {
     Exact,
     /// Differences of designs, two for each number.
     Differences,
-    /// Nowhere: figures alone were looked at.
-    Nowhere,
 }
 
 /// A number of the case.
@@ -199,7 +175,7 @@ pub struct Start {
     pub value: Option<f64>,
     /// Whether limits are held there.
     pub held: bool,
-    /// Steps, or generations, it took.
+    /// Steps it took.
     pub steps: usize,
 }
 

@@ -80,19 +80,11 @@ pub fn look(
     })
 }
 
-/// Figures at a place between the bounds, as the plain command tells them.
-///
-/// # Errors
-/// Why there are none, in words.
-pub fn level(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
-    plain(problem, &span::values(&problem.spans, places), stop)
-}
-
 /// Figures of a design, and what is seen of it with exact derivatives where there are any.
-pub type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
+type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
 
 /// Looks at a place with exact derivatives; nothing where there cannot be any.
-pub fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Tell<'_>) -> Option<Exactly> {
+fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Tell<'_>) -> Option<Exactly> {
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
     if problem.differences.is_some() || places.is_empty() || at_an_end(problem, &values) {

@@ -5,21 +5,15 @@
 //! problem    case, numbers that are sought, goal and limits; everything that does not fit is told here
 //! look       one design, with derivatives
 //! search     from starts to the best
-//! evolve     the same by figures alone
 //! exchanged  modes that are others at the best
 //! curvature  how flat it is
-//! wiring     what is chosen from a set
-//! choice     all combinations of several sets
-//! explore    a search among more of these than can be computed
+//! wiring     what is chosen from sets, in all combinations
 //! found      the result
 //! told       what to know before it is believed
 //! ```
 
-pub mod choice;
 mod curvature;
-mod evolve;
 mod exchanged;
-mod explore;
 pub mod found;
 mod look;
 pub mod names;
@@ -38,9 +32,7 @@ use crate::numerics::sqp::{Ended, HELD};
 use crate::study::span::Bound;
 use crate::study::sweep::row::Found;
 use crate::study::sweep::{Ask, compute, pool};
-use choice::Choice;
-use explore::Tried;
-use found::{Compared, Derivatives, Design, Explored, Held, Optimum, Variable};
+use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search, better};
 use told::{broken, warnings};
@@ -95,59 +87,15 @@ pub fn optimise(
                 .collect()
         }
     };
-    let chosen = best(all.iter());
+    let ends = all
+        .iter()
+        .enumerate()
+        .filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
+    let of = |end: &Reached| end.sizes[0];
+    let best = ends.min_by(|(_, a), (_, b)| better((&a.minimum, of(a)), (&b.minimum, of(b))));
+    let chosen = best.map_or(0, |(k, _)| k);
     let reached = all.swap_remove(chosen)?;
-    let set = Set {
-        chosen,
-        compared,
-        explored: None,
-    };
-    let kept = || {
-        let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
-        (searches.iter().flat_map(Search::history).collect(), exact)
-    };
-    finish(
-        (&candidates[chosen].problem, &searches[chosen]),
-        reached,
-        set,
-        &kept,
-        stop,
-        begin,
-    )
-}
-
-/// The same among more alternatives than can be computed, each made into what is sought by `make`: a search, whose result says so.
-///
-/// # Errors
-/// No design can be computed at any start.
-pub fn explore(
-    choice: &Choice,
-    make: &(dyn Fn(&Alternative) -> Result<Problem> + Sync),
-    asked: &Asked,
-    stop: &(dyn Fn() -> bool + Sync),
-    tell: &(dyn Fn(usize, Option<f64>) + Sync),
-) -> Result<Optimised> {
-    let begin = Instant::now();
-    let tell_all = together(asked, tell);
-    let (mut tried, explored) = explore::explore(choice, make, asked, stop, &tell_all)?;
-    let chosen = best(tried.iter().map(|one| &one.reached));
-    let set = Set {
-        chosen,
-        compared: tried.iter().map(Tried::compared).collect(),
-        explored: Some(explored),
-    };
-    let history: Vec<Design> = tried.iter().flat_map(|one| one.history.clone()).collect();
-    let exact = tried.iter().all(|one| one.exact);
-    let Tried {
-        alternative, reached, ..
-    } = tried.swap_remove(chosen);
-    let (reached, problem) = (reached?, make(&alternative)?);
-    let search = Search::new((chosen, &problem), asked, stop, &tell_all);
-    let kept = || {
-        let exact = exact && search.derivatives() == Derivatives::Exact;
-        (history.iter().cloned().chain(search.history()).collect(), exact)
-    };
-    finish((&problem, &search), reached, set, &kept, stop, begin)
+    finish(candidates, &searches, (chosen, reached), compared, stop, begin)
 }
 
 /// Counts designs of all searches, and the best figure of all.
@@ -166,41 +114,27 @@ fn together<'a>(
     }
 }
 
-/// Which of several ends is best; the first where there is none.
-fn best<'a>(all: impl Iterator<Item = &'a Result<Reached>>) -> usize {
-    let ends = all.enumerate().filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
-    let of = |end: &Reached| end.sizes[0];
-    let best = ends.min_by(|(_, a), (_, b)| better((&a.minimum, of(a)), (&b.minimum, of(b))));
-    best.map_or(0, |(k, _)| k)
-}
-
-/// What was chosen from.
-struct Set {
-    chosen: usize,
-    compared: Vec<Compared>,
-    explored: Option<Explored>,
-}
-
-/// The result of where a search ended: how flat it is there, what holds it, what the plain command says. `kept` has all designs in the end, and whether
-/// derivatives were exact.
+/// The result of where the best search ended: how flat it is there, what holds it, what the plain command says.
 fn finish(
-    (problem, search): (&Problem, &Search),
-    reached: Reached,
-    set: Set,
-    kept: &dyn Fn() -> (Vec<Design>, bool),
+    candidates: &[Candidate],
+    searches: &[Search<'_>],
+    (chosen, reached): (usize, Reached),
+    alternatives: Vec<Compared>,
     stop: &(dyn Fn() -> bool + Sync),
     begin: Instant,
 ) -> Result<Optimised> {
+    let (problem, search) = (&candidates[chosen].problem, &searches[chosen]);
     let minimum = &reached.minimum;
     let case = problem.with(&reached.values)?;
     let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
     // where a limit is reached the figure changes along numbers in the first order
     let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0) && !minimum.x.is_empty();
-    let bend = (found && inner && reached.sloped && !stop())
+    let bend = (found && inner && !stop())
         .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
         .flatten();
     let checked = check(problem, &case, stop);
-    let (history, exact) = kept();
+    let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
+    let history: Vec<Design> = searches.iter().flat_map(Search::history).collect();
     let mut failed = BTreeMap::new();
     for reason in history.iter().filter_map(|design| design.reason.clone()) {
         *failed.entry(reason).or_insert(0) += 1;
@@ -218,20 +152,17 @@ fn finish(
             .iter()
             .find(|design| design.start == 0)
             .and_then(|design| design.figures.as_ref().map(|figures| figures[0])),
-        chosen: (!set.compared.is_empty()).then_some(set.chosen),
-        alternatives: set.compared,
-        explored: set.explored,
+        chosen: (!alternatives.is_empty()).then_some(chosen),
+        alternatives,
         variables: (0..problem.spans.len())
             .map(|k| variable(problem, &reached, bend.as_ref(), k))
             .collect(),
         limits: (0..problem.limits.len()).map(|i| held(problem, &reached, i)).collect(),
         curvature: bend.as_ref().map(|bend| bend.told(problem, &reached)),
-        method: search.method(),
-        ended: (!minimum.x.is_empty()).then(|| told::ended(search.method(), minimum.ended, stop()).into()),
-        derivatives: match (reached.sloped, exact) {
-            (false, _) => Derivatives::Nowhere,
-            (true, true) => Derivatives::Exact,
-            (true, false) => Derivatives::Differences,
+        ended: (!minimum.x.is_empty()).then(|| told::ended(minimum.ended, stop()).into()),
+        derivatives: match exact {
+            true => Derivatives::Exact,
+            false => Derivatives::Differences,
         },
         starts: reached.starts.clone(),
         evaluations: history.len(),
@@ -251,7 +182,7 @@ fn finish(
     let own = checked.into_iter().flat_map(|plain| plain.told);
     optimum.warnings.extend(own);
     let flat = told::flat(problem, &optimum, &history);
-    if flat.is_none() && reached.sloped && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
+    if flat.is_none() && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
             "{} does not change there with any number that was sought",
             problem.goal.figure
@@ -313,9 +244,7 @@ fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>
         _ => None,
     };
     // what the value would fall by, per place between the bounds, is what the figure gains
-    let gain = at_bound
-        .filter(|_| reached.sloped)
-        .map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
+    let gain = at_bound.map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
     Variable {
         pointer: span.pointer.clone(),
         low: span.low,
@@ -335,7 +264,7 @@ fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
         limit: limit.clone(),
         value: reached.figures[i + 1],
         reached: reached.minimum.at.inequalities[i] > -REACHED,
-        gain: (reached.sloped && reached.minimum.at.inequalities[i] < REACHED)
+        gain: (reached.minimum.at.inequalities[i] < REACHED)
             .then(|| reached.minimum.multipliers[i] * reached.sizes[0] / reached.sizes[i + 1]),
     }
 }

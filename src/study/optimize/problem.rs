@@ -28,17 +28,6 @@ impl Goal {
     }
 }
 
-/// How numbers are sought.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// By the slopes of figures: quadratic programming.
-    #[default]
-    Gradient,
-    /// By figures alone: evolution with an adapted covariance.
-    CmaEs,
-}
-
 /// On which side of a limit a figure has to stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -116,10 +105,8 @@ pub struct Asked {
     pub goal: Goal,
     /// What is to be held, likewise.
     pub limits: Vec<Limit>,
-    /// Searches, each from another place; as many as are usual where nobody says.
-    pub starts: Option<usize>,
-    /// How numbers are sought.
-    pub method: Method,
+    /// Searches, each from another place.
+    pub starts: usize,
     /// Designs at once.
     pub jobs: usize,
 }

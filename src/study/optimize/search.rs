@@ -8,9 +8,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
-use super::problem::{Asked, Method, Problem};
+use super::problem::{Asked, Problem};
 use crate::error::{At, Code, Error, Result, SolverError};
-use crate::numerics::exchange::{Worth, order};
 use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
 use crate::study::sweep::{What, pool};
@@ -30,9 +29,9 @@ const EXACT: f64 = 1e-9;
 
 /// A search.
 pub struct Search<'a> {
-    pub(super) problem: &'a Problem,
+    problem: &'a Problem,
     asked: &'a Asked,
-    pub(super) stop: &'a (dyn Fn() -> bool + Sync),
+    stop: &'a (dyn Fn() -> bool + Sync),
     tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
     history: Mutex<Vec<Design>>,
     differences: AtomicBool,
@@ -51,8 +50,6 @@ pub struct Reached {
     pub sizes: Vec<f64>,
     /// Searches.
     pub starts: Vec<Start>,
-    /// Whether slopes are known there.
-    pub sloped: bool,
 }
 
 impl<'a> Search<'a> {
@@ -87,14 +84,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// How numbers are sought; without numbers there is one design, and nothing to differ.
-    pub(super) fn method(&self) -> Method {
-        match self.problem.spans.is_empty() {
-            true => Method::Gradient,
-            false => self.asked.method,
-        }
-    }
-
     /// Searches from every start, so many at once; the best is what holds the limits, and of these what is best.
     ///
     /// # Errors
@@ -104,20 +93,15 @@ impl<'a> Search<'a> {
         let starts = if self.problem.spans.is_empty() {
             1
         } else {
-            self.asked.starts.unwrap_or(1)
+            self.asked.starts
         };
         let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
         let numbers: Vec<usize> = (0..places.len()).collect();
         let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
-        let by_values = self.method() == Method::CmaEs;
-        let one = |k: usize| match by_values {
-            true => self.evolve(k, &places[k], jobs),
-            false => self.minimise(k, &places[k]),
-        };
         pool::each(
             &numbers,
-            if by_values { 1 } else { jobs },
-            &|k| (!(self.stop)()).then(|| (k, one(k))),
+            jobs,
+            &|k| (!(self.stop)()).then(|| (k, self.minimise(k, &places[k]))),
             &mut |(k, minimum)| {
                 found[k] = minimum;
                 Ok(())
@@ -162,18 +146,13 @@ impl<'a> Search<'a> {
                 hint: Some("look at the case alone with the command that designs go through; begin elsewhere (--set, --starts)".into()),
             })));
         };
-        let mut reached = Reached {
+        Ok(Reached {
             values: span::values(&self.problem.spans, &minimum.x),
             figures: self.figures(&minimum, &sizes),
             minimum,
             sizes,
             starts,
-            sloped: true,
-        };
-        if by_values {
-            self.slopes_there(&mut reached);
-        }
-        Ok(reached)
+        })
     }
 
     /// Figures at the end of a search.
@@ -237,7 +216,7 @@ impl<'a> Search<'a> {
     }
 
     /// Error of figures.
-    pub(super) fn noise(&self) -> f64 {
+    fn noise(&self) -> f64 {
         match self.problem.what {
             What::Run | What::Periodic | What::Floquet => self.problem.case.solver.rtol.max(EXACT),
             What::Equilibrium | What::Modes => EXACT,
@@ -261,7 +240,7 @@ impl<'a> Search<'a> {
     }
 
     /// Sizes of figures: of what is sought at the start, of limits themselves.
-    pub(super) fn sizes(&self, figures: &[f64]) -> Vec<f64> {
+    fn sizes(&self, figures: &[f64]) -> Vec<f64> {
         let size = |x: f64, otherwise: f64| match x.abs() > 0.0 {
             true => x.abs(),
             false if otherwise.abs() > 0.0 => otherwise.abs(),
@@ -287,16 +266,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The same of figures alone, as if it were level there.
-    pub(super) fn level(&self, figures: &[f64], sizes: &[f64]) -> Point {
-        let seen = Seen {
-            figures: figures.to_vec(),
-            slopes: vec![vec![0.0; self.problem.spans.len()]; figures.len()],
-            from: Derivatives::Nowhere,
-        };
-        self.point(&seen, sizes)
-    }
-
     /// Looks at a place and keeps what is computed for it.
     pub fn look(&self, start: usize, places: &[f64]) -> Option<Seen> {
         if (self.stop)() {
@@ -320,13 +289,7 @@ impl<'a> Search<'a> {
         finite.then_some(seen)
     }
 
-    pub(super) fn keep(
-        &self,
-        start: usize,
-        values: &[f64],
-        figures: &std::result::Result<Vec<f64>, String>,
-        wall_s: f64,
-    ) {
+    fn keep(&self, start: usize, values: &[f64], figures: &std::result::Result<Vec<f64>, String>, wall_s: f64) {
         let limits = &self.problem.limits;
         let held = |figures: &Vec<f64>| {
             let each = limits.iter().zip(&figures[1..]);
@@ -355,14 +318,13 @@ impl<'a> Search<'a> {
 /// Which of two ends of searches is the better, each with the size of the figure: the one that holds the limits, or nearer does, then the one with
 /// the better figure.
 pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
-    order(&worth(a.0, a.1), &worth(b.0, b.1))
-}
-
-/// How far the end of a search is beyond its limits, and its figure with the sign that makes less the better.
-pub fn worth(minimum: &Minimum, size: f64) -> Worth {
-    let violation = minimum.at.violation();
-    let beyond = if violation > HELD { violation } else { 0.0 };
-    [beyond, minimum.at.value * size]
+    let worth = |(minimum, size): (&Minimum, f64)| {
+        let violation = minimum.at.violation();
+        let beyond = if violation > HELD { violation } else { 0.0 };
+        (beyond, minimum.at.value * size)
+    };
+    let (a, b) = (worth(a), worth(b));
+    a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
 }
 
 /// How steep what is sought still is at the end of a search, over its size there: by the numbers that no bound holds, limits with their multipliers

@@ -2,7 +2,7 @@
 
 use super::REACHED;
 use super::found::{Derivatives, Design, Held, Optimum};
-use super::problem::{Limit, Method, Problem};
+use super::problem::{Limit, Problem};
 use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::error::numbers::counted;
@@ -37,16 +37,13 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
 }
 
 /// Why a search ended.
-pub(super) fn ended(method: Method, ended: Ended, stopped: bool) -> &'static str {
-    match (method, ended) {
+pub(super) fn ended(ended: Ended, stopped: bool) -> &'static str {
+    match ended {
         _ if stopped => "it was interrupted",
-        (Method::CmaEs, Ended::Unfinished) => "its generations ran out",
-        (Method::CmaEs, Ended::Apart) => "its designs no longer differ, beyond a limit",
-        (Method::CmaEs, _) => "its designs no longer differ",
-        (Method::Gradient, Ended::Found) => "slopes lead nowhere better",
-        (Method::Gradient, Ended::Stuck) => "no step is better, though slopes say so",
-        (Method::Gradient, Ended::Apart) => "no step comes nearer to the limits",
-        (Method::Gradient, Ended::Unfinished) => "its steps ran out",
+        Ended::Found => "slopes lead nowhere better",
+        Ended::Stuck => "no step is better, though slopes say so",
+        Ended::Apart => "no step comes nearer to the limits",
+        Ended::Unfinished => "its steps ran out",
     }
 }
 
@@ -71,21 +68,15 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
         Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
         Ended::Stuck if !found.failed.is_empty() => say(format!(
             "the search ended where no step makes the figure better, though its derivatives say so, and {} of {} could not be computed: the best \
-             lies at the edge of what can, or the figure has a kink or ripples there; bounds that leave out what fails, or --method cma-es, tell which",
+             lies at the edge of what can, or the figure has a kink or ripples there; bounds that leave out what fails, or other starts (--starts), tell which",
             found.failed.values().sum::<usize>(),
             counted(found.evaluations as u64, "design")
         )),
         Ended::Stuck => say(
             "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
-             than what is left, or the figure has a kink or ripples there; a smaller /solver/rtol may help, or --method cma-es, which asks for no slopes"
+             than what is left, or the figure has a kink or ripples there; a smaller /solver/rtol may help, or other starts (--starts)"
                 .into(),
         ),
-    }
-    if let Some(one) = found.explored.filter(|one| one.came_to_best < 2 && !stopped) {
-        say(format!(
-            "only {} of {} searches among the alternatives came to the best: there may well be better ones; more searches (--starts) look further",
-            one.came_to_best, one.searches
-        ));
     }
     if found.derivatives == Derivatives::Differences {
         let why = match &problem.differences {

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::case::Case;
 use crate::error::{Error, Result};
 
-/// Alternatives of which all are computed, at most; of more a search looks at so many.
+/// Alternatives at most.
 pub const MOST: usize = 5000;
 
 /// One of a set.
@@ -58,9 +58,7 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
 pub fn combinations(sets: Vec<Vec<Alternative>>) -> Result<Vec<Alternative>> {
     let count = sets.iter().try_fold(1_usize, |n, set| n.checked_mul(set.len()));
     if count.is_none_or(|n| n > MOST) {
-        return Err(Error::Usage(format!(
-            "more than {MOST} alternatives: all of them are computed, so choose between fewer"
-        )));
+        return Err(too_many("--choose"));
     }
     let mut all = vec![];
     for set in sets {
@@ -82,105 +80,71 @@ pub fn combinations(sets: Vec<Vec<Alternative>>) -> Result<Vec<Alternative>> {
 
 /// Wirings in which the first two chains of a case, of opposite bladders one beside the other, change sides at most so often along the beam.
 /// Both begin on the sides on which they do in the case.
-#[derive(Clone, Debug)]
-pub struct Crossing {
-    chain: Vec<i64>,
-    most: usize,
+///
+/// # Errors
+/// [`Error::Usage`] where there are no two such chains, and for more than [`MOST`] wirings.
+pub fn crossings(case: &Case, most: usize) -> Result<Vec<Alternative>> {
+    let chains = case.network.as_ref().map_or(&[][..], |network| &network.chains);
+    let sides = |chain: usize| -> Vec<i64> { chains.get(chain).map_or_else(Vec::new, |chain| chain.bladders.clone()) };
+    let (chain, other) = (sides(0), sides(1));
+    let opposite = chain.len() == other.len() && chain.iter().zip(&other).all(|(a, b)| *a == -*b);
+    if chain.len() < 2 || !opposite {
+        return Err(Error::Usage(
+            "--crossovers: the first two chains of /network have to hold opposite bladders, one beside the other: [1, 2, ..] and [-1, -2, ..]"
+                .into(),
+        ));
+    }
+    let most = most.min(chain.len() - 1);
+    let counts = (1..=most).scan(1.0, |count, k| {
+        *count *= (chain.len() - k) as f64 / k as f64;
+        Some(*count)
+    });
+    if 1.0 + counts.sum::<f64>() > MOST as f64 {
+        return Err(too_many(&format!("--crossovers {most}")));
+    }
+    let more = |after: &Vec<usize>| {
+        let from = after.last().map_or(1, |last| last + 1);
+        let next = (from..chain.len()).map(|next| [&after[..], &[next]].concat());
+        next.collect::<Vec<_>>()
+    };
+    let mut crossed: Vec<Vec<usize>> = vec![vec![]];
+    let mut all = vec![];
+    for _ in 0..=most {
+        all.extend(crossed.iter().map(|after| wiring(&chain, after)));
+        crossed = crossed.iter().flat_map(more).collect();
+    }
+    Ok(all)
 }
 
-impl Crossing {
-    /// Of a case.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] where there are no two such chains.
-    pub fn of(case: &Case, most: usize) -> Result<Self> {
-        let chains = case.network.as_ref().map_or(&[][..], |network| &network.chains);
-        let sides =
-            |chain: usize| -> Vec<i64> { chains.get(chain).map_or_else(Vec::new, |chain| chain.bladders.clone()) };
-        let (chain, other) = (sides(0), sides(1));
-        let opposite = chain.len() == other.len() && chain.iter().zip(&other).all(|(a, b)| *a == -*b);
-        if chain.len() < 2 || !opposite {
-            return Err(Error::Usage(
-                "--crossovers: the first two chains of /network have to hold opposite bladders, one beside the other: [1, 2, ..] and [-1, -2, ..]"
-                    .into(),
-            ));
-        }
-        let most = most.min(chain.len() - 1);
-        Ok(Self { chain, most })
-    }
-
-    /// Places at which chains may change sides.
-    pub fn places(&self) -> usize {
-        self.chain.len() - 1
-    }
-
-    /// How often they may.
-    pub fn most(&self) -> usize {
-        self.most
-    }
-
-    /// How many wirings there are.
-    pub fn count(&self) -> f64 {
-        let places = self.places() as f64;
-        let mut of_so_many = 1.0;
-        let mut sum = 1.0;
-        for k in 1..=self.most {
-            of_so_many *= (places - k as f64 + 1.0) / k as f64;
-            sum += of_so_many;
-        }
-        sum.round()
-    }
-
-    /// All of them.
-    ///
-    /// # Errors
-    /// [`Error::Usage`] for more than [`MOST`].
-    pub fn all(&self) -> Result<Vec<Alternative>> {
-        if self.count() > MOST as f64 {
-            let what = format!("--crossovers {}: more than {MOST} wirings", self.most);
-            return Err(Error::Usage(what));
-        }
-        let places = self.places();
-        let more = |after: &Vec<usize>| {
-            let from = after.last().map_or(1, |last| last + 1);
-            let next = (from..=places).map(|next| [&after[..], &[next]].concat());
-            next.collect::<Vec<_>>()
-        };
-        let mut crossed: Vec<Vec<usize>> = vec![vec![]];
-        let mut all = vec![];
-        for count in 0..=self.most {
-            all.extend(crossed.iter().map(|after| self.wiring(after)));
-            if count < self.most {
-                crossed = crossed.iter().flat_map(more).collect();
-            }
-        }
-        Ok(all)
-    }
-
-    /// The wiring that changes sides after so many bladders each.
-    pub fn wiring(&self, after: &[usize]) -> Alternative {
-        let mut side = self.chain[0].signum();
-        let upper: Vec<i64> = self
-            .chain
+/// The wiring that changes sides after so many bladders each.
+fn wiring(chain: &[i64], after: &[usize]) -> Alternative {
+    let mut side = chain[0].signum();
+    let upper: Vec<i64> = chain
+        .iter()
+        .enumerate()
+        .map(|(k, bladder)| {
+            side *= if after.contains(&k) { -1 } else { 1 };
+            side * bladder.abs()
+        })
+        .collect();
+    let lower: Vec<i64> = upper.iter().map(|bladder| -bladder).collect();
+    let names: Vec<String> = after.iter().map(|k| chain[k - 1].abs().to_string()).collect();
+    Alternative {
+        name: match names.is_empty() {
+            true => "parallel".into(),
+            false => format!("crossover after {}", names.join(", ")),
+        },
+        sets: [upper, lower]
             .iter()
             .enumerate()
-            .map(|(k, bladder)| {
-                side *= if after.contains(&k) { -1 } else { 1 };
-                side * bladder.abs()
-            })
-            .collect();
-        let lower: Vec<i64> = upper.iter().map(|bladder| -bladder).collect();
-        let names: Vec<String> = after.iter().map(|k| self.chain[k - 1].abs().to_string()).collect();
-        Alternative {
-            name: match names.is_empty() {
-                true => "parallel".into(),
-                false => format!("crossover after {}", names.join(", ")),
-            },
-            sets: [upper, lower]
-                .iter()
-                .enumerate()
-                .map(|(k, bladders)| format!("/network/chains/{k}/bladders={bladders:?}"))
-                .collect(),
-        }
+            .map(|(k, bladders)| format!("/network/chains/{k}/bladders={bladders:?}"))
+            .collect(),
     }
+}
+
+/// More alternatives than [`MOST`].
+fn too_many(option: &str) -> Error {
+    Error::Usage(format!(
+        "{option}: more than {MOST} alternatives, all of which would be computed: choose between fewer"
+    ))
 }
