@@ -109,7 +109,6 @@ impl Kind {
                 "sweep.npz",
                 "sweep.svg",
                 "map.svg",
-                "parallel.svg",
             ],
             Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
             Self::Optimum => &["designs.csv", "optimum.svg", "optimum-case.json"],

@@ -81,11 +81,6 @@ pub fn data(place: &Place) -> Result<Page> {
             "Designs that finished. Every ring is one of them; its number stands beside it where there is room, and in the table. Modes that change places are not joined.",
         ),
         figure("Over two numbers", "map.svg", "Each cell is a design that finished."),
-        figure(
-            "All numbers at once",
-            "parallel.svg",
-            "A line a design, from what is varied to what came out; the colour is that of the last figure.",
-        ),
     ];
     page.put("figures", figures.into_iter().flatten().collect::<Vec<_>>());
     page.put("table", rows(place, &found, &survey)?);

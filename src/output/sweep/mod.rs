@@ -6,7 +6,7 @@
 //! arrays    sweep.npz: the same numbers
 //! exchanged modes that change places from one design to the next
 //! warned    warnings of designs, counted
-//! pictures  sweep.svg, map.svg, parallel.svg
+//! pictures  sweep.svg, map.svg
 //! words     what is said of it
 //! script    jobs for Slurm and GNU parallel
 //! parts     shards joined
@@ -53,7 +53,7 @@ pub const TABLE: &str = "sweep.csv";
 /// The table's numbers.
 pub const ARRAYS: &str = "sweep.npz";
 /// Pictures, of which those are there that say something.
-pub const PICTURES: [&str; 3] = ["sweep.svg", "map.svg", "parallel.svg"];
+pub const PICTURES: [&str; 2] = ["sweep.svg", "map.svg"];
 /// Cases of designs, on request.
 pub const CASES: &str = "cases";
 /// Result folders of designs, on request.

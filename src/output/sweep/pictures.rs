@@ -51,7 +51,6 @@ pub fn draw(plan: &Plan, survey: &Survey) -> Result<Vec<(&'static str, String)>>
                 .then(|| designs::over_two(&data))
                 .flatten(),
         ),
-        ("parallel.svg", (many > 2).then(|| designs::beside(&data)).flatten()),
     ];
     Ok(all
         .into_iter()

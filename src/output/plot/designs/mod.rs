@@ -1,7 +1,6 @@
-//! Pictures of many designs: curves along one number, a map over two, all numbers beside each other.
+//! Pictures of many designs: curves along one number, a map over two.
 
 mod map;
-mod parallel;
 
 use std::slice;
 
@@ -15,7 +14,6 @@ use crate::output::numbers::{count, quantity};
 use crate::study::sweep::exchanged::Exchange;
 
 pub use map::over_two;
-pub use parallel::beside;
 
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
@@ -255,7 +253,7 @@ mod tests {
             apart: vec![],
             of: 5,
         };
-        for picture in [along(&data), over_two(&data), beside(&data)] {
+        for picture in [along(&data), over_two(&data)] {
             let picture = picture.expect("a picture");
             assert!(
                 picture.contains("2 of 5, spread over them") && !picture.contains("NaN"),
@@ -290,13 +288,13 @@ mod tests {
             curve: vec![0; SAID + 1],
             ..data.clone()
         };
-        for picture in [along(&many), over_two(&many), beside(&many)] {
+        for picture in [along(&many), over_two(&many)] {
             let picture = picture.expect("a picture");
             assert!(!picture.contains("<a ") && picture.len() < 400_000, "{}", picture.len());
         }
         data.of = 2;
         assert!(!along(&data).expect("a picture").contains("of 2"));
         data.figures.clear();
-        assert_eq!((along(&data), over_two(&data), beside(&data)), (None, None, None));
+        assert_eq!((along(&data), over_two(&data)), (None, None));
     }
 }
