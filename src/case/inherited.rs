@@ -99,7 +99,7 @@ fn cross_term(case: &Case) -> Option<String> {
     ];
     let ratio = (other / own).abs();
     (ratio > CROSS).then(|| {
-        Code::CrossTerm.warning(format!(
+        Code::PlaneCell.warning(format!(
             "The model leaves out the area of one row per pressure in the other: {other:.3e} m^2/Pa, {:.1} % of area_per_pressure_m2_per_pa (limit {:.0} \
              %). Where both rows are under pressure, areas, and pressures of closed bladders, are off by up to this share of the larger pressure. \
              Use larger fillets, or move the bladders away from the mid-plane, to make it smaller.",

@@ -189,7 +189,7 @@ impl System {
             "nothing holds the beam {}: it has no equilibrium to start from",
             directions.join(" and ")
         );
-        let fault = Violation::new(Code::Start, "/start/equilibrium", what);
+        let fault = Violation::new(Code::Together, "/start/equilibrium", what);
         Some(fault.hint("hold an end in /ends or attach a spring to ground; or leave the equilibrium out, and the straight beam is let go"))
     }
 

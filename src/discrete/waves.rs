@@ -22,7 +22,7 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let ratio = least_damping_ratio(system);
     (ratio < ENOUGH).then(|| {
         Violation::new(
-            Code::Order,
+            Code::Range,
             "/solver/max_order",
             format!(
                 "BDF of order {order} is unstable for the waves of this scene, whose least damping ratio is {}: \

@@ -227,7 +227,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
         .filter(|f| !f.good)
         .map(|f| {
             Violation::new(
-                Code::Convexity,
+                Code::Slopes,
                 "/bladders/coupling",
                 format!("the kinked potential is {}: {}", f.name, significant(f.value, 4)),
             )

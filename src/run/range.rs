@@ -297,14 +297,14 @@ impl Range {
             )));
         }
         if self.begun > 0.0 {
-            all.push(Code::DeepContact.warning(format!(
+            all.push(Code::BeyondRange.warning(format!(
                 "contact: the beam begins {} behind the face of a wall, and is thrown off; begin in front of it, or with \
                  /start/equilibrium",
                 quantity(self.begun, "m", 4)
             )));
         }
         if let Some(began) = self.touched.began {
-            all.push(Code::DeepContact.warning(format!(
+            all.push(Code::BeyondRange.warning(format!(
                 "contact: the beam is pressed {} into a wall at t = {:.4} s, by more than half its height from t = {began:.4} s on; a \
                  stiffer wall holds it",
                 quantity(self.touched.largest, "m", 4),

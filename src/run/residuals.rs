@@ -205,7 +205,7 @@ impl Residuals {
                 (true, false) => format!("momentum by {}", open(momentum)),
                 _ => format!("angular momentum by {}", open(angular)),
             };
-            all.push(Code::MomentumOpen.warning(format!(
+            all.push(Code::EnergyOpen.warning(format!(
                 "balance of momentum: it stays open, {which} of the largest that the beam has or was given; tighten \
                  solver/rtol until answers no longer change"
             )));

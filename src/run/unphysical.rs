@@ -62,7 +62,7 @@ impl Unphysical {
     pub fn warnings(&self, met: &Met, at: &dyn Fn(f64) -> String) -> Vec<String> {
         let crossing = met.crossing.map(|(places, when)| {
             let [first, second] = places.map(|place| quantity(place, "m", 4));
-            Code::CrossesItself.warning(format!(
+            Code::BeyondRange.warning(format!(
                 "The beam crosses itself: {first} and {second} from the root meet at {} (first seen). The model has no contact between parts of a beam, so \
                  that later states are not physical. Reduce the load that bends it, or end before that.",
                 at(when)

@@ -21,10 +21,9 @@ pub enum Cause {
 }
 
 /// What a warning names: a list of causes, or everything.
-const TRUST: [(Code, &[Cause]); 11] = [
+const TRUST: [(Code, &[Cause]); 10] = [
     // The balance is off by the steps' error; what jumps without inertia shows there too.
     (Code::EnergyOpen, &[Cause::Time]),
-    (Code::MomentumOpen, &[Cause::Time]),
     (Code::PortFlow, &[Cause::Time]),
     // From then on the state is not unique: nothing that follows can be trusted.
     (Code::LostConvexity, ALL),

@@ -178,7 +178,7 @@ fn deep_contact_is_told() {
         let warnings = run(&case).1.warnings;
         warnings
             .into_iter()
-            .filter(|w| w.starts_with("W027"))
+            .filter(|w| w.starts_with("W023"))
             .collect::<Vec<_>>()
     };
     assert!(warns(-0.01, 0.0).is_empty());

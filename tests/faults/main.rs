@@ -251,6 +251,6 @@ fn a_liquid_that_would_boil_is_reported() {
 #[test]
 fn a_beam_that_crosses_itself_is_reported() {
     let answer = Answer::run("self-crossing", &[]);
-    let told = answer.warning("W039");
+    let told = answer.warning("W023");
     assert!(told.contains(" mm from the root meet at t = 0.66"), "{told}");
 }

@@ -39,12 +39,12 @@ fn curled(curvature: f64) -> Value {
 #[test]
 fn a_beam_that_crosses_itself_is_told() {
     let summary = run(&curled(26.0));
-    let warning = told(&summary.warnings, "W039").expect("a warning");
+    let warning = told(&summary.warnings, "W023").expect("a warning");
     assert!(
         warning.contains(" m from the root") || warning.contains("mm from the root"),
         "{warning}"
     );
-    assert_eq!(told(&run(&curled(15.0)).warnings, "W039"), None);
+    assert_eq!(told(&run(&curled(15.0)).warnings, "W023"), None);
     let of_path = |curvature: f64| {
         let options = Options {
             points: Some(64),
@@ -55,7 +55,7 @@ fn a_beam_that_crosses_itself_is_told() {
             .warnings()
     };
     let warnings = of_path(26.0);
-    let warning = told(&warnings, "W039").expect("a warning");
+    let warning = told(&warnings, "W023").expect("a warning");
     let factor = warning
         .split("load factor ")
         .nth(1)
@@ -63,7 +63,7 @@ fn a_beam_that_crosses_itself_is_told() {
     let factor: f64 = factor.expect("a factor").parse().unwrap();
     let closes = 2.0 * std::f64::consts::PI / (26.0 * 0.3);
     assert!(factor >= closes - 0.01 && factor < closes + 0.1, "{warning}");
-    assert_eq!(told(&of_path(20.0), "W039"), None);
+    assert_eq!(told(&of_path(20.0), "W023"), None);
 }
 
 /// Two bladders of the paper's beam, and a port that takes fluid out of them.
@@ -137,13 +137,13 @@ fn a_cross_term_that_is_left_out_is_told() {
         let model = Model::new(&case).unwrap();
         audit::warnings(&case, &model, &std::collections::BTreeMap::new())
     };
-    assert_eq!(told(&told_of(&[]), "W041"), None);
+    assert_eq!(told(&told_of(&[]), "W022"), None);
     let near =
         r#"{"center_m": 0.0034, "shape": {"rounded_rectangle": {"along_m": 5e-3, "high_m": 5e-3, "fillet_m": 1e-3}}}"#;
     let warnings = told_of(&[
         format!("/section/bladders/upper={near}"),
         "/section/three_d=false".into(),
     ]);
-    let warning = told(&warnings, "W041").expect("a warning");
+    let warning = told(&warnings, "W022").expect("a warning");
     assert!(warning.contains("% of area_per_pressure_m2_per_pa"), "{warning}");
 }

@@ -22,7 +22,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 pair[0], pair[1]
             );
             faults.push_at_key(
-                Violation::new(Code::BeamEnds, format!("{pointer}/{}", pair[1]), what)
+                Violation::new(Code::Together, format!("{pointer}/{}", pair[1]), what)
                     .allowed(ALLOWED)
                     .hint("keep one"),
             );
@@ -52,7 +52,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
             pair[1], pair[0]
         );
         faults.push_at_key(
-            Violation::new(Code::BeamEnds, pointer, what)
+            Violation::new(Code::Together, pointer, what)
                 .allowed(ALLOWED)
                 .hint(hint),
         );
@@ -60,7 +60,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
     for key in ["u1_m", "u3_m"].iter().filter(|key| keys.contains(key)) {
         if let Some(follower) = follower {
             let what = format!("{follower} acts on an end that {key} holds");
-            let fault = Violation::new(Code::BeamEnds, format!("{pointer}/{follower}"), what);
+            let fault = Violation::new(Code::Together, format!("{pointer}/{follower}"), what);
             faults.push_at_key(fault.hint(format!("remove {follower}, or give a force instead of {key}")));
         }
     }

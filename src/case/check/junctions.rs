@@ -23,7 +23,7 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     let used = |name: &String| first(name).is_some_and(|point| joined.attached.contains_key(&point));
     for (i, name) in names.iter().enumerate().filter(|(_, name)| !used(name)) {
         let fault = Violation::new(
-            Code::Junction,
+            Code::Wiring,
             format!("/network/junctions/{i}"),
             format!("junction \"{name}\" is not used"),
         );
@@ -44,7 +44,7 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
             "junction \"{}\" reaches no bladder, accumulator or pressure port at {t} s",
             names[i]
         );
-        let fault = Violation::new(Code::Junction, format!("/network/junctions/{i}"), what);
+        let fault = Violation::new(Code::Wiring, format!("/network/junctions/{i}"), what);
         faults.push(
             fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
         );

@@ -199,8 +199,7 @@ impl<'a> Rules<'a, '_> {
                 let missing = if permeable { "length" } else { "permeability" };
                 let what = format!("a tube without {missing}, and no /tubes to take it from");
                 let hint = "add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube";
-                self.faults
-                    .push(Violation::new(Code::TubeSize, pointer, what).hint(hint));
+                self.faults.push(Violation::new(Code::Wiring, pointer, what).hint(hint));
                 continue;
             };
             found.extend(points.map(|points| Tube {
@@ -351,7 +350,7 @@ impl<'a> Rules<'a, '_> {
                 })),
                 None if chain.bladders.len() > 1 => {
                     let what = "a chain without tubes to join its bladders";
-                    let fault = Violation::new(Code::TubeSize, format!("/network/chains/{i}"), what);
+                    let fault = Violation::new(Code::Wiring, format!("/network/chains/{i}"), what);
                     self.faults
                         .push(fault.hint("add \"tubes\" with length and radius to the case"));
                 }

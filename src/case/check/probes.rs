@@ -13,7 +13,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (i, probe) in case.probes.iter().enumerate() {
         let name = &probe.name;
         let mut fault = |what: String| {
-            let fault = Violation::new(Code::ProbeName, format!("/probes/{i}/name"), what);
+            let fault = Violation::new(Code::CaseName, format!("/probes/{i}/name"), what);
             faults.push(fault.allowed("letters, digits, `-` and `_`, a name for each probe, not \"tip\""));
         };
         if name.is_empty() || !name.chars().all(good) {
@@ -38,7 +38,7 @@ pub(super) fn step(case: &Case, faults: &mut Violations) {
         "the step is at {} s, and the run ends at {} s",
         step.at_s, case.time.end_s
     );
-    let fault = Violation::new(Code::StepTime, "/step_response/at_s", what).allowed("times before /time/end_s");
+    let fault = Violation::new(Code::Times, "/step_response/at_s", what).allowed("times before /time/end_s");
     let fault = fault.hint("make the run longer than the response takes to settle");
     faults.push_beside(&[END], fault);
 }

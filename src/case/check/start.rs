@@ -33,7 +33,7 @@ fn pressures(case: &Case, faults: &mut Violations) {
                 && let Some(first) = known.insert(index, pointer.clone())
             {
                 let what = format!("the pressure of bladder {index} is given twice, first at {first}");
-                faults.push(Violation::new(Code::Start, pointer, what));
+                faults.push(Violation::new(Code::Together, pointer, what));
             }
         }
     }
@@ -54,7 +54,7 @@ fn volumes(case: &Case, faults: &mut Violations) {
                 }
                 Some(_) => "give /start/equilibrium with loads_at_s 0, or the same volume at both instants",
             };
-            faults.push(Violation::new(Code::Start, pointer, what).hint(hint));
+            faults.push(Violation::new(Code::Together, pointer, what).hint(hint));
         }
     }
 }
@@ -64,7 +64,7 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
     let Some(start) = &case.start.equilibrium else { return };
     if !start.loads_at_s.is_finite() {
         faults.push(Violation::new(
-            Code::Start,
+            Code::Together,
             "/start/equilibrium/loads_at_s",
             "the instant is not a finite number",
         ));
@@ -75,13 +75,13 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
             let pointer = format!("/start/equilibrium/via_s/{i}");
             let what = format!("the instant {instant} s is not one before the end of the run");
             let allowed = format!("finite, at most {} s", case.time.end_s);
-            faults.push_beside(&[END], Violation::new(Code::Start, pointer, what).allowed(allowed));
+            faults.push_beside(&[END], Violation::new(Code::Together, pointer, what).allowed(allowed));
         }
     }
     for (key, given) in [("u1_m", &case.start.u1_m), ("u3_m", &case.start.u3_m)] {
         if given.is_some() {
             let what = format!("{key} is given, but /start/equilibrium finds the displacements");
-            faults.push(Violation::new(Code::Start, format!("/start/{key}"), what).hint("remove one of the two"));
+            faults.push(Violation::new(Code::Together, format!("/start/{key}"), what).hint("remove one of the two"));
         }
     }
 }
@@ -117,7 +117,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations
             };
             let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
             faults.push(
-                Violation::new(Code::Start, pointer, what)
+                Violation::new(Code::Together, pointer, what)
                     .allowed(format!("agreement within {tolerance:.1e} {unit}"))
                     .hint(hint),
             );

@@ -108,7 +108,7 @@ impl Report<'_> {
     /// What to know before trusting the modes.
     pub fn warnings(&self) -> Vec<String> {
         let still = (self.found.modes.is_empty() && self.sort.is_none()).then(|| {
-            Code::NothingMoves.warning(
+            Code::Seldom.warning(
                 "nothing can move: the case leaves out inertia of the solid (/effects/solid_inertia) and no bladder exchanges fluid",
             )
         });

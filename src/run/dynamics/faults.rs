@@ -76,5 +76,5 @@ pub(super) fn stalled(t: f64, step: f64) -> SolverError {
         format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)");
     let cause = "the solution changes ever faster towards this time: a closing bladder, an instability, a jump";
     let hint = "look at the fields just before this time; damping or a smoother signal may help";
-    at(t, Code::Stalled, [&what, cause, hint])
+    at(t, Code::Integrator, [&what, cause, hint])
 }

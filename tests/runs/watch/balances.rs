@@ -50,9 +50,13 @@ fn open_momentum_is_warned_of() {
         .balances
         .momentum_residual_relative
         .max(loose.balances.angular_momentum_residual_relative);
-    assert_eq!(open > 0.01, warning(&loose, "W018").is_some(), "{open:.1e}");
+    assert_eq!(
+        open > 0.01,
+        warning(&loose, "W008 balance of momentum").is_some(),
+        "{open:.1e}"
+    );
     assert!(open > 0.01, "{open:.1e}");
-    assert_eq!(warning(&with("/solver/rtol=1e-5"), "W018"), None);
+    assert_eq!(warning(&with("/solver/rtol=1e-5"), "W008 balance of momentum"), None);
 }
 
 /// Goal: flow through a port is measured by the port's law beside what the network stores; at a tolerance of a tenth they differ and
