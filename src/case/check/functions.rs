@@ -63,7 +63,9 @@ pub fn controls(case: &Case) -> Vec<(String, bool, &Signal)> {
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (pointer, role, signal) in signals(case) {
         let known = faults.count();
-        signal_parts(&pointer, signal, case.time.end_s, faults);
+        each_part(&pointer, signal, &mut |at, part| {
+            part_faults(at, part, case.time.end_s, faults)
+        });
         if faults.count() == known && faults.are_sound(&[END, &pointer]) {
             values(&pointer, role, signal, case.time.end_s, faults);
         }
@@ -181,7 +183,20 @@ fn profiles(case: &Case) -> Vec<(String, &Profile)> {
     all
 }
 
-fn signal_parts(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations) {
+/// Visits the parts of a signal that are neither sums nor products, each with its pointer.
+pub(super) fn each_part<'s>(pointer: &str, signal: &'s Signal, visit: &mut dyn FnMut(&str, &'s Signal)) {
+    match signal {
+        Signal::Sum(parts) | Signal::Product(parts) => {
+            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
+            for (i, part) in parts.iter().enumerate() {
+                each_part(&format!("{pointer}/{name}/{i}"), part, visit);
+            }
+        }
+        _ => visit(pointer, signal),
+    }
+}
+
+fn part_faults(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations) {
     match signal {
         Signal::Sine(sine) if sine.frequency_hz > HIGHEST_FREQUENCY => {
             let what = format!("{} Hz is not a plausible frequency", plain(sine.frequency_hz));
@@ -213,12 +228,6 @@ fn signal_parts(pointer: &str, signal: &Signal, end: f64, faults: &mut Violation
             let fault = fault.allowed(format!("up to {MOST_KNOTS} points in the run"));
             faults.push(fault.hint("thin out the table, or write a sine"));
         }
-        Signal::Sum(parts) | Signal::Product(parts) => {
-            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
-            for (i, part) in parts.iter().enumerate() {
-                signal_parts(&format!("{pointer}/{name}/{i}"), part, end, faults);
-            }
-        }
         _ => {}
     }
 }
@@ -243,7 +252,7 @@ fn profile_tables(pointer: &str, profile: &Profile, faults: &mut Violations) {
     }
 }
 
-pub(super) fn sum_or_product(sum: bool) -> &'static str {
+fn sum_or_product(sum: bool) -> &'static str {
     if sum { "sum" } else { "product" }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::functions::{controls, sum_or_product};
+use super::functions::{controls, each_part};
 use super::strength::inlets;
 use crate::case::locate::child;
 use crate::case::numbers::{digits, plain};
@@ -175,52 +175,39 @@ fn angles(case: &Case, all: &mut Vec<(String, String)>) {
                 }
             });
         }
-        each_phase(&pointer, signal, &mut |at, phase| {
-            if is_degrees(phase) {
-                tell(at, phase);
+        each_part(&pointer, signal, &mut |at, part| {
+            if let Signal::Sine(sine) = part
+                && is_degrees(sine.phase_rad)
+            {
+                tell(format!("{at}/sine/phase_rad"), sine.phase_rad);
             }
         });
     }
 }
 
-/// Numbers of a signal that are values of its own: constants, ends of ramps, amplitudes, the first and the last of a table.
+/// Numbers of a signal that are values of its own: constants, ends of ramps, amplitudes, the first and the last of a table; none of products.
 fn each_value(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
-    match signal {
-        Signal::Constant(value) => tell(pointer.to_owned(), *value),
-        Signal::Ramp(ramp) => {
-            tell(format!("{pointer}/ramp/from"), ramp.from);
-            tell(format!("{pointer}/ramp/to"), ramp.to);
-        }
-        Signal::Sine(sine) => tell(format!("{pointer}/sine/amplitude"), sine.amplitude),
-        Signal::Sigmoid(sigmoid) => tell(format!("{pointer}/sigmoid/amplitude"), sigmoid.amplitude),
-        Signal::Table(table) => {
-            for k in [Some(0), table.values.len().checked_sub(1)].into_iter().flatten() {
-                if let Some(value) = table.values.get(k) {
-                    tell(format!("{pointer}/table/values/{k}"), *value);
+    each_part(pointer, signal, &mut |at, part| {
+        let mut tell = |key: &str, value: f64| tell(format!("{at}{key}"), value);
+        match part {
+            _ if at[pointer.len()..].contains("/product/") => {}
+            Signal::Constant(value) => tell("", *value),
+            Signal::Ramp(ramp) => {
+                tell("/ramp/from", ramp.from);
+                tell("/ramp/to", ramp.to);
+            }
+            Signal::Sine(sine) => tell("/sine/amplitude", sine.amplitude),
+            Signal::Sigmoid(sigmoid) => tell("/sigmoid/amplitude", sigmoid.amplitude),
+            Signal::Table(table) => {
+                for k in [Some(0), table.values.len().checked_sub(1)].into_iter().flatten() {
+                    if let Some(value) = table.values.get(k) {
+                        tell(&format!("/table/values/{k}"), *value);
+                    }
                 }
             }
+            _ => {}
         }
-        Signal::Sum(parts) => {
-            for (k, part) in parts.iter().enumerate() {
-                each_value(&format!("{pointer}/sum/{k}"), part, tell);
-            }
-        }
-        Signal::Product(_) | Signal::Polynomial(_) => {}
-    }
-}
-
-/// Phases of all sines of a signal.
-fn each_phase(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
-    match signal {
-        Signal::Sine(sine) => tell(format!("{pointer}/sine/phase_rad"), sine.phase_rad),
-        Signal::Sum(parts) | Signal::Product(parts) => {
-            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
-            for (k, part) in parts.iter().enumerate() {
-                each_phase(&format!("{pointer}/{name}/{k}"), part, tell);
-            }
-        }
-        _ => {}
-    }
+    });
 }
 
 /// Damping times that are longer than the period of the first bending mode of this frequency [Hz]: nothing swings.
@@ -276,11 +263,11 @@ pub fn instant(case: &Case, at: f64) -> Option<String> {
 pub fn late(case: &Case) -> Vec<(String, String)> {
     let mut all = vec![];
     for (pointer, _, signal) in controls(case) {
-        begins(&pointer, signal, &mut |at, start| {
-            if start >= case.time.end_s {
+        each_part(&pointer, signal, &mut |at, part| {
+            if let Some((key, start)) = begins(part).filter(|(_, start)| *start >= case.time.end_s) {
                 let end = plain(case.time.end_s);
                 all.push((
-                    at,
+                    child(at, key),
                     format!(
                         "it begins at {} s, and the run ends at {end} s: nothing of it acts",
                         plain(start)
@@ -292,23 +279,14 @@ pub fn late(case: &Case) -> Vec<(String, String)> {
     all
 }
 
-/// Where parts of a signal begin to change [s].
-fn begins(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
-    match signal {
-        Signal::Ramp(ramp) if ramp.from != ramp.to => tell(child(pointer, "ramp"), ramp.start_s),
+/// Where a part of a signal begins to change [s], and under which key.
+fn begins(part: &Signal) -> Option<(&'static str, f64)> {
+    match part {
+        Signal::Ramp(ramp) if ramp.from != ramp.to => Some(("ramp", ramp.start_s)),
         Signal::Table(table) if !table.repeat => {
-            let changes = table.values.windows(2).position(|pair| pair[0] != pair[1]);
-            let first = changes.and_then(|k| table.times_s.get(k));
-            if let Some(start) = first {
-                tell(child(pointer, "table"), *start);
-            }
+            let changes = table.values.windows(2).position(|pair| pair[0] != pair[1])?;
+            Some(("table", *table.times_s.get(changes)?))
         }
-        Signal::Sum(parts) | Signal::Product(parts) => {
-            let name = sum_or_product(matches!(signal, Signal::Sum(_)));
-            for (k, part) in parts.iter().enumerate() {
-                begins(&format!("{pointer}/{name}/{k}"), part, tell);
-            }
-        }
-        _ => {}
+        _ => None,
     }
 }

@@ -1,11 +1,12 @@
 //! Loads, pressures and flows that no such beam bears: almost always a unit.
 
 use super::bladders::PER_ROW;
+use super::functions::controls;
 use super::size::{size_along, size_of, size_of_integral};
 use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::numbers::digits;
-use crate::case::schema::{AccumulatorKind, Bladders, Case, ChainEnd, Load, Rectifier};
+use crate::case::schema::{AccumulatorKind, Bladders, Case, Load, Rectifier};
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
@@ -301,28 +302,16 @@ pub(super) struct Inlets<'a> {
 
 pub(super) fn inlets(case: &Case) -> Inlets<'_> {
     let mut all = Inlets::default();
-    let Some(network) = &case.network else {
-        return all;
-    };
-    for (i, chain) in network.chains.iter().enumerate() {
-        for (k, end) in chain.ends.iter().enumerate() {
-            let at = format!("/network/chains/{i}/ends/{k}");
-            match end {
-                ChainEnd::PressurePa(signal) => all.pressures.push((format!("{at}/pressure_pa"), signal)),
-                ChainEnd::FlowM3S(signal) => all.flows.push((format!("{at}/flow_m3_s"), signal)),
-                ChainEnd::VolumeM3(signal) => all.volumes.push((format!("{at}/volume_m3"), signal)),
-                ChainEnd::Sealed | ChainEnd::Connected => {}
-            }
+    for (at, _, signal) in controls(case) {
+        let of_port = ["/network/chains/", "/network/ports/"]
+            .iter()
+            .any(|part| at.starts_with(part));
+        match at.rsplit('/').next().filter(|_| of_port) {
+            Some("pressure_pa") => all.pressures.push((at, signal)),
+            Some("flow_m3_s") => all.flows.push((at, signal)),
+            Some("volume_m3") => all.volumes.push((at, signal)),
+            _ => {}
         }
-    }
-    for (i, port) in network.ports.iter().enumerate() {
-        let at = format!("/network/ports/{i}");
-        all.pressures
-            .extend(port.pressure_pa.iter().map(|s| (format!("{at}/pressure_pa"), s)));
-        all.volumes
-            .extend(port.volume_m3.iter().map(|s| (format!("{at}/volume_m3"), s)));
-        all.flows
-            .extend(port.flow_m3_s.iter().map(|s| (format!("{at}/flow_m3_s"), s)));
     }
     all
 }
