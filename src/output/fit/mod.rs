@@ -6,7 +6,6 @@ use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
 use super::plot::fitted::{self, Fitted as Drawn, Part};
 use super::records;
-use crate::case::Written;
 use crate::case::readable;
 use crate::error::Result;
 use crate::results;
@@ -32,13 +31,7 @@ pub const FITTED: &str = "fitted-case.json";
 /// Something cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Result<()> {
     let (own, fitted) = (problem.case.written(), found.case.written());
-    let mut tables = own.tables;
-    for table in fitted.tables {
-        if tables.iter().all(|(name, _)| *name != table.0) {
-            tables.push(table);
-        }
-    }
-    let case = Written { json: own.json, tables };
+    let case = own.with_tables(fitted.tables);
     let mut files = vec![
         (CSV, table(problem, found)),
         (JSON, results::text(&found.fit)),

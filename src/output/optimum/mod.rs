@@ -6,7 +6,7 @@ use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
 use super::plot::optimum::{self, Dot, Optimum as Drawn, Part};
 use super::records;
-use crate::case::{Written, readable};
+use crate::case::readable;
 use crate::error::{Result, visible};
 use crate::results;
 use crate::study::optimize::Optimised;
@@ -31,13 +31,7 @@ pub const BEST: &str = "optimum-case.json";
 /// Something cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) -> Result<()> {
     let (own, best) = (problem.case.written(), found.case.written());
-    let mut tables = own.tables;
-    for table in best.tables {
-        if tables.iter().all(|(name, _)| *name != table.0) {
-            tables.push(table);
-        }
-    }
-    let case = Written { json: own.json, tables };
+    let case = own.with_tables(best.tables);
     let mut files = vec![
         (CSV, table(problem, found)),
         (JSON, results::text(&found.optimum)),
