@@ -117,7 +117,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
 /// # Errors
 /// [`Error::Usage`]: none, or more than is sensible.
 pub fn jobs(asked: Option<usize>) -> Result<usize> {
-    let jobs = asked.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let jobs = asked.unwrap_or_else(pool::cores);
     match (1..=MOST_AT_ONCE).contains(&jobs) {
         true => Ok(jobs),
         false => Err(Error::Usage(format!("--jobs {jobs}: from 1 to {MOST_AT_ONCE}"))),

@@ -1,6 +1,5 @@
 //! All runs of a study, within its budget.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -11,9 +10,8 @@ use super::tolerances::ToleranceSequence;
 use super::trial::{self, Allowance, Role, Trial};
 use crate::case::Case;
 use crate::error::Result;
-use crate::integrate::halt;
-use crate::numerics::threads::crew;
 use crate::study::evaluations::Evaluations;
+use crate::study::sweep::pool;
 
 /// Share of the budget that points may take; references need the rest.
 const POINTS: f64 = 0.5;
@@ -107,26 +105,11 @@ impl Sweep<'_> {
 
     /// Does the work for every item, at once when asked.
     fn each<T: Sync>(&self, items: &[T], work: impl Fn(&T) -> Result<()> + Sync) -> Result<()> {
-        let workers = cores().min(items.len());
-        if !self.plan.parallel || workers < 2 {
+        if !self.plan.parallel {
             return items.iter().try_for_each(work);
         }
-        let (next, heard) = (AtomicUsize::new(0), halt::heard());
-        let ended = Mutex::new(Ok(()));
-        let worker = || -> Result<()> {
-            while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
-                work(item)?;
-            }
-            Ok(())
-        };
-        crew(workers, || {
-            let own = heard.during(worker);
-            let mut all = ended.lock().unwrap_or_else(PoisonError::into_inner);
-            if all.is_ok() {
-                *all = own;
-            }
-        });
-        ended.into_inner().unwrap_or_else(PoisonError::into_inner)
+        let numbers: Vec<usize> = (0..items.len()).collect();
+        pool::each(&numbers, pool::cores(), &|k| Some(work(&items[k])), &mut |ended| ended)
     }
 
     /// What a line may spend: twice its share of what is left for points, since many need less.
@@ -204,7 +187,7 @@ impl Sweep<'_> {
         state.spent += cost;
         // what was read took its time before, as many runs at once as now
         let before = (cost - begin.elapsed().as_secs_f64()).max(0.0);
-        state.earlier += before / if self.plan.parallel { cores() as f64 } else { 1.0 };
+        state.earlier += before / if self.plan.parallel { pool::cores() as f64 } else { 1.0 };
         state.trials.push(trial);
         Ok(cost)
     }
@@ -277,8 +260,4 @@ impl Sweep<'_> {
         }
         Ok(room - left)
     }
-}
-
-fn cores() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
 }

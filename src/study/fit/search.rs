@@ -102,21 +102,13 @@ impl<'a> Search<'a> {
         let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
         let mut weights = vec![1.0; sigmas.len()];
-        let numbers: Vec<usize> = (0..places.len()).collect();
-        let mut found: Vec<Option<Found>> = vec![None; places.len()];
         let (many, within) = match places.len() {
             1 => (1, self.asked.jobs),
             _ => (self.asked.jobs, 1),
         };
-        pool::each(
-            &numbers,
-            many,
-            &|k| (!(self.stop)()).then(|| (k, self.minimise(&places[k], &scale(&sigmas, &weights), within))),
-            &mut |(k, minimum)| {
-                found[k] = minimum;
-                Ok(())
-            },
-        )?;
+        let one = |k: usize| (!(self.stop)()).then(|| self.minimise(&places[k], &scale(&sigmas, &weights), within));
+        let found = pool::all(places.len(), many, &one);
+        let found: Vec<Option<Found>> = found.into_iter().map(Option::flatten).collect();
         let mut steps = found.iter().flatten().map(|one| one.minimum.steps).sum();
         let start = |(from, found): (&Vec<f64>, &Option<Found>)| Start {
             from: self.problem.values(from),

@@ -78,7 +78,14 @@ pub fn optimise(
     let tell_all = together(asked, tell);
     let searches = candidates.iter().map(|one| &one.problem).enumerate();
     let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
-    let mut all = go(&searches, asked.jobs)?;
+    // the starts of one at once, of many these themselves
+    let mut all = match &searches[..] {
+        [search] => vec![search.go(asked.jobs)],
+        _ => {
+            let all = pool::all(searches.len(), asked.jobs, &|k| Some(searches[k].go(1)));
+            all.into_iter().flatten().collect()
+        }
+    };
     let compared = match candidates {
         [_] => vec![],
         _ => {
@@ -197,21 +204,6 @@ fn finish(
         case,
         history,
     })
-}
-
-/// Where every search ended: of one its starts at once, of many themselves.
-fn go(searches: &[Search<'_>], jobs: usize) -> Result<Vec<Result<Reached>>> {
-    if let [search] = searches {
-        return Ok(vec![search.go(jobs)]);
-    }
-    let numbers: Vec<usize> = (0..searches.len()).collect();
-    let mut all: Vec<(usize, Result<Reached>)> = vec![];
-    pool::each(&numbers, jobs, &|k| Some((k, searches[k].go(1))), &mut |one| {
-        all.push(one);
-        Ok(())
-    })?;
-    all.sort_by_key(|(k, _)| *k);
-    Ok(all.into_iter().map(|(_, reached)| reached).collect())
 }
 
 /// What the plain command tells of the best, with errors.

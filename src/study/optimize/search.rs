@@ -96,17 +96,9 @@ impl<'a> Search<'a> {
             self.asked.starts
         };
         let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
-        let numbers: Vec<usize> = (0..places.len()).collect();
-        let mut found: Vec<Option<(Minimum, Vec<f64>)>> = vec![None; places.len()];
-        pool::each(
-            &numbers,
-            jobs,
-            &|k| (!(self.stop)()).then(|| (k, self.minimise(k, &places[k]))),
-            &mut |(k, minimum)| {
-                found[k] = minimum;
-                Ok(())
-            },
-        )?;
+        let one = |k: usize| (!(self.stop)()).then(|| self.minimise(k, &places[k]));
+        let found = pool::all(places.len(), jobs, &one);
+        let found: Vec<Option<(Minimum, Vec<f64>)>> = found.into_iter().map(Option::flatten).collect();
         let start = |(from, found): (&Vec<f64>, &Option<(Minimum, Vec<f64>)>)| {
             let at = found
                 .as_ref()

@@ -3,12 +3,10 @@
 //! ```text
 //! tongue   growth over frequency and amplitude of a shaken root, beside Mathieu's equation
 //! cycles   the cycle along one parameter, each found from the one before
-//! workers  columns of a grid on all cores
 //! ```
 
 pub mod cycles;
 pub mod tongue;
-mod workers;
 
 pub use cycles::{Along, Member, along};
 pub use tongue::{Map, Sheet, map};

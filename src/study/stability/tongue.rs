@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::workers;
 use crate::case::schema::Case;
 use crate::case::{ResolvedEnd, Translation};
 use crate::error::{Error, Result};
@@ -18,6 +17,7 @@ use crate::run::periodic::scene::whole;
 use crate::run::periodic::{Scene, shoot};
 use crate::run::stop::{INTERRUPTED, Stop};
 use crate::study::evaluations::Evaluations;
+use crate::study::sweep::pool;
 
 /// Multipliers looked at in a point.
 const COUNT: usize = 2;
@@ -136,7 +136,7 @@ pub fn map(
     let columns = plan.frequencies_hz.len();
     let count = factors.len() * columns;
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let all = workers::each(count, |k| {
+    let all = pool::all(count, pool::cores(), &|k| {
         let made = column(
             case,
             factors[k / columns],
@@ -146,9 +146,9 @@ pub fn map(
             stop,
         );
         tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
-        made
+        Some(made)
     });
-    let mut all = all.into_iter().collect::<Result<Vec<_>>>()?.into_iter();
+    let mut all = all.into_iter().flatten().collect::<Result<Vec<_>>>()?.into_iter();
     let sheets = factors
         .iter()
         .map(|&permeability_factor| Sheet {

@@ -1,4 +1,4 @@
-//! Designs on all cores.
+//! Work on all cores.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -38,4 +38,21 @@ pub fn each<T: Send>(
         });
     });
     taken.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).1
+}
+
+/// What `work` makes of every number below `count`, in order; nothing of what is left where it makes nothing.
+pub fn all<T: Send>(count: usize, jobs: usize, work: &(dyn Fn(usize) -> Option<T> + Sync)) -> Vec<Option<T>> {
+    let numbers: Vec<usize> = (0..count).collect();
+    let mut made: Vec<Option<T>> = std::iter::repeat_with(|| None).take(count).collect();
+    // nothing can fail where it is kept
+    let _ = each(&numbers, jobs, &|k| Some((k, work(k)?)), &mut |(k, one)| {
+        made[k] = Some(one);
+        Ok(())
+    });
+    made
+}
+
+/// Cores of the machine.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
