@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
-use super::table::{Presence, about};
+use super::table::{given, needs};
 use super::{Decision, EffectSet, Scene};
 use crate::case::schema::{
     Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Formulation, Load,
@@ -48,13 +48,7 @@ impl<'a> Chooser<'a> {
 
     /// Of an effect that is there where the case gives it, and only there: whether it does.
     fn given(&self, effect: Effect) -> Option<bool> {
-        match about(effect).presence {
-            Presence::Chosen => None,
-            Presence::Given(gives) => {
-                let network = self.network.filter(|_| self.set.has(Effect::Fluid));
-                Some(gives(self.case, network))
-            }
-        }
+        given(effect, self.case, self.network.filter(|_| self.set.has(Effect::Fluid)))
     }
 
     /// Where an effect has no meaning it is off, whatever was asked; where something stands against leaving it out it stays, and the
@@ -146,7 +140,7 @@ impl<'a> Chooser<'a> {
 
     /// Whether an effect has a meaning.
     fn possible(&self, effect: Effect) -> Result<(), Cause> {
-        if let Some(missing) = about(effect).needs.iter().find(|needed| !self.set.has(**needed)) {
+        if let Some(missing) = needs(effect).iter().find(|needed| !self.set.has(**needed)) {
             return Err(Cause::Needs(*missing));
         }
         let bladders = self.case.bladders.as_ref();
@@ -237,7 +231,7 @@ impl<'a> Chooser<'a> {
             _ if self.case.loads.iter().any(Load::is_rest) && by_motion(effect) => kept(Keeps::RestCurvature),
             _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),
             _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
-            _ if about(Effect::NonlinearSection).needs.contains(&effect) && scene.strain_energy() >= self.tolerance => {
+            _ if needs(Effect::NonlinearSection).contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }
             Effect::NonlinearSection => weigh(Number::StrainEnergy, scene.strain_energy()),

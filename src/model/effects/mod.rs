@@ -1,7 +1,7 @@
 //! Which effects are simulated, chosen once, each with what decided.
 //!
 //! ```text
-//! table       what each effect adds, brings with it, what decides, what it costs
+//! table       what each effect needs, and whether a case gives it
 //! choose      one decision after the other: what an effect needs, what stands against leaving it out, what the program chooses
 //! scene       the numbers by which the program chooses
 //! obstacles   what has a meaning only with an effect
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A new effect needs: its physics in a module of its own, a line of the list in [`crate::case::schema`], and its place in
-//! [`crate::discrete::residual::evaluate`]; the compiler then names the rest: [`about`], and what it needs and what decides in `choose`.
+//! [`crate::discrete::residual::evaluate`]; the compiler then names the rest: what it needs in `table`, and what decides in `choose`; `docs/effects.md` has a row for each.
 
 mod cause;
 mod choose;
@@ -25,7 +25,7 @@ pub use cause::{Cause, Keeps, Number, Weighed};
 use choose::Chooser;
 pub use obstacles::Obstacle;
 pub use scene::Scene;
-pub use table::{About, about};
+pub use table::needs;
 
 /// A decision with what decided.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::error;
-use crate::model::effects::{Cause, EffectSet, Scene, about};
+use crate::model::effects::{Cause, EffectSet, Scene, needs};
 use crate::model::{Model, Network};
 
 /// An effect, and what leaving it out takes.
@@ -59,10 +59,7 @@ pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
         // what needs what is left out goes along, and is not asked for
-        let along = about(effect)
-            .needs
-            .iter()
-            .any(|needed| choices.of(*needed) == Choice::Off);
+        let along = needs(effect).iter().any(|needed| choices.of(*needed) == Choice::Off);
         let choice = match along || off.contains(&effect) {
             true => Choice::Off,
             false if full.has(effect) || named.of(effect) == Choice::On => Choice::On,
