@@ -78,12 +78,6 @@ struct Closed {
 }
 
 impl StaticBeam {
-    /// Equilibria of a system without inertia, each closed network with the areas of `start`, scaled unknowns of the same
-    /// system. Valves are as they are at t = 1.
-    pub fn new(system: System, start: &[f64]) -> Self {
-        Self::of(system, start, &[], false)
-    }
-
     /// Equilibria of loads that go on from a state at rest, scaled unknowns of the same system: closed networks keep what they
     /// hold in it and take what ports of prescribed volume let in from there on, and ports of prescribed flow: `pumped`
     /// [m^3], of every source at t = 0 and at t = 1.

@@ -140,11 +140,6 @@ impl<D: Dae> StepMap<D> {
         &self.times
     }
 
-    /// The equations.
-    pub fn dae(&self) -> &D {
-        &self.equations.dae
-    }
-
     /// Gives the equations back.
     pub fn into_dae(self) -> D {
         self.equations.dae

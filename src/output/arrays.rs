@@ -133,11 +133,6 @@ impl ArraysWriter {
         self.times.flush()
     }
 
-    /// Number of instants.
-    pub fn instants(&self) -> u64 {
-        self.instants
-    }
-
     /// Numbers of one of them.
     pub(super) fn numbers(&self) -> usize {
         1 + self.fields.iter().map(|f| f.len).sum::<usize>()

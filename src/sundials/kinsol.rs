@@ -192,13 +192,6 @@ impl<D: Dae> Kinsol<D> {
         &mut self.fixed.get_mut().bridge.dae
     }
 
-    /// The equations back.
-    pub fn into_dae(self) -> D {
-        let Self { memory, fixed, .. } = self;
-        drop(memory);
-        fixed.into_inner().bridge.dae
-    }
-
     /// Solves at `t` from the guess in `y`, which the solution replaces; on failure `y` is the last iterate. Panics when `y` has
     /// another length than the equations.
     ///

@@ -96,7 +96,7 @@ fn nothing_is_allocated_at_a_step() {
                     .unwrap();
             });
             told("tangent", count);
-            let mut still = StaticBeam::new(dae.system().clone(), &begin);
+            let mut still = StaticBeam::from_nothing(dae.system().clone(), &begin, &[]);
             let mut values = vec![0.0; still.pattern().entries()];
             let share = |call: usize| call as f64 / (WARM + CALLS) as f64;
             let count = allocations(|k| still.residual(share(k), &states[k], &rates[k], &mut out).unwrap());

@@ -28,7 +28,7 @@ fn static_jacobian_is_that_of_differences() {
         let mut beam = slcbeam::dae::BeamDae::new(of.clone());
         let (inside, now) = beam.instant(0.0);
         let rest = start::state(inside, &case, now);
-        let mut statics = StaticBeam::new(of, &rest);
+        let mut statics = StaticBeam::from_nothing(of, &rest, &[]);
         let n = statics.len();
         let y: Vec<f64> = (0..n).map(|k| 0.03 * (1.7 * k as f64).sin()).collect();
         let mut values = vec![0.0; statics.pattern().entries()];

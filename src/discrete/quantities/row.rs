@@ -52,11 +52,6 @@ impl Row {
         }
     }
 
-    /// What its first values are.
-    pub fn columns(&self) -> &[Observable] {
-        &self.columns
-    }
-
     /// Its values, in the order of the columns, those of probes behind them.
     pub fn values(&self) -> &[f64] {
         &self.values

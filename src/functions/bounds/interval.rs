@@ -127,11 +127,6 @@ impl Span {
         Self(std::array::from_fn(|k| self.0[k].hull(other.0[k])))
     }
 
-    /// `factor` times this.
-    pub fn scaled(self, factor: f64) -> Self {
-        Self(self.0.map(|i| i.scaled(factor)))
-    }
-
     /// Narrower by what the ends and the middle of the piece `[a, b]` of a function tell, whose second derivative is continuous
     /// there: a derivative that keeps its sign leaves the ends, else Taylor's formula about the middle.
     pub fn told(self, [first, middle, last]: [Jet; 3], half: f64) -> Self {

@@ -256,13 +256,6 @@ impl Network {
         ways.any(|(a, b)| inside(a) && port(b) || port(a) && inside(b))
     }
 
-    /// Whether a component holds what it held at the start, and what ports of prescribed volume have let in.
-    pub fn keeps(&self, component: usize) -> bool {
-        let mut sources = self.sources.iter();
-        let own = |source: &Source| self.component_of(source.into) == Some(component);
-        !self.lets_out(component) && !sources.any(|source| own(source) && matches!(source.feed, Feed::Flow(_)))
-    }
-
     /// Of each bladder, whether nothing can ever flow into it or out of it.
     pub fn sealed(&self) -> impl Iterator<Item = bool> + use<> {
         let mut sealed = vec![true; self.component_of_bladder.len()];

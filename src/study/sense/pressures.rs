@@ -138,11 +138,6 @@ impl Measured {
             left_alone,
         })
     }
-
-    /// Pressures that there are.
-    pub fn count(&self) -> usize {
-        self.rows.iter().flatten().filter(|value| value.is_some()).count()
-    }
 }
 
 /// Of which bladder a column is: `pressure_3`, `pressure@bladder -3`, `p3`, `bladder 3`, each with `sd` for its deviation; `NAME_pressure_upper` of a probe.
@@ -233,7 +228,10 @@ mod tests {
         assert_eq!(found.times, Some(vec![0.0, 2.0]));
         assert_eq!(found.rows, [[Some(2.0), Some(1.0)], [Some(5.0), None]]);
         assert_eq!(found.deviations, Some(vec![vec![3.0, 4.0]; 2]));
-        assert_eq!((found.lines.as_slice(), found.count()), (&[2, 4][..], 3));
+        assert_eq!(
+            (found.lines.as_slice(), found.rows.iter().flatten().flatten().count()),
+            (&[2, 4][..], 3)
+        );
     }
 
     #[test]
