@@ -2,7 +2,7 @@
 
 use serde_json::{Number, Value};
 
-use crate::error::{Code, Violation};
+use crate::error::{Code, Violation, numbers};
 
 /// What is wrong with a number where `schema` describes it.
 pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation> {
@@ -63,10 +63,10 @@ pub fn plain(number: f64) -> String {
 
 /// A number that was computed from others, without what binary fractions add to it.
 pub fn rounded(number: f64) -> String {
-    plain(format!("{number:.8e}").parse().unwrap_or(number))
+    plain(numbers::rounded(number, 9))
 }
 
 /// Three digits of a number, which are enough to be told by.
 pub fn digits(number: f64) -> String {
-    plain(format!("{number:.2e}").parse().unwrap_or(number))
+    plain(numbers::rounded(number, 3))
 }

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::amounts::{self, GRAVITY};
 use super::units::{self, Suffix, Unit};
 use super::wording::nearest;
+use crate::error::numbers;
 
 /// Units of which an object rarely has more than one key, so that this one is meant whatever it is called.
 const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
@@ -87,7 +88,7 @@ fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
 
 /// A number without the round-off of the product that gave it.
 pub(super) fn number_of(number: f64) -> String {
-    let number = format!("{number:.12e}").parse().unwrap_or(number);
+    let number = numbers::rounded(number, 13);
     match number.abs() {
         1e-4..1e6 | 0.0 => format!("{number}"),
         _ => format!("{number:e}"),

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::arguments::{MappingArguments, Table};
 use super::size;
+use crate::error::numbers::rounded;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::model::mapping::network_coordinate;
@@ -37,7 +38,7 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let table = |heading: &str, rows: Vec<(f64, f64, i64)>| {
         let mut text = format!("{heading}\n");
         for (a, b, bladder) in rows {
-            text += &format!("{},{},{bladder}\n", six_digits(a), six_digits(b));
+            text += &format!("{},{},{bladder}\n", rounded(a, 6), rounded(b, 6));
         }
         text
     };
@@ -49,9 +50,4 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
         None => format!("{}\n{}", theta(), xf()),
     })?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// Six significant digits without trailing zeros, as the tables print them.
-fn six_digits(value: f64) -> String {
-    format!("{value:.5e}").parse::<f64>().unwrap_or(value).to_string()
 }

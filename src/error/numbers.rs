@@ -180,6 +180,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     text.replacen('-', "−", 1)
 }
 
+/// A number rounded to so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
+}
+
 /// A share as percent: `4.2 %`.
 pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))

@@ -2,6 +2,7 @@
 
 use super::Options;
 use crate::case::schema::{BladderEnd, Case, EquilibriumStart};
+use crate::error::numbers::rounded;
 use crate::error::{Code, Error, Result};
 use crate::functions::{Clock, Signal};
 use crate::model::network::{Network, Node};
@@ -242,7 +243,7 @@ impl History {
     fn words(&self, case: &Case) -> Option<String> {
         let (mut shut, mut flows) = (vec![], false);
         for (valve, before) in self.owes(self.spans.len() - 1) {
-            let (place, t) = (pointer(case, &valve.opening), short(before.to));
+            let (place, t) = (pointer(case, &valve.opening), rounded(before.to, 6));
             flows |= !before.of_start;
             let one = match before.of_start {
                 true => format!("{place}, shut since a start in equilibrium with it open under the loads at t = {t} s"),
@@ -276,11 +277,6 @@ fn pointer(case: &Case, opening: &Signal) -> String {
     tube.map(|k| format!("/network/tubes/{k}/opening"))
         .or_else(|| chain().map(|k| format!("/network/chains/{k}/opening")))
         .unwrap_or_else(|| "a valve".into())
-}
-
-/// Six digits.
-fn short(t: f64) -> f64 {
-    format!("{t:.5e}").parse().unwrap_or(t)
 }
 
 /// The states on the way to the one in which a run starts, that one included where it is not the one asked for.

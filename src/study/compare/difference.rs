@@ -7,6 +7,7 @@ use super::changes::{self, Change};
 use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
 use crate::discrete::quantities::Observable;
+use crate::error::numbers::rounded;
 use crate::run::null;
 use crate::run::schedule::SAME;
 use crate::study::accuracy::Norms;
@@ -162,8 +163,8 @@ fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
             format!(
                 "{}: the history ends at t = {} s, the run did at {} s; what is missing is not compared",
                 one.label,
-                significant(end),
-                significant(run)
+                rounded(end, 6),
+                rounded(run, 6)
             )
         })
     };
@@ -172,17 +173,12 @@ fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
         format!(
             "{} ends at t = {} s, {} at {} s: figures at the end, of the window and of the whole run are of other instants",
             a.label,
-            significant(from),
+            rounded(from, 6),
             b.label,
-            significant(to)
+            rounded(to, 6)
         )
     });
     apart.into_iter().chain([a, b].into_iter().filter_map(short)).collect()
-}
-
-/// Six digits.
-fn significant(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 /// Largest value among the fields of the same unit, which is what follows the first underscore of a name.

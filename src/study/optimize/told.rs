@@ -5,7 +5,7 @@ use super::found::{Derivatives, Design, Held, Optimum};
 use super::problem::{Limit, Problem};
 use crate::case::numbers::plain;
 use crate::error::Code;
-use crate::error::numbers::counted;
+use crate::error::numbers::{counted, rounded};
 use crate::numerics::sqp::Ended;
 use crate::study::span::Span;
 use crate::study::sweep::row::Found;
@@ -15,7 +15,7 @@ const SAME: f64 = 1e-3;
 
 /// Six digits of a number.
 fn six(number: f64) -> String {
-    plain(format!("{number:.5e}").parse().unwrap_or(number))
+    plain(rounded(number, 6))
 }
 
 /// Limits that the plain command breaks at the best.

@@ -6,6 +6,7 @@ use super::effects;
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::error::Result;
+use crate::error::numbers::rounded;
 use crate::run::floors::Floors;
 use crate::run::summary::Summary;
 use crate::study::companion::error::{relative, relative_by_cause};
@@ -107,7 +108,7 @@ impl Levers {
         };
         finer.mesh.cells_per_segment <<= beam;
         finer.mesh.cells_per_bladder <<= fluid;
-        finer.solver.rtol = rounded(case.solver.rtol * 10_f64.powi(-decades));
+        finer.solver.rtol = rounded(case.solver.rtol * 10_f64.powi(-decades), 4);
         Ok(Some(Finer { case: finer, added }))
     }
 
@@ -168,11 +169,6 @@ fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> 
         settings.map(|cause| scale * causes.get(cause.pointer().as_str()).map_or(0.0, part))
     };
     errors.iter().map(of).collect()
-}
-
-/// A tolerance without the rounding of its product.
-fn rounded(rtol: f64) -> f64 {
-    format!("{rtol:.3e}").parse().unwrap_or(rtol)
 }
 
 fn most<'a>(errors: impl Iterator<Item = &'a f64>) -> f64 {
