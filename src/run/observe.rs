@@ -147,8 +147,8 @@ impl Observer {
         };
         let own = Observable::of(system).into_iter().map(Column::from);
         let columns: Vec<Column> = own
-            .chain(stations::columns(system, false).into_iter().map(Column::from))
-            .chain(probes::columns(system).map(Column::from))
+            .chain(stations::columns(system, false))
+            .chain(probes::columns(system))
             .collect();
         let envelope = match case.time.history {
             Thinning::All => vec![],

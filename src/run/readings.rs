@@ -20,7 +20,8 @@ const TIP: [Observable; 3] = [Observable::TipU1, Observable::TipU3, Observable::
 /// Names of what is read, with units.
 pub fn names(system: &System) -> Vec<String> {
     let tip = TIP.iter().map(|one| probes::key(one.name(), one.unit()));
-    tip.chain(probes::columns(system).map(|one| one.key())).collect()
+    tip.chain(probes::columns(system).map(|one| probes::key(&one.name, one.unit)))
+        .collect()
 }
 
 /// Readings of the step under way.
@@ -103,7 +104,9 @@ pub struct ProbeFigures {
 impl ProbeFigures {
     /// Of a case and its system.
     pub fn new(case: &Case, system: &System) -> Self {
-        let names: Vec<String> = probes::columns(system).map(|one| one.key()).collect();
+        let names: Vec<String> = probes::columns(system)
+            .map(|one| probes::key(&one.name, one.unit))
+            .collect();
         Self {
             tracks: vec![Track::default(); names.len()],
             names,

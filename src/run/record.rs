@@ -1,50 +1,8 @@
 //! What a run hands to whoever records it. The run itself prints nothing and writes nothing.
 
 use super::checkpoint::Checkpoint;
-use crate::discrete::quantities::Observable;
-use crate::discrete::quantities::probes::ProbeColumn;
+pub use crate::discrete::quantities::probes::Column;
 use crate::error::Result;
-
-/// A column of the history: one number an output time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Column {
-    /// Name without unit, snake case: `tip_u1`.
-    pub name: String,
-    /// Unit: `m`; `1` when dimensionless.
-    pub unit: &'static str,
-    /// One sentence.
-    pub about: String,
-}
-
-impl Column {
-    /// Name with its unit, as keys of results have it: `tip_u1_m`.
-    pub fn key(&self) -> String {
-        let unit = match self.unit {
-            "1" => return self.name.clone(),
-            "Pa" => "pa",
-            "J" => "j",
-            "W" => "w",
-            other => other,
-        };
-        format!("{}_{unit}", self.name)
-    }
-}
-
-impl From<Observable> for Column {
-    fn from(one: Observable) -> Self {
-        Self {
-            name: one.name().into(),
-            unit: one.unit(),
-            about: one.about().into(),
-        }
-    }
-}
-
-impl From<ProbeColumn> for Column {
-    fn from(ProbeColumn { name, unit, about }: ProbeColumn) -> Self {
-        Self { name, unit, about }
-    }
-}
 
 /// A fixed coordinate along which a field is sampled.
 #[derive(Clone, Debug, PartialEq)]

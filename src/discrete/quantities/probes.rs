@@ -1,5 +1,6 @@
 //! Quantities at places that the case names.
 
+use super::Observable;
 use super::look::Look;
 use crate::case::schema::{Case, Probe as Written};
 use crate::discrete::turns::{first_angle, tip_angle};
@@ -47,24 +48,42 @@ const TABLE: [Entry; 13] = [
     ("pressure_lower", "Pa", "mean pressure of the lower bladder", true, |p, look| p.pressure(look, 1)),
 ];
 
-/// A column of a probe.
-pub struct ProbeColumn {
-    /// Name without unit: `middle_u1`.
+/// A column of the history: one number an output time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Name without unit, snake case: `tip_u1`.
     pub name: String,
-    /// Unit, `1` when dimensionless.
+    /// Unit: `m`; `1` when dimensionless.
     pub unit: &'static str,
-    /// What it is, in one sentence.
+    /// One sentence.
     pub about: String,
 }
 
-impl ProbeColumn {
-    /// Its name with the unit, as keys of the summary have it.
+impl Column {
+    /// Name with its unit, as keys of results have it: `tip_u1_m`.
     pub fn key(&self) -> String {
-        key(&self.name, self.unit)
+        let unit = match self.unit {
+            "1" => return self.name.clone(),
+            "Pa" => "pa",
+            "J" => "j",
+            "W" => "w",
+            other => other,
+        };
+        format!("{}_{unit}", self.name)
     }
 }
 
-/// A name with its unit, as keys have it: `middle_u1_m`.
+impl From<Observable> for Column {
+    fn from(one: Observable) -> Self {
+        Self {
+            name: one.name().into(),
+            unit: one.unit(),
+            about: one.about().into(),
+        }
+    }
+}
+
+/// A name with its unit, as keys of the summary have those of probes: `middle_u1_m`.
 pub fn key(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.into(),
@@ -84,8 +103,8 @@ pub fn is_stress(name: &str) -> bool {
 }
 
 /// Columns of all probes of a system, one probe after the other.
-pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> + '_ {
-    entries(system).map(|(probe, (name, unit, about, ..))| ProbeColumn {
+pub fn columns(system: &System) -> impl Iterator<Item = Column> + '_ {
+    entries(system).map(|(probe, (name, unit, about, ..))| Column {
         name: format!("{}_{name}", probe.name),
         unit,
         about: format!("{about} at {} of the length", probe.at),

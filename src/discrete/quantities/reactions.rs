@@ -1,7 +1,7 @@
 //! What holds the beam: forces and couples at ends whose motion is given, at springs and dashpots, and angles of ends that turn.
 
 use super::look::Look;
-use super::probes::ProbeColumn;
+use super::probes::Column;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::ledger::reaction;
@@ -49,7 +49,7 @@ fn all(system: &System) -> Vec<Told> {
 }
 
 /// Columns of a system.
-pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> {
+pub fn columns(system: &System) -> impl Iterator<Item = Column> {
     all(system).into_iter().map(|one| {
         let (name, unit, about) = match one {
             Told::End(k, axis) => (
@@ -83,7 +83,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = ProbeColumn> {
                 ),
             ),
         };
-        ProbeColumn { name, unit, about }
+        Column { name, unit, about }
     })
 }
 

@@ -1,19 +1,19 @@
 //! Quantities at each port, in each accumulator, at each wall, of what holds the beam, and at rest in each bladder.
 
 use super::look::Look;
-use super::probes::ProbeColumn;
+use super::probes::Column;
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, touching};
 
 /// Columns of all ports, accumulators, walls and reactions of a system; at rest, those that a state at rest has.
-pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
+pub fn columns(system: &System, at_rest: bool) -> Vec<Column> {
     let mut all = of_network(system, at_rest);
     all.extend(reactions::columns(system));
     let walls = system.model.contacts.iter().map(|wall| &wall.name);
     for (name, short) in short("contact", walls) {
-        let column = |what: &str, unit, about: &str| ProbeColumn {
+        let column = |what: &str, unit, about: &str| Column {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the wall \"{name}\""),
@@ -31,7 +31,7 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
     all
 }
 
-fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
+fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
     };
@@ -44,7 +44,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
         .filter_map(|one| Some(&network.accumulators[one.number?].name));
     let mut all = vec![];
     for (name, short) in short("port", names) {
-        let column = |what: &str, unit, about: &str| ProbeColumn {
+        let column = |what: &str, unit, about: &str| Column {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the port \"{name}\""),
@@ -61,7 +61,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
         }
     }
     for (name, short) in short("accumulator", kept) {
-        let column = |what: &str, unit, about: &str| ProbeColumn {
+        let column = |what: &str, unit, about: &str| Column {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the accumulator \"{name}\""),
@@ -80,10 +80,10 @@ fn of_network(system: &System, at_rest: bool) -> Vec<ProbeColumn> {
 }
 
 /// The mean pressure of every bladder: fields say it of what moves.
-fn bladders(per_row: usize) -> impl Iterator<Item = ProbeColumn> {
+fn bladders(per_row: usize) -> impl Iterator<Item = Column> {
     (0..2 * per_row).map(move |bladder| {
         let label = bladder_label(bladder, per_row);
-        ProbeColumn {
+        Column {
             name: format!("{}_pressure", begin("bladder", &label.to_string())),
             unit: "Pa",
             about: format!("mean pressure of bladder {label}"),

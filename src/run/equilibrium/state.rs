@@ -59,8 +59,8 @@ pub fn columns(system: &System) -> Vec<Column> {
         about: "load factor".into(),
     };
     let all = at_rest(system).into_iter().map(Column::from);
-    let all = all.chain(stations::columns(system, true).into_iter().map(Column::from));
-    let all = all.chain(probes::columns(system).map(Column::from));
+    let all = all.chain(stations::columns(system, true));
+    let all = all.chain(probes::columns(system));
     std::iter::once(share).chain(all).collect()
 }
 

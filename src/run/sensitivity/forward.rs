@@ -10,7 +10,7 @@ use super::kept::Kept;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
-use crate::discrete::quantities::probes::{self, ProbeColumn};
+use crate::discrete::quantities::probes::{self, Column};
 use crate::discrete::quantities::stations;
 use crate::discrete::quantities::{Observable, Read};
 use crate::discrete::{System, start};
@@ -30,11 +30,11 @@ pub struct Forward<'a> {
     /// The quantities of the history that are differentiated.
     pub(super) columns: Vec<Observable>,
     /// Columns of ports, accumulators, walls and reactions.
-    pub(super) stations: Vec<ProbeColumn>,
+    pub(super) stations: Vec<Column>,
     /// Of each of these, the port of which it is the volume.
     pub(super) volumes: Vec<Option<usize>>,
     /// Those at probes.
-    pub(super) probes: Vec<ProbeColumn>,
+    pub(super) probes: Vec<Column>,
     pub(super) s: Vec<Vec<f64>>,
     pub(super) sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the last restart.
@@ -342,7 +342,7 @@ impl<'a> Forward<'a> {
 
     /// What the summary says.
     pub fn summary(&self) -> BTreeMap<String, Sensitivity> {
-        let names: Vec<String> = self.probes.iter().map(ProbeColumn::key).collect();
+        let names: Vec<String> = self.probes.iter().map(|one| probes::key(&one.name, one.unit)).collect();
         let of = |(parameter, figures): (&Parameter, &Figures)| {
             let sensitivity = Sensitivity {
                 value: parameter.value,

@@ -69,7 +69,7 @@ pub fn names(case: &Case, what: What) -> Result<Vec<String>> {
                 all.extend(POWERS[usize::from(!turbines)..].iter().map(|(_, name)| (*name).into()));
             }
             for probe in probes::columns(&system) {
-                of(&mut all, motion, &probe.key());
+                of(&mut all, motion, &probes::key(&probe.name, probe.unit));
             }
         }
     }
