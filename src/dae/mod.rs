@@ -29,6 +29,15 @@ pub enum EvaluationError {
     Fatal(String),
 }
 
+impl EvaluationError {
+    /// The reason in words.
+    pub fn reason(self) -> String {
+        match self {
+            Self::Recoverable(what) | Self::Fatal(what) => what,
+        }
+    }
+}
+
 /// Which combination of partial derivatives a Jacobian holds: column j is `y[j] ∂F/∂y_j + yp[j] ∂F/∂y'_j`.
 #[derive(Clone, Copy, Debug)]
 pub enum Seeds<'a> {

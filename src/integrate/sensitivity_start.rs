@@ -30,7 +30,8 @@ pub fn consistent_sensitivities<D: Dae>(
         y: &y_seeds,
         yp: &yp_seeds,
     };
-    dae.jacobian(t, y, yp, seeds, &mut values).map_err(text)?;
+    dae.jacobian(t, y, yp, seeds, &mut values)
+        .map_err(EvaluationError::reason)?;
     klu.factor(&values).map_err(|fault| no_factors(dae, fault))?;
     let (mut slope, mut residual) = (vec![0.0; y.len()], vec![0.0; y.len()]);
     for (k, (s, sp)) in s.iter_mut().zip(sp).enumerate() {
@@ -40,11 +41,12 @@ pub fn consistent_sensitivities<D: Dae>(
             }
             sp[i] = 0.0;
         }
-        dae.parameter_derivative(k, t, y, yp, &mut slope).map_err(text)?;
+        dae.parameter_derivative(k, t, y, yp, &mut slope)
+            .map_err(EvaluationError::reason)?;
         for _ in 0..2 {
             let out = &mut [residual.as_mut_slice()];
             dae.tangent(t, y, yp, [&[s.as_slice()], &[sp.as_slice()]], out)
-                .map_err(text)?;
+                .map_err(EvaluationError::reason)?;
             residual.iter_mut().zip(&slope).for_each(|(r, slope)| *r += slope);
             klu.solve(&mut residual);
             for (i, correction) in residual.iter().enumerate() {
@@ -57,12 +59,6 @@ pub fn consistent_sensitivities<D: Dae>(
         }
     }
     Ok(())
-}
-
-fn text(fault: EvaluationError) -> String {
-    match fault {
-        EvaluationError::Recoverable(what) | EvaluationError::Fatal(what) => what,
-    }
 }
 
 fn no_factors<D: Dae>(dae: &D, fault: KluError) -> String {

@@ -145,7 +145,7 @@ impl<D: Dae> Newton<'_, D> {
     }
 
     fn solve(mut self, options: &StartOptions) -> Result<Start, StartError> {
-        self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
+        self.evaluate().map_err(|fault| self.give_up(fault.reason(), None))?;
         let mut damping: f64 = 1.0;
         let mut last = f64::INFINITY;
         loop {
@@ -205,7 +205,7 @@ impl<D: Dae> Newton<'_, D> {
         let from = self.unknowns();
         let before = kernels::max_abs(&self.room.residual);
         self.go(&from, correction, 1.0);
-        self.evaluate().map_err(|fault| self.give_up(text(fault), None))?;
+        self.evaluate().map_err(|fault| self.give_up(fault.reason(), None))?;
         let mut after = kernels::max_abs(&self.room.residual);
         if after > before {
             self.go(&from, correction, 0.0);
@@ -239,7 +239,7 @@ impl<D: Dae> Newton<'_, D> {
             yp: &self.room.yp_seeds,
         };
         if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.room.values) {
-            return Err(self.give_up(text(fault), None));
+            return Err(self.give_up(fault.reason(), None));
         }
         if let Some(entry) = kernels::first_not_finite(&self.room.values) {
             return Err(self.give_up(not_finite(self.dae, entry, self.t), None));
@@ -267,7 +267,7 @@ impl<D: Dae> Newton<'_, D> {
         let (one, zero) = (vec![1.0; n], vec![0.0; n]);
         let seeds = Seeds::Columns { y: &one, yp: &zero };
         if let Err(fault) = self.dae.jacobian(self.t, self.y, self.yp, seeds, &mut self.room.values) {
-            return Err(self.give_up(text(fault), None));
+            return Err(self.give_up(fault.reason(), None));
         }
         let mut noise = vec![0.0; n];
         let pattern = self.dae.pattern();
@@ -337,12 +337,6 @@ fn largest(x: &[f64]) -> Option<usize> {
         .enumerate()
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
         .map(|(i, _)| i)
-}
-
-fn text(fault: EvaluationError) -> String {
-    match fault {
-        EvaluationError::Recoverable(what) | EvaluationError::Fatal(what) => what,
-    }
 }
 
 fn singular<D: Dae>(dae: &D, fault: KluError, iterations: u16) -> StartError {

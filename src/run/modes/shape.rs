@@ -149,12 +149,7 @@ pub fn likeness(a: &Shape, b: &Shape) -> f64 {
         };
         part(&a.u1, &b.u1) + part(&a.u3, &b.u3)
     };
-    let whole = inner(a, a).re * inner(b, b).re;
-    if whole > 0.0 {
-        inner(a, b).norm_sqr() / whole
-    } else {
-        0.0
-    }
+    alignment(a, b, inner)
 }
 
 /// The same of displacements and pressures together, each over what it is shown with, of a beam of this length [m]: of motions that are mostly flow.
@@ -167,6 +162,11 @@ pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
         let moved = DISPLACEMENT * length;
         part(&a.u1, &b.u1, moved) + part(&a.u3, &b.u3, moved) + part(&a.pressure, &b.pressure, PRESSURE)
     };
+    alignment(a, b, inner)
+}
+
+/// Squared cosine of the angle between two shapes by an inner product; 0 where one of them does not move.
+fn alignment(a: &Shape, b: &Shape, inner: impl Fn(&Shape, &Shape) -> Complex<f64>) -> f64 {
     let whole = inner(a, a).re * inner(b, b).re;
     if whole > 0.0 {
         inner(a, b).norm_sqr() / whole

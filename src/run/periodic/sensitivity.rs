@@ -41,7 +41,8 @@ pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: 
         let mut end = s.clone();
         let mut source = |[t, cj]: [f64; 2], [y, yp]: [&[f64]; 2], out: &mut [f64]| {
             dae.approach(cj);
-            dae.parameter_derivative(k, t, y, yp, out).map_err(text)
+            dae.parameter_derivative(k, t, y, yp, out)
+                .map_err(EvaluationError::reason)
         };
         cycle
             .march
@@ -140,10 +141,4 @@ fn kept(
         s.iter_mut().zip(w).for_each(|(s, w)| *s += part * w);
     }
     Ok(s)
-}
-
-fn text(fault: EvaluationError) -> String {
-    match fault {
-        EvaluationError::Recoverable(what) | EvaluationError::Fatal(what) => what,
-    }
 }
