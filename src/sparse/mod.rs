@@ -18,7 +18,7 @@ pub mod lu;
 pub mod pattern;
 pub mod tridiagonal;
 
-pub use klu::{Klu, KluError, RowScaling};
+pub use klu::{Klu, KluError};
 pub use lu::Lu;
 pub use pattern::Pattern;
 pub use tridiagonal::BlockTridiagonal;

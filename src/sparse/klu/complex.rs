@@ -4,7 +4,7 @@ use std::ptr;
 
 use nalgebra::Complex;
 
-use super::{Analysis, KluError, RowScaling};
+use super::{Analysis, KluError};
 use crate::sparse::Pattern;
 use crate::sparse::c;
 
@@ -22,7 +22,7 @@ impl ComplexKlu {
     /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
-            analysis: Analysis::new(pattern, RowScaling::Max)?,
+            analysis: Analysis::new(pattern)?,
             numeric: ptr::null_mut(),
             factorizations: 0,
             solves: 0,

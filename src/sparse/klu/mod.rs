@@ -15,17 +15,6 @@ use crate::sparse::Pattern;
 use super::c;
 use rows::Rows;
 
-/// How rows are scaled before factoring.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowScaling {
-    /// Not at all.
-    None,
-    /// By the sum of the absolute entries.
-    Sum,
-    /// By the largest absolute entry.
-    Max,
-}
-
 /// Why a matrix could not be factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KluError {
@@ -55,7 +44,7 @@ struct Analysis {
 }
 
 impl Analysis {
-    fn new(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluError> {
+    fn new(pattern: &Pattern) -> Result<Self, KluError> {
         let n = pattern.columns();
         // all of it is relied upon by the C code
         let sound = pattern.starts[0] == 0
@@ -72,11 +61,7 @@ impl Analysis {
         // SAFETY: the structure is valid for writing.
         unsafe { c::klu_l_defaults(&mut *common) };
         common.ordering = 0; // AMD: fills less than COLAMD where a few rows are dense
-        common.scale = match scaling {
-            RowScaling::None => 0,
-            RowScaling::Sum => 1,
-            RowScaling::Max => 2,
-        };
+        common.scale = 2; // rows by their largest entry
         let (mut starts, mut rows) = (pattern.starts.clone(), pattern.rows.clone());
         // SAFETY: the pattern has been checked above; the arrays are only read.
         let symbolic = unsafe { c::klu_l_analyze(n as i64, starts.as_mut_ptr(), rows.as_mut_ptr(), &mut *common) };
@@ -144,13 +129,8 @@ pub struct Klu {
 impl Klu {
     /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
-        Self::with_scaling(pattern, RowScaling::Max)
-    }
-
-    /// Analyses a square pattern.
-    pub fn with_scaling(pattern: &Pattern, scaling: RowScaling) -> Result<Self, KluError> {
         Ok(Self {
-            analysis: Analysis::new(pattern, scaling)?,
+            analysis: Analysis::new(pattern)?,
             numeric: ptr::null_mut(),
             rows: None,
             growth_when_fresh: 1.0,
@@ -276,27 +256,6 @@ impl Klu {
             );
         }
         self.analysis.common.rgrowth
-    }
-
-    /// Estimate of the condition number (1-norm) of the matrix last factored, given by its `values`.
-    ///
-    /// None without factors. Panics when the number of values is not that of the pattern.
-    pub fn condition(&mut self, values: &[f64]) -> Option<f64> {
-        assert_eq!(values.len(), self.entries(), "values of another pattern");
-        if self.numeric.is_null() {
-            return None;
-        }
-        // SAFETY: as in `refactor`.
-        let done = unsafe {
-            c::klu_l_condest(
-                self.analysis.starts.as_mut_ptr(),
-                values.as_ptr().cast_mut(),
-                self.analysis.symbolic,
-                self.numeric,
-                &mut *self.analysis.common,
-            )
-        };
-        (done != 0).then_some(self.analysis.common.condest)
     }
 
     /// Sign of the determinant of the matrix last factored: 1, -1, or 0 without factors. A small one keeps its sign where a product of

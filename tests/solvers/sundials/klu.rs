@@ -1,7 +1,7 @@
 //! Factors and their guard.
 
 use slcbeam::sparse::Pattern;
-use slcbeam::sparse::{Klu, KluError, RowScaling};
+use slcbeam::sparse::{Klu, KluError};
 
 use super::chance::Random;
 
@@ -68,26 +68,17 @@ fn singular_matrices_name_a_column_and_are_survived() {
     assert_eq!(fault, Err(KluError::Singular { column: 1 }));
 }
 
-/// Row scaling: rows twelve decades apart are solved to rounding, and the condition estimate is the scaled one or larger.
-///
-/// Goal: all three scalings solve; estimates bracket the condition number. Tolerance: rounding times ten.
+/// Goal: rows twelve decades apart are solved to rounding. Tolerance: rounding times ten.
 #[test]
-fn all_scalings_solve_badly_scaled_rows() {
-    for scaling in [RowScaling::None, RowScaling::Sum, RowScaling::Max] {
-        let mut klu = Klu::with_scaling(&small(), scaling).unwrap();
-        let values = [1e-6, 2e6, 3e-6, -1e6];
-        klu.factor(&values).unwrap();
-        let mut x = [1e-6 * 1.0 + 3e-6 * 2.0, 2e6 * 1.0 - 1e6 * 2.0];
-        assert!(klu.solve(&mut x));
-        assert!(
-            (x[0] - 1.0).abs() < 3e-15 && (x[1] - 2.0).abs() < 3e-15,
-            "{scaling:?} {x:?}"
-        );
-        assert!(klu.condition(&values).unwrap() >= 1.0);
-    }
+fn badly_scaled_rows_are_solved() {
+    let mut klu = Klu::new(&small()).unwrap();
+    klu.factor(&[1e-6, 2e6, 3e-6, -1e6]).unwrap();
+    let mut x = [1e-6 * 1.0 + 3e-6 * 2.0, 2e6 * 1.0 - 1e6 * 2.0];
+    assert!(klu.solve(&mut x));
+    assert!((x[0] - 1.0).abs() < 3e-15 && (x[1] - 2.0).abs() < 3e-15, "{x:?}");
 }
 
-/// A solution by rows is KLU's own: with many blocks and what stands above them, with one, scaled or not, fresh factors or old pivots.
+/// A solution by rows is KLU's own: with many blocks and what stands above them, with one, fresh factors or old pivots.
 ///
 /// Goal: solve and solve_block agree, and find what the right-hand side was made of. Tolerance: rounding of dominant diagonals.
 #[test]
@@ -104,8 +95,7 @@ fn rows_solve_as_klu_does() {
             columns[if k < 3 * n { a.max(b) } else { a.min(b) }].push(if k < 3 * n { a.min(b) } else { a.max(b) });
         }
         let pattern = Pattern::from_columns(&columns);
-        let scaling = [RowScaling::None, RowScaling::Sum, RowScaling::Max][trial % 3];
-        let mut klu = Klu::with_scaling(&pattern, scaling).unwrap();
+        let mut klu = Klu::new(&pattern).unwrap();
         blocks[usize::from(below > 0)] += 1;
         for _ in 0..3 {
             let mut values = vec![0.0; pattern.entries()];
