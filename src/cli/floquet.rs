@@ -7,6 +7,7 @@ use super::uncertain::{self, Uncertain};
 use super::{interrupt, journal, line, size};
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::output::columns::warnings;
 use crate::output::floquet as files;
 use crate::output::kind::Kind;
 use crate::output::numbers::counted;
@@ -125,7 +126,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let written = files::write_map(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
-    let words = || files::map_words(&found) + &line::warnings(&found.warnings);
+    let words = || files::map_words(&found) + &warnings(&found.warnings);
     super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -146,8 +146,3 @@ pub fn accuracy(asked: f64) -> Result<f64> {
         "--accuracy {asked}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
     )))
 }
-
-/// What to know, a line each.
-pub fn warnings(all: &[String]) -> String {
-    all.iter().map(|warning| format!("warning: {warning}\n")).collect()
-}

@@ -8,6 +8,7 @@ use super::{interrupt, journal, line, size, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
+use crate::output::columns::warnings;
 use crate::output::floquet as stability;
 use crate::output::folder::SUMMARY;
 use crate::output::kind::Kind;
@@ -151,13 +152,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         format!("{words}\n{figures}{slopes}{search}{spread}")
     };
     super::tell(asked.json, &out, written, text, words)?;
-    Ok(match outcome.fault {
-        None => ExitCode::SUCCESS,
-        Some(fault) => {
-            terminal::tell(&terminal::diagnosis(&fault));
-            ExitCode::from(4)
-        }
-    })
+    Ok(terminal::exit_code(outcome.fault.as_ref()))
 }
 
 fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
@@ -186,7 +181,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, &first));
     let written = journal::end(&evaluations, &folder, stopped, written);
-    let words = || files::words(&found) + &line::warnings(&found.warnings);
+    let words = || files::words(&found) + &warnings(&found.warnings);
     super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }

@@ -1,10 +1,11 @@
 //! What the terminal can do, and how errors look on it.
 
 use std::io::{IsTerminal as _, Write as _};
+use std::process::ExitCode;
 
 use super::embedded;
 use crate::case;
-use crate::error::{Error, visible};
+use crate::error::{Error, SolverError, visible};
 pub use crate::output::errors::{diagnosis, json};
 
 /// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
@@ -44,6 +45,14 @@ pub fn report(error: &Error) {
         Error::Solver(fault) => tell(&diagnosis(fault)),
         other => tell(&format!("slcbeam: {other} (slcbeam explain {})", other.code().id())),
     }
+}
+
+/// Exit code of a result that is written all the same; tells why a computation ended early.
+pub fn exit_code(fault: Option<&SolverError>) -> ExitCode {
+    fault.map_or(ExitCode::SUCCESS, |fault| {
+        tell(&diagnosis(fault));
+        ExitCode::from(4)
+    })
 }
 
 /// Prints what the command line's reader has to say: help as it is, the user's own words made visible.

@@ -8,6 +8,11 @@ pub fn cells<const N: usize>(row: &str) -> [&str; N] {
     [(); N].map(|()| cells.next().unwrap_or_default())
 }
 
+/// What to know, a line each.
+pub fn warnings(all: &[String]) -> String {
+    all.iter().map(|warning| format!("warning: {warning}\n")).collect()
+}
+
 /// A line a row, columns two blanks apart and as wide as their widest cell; cells stand on the right except in the columns of `left`.
 /// An empty first column indents.
 pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {

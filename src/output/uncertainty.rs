@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::bands;
-use super::columns::aligned;
+use super::columns::{aligned, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
@@ -68,10 +68,7 @@ pub fn words(found: &Uncertainty) -> String {
     if let Some(why) = &found.no_first_order {
         text += &format!("no first order: {why}\n");
     }
-    for warning in &found.warnings {
-        text += &format!("warning: {warning}\n");
-    }
-    text
+    text + &warnings(&found.warnings)
 }
 
 /// What the table is of.

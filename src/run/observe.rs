@@ -6,7 +6,7 @@ use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
-use crate::discrete::quantities::{self, Extremes, Look, Observable, Row, probes, stations};
+use crate::discrete::quantities::{self, Look, Observable, Row, probes, stations};
 use crate::discrete::turns::Turns;
 use crate::discrete::{State, System, TimeData};
 use crate::error::Result;
@@ -331,13 +331,7 @@ impl Observer {
         if let Some(before) = before {
             self.seen.figures.span(&before, &glance);
         }
-        let look = Look {
-            system,
-            now,
-            w,
-            stored: balance.stored,
-            at: Extremes::of(system, now, &w),
-        };
+        let look = Look::new(system, now, w, balance.stored);
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;
         seen.figures.take(&seen.row, &glance);

@@ -11,7 +11,7 @@ use super::summary::Quantity;
 use super::track::Track;
 use crate::case::schema::Case;
 use crate::discrete::ledger::Energies;
-use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes};
+use crate::discrete::quantities::{Look, Observable, Read, Row, probes};
 use crate::discrete::{State, System, TimeData};
 
 /// What is read of the tip.
@@ -73,13 +73,7 @@ impl Readings {
 }
 
 fn read(system: &System, now: &TimeData, w: State, out: &mut Vec<f64>) {
-    let look = Look {
-        system,
-        now,
-        w,
-        stored: Energies::default(),
-        at: Extremes::of(system, now, &w),
-    };
+    let look = Look::new(system, now, w, Energies::default());
     out.clear();
     out.extend(TIP.iter().filter_map(|one| match one.read() {
         Read::State(read) => Some(read(&look)),

@@ -126,13 +126,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     if let Some(aside) = aside {
         terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
     }
-    Ok(match fault {
-        None => ExitCode::SUCCESS,
-        Some(fault) => {
-            terminal::tell(&terminal::diagnosis(&fault));
-            ExitCode::from(4)
-        }
-    })
+    Ok(terminal::exit_code(fault.as_ref()))
 }
 
 /// Leaves a folder whose page is written; its summary tells of all wall time until then.

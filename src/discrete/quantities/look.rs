@@ -50,6 +50,20 @@ pub struct Look<'a> {
     pub at: Extremes,
 }
 
+impl<'a> Look<'a> {
+    /// Of a state that stores these energies; its largest values are its own.
+    pub fn new(system: &'a System, now: &'a TimeData, w: State<'a>, stored: Energies) -> Self {
+        let at = Extremes::of(system, now, &w);
+        Self {
+            system,
+            now,
+            w,
+            stored,
+            at,
+        }
+    }
+}
+
 impl Look<'_> {
     fn tip(&self) -> usize {
         self.system.mesh.nodes - 1

@@ -3,7 +3,7 @@
 use super::Found;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
 use crate::run::equilibrium::State;
 use crate::run::record::Column;
@@ -36,9 +36,7 @@ pub fn words(found: &Found) -> String {
     if let Some(words) = found.meshes.and_then(Meshes::words) {
         text.push_str(&format!("\n{}{words}\n", last_with_errors(found)));
     }
-    for warning in found.warnings {
-        text.push_str(&format!("warning: {warning}\n"));
-    }
+    text += &warnings(found.warnings);
     if let Some(last) = path.states.last() {
         let stability = match &last.stability {
             None => "stability unknown".into(),

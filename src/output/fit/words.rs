@@ -1,7 +1,7 @@
 //! A fit, and a run over data, in words.
 
 use crate::error::{listed, visible};
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, warnings};
 use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::study::fit::beside::Beside;
 use crate::study::fit::found::{Bound, Estimate, Fit};
@@ -69,9 +69,7 @@ pub fn words(fit: &Fit) -> String {
         let names = listed(fit.left_alone.iter().map(String::as_str));
         text += &format!("columns left alone: {names}\n");
     }
-    for warning in &fit.warnings {
-        text += &format!("warning: {warning}\n");
-    }
+    text += &warnings(&fit.warnings);
     text
 }
 

@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::columns::{aligned, cells};
+use super::columns::{aligned, cells, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
 use super::plot::multipliers::{self, Dot, Multipliers};
@@ -81,9 +81,7 @@ pub fn words(found: &Cycle) -> String {
     if let Some(words) = found.meshes.as_ref().and_then(Meshes::words) {
         let _ = writeln!(text, "\n{words}");
     }
-    for warning in &found.warnings {
-        let _ = writeln!(text, "warning: {warning}");
-    }
+    text += &warnings(&found.warnings);
     text
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::visible;
-use crate::output::columns::aligned;
+use crate::output::columns::{aligned, warnings};
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
@@ -64,10 +64,7 @@ pub fn words(found: &Optimum) -> String {
     if found.starts.len() > 1 {
         text += &starts(found);
     }
-    for warning in &found.warnings {
-        text += &format!("warning: {warning}\n");
-    }
-    text
+    text + &warnings(&found.warnings)
 }
 
 /// Reasons of failures with how many there are of each; of those that differ in their numbers alone the first.

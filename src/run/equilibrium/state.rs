@@ -4,7 +4,7 @@ use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::glance::Glance;
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, Observable, Row, probes, stations};
+use crate::discrete::quantities::{Look, Observable, Row, probes, stations};
 use crate::discrete::residual::relaxation;
 use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::run::range::Limits;
@@ -75,13 +75,7 @@ impl State {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
         let zeros = vec![0.0; y.len()];
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
-        let look = Look {
-            system,
-            now,
-            w,
-            stored: ledger::energies(system, now, w),
-            at: Extremes::of(system, now, &w),
-        };
+        let look = Look::new(system, now, w, ledger::energies(system, now, w));
         let others = [stations::columns(system, true).len(), probes::columns(system).count()];
         let mut read = Row::new(at_rest(system), others);
         read.take(share, &look, &[], 0.0);

@@ -66,13 +66,7 @@ impl Forward<'_> {
         self.derive(ida, t, state)?;
         let reads = self.reads();
         let (system, now, w) = ida.dae_mut().evaluate(t, state[0], state[1]);
-        let look = Look {
-            system,
-            now,
-            w,
-            stored: ledger::energies(system, now, w),
-            at: Extremes::of(system, now, &w),
-        };
+        let look = Look::new(system, now, w, ledger::energies(system, now, w));
         let own: Vec<f64> = reads.iter().map(|read| read(&look)).collect();
         let probed: Vec<f64> = probes::values(&look).collect();
         let (columns, each, behind) = (&self.columns, self.each(), self.before_probes());
