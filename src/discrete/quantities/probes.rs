@@ -60,7 +60,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// Name with its unit, as keys of results have it: `tip_u1_m`.
+    /// Name with its unit, as keys of equilibria have it: `tip_u1_m`. Those of the summary of a run are by [`key`].
     pub fn key(&self) -> String {
         let unit = match self.unit {
             "1" => return self.name.clone(),
@@ -83,7 +83,7 @@ impl From<Observable> for Column {
     }
 }
 
-/// A name with its unit, as keys of the summary have those of probes: `middle_u1_m`.
+/// A name with its unit, as keys of the summary have those of probes and ports: `middle_u1_m`, `port_inlet_flow_m3_s`.
 pub fn key(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.into(),

@@ -1,7 +1,7 @@
 //! Quantities at each port, in each accumulator, at each wall, of what holds the beam, and at rest in each bladder.
 
 use super::look::Look;
-use super::probes::Column;
+use super::probes::{Column, key};
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
@@ -111,7 +111,7 @@ pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
     };
     let all = of_network(system, false).into_iter().enumerate();
     all.filter(move |(place, _)| told(*place))
-        .map(|(place, one)| (place, one.key()))
+        .map(|(place, one)| (place, key(&one.name, one.unit)))
 }
 
 /// Their values in a state; without integrals those of a state at rest.
