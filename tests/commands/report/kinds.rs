@@ -223,17 +223,22 @@ fn designs_stand_in_a_table() {
         let mut all = vec!["sweep", "cases/two-bladders.json", "--set", "/time/end_s=0.0005"];
         all.extend(varied.iter().flat_map(|one| ["--vary", one]));
         let page = made(&folder.path().join(k.to_string()), &all);
-        sound(&mut browser, &page, &["answer", "table", "scene", "case"]);
-        assert!(browser.number("document.querySelector('.plate svg').clientWidth") > 100.0);
+        // three numbers have no picture
+        let drawn = varied.len() < 3;
+        let sections = &["answer", "table", "scene", "case"][usize::from(!drawn)..];
+        sound(&mut browser, &page, sections);
         let rows = browser.number("document.querySelectorAll('#table tbody tr').length");
         assert_eq!(rows, [3.0, 6.0, 12.0][k]);
-        // the page's own letters are not the picture's
-        let ink = browser.text("getComputedStyle(document.querySelector('.plate text')).fill");
-        assert_eq!(ink, "rgb(34, 38, 43)");
-        // every point says what it is and leads to its row
-        let led = "[...document.querySelectorAll('.plate a')].filter(a => document.getElementById(a.getAttribute('href').slice(1)) && \
+        if drawn {
+            assert!(browser.number("document.querySelector('.plate svg').clientWidth") > 100.0);
+            // the page's own letters are not the picture's
+            let ink = browser.text("getComputedStyle(document.querySelector('.plate text')).fill");
+            assert_eq!(ink, "rgb(34, 38, 43)");
+            // every point says what it is and leads to its row
+            let led = "[...document.querySelectorAll('.plate a')].filter(a => document.getElementById(a.getAttribute('href').slice(1)) && \
                    a.querySelector('title').textContent.startsWith(a.getAttribute('href').slice(1).replace('-', ' ') + ': pressures 0: pressure')).length";
-        assert!(browser.number(led) >= rows, "{k}");
+            assert!(browser.number(led) >= rows, "{k}");
+        }
         let command = browser.text("document.querySelector('#design-1 button').title");
         assert!(
             command.starts_with("slcbeam run case.json --set /time/end_s=0.0005 --set /start/pressures/0/pressure_pa="),
