@@ -7,13 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use super::variant::{Cause, Variant};
-use super::{Accurate, Limits, error, finish, progress, work};
+use super::changes::{Ended, changes};
+use super::variant::{Cause, has_few_cells};
+use super::{Accurate, error, work};
 use crate::case::Case;
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
-use crate::integrate::halt;
-use crate::numerics::threads;
 use crate::run::record::Recorder;
 use crate::run::summary::{Figures, Status, Summary, largest_error};
 use crate::study::counted::Floors;
@@ -25,13 +24,11 @@ pub const LIMIT: f64 = 0.05;
 const NAMED_FROM: f64 = 0.5 * LIMIT;
 /// Largest work (steps times unknowns) of a run whose errors are attributed.
 const LARGEST_WORK: u64 = 5_000_000;
-/// Largest work of a run with one change, relative to that of the run.
-const LONGEST: u64 = 20;
 /// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
 const TRUSTED: f64 = 4.0;
 const TRUSTED_OF_ACCURACY: f64 = 2.0;
 /// Part of an accuracy below which a companion alone shows that it is reached.
-const SURE: f64 = 0.7;
+const SURE: f64 = 0.5;
 /// Most steps of a companion over those of the run where the tolerance decides on them.
 const BINDING: f64 = 0.65;
 /// Smallest share of an error at which a cause is named.
@@ -75,33 +72,53 @@ pub(super) fn attribute(
 ) -> Result<()> {
     let floors = &Floors::of(case)?;
     let least = least(accuracy);
+    let cells = summary.companion.as_ref().map_or([0; 2], |companion| {
+        [companion.cells_per_segment, companion.cells_per_bladder]
+    });
     let mut found = BTreeMap::new();
     if accuracy.is_some() && !tolerance_binds(summary) {
-        changes(case, summary, vec![Cause::TimeSteps], &mut found, recorder)?;
+        changes(case, summary, cells, vec![Cause::TimeSteps], &mut found, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
         summary.errors = added(&of_companion, &found, f64::INFINITY);
     }
-    if large(summary, floors, least).is_empty() {
-        return Ok(());
+    let mut causes = None;
+    if !large(summary, floors, least).is_empty() {
+        let measured = match accuracy.is_some() || work(summary) <= LARGEST_WORK {
+            true => measure(case, summary, floors, cells, accuracy, found, recorder)?,
+            false => Causes::TooLarge,
+        };
+        if let Some(known) = measured.known() {
+            let trusted = if accuracy.is_some() {
+                TRUSTED_OF_ACCURACY
+            } else {
+                TRUSTED
+            };
+            let most = if matches!(measured, Causes::Complete(_)) {
+                trusted
+            } else {
+                f64::INFINITY
+            };
+            let of_companion = std::mem::take(&mut summary.errors);
+            summary.errors = added(&of_companion, known, most);
+        }
+        causes = Some(measured);
     }
-    let causes = match accuracy.is_some() || work(summary) <= LARGEST_WORK {
-        true => causes(case, summary, floors, accuracy, found, recorder)?,
-        false => Causes::TooLarge,
-    };
-    if let Some(known) = causes.known() {
-        let trusted = if accuracy.is_some() {
-            TRUSTED_OF_ACCURACY
-        } else {
-            TRUSTED
-        };
-        let most = if matches!(causes, Causes::Complete(_)) {
-            trusted
-        } else {
-            f64::INFINITY
-        };
+    if let Some(accuracy) = accuracy
+        && has_few_cells(case)
+        && large(summary, floors, accuracy.asked).is_empty()
+    {
+        let finer = [2 * case.mesh.cells_per_segment, cells[1]];
+        let mut by_mesh = BTreeMap::new();
+        changes(case, summary, finer, vec![Cause::BeamMesh], &mut by_mesh, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
-        summary.errors = added(&of_companion, known, most);
+        summary.errors = added(&of_companion, &by_mesh, f64::INFINITY);
+        causes = match causes {
+            Some(Causes::Complete(known)) => Some(Causes::Complete(known.into_iter().chain(by_mesh).collect())),
+            None => Some(Causes::Partial(by_mesh)),
+            other => other,
+        };
     }
+    let Some(causes) = causes else { return Ok(()) };
     let large = large(summary, floors, least);
     if accuracy.is_none() && !large.is_empty() {
         let warning = words(case, &large, &causes, &shares(summary, causes.known()));
@@ -149,10 +166,11 @@ fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, most: f64) -
 
 /// Errors of all figures by each cause, beside those that are found already. All effects that are left out are one cause where they make no large
 /// error together.
-fn causes(
+fn measure(
     case: &Case,
     summary: &Summary,
     floors: &Floors,
+    cells: [usize; 2],
     accuracy: Option<&Accurate>,
     mut found: BTreeMap<Cause, Figures>,
     recorder: &mut dyn Recorder,
@@ -167,7 +185,7 @@ fn causes(
     let settled = |cause: &Cause| Some((*cause, accuracy?.settled.get(&cause.pointer())?.clone()));
     found.extend(first.iter().filter_map(settled));
     first.retain(|cause| !found.contains_key(cause));
-    let mut causes = changes(case, summary, first, &mut found, recorder)?;
+    let mut causes = changes(case, summary, cells, first, &mut found, recorder)?;
     let together = found.get(&Cause::Effects);
     let share = |errors: &Figures| {
         error::relative(summary, errors, floors)
@@ -180,74 +198,13 @@ fn causes(
     {
         found.remove(&Cause::Effects);
         let each = effects.into_iter().map(Cause::Effect).collect();
-        causes = causes.max(changes(case, summary, each, &mut found, recorder)?);
+        causes = causes.max(changes(case, summary, cells, each, &mut found, recorder)?);
     }
     Ok(match causes {
         Ended::All => Causes::Complete(found),
         Ended::Some => Causes::Partial(found),
         Ended::Interrupted => Causes::Interrupted,
     })
-}
-
-/// How runs with one change ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Ended {
-    All,
-    Some,
-    Interrupted,
-}
-
-/// Errors of all figures by some causes, two runs at a time.
-fn changes(
-    case: &Case,
-    summary: &Summary,
-    causes: Vec<Cause>,
-    found: &mut BTreeMap<Cause, Figures>,
-    recorder: &mut dyn Recorder,
-) -> Result<Ended> {
-    let limits = &Limits {
-        cancelled: false.into(),
-        work: (LONGEST * work(summary) + super::SMALL_WORK).into(),
-    };
-    let own = error::figures(summary);
-    let companion = summary.companion.clone().unwrap_or_default();
-    let mut variants = vec![];
-    for cause in causes {
-        if let Some((variant, factor)) = Variant::with_change(case, &companion, cause)? {
-            variants.push((cause, variant, factor));
-        }
-    }
-    let heard = &halt::heard();
-    let mut all = Ended::All;
-    for pair in variants.chunks(2) {
-        let (ended, stopped) = std::thread::scope(|scope| {
-            let tasks: Vec<_> = pair
-                .iter()
-                .map(|(_, variant, _)| threads::begin(scope, move || heard.during(|| finish(variant, limits))))
-                .collect();
-            let mut stopped = Ok(None);
-            for task in &tasks {
-                let now = super::wait(task, limits, &progress(summary), recorder);
-                stopped = stopped.and_then(|before: Option<String>| Ok(before.or(now?)));
-            }
-            let ended: Vec<_> = tasks.into_iter().map(threads::Begun::join).collect();
-            (ended, stopped)
-        });
-        if stopped?.is_some() || halt::asked() {
-            return Ok(Ended::Interrupted);
-        }
-        for ((cause, _, factor), run) in pair.iter().zip(ended) {
-            let Ok(run) = run else {
-                all = Ended::Some;
-                continue;
-            };
-            let mut errors = error::differences(&own, &error::figures(&run));
-            let values = errors.values_mut().flat_map(BTreeMap::values_mut);
-            values.for_each(|error| *error *= factor);
-            found.insert(*cause, errors);
-        }
-    }
-    Ok(all)
 }
 
 /// Shares of each cause in the largest error of each quantity.

@@ -7,6 +7,7 @@
 //! variant       cases beside a case: its companion, and those that differ in one setting
 //! error         differences of figures
 //! attribution   which setting makes an error that is large, and the warning
+//! changes       runs with one change
 //! ```
 //!
 //! With `x` a figure of the run and `x'` that of the companion, the error is the whole difference `|x - x'|`:
@@ -22,6 +23,7 @@
 //! its quantity. `docs/accuracy.md` has the coverage that random scenes show.
 
 pub mod attribution;
+mod changes;
 pub mod error;
 pub mod variant;
 

@@ -17,6 +17,9 @@ const TOLERANCES: [f64; 2] = [1e-13, 0.1];
 /// Largest refinement of a mesh that does not resolve what the case gives.
 const FINEST: usize = 4;
 
+/// Cells a segment of a fourth-order mesh that are compared with twice as many: it may share a false peak with an even coarser one.
+const FEW: usize = 4;
+
 /// A case beside another.
 pub struct Variant {
     /// The case.
@@ -110,32 +113,35 @@ impl Variant {
         Ok(Self { case, added })
     }
 
-    /// The case with one setting changed to that of its companion, or to a tighter tolerance, and the error of the case over the difference
-    /// that this makes. Nothing where the setting does not apply.
+    /// The case with one setting changed, to beam cells, fluid cells or a tolerance so many times tighter, and the error of the case over the
+    /// difference that this makes. Nothing where the setting does not apply.
     ///
     /// # Errors
     /// As [`System::new`].
-    pub fn with_change(case: &Case, companion: &CompanionRun, cause: Cause) -> Result<Option<(Self, f64)>> {
+    pub fn with_change(
+        case: &Case,
+        [beam, fluid]: [usize; 2],
+        cause: Cause,
+        tighter: f64,
+    ) -> Result<Option<(Self, f64)>> {
         let mut other = unrecorded(case);
         let mut added = vec![];
         let factor = match cause {
             Cause::BeamMesh => {
-                other.mesh.cells_per_segment = companion.cells_per_segment;
-                share(
-                    case.mesh.cells_per_segment,
-                    companion.cells_per_segment,
-                    case.mesh.order(),
-                )
+                other.mesh.cells_per_segment = beam;
+                // some quantities of a mesh of fourth order are of second
+                let order = if case.mesh.order() == 4 { 3 } else { 2 };
+                share(case.mesh.cells_per_segment, beam, order)
             }
             Cause::FluidMesh => {
                 if !has_cells_along_bladders(case)? {
                     return Ok(None);
                 }
-                other.mesh.cells_per_bladder = companion.cells_per_bladder;
-                share(case.mesh.cells_per_bladder, companion.cells_per_bladder, 1)
+                other.mesh.cells_per_bladder = fluid;
+                share(case.mesh.cells_per_bladder, fluid, 1)
             }
             Cause::TimeSteps => {
-                other.solver.rtol = (0.1 * case.solver.rtol).max(TOLERANCES[0]);
+                other.solver.rtol = (case.solver.rtol / tighter).max(TOLERANCES[0]);
                 1.0
             }
             Cause::Effects => {
@@ -176,6 +182,11 @@ impl Variant {
             earlier_runs: vec![],
         }
     }
+}
+
+/// True for a fourth-order mesh so coarse that its error is measured on a finer one.
+pub fn has_few_cells(case: &Case) -> bool {
+    case.mesh.order() == 4 && case.mesh.cells_per_segment <= FEW
 }
 
 /// Other cells of a segment: half as many at second order, three quarters at fourth, twice as many where there can be no fewer.
