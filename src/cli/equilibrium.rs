@@ -17,8 +17,8 @@ use crate::results::run::Bands;
 use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
 use crate::run::{known, slow};
+use crate::study::analysis::AnalysisKind;
 use crate::study::refine::{self, meshes::Meshes};
-use crate::study::sweep::What;
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
@@ -42,7 +42,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         &asked.uncertain,
         &asked.case,
         case,
-        What::Equilibrium,
+        AnalysisKind::Equilibrium,
         asked.result.quiet,
     )?;
     let mut folder = asked.result.place.claim(case, Kind::Equilibrium)?;
@@ -69,7 +69,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let columns = equilibrium::columns(&system);
     let meshes = if path.fault.is_none() && accuracy.is_none() {
         let here = refine::numbers::of_path(case, &columns, &path)?;
-        Some(refine::meshes::judge_at_rest(case, &here, &mut of)?)
+        Some(refine::meshes::judge(case, &here, &mut of)?.with_effects(case, &here, &mut of)?)
     } else {
         None
     };

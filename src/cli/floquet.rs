@@ -19,10 +19,10 @@ use crate::run::floquet;
 use crate::run::known;
 use crate::run::periodic::scene::{self, fault};
 use crate::run::periodic::{Scene, shoot};
+use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
-use crate::study::sweep::What;
 
 /// Points of a map at most.
 const MOST_POINTS: usize = 100_000;
@@ -49,7 +49,13 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --accuracy nor --period; the mesh and tolerance that an accuracy led to stand in floquet.json";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Floquet, asked.result.quiet)?;
+    let uncertain = Uncertain::new(
+        &asked.uncertain,
+        &asked.case,
+        case,
+        AnalysisKind::Floquet,
+        asked.result.quiet,
+    )?;
     let mut folder = asked.result.place.claim(case, Kind::Floquet)?;
     let stop = asked.result.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);

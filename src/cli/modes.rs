@@ -17,8 +17,8 @@ use crate::results::run::Bands;
 use crate::run::equilibrium;
 use crate::run::known;
 use crate::run::modes::{self, Plan, Sort, sort};
+use crate::study::analysis::AnalysisKind;
 use crate::study::refine;
-use crate::study::sweep::What;
 
 /// Finds the modes, writes the folder, prints the table and what follows from it.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
@@ -48,7 +48,13 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         let what = "--uncertain is about the lowest modes that swing about the start: it does not go with --at, --near or --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Modes, asked.result.quiet)?;
+    let uncertain = Uncertain::new(
+        &asked.uncertain,
+        &asked.case,
+        &case,
+        AnalysisKind::Modes,
+        asked.result.quiet,
+    )?;
     let mut folder = asked.result.place.claim(&case, Kind::Modes)?;
     asked.result.wall.flag();
     if !asked.result.quiet {

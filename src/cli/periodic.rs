@@ -24,10 +24,10 @@ use crate::run::floquet;
 use crate::run::periodic::{Scene, Settled, record, scene, sensitivity, settle, subharmonic};
 use crate::run::record::Control;
 use crate::run::summary::Status;
+use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::along;
-use crate::study::sweep::What;
 
 /// Multipliers told.
 const COUNT: usize = 6;
@@ -59,7 +59,13 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --periods nor --accuracy";
         return Err(Error::Usage(what.into()));
     }
-    let uncertain = Uncertain::new(&asked.uncertain, &asked.case, &case, What::Periodic, asked.result.quiet)?;
+    let uncertain = Uncertain::new(
+        &asked.uncertain,
+        &asked.case,
+        &case,
+        AnalysisKind::Periodic,
+        asked.result.quiet,
+    )?;
     let parameters = Parameter::all(&case, &asked.sensitivities)?;
     if !parameters.is_empty() {
         sensitivity::allowed(&case, &Scene::new(&case, None)?, &parameters)?;
@@ -106,7 +112,8 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
         let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT, &stop);
-        Some(refine::meshes::judge(&case, &here, &mut of)?)
+        let mut of_figures = |case: &Case| refine::numbers::of_cycle(case, asked.periods, &stop);
+        Some(refine::meshes::judge(&case, &here, &mut of)?.with_effects(&case, &here, &mut of_figures)?)
     } else {
         None
     };

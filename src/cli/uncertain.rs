@@ -17,10 +17,11 @@ use crate::output::uncertainty as files;
 use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::{CompanionRun, Status};
+use crate::study::analysis::Found;
+use crate::study::analysis::{self, AnalysisKind, Ask};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::designs::pairs;
-use crate::study::sweep::row::Found;
-use crate::study::sweep::{Ask, Vary, What, compute, pool};
+use crate::study::sweep::{Vary, pool};
 use crate::study::uncertain::{self, Plan, Slopes};
 
 /// Step of a difference over the standard deviation.
@@ -34,7 +35,7 @@ pub struct Uncertain {
     sets: Vec<String>,
     /// The case itself.
     own: Case,
-    what: What,
+    what: AnalysisKind,
     jobs: usize,
     quiet: bool,
     flag: Arc<AtomicBool>,
@@ -50,7 +51,7 @@ impl Uncertain {
         asked: &UncertainArguments,
         CaseArguments { case: path, sets }: &CaseArguments,
         own: &Case,
-        what: What,
+        what: AnalysisKind,
         quiet: bool,
     ) -> Result<Option<Self>> {
         if asked.uncertain.is_empty() {
@@ -96,7 +97,7 @@ impl Uncertain {
         let look = |number: usize| {
             let case = self.case(self.plan.sets(number))?;
             size::fits(&case, 0, self.jobs)?;
-            compute::check(&case, self.what)
+            self.what.analysis().check(&case)
         };
         let faults = sweep::faults(&all, self.jobs, &self.flag, &look, &mut |_| ())?;
         let Some((number, fault)) = faults.into_iter().next() else {
@@ -125,8 +126,8 @@ impl Uncertain {
             meshes,
         };
         let stop = || self.stopped();
-        let found = || compute::found(case, ask, &stop, &|case| compute::run(case, ask, &stop));
-        compute::stored(&self.evaluations, key, &stop, found)
+        let found = || analysis::found(case, ask, &stop, &|case| analysis::run(case, ask, &stop));
+        analysis::stored(&self.evaluations, key, &stop, found)
     }
 
     /// Computes all samples; nothing where it was interrupted.

@@ -1,6 +1,7 @@
 //! Studies: many runs to answer one question. Prints nothing.
 
 pub mod accuracy;
+pub mod analysis;
 pub mod companion;
 pub mod compare;
 pub mod counted;
@@ -13,7 +14,6 @@ pub mod measure;
 pub mod optimize;
 pub mod refine;
 pub mod sense;
-pub mod slopes;
 pub mod span;
 pub mod stability;
 pub mod sweep;

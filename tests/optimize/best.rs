@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use slcbeam::case::parameter::with;
 use slcbeam::case::{self, Case};
-use slcbeam::study::sweep::{Ask, What, compute};
+use slcbeam::study::analysis::{self, AnalysisKind, Ask};
 
 use crate::common::*;
 
@@ -19,7 +19,7 @@ const COARSE: [&str; 4] = [
 ];
 const POWER: &str = "harvested_power_w.mean";
 
-fn figure(case: &Case, what: What, changes: &[(&str, f64)], name: &str) -> f64 {
+fn figure(case: &Case, what: AnalysisKind, changes: &[(&str, f64)], name: &str) -> f64 {
     let case = with(case, changes).expect("a case");
     let ask = Ask {
         what,
@@ -27,7 +27,7 @@ fn figure(case: &Case, what: What, changes: &[(&str, f64)], name: &str) -> f64 {
         from: None,
         meshes: false,
     };
-    let found = compute::found(&case, ask, &|| false, &|case| compute::run(case, ask, &|| false));
+    let found = analysis::found(&case, ask, &|| false, &|case| analysis::run(case, ask, &|| false));
     found.expect("no interruption").figure(name).expect("a figure")
 }
 
@@ -65,7 +65,13 @@ fn a_turbine_takes_most() {
     assert!(low < value && value < high);
     for (far, share) in [(0.5_f64, 0.0025), (-0.5, 0.0025)] {
         let beside = value * (high / low).powf(0.5 * far);
-        let lost = 1.0 - figure(&harvester(&[TIGHT]), What::Periodic, &[(CONDUCTANCE, beside)], POWER) / power;
+        let lost = 1.0
+            - figure(
+                &harvester(&[TIGHT]),
+                AnalysisKind::Periodic,
+                &[(CONDUCTANCE, beside)],
+                POWER,
+            ) / power;
         // the fourth order of the curve, and the energies' own error
         assert!((lost / share - 1.0).abs() < 0.3, "{beside}: {lost}");
     }
@@ -81,7 +87,7 @@ fn a_turbine_is_that_of_a_scan() {
     let count = 120;
     let at = |k: usize| 1e-11 * 1e3_f64.powf(k as f64 / count as f64);
     let values: Vec<f64> = (0..=count)
-        .map(|k| figure(&case, What::Periodic, &[(CONDUCTANCE, at(k))], POWER))
+        .map(|k| figure(&case, AnalysisKind::Periodic, &[(CONDUCTANCE, at(k))], POWER))
         .collect();
     let best = (1..count)
         .max_by(|a, b| values[*a].total_cmp(&values[*b]))
@@ -143,11 +149,11 @@ fn a_limit_holds_the_pump() {
     assert_eq!(found["limits"][0]["reached"], true);
     let written = path(&dir, "out/optimum-case.json");
     let case = case::load(written.as_ref(), &[]).expect("a case");
-    let own = figure(&case, What::Equilibrium, &[], "tip_u1_m");
+    let own = figure(&case, AnalysisKind::Equilibrium, &[], "tip_u1_m");
     // an equilibrium is found to its tolerance
     assert!((own / number(&found["value"]) - 1.0).abs() < 1e-6);
     // what a unit of the limit brings is what the tip does for a unit of pressure
-    let more = figure(&case, What::Equilibrium, &[(pump, 50_100.0)], "tip_u1_m");
+    let more = figure(&case, AnalysisKind::Equilibrium, &[(pump, 50_100.0)], "tip_u1_m");
     let gain = number(&found["limits"][0]["gain"]);
     assert!((gain / ((more - own) / 100.0) - 1.0).abs() < 1e-2, "{gain}");
     let page = fs::read_to_string(path(&dir, "out/report.html")).expect("a page");
@@ -183,7 +189,7 @@ fn a_frequency_holds_another() {
     );
     // what a unit of the limit brings is what one frequency does for the other
     let case = case::load("cases/dry-cantilever.json".as_ref(), &[]).expect("a case");
-    let of = |height: f64, mode: &str| figure(&case, What::Modes, &[("/beam/height_m", height)], mode);
+    let of = |height: f64, mode: &str| figure(&case, AnalysisKind::Modes, &[("/beam/height_m", height)], mode);
     let height = number(&found["variables"][0]["value"]);
     let change = |mode: &str| of(1.001 * height, mode) - of(0.999 * height, mode);
     let ratio = change("mode_2.frequency_hz") / change("mode_1.frequency_hz");
@@ -273,7 +279,7 @@ fn a_figure_that_nothing_moves() {
         .concat(),
     );
     let case = case::load("cases/dry-cantilever.json".as_ref(), &[]).expect("a case");
-    let own = figure(&case, What::Modes, &[], "mode_1.frequency_hz");
+    let own = figure(&case, AnalysisKind::Modes, &[], "mode_1.frequency_hz");
     assert!((number(&found["begin"]) / own - 1.0).abs() < 1e-9, "{found}");
 }
 

@@ -5,11 +5,11 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use serde_json::Value;
 use slcbeam::case;
+use slcbeam::study::analysis::AnalysisKind;
 use slcbeam::study::optimize::problem::{Asked, Goal, Problem};
 use slcbeam::study::optimize::wiring::Alternative;
 use slcbeam::study::optimize::{Candidate, optimise};
 use slcbeam::study::span::Span;
-use slcbeam::study::sweep::What;
 
 use crate::common::*;
 
@@ -62,7 +62,7 @@ fn hollows_are_passed_over() {
 #[test]
 fn an_interrupted_search_has_the_best_so_far() {
     let asked = Asked {
-        what: What::Modes,
+        what: AnalysisKind::Modes,
         spans: vec![Span {
             pointer: AT.into(),
             low: 0.1,

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{PlaceArguments, ResultArguments};
-use crate::study::sweep::{Shard, What};
+use crate::study::analysis::AnalysisKind;
+use crate::study::sweep::Shard;
 
 /// Commands that a design can go through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -20,7 +21,7 @@ pub enum Through {
     Modes,
 }
 
-impl From<Through> for What {
+impl From<Through> for AnalysisKind {
     fn from(one: Through) -> Self {
         match one {
             Through::Run => Self::Run,

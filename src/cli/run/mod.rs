@@ -30,9 +30,9 @@ use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
+use crate::study::analysis::AnalysisKind;
+use crate::study::analysis::Ask;
 use crate::study::companion::{self, Accurate};
-use crate::study::sweep::What;
-use crate::study::sweep::compute::Ask;
 use crate::study::target::effects::Annotate;
 use crate::study::target::{self, Setting};
 use resume::resume;
@@ -54,7 +54,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
         return Err(Error::Usage(what.into()));
     }
-    let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, What::Run, asked.quiet)?;
+    let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, AnalysisKind::Run, asked.quiet)?;
     let way = Way {
         hook: hook(asked),
         lean: asked.lean,

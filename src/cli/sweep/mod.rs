@@ -23,7 +23,8 @@ use crate::results;
 use crate::results::sweep::Plan;
 use crate::run::dynamics::Outcome;
 use crate::run::summary::Status;
-use crate::study::sweep::{Ask, Row, What, compute, pool, row::Found};
+use crate::study::analysis::{self, AnalysisKind, Ask, Found};
+use crate::study::sweep::{Row, pool};
 use crate::study::target::Setting;
 use progress::Counter;
 use source::Source;
@@ -38,7 +39,7 @@ const MOST_AT_ONCE: usize = 1024;
 pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let source = Source::read(asked)?;
     let plan = &source.plan;
-    if asked.keep_folders && plan.command != What::Run {
+    if asked.keep_folders && plan.command != AnalysisKind::Run {
         let what = "--keep-folders keeps those of runs; --keep-cases keeps the case of every design, which the command takes itself";
         return Err(Error::Usage(what.into()));
     }
@@ -214,9 +215,9 @@ fn compute_all(
         meshes: plan.mesh_errors,
     };
     // searches begin with the setting of the first design, whichever designs are left
-    let searches = ask.accuracy.is_some() && ask.what == What::Run && !left.is_empty();
+    let searches = ask.accuracy.is_some() && ask.what == AnalysisKind::Run && !left.is_empty();
     if searches && let Ok(case) = source.case(&source.designs.design(0)) {
-        let first = compute::run(&case, ask, &stop)
+        let first = analysis::run(&case, ask, &stop)
             .ok()
             .and_then(|outcome| outcome.summary.accuracy);
         ask.from = first.as_ref().map(Setting::found);
@@ -247,7 +248,7 @@ fn compute_all(
                         .get_or_insert(error);
                     return None;
                 }
-                compute::found(&case, ask, &stop, &|case| keep.run(case, ask, &stop))?
+                analysis::found(&case, ask, &stop, &|case| keep.run(case, ask, &stop))?
             }
         };
         Some(Row::of(design, found, begin.elapsed().as_secs_f64()))
@@ -304,7 +305,7 @@ impl Keep<'_> {
     /// A run, with its folder on request.
     fn run(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
         if !self.asked.keep_folders {
-            return compute::run(case, ask, stop);
+            return analysis::run(case, ask, stop);
         }
         let dir = self.folder.path(FOLDERS).join(files::numbered(self.plan, self.number));
         run::into(case, ask, &dir, self.asked.lean, self.flag)

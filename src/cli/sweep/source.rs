@@ -9,7 +9,7 @@ use crate::cli::{line, size, terminal};
 use crate::error::{Error, Result};
 use crate::study::sweep::plan::{Listed, Plan};
 use crate::study::sweep::table::Table;
-use crate::study::sweep::{Design, Designs, Draw, Vary, compute};
+use crate::study::sweep::{Design, Designs, Draw, Vary};
 
 /// What an accuracy chooses.
 const CHOSEN: [&str; 3] = ["/mesh/cells_per_segment", "/mesh/cells_per_bladder", "/solver/rtol"];
@@ -131,7 +131,7 @@ impl Source {
     pub fn check(&self, number: usize, jobs: usize) -> Result<()> {
         let case = self.case(&self.designs.design(number))?;
         size::fits(&case, 0, jobs)?;
-        compute::check(&case, self.plan.command)
+        self.plan.command.analysis().check(&case)
     }
 
     /// Tells which design it is that an error is about.

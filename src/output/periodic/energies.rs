@@ -6,8 +6,8 @@ use crate::output::numbers::{percent, quantity, significant};
 use crate::output::plot::cycles::Quantity as Panel;
 use crate::results::cycles::Along;
 use crate::results::run::Quantity;
+use crate::study::analysis::power::{self, Figure};
 use crate::study::stability::Member;
-use crate::study::sweep::power::{self, Figure};
 
 /// Figures of the cycle of one value.
 pub fn energies(member: &Member) -> Vec<Figure> {

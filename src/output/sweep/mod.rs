@@ -36,7 +36,7 @@ use crate::case::Written;
 use crate::error::Result;
 use crate::results;
 use crate::results::sweep::{Column, Plan, Sweep};
-use crate::study::sweep::row::word;
+use crate::study::analysis::word;
 pub use crate::study::sweep::unit::unit;
 
 pub use super::journal::Journal;

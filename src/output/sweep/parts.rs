@@ -10,7 +10,7 @@ use crate::output::kind::Kind;
 use crate::output::numbers::significant;
 use crate::results::sweep::{Plan, Shard};
 use crate::run::summary::Status;
-use crate::study::sweep::row::Found;
+use crate::study::analysis::Found;
 
 /// A folder with a part of a sweep.
 #[derive(Clone, Debug)]

@@ -12,8 +12,8 @@ use crate::output::folder::{ResultFolder, put_whole};
 use crate::output::numbers::shortest;
 use crate::output::records;
 use crate::results::sweep::{Column, Plan};
+use crate::study::analysis::word;
 use crate::study::sweep::Row;
-use crate::study::sweep::row::word;
 
 /// Writes it.
 ///

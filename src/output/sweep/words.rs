@@ -7,9 +7,9 @@ use crate::error::Result;
 use crate::output::numbers::{count, counted};
 use crate::results::sweep::Sweep;
 use crate::run::summary::Status;
-use crate::study::sweep::compute::ACCURACY;
+use crate::study::analysis::ACCURACY;
+use crate::study::analysis::word;
 use crate::study::sweep::designs::pairs;
-use crate::study::sweep::row::word;
 
 /// Designs without a full result that are told one by one.
 const TOLD: usize = 5;

@@ -27,9 +27,9 @@ use nalgebra::{DMatrix, DVector};
 use crate::case::Case;
 use crate::error::{Code, Result};
 use crate::numerics::levenberg::{self, Ended, Evaluation};
+use crate::study::analysis::{self, Ask};
 use crate::study::data::Table;
 use crate::study::span::Span;
-use crate::study::sweep::{Ask, compute};
 use found::{Bound, Column, Estimate, Fit, Left, Simulator};
 use identify::{Seen, unseen};
 use problem::{Asked, Drive, Problem, Through};
@@ -333,8 +333,8 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
         from: None,
         meshes: true,
     };
-    let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));
-    let found = compute::stored(&problem.evaluations, &"check", stop, found);
+    let found = || analysis::found(case, ask, stop, &|case| analysis::run(case, ask, stop));
+    let found = analysis::stored(&problem.evaluations, &"check", stop, found);
     found.map_or(vec![], |found| found.told)
 }
 

@@ -13,11 +13,11 @@ use crate::error::numbers::counted;
 use crate::error::{Error, Result, visible};
 use crate::run::equilibrium;
 use crate::run::observe::Observer;
+use crate::study::analysis::AnalysisKind;
 use crate::study::data::matching::Named;
 use crate::study::data::{Match, Matched, Table, matching};
 use crate::study::evaluations::Evaluations;
 use crate::study::span::{self, Span};
-use crate::study::sweep::{What, compute};
 
 /// What the case goes through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,10 +31,10 @@ pub enum Through {
 
 impl Through {
     /// The command.
-    pub fn command(self) -> What {
+    pub fn command(self) -> AnalysisKind {
         match self {
-            Self::Run => What::Run,
-            Self::Equilibrium => What::Equilibrium,
+            Self::Run => AnalysisKind::Run,
+            Self::Equilibrium => AnalysisKind::Equilibrium,
         }
     }
 }
@@ -203,7 +203,7 @@ impl Problem {
         };
         let begin = problem.with(&problem.start)?;
         let what = through.command();
-        span::check(&begin, &problem.spans, true, &|case| compute::check(case, what))?;
+        span::check(&begin, &problem.spans, true, &|case| what.analysis().check(case))?;
         Ok(problem)
     }
 

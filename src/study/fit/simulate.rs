@@ -12,8 +12,8 @@ use crate::run::equilibrium::{self, Options};
 use crate::run::record::Control;
 use crate::run::sensitivity::forward::By;
 use crate::run::stop::INTERRUPTED;
+use crate::study::analysis::derivatives;
 use crate::study::followed::{Followed, Row};
-use crate::study::slopes;
 use crate::study::sweep::pool;
 
 /// What a case gives.
@@ -57,7 +57,7 @@ fn computed(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> 
 fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> bool + Sync)) -> Result<Vec<Row>> {
     let case = problem.with(values)?;
     // effects stay those of the case itself: a sum of squares must not jump where another would be chosen
-    let system = slopes::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
+    let system = derivatives::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
     let parameters = problem.parameters(values);
     let names: Vec<String> = problem.matched.iter().map(|one| one.name.clone()).collect();
     let by: Vec<&str> = parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();

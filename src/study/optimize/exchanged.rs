@@ -4,8 +4,8 @@ use super::problem::Problem;
 use crate::case::Case;
 use crate::error::Code;
 use crate::run::modes::{Mode, likeness};
-use crate::study::sweep::What;
-use crate::study::sweep::compute::{lowest, swinging};
+use crate::study::analysis::AnalysisKind;
+use crate::study::analysis::modes::{lowest, swinging};
 
 /// Likeness of shapes from which on two modes are one, and by how much it must be larger than that of the modes of one number.
 const ALIKE: f64 = 0.5;
@@ -18,7 +18,7 @@ pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
     let mut numbers: Vec<usize> = problem.figures().into_iter().filter_map(number).collect();
     numbers.sort_unstable();
     numbers.dedup();
-    if problem.what != What::Modes || numbers.is_empty() || problem.spans.is_empty() {
+    if problem.what != AnalysisKind::Modes || numbers.is_empty() || problem.spans.is_empty() {
         return vec![];
     }
     let of = |case: &Case| {

@@ -10,8 +10,8 @@ use super::search::Reached;
 use super::wiring::Alternative;
 use crate::error::Result;
 use crate::numerics::sqp::HELD;
+use crate::study::analysis::AnalysisKind;
 pub use crate::study::span::Bound;
-use crate::study::sweep::What;
 
 /// The best that was found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Optimum {
     /// Name of the case.
     pub case: String,
     /// What every design went through.
-    pub command: What,
+    pub command: AnalysisKind,
     /// What is sought.
     pub goal: Goal,
     /// Whether the search ended at a best within bounds and limits, as far as derivatives tell.

@@ -10,10 +10,10 @@ use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::Unrecorded;
 use crate::run::summary::Status;
-use crate::study::slopes;
+use crate::study::analysis::Found;
+use crate::study::analysis::derivatives;
+use crate::study::analysis::{self, Ask};
 use crate::study::span;
-use crate::study::sweep::row::Found;
-use crate::study::sweep::{Ask, compute};
 
 /// Change of a place between the bounds in a difference, to either side.
 const BESIDE: f64 = 0.01;
@@ -138,7 +138,10 @@ fn differentiated(
 ) -> Option<std::result::Result<Exact, String>> {
     let found = problem.with(values).and_then(|case| {
         let parameters = problem.parameters(values);
-        slopes::slopes(&case, problem.what, &parameters, problem.system.as_ref(), stop)
+        problem
+            .what
+            .analysis()
+            .derivatives(&case, &parameters, problem.system.as_ref(), stop)
     });
     let (found, slopes) = match found {
         Ok(found) => found,
@@ -173,13 +176,13 @@ fn computed(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::
         meshes: false,
     };
     let run = |case: &Case| run(problem, case, stop);
-    let found = compute::found(&case, ask, stop, &run).ok_or("interrupted")?;
+    let found = analysis::found(&case, ask, stop, &run).ok_or("interrupted")?;
     wanted(problem, &found)
 }
 
 fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
-    let system = slopes::alike_or_own(case, problem.system.as_ref())?;
-    dynamics::run_with(case, system, &[], &mut Unrecorded(slopes::until(stop)))
+    let system = derivatives::alike_or_own(case, problem.system.as_ref())?;
+    dynamics::run_with(case, system, &[], &mut Unrecorded(derivatives::until(stop)))
 }
 
 /// What is looked at, of everything that a design tells.

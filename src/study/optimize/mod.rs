@@ -29,9 +29,10 @@ use std::time::Instant;
 use crate::case::Case;
 use crate::error::{Code, Result};
 use crate::numerics::sqp::{Ended, HELD};
+use crate::study::analysis::Found;
+use crate::study::analysis::{self, Ask};
 use crate::study::span::Bound;
-use crate::study::sweep::row::Found;
-use crate::study::sweep::{Ask, compute, pool};
+use crate::study::sweep::pool;
 use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search, better};
@@ -214,8 +215,8 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
         from: None,
         meshes: true,
     };
-    let found = || compute::found(case, ask, stop, &|case| compute::run(case, ask, stop));
-    compute::stored(&problem.evaluations, &("check", &case.name), stop, found)
+    let found = || analysis::found(case, ask, stop, &|case| analysis::run(case, ask, stop));
+    analysis::stored(&problem.evaluations, &("check", &case.name), stop, found)
 }
 
 /// The estimated error of a figure, absolute.

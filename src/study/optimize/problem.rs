@@ -2,15 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::names::{names, resolve};
+use super::names::resolve;
 use crate::case::Case;
 use crate::case::parameter::{Parameter, with};
 use crate::discrete::System;
 use crate::error::{Error, Result};
+use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
-use crate::study::slopes;
 use crate::study::span::{self, Span};
-use crate::study::sweep::{What, compute};
 
 /// The figure that is to be largest or least.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -98,7 +97,7 @@ impl Limit {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
     /// What every design goes through.
-    pub what: What,
+    pub what: AnalysisKind,
     /// Numbers that are sought, and where.
     pub spans: Vec<Span>,
     /// What is sought; its figure as it was typed.
@@ -117,7 +116,7 @@ pub struct Problem {
     /// The case.
     pub case: Case,
     /// What every design goes through.
-    pub what: What,
+    pub what: AnalysisKind,
     /// Its effects, which every design of a run has: a figure must not jump where others would be chosen.
     pub system: Option<System>,
     /// Numbers that are sought, and where.
@@ -141,8 +140,8 @@ impl Problem {
     /// Everything that does not fit, before anything is computed.
     pub fn new(case: &Case, asked: &Asked) -> Result<Self> {
         let start = span::begin(case, &asked.spans, std::iter::empty())?;
-        compute::check(case, asked.what)?;
-        let names = names(case, asked.what)?;
+        asked.what.analysis().check(case)?;
+        let names = asked.what.analysis().names(case)?;
         let option = if asked.goal.largest { "--maximize" } else { "--minimize" };
         let figure = resolve(option, &asked.goal.figure, asked.what, &names)?;
         let limit = |one: &Limit| {
@@ -155,7 +154,7 @@ impl Problem {
             case: case.clone(),
             what: asked.what,
             system: match asked.what {
-                What::Run => Some(System::new(case)?),
+                AnalysisKind::Run => Some(System::new(case)?),
                 _ => None,
             },
             spans: asked.spans.clone(),
@@ -170,9 +169,12 @@ impl Problem {
         };
         let begin = problem.with(&problem.start)?;
         span::check(&begin, &problem.spans, false, &|case| {
-            compute::check(case, problem.what)
+            problem.what.analysis().check(case)
         })?;
-        let found = slopes::check(&begin, problem.what, &problem.parameters(&problem.start));
+        let found = problem
+            .what
+            .analysis()
+            .allows(&begin, &problem.parameters(&problem.start));
         problem.differences = found.err().map(|error| error.to_string().replace("--sensitivity ", ""));
         Ok(problem)
     }

@@ -9,10 +9,10 @@ use nalgebra::{DMatrix, DVector};
 use super::found::{Derivatives, Design, Start};
 use super::look::{Seen, look};
 use super::problem::{Asked, Problem};
-use crate::error::{At, Code, Error, Result, SolverError};
+use crate::error::{At, Error, Result, SolverError};
 use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
-use crate::study::sweep::{What, pool};
+use crate::study::sweep::pool;
 
 /// Steps of a search at most.
 const STEPS: usize = 60;
@@ -125,12 +125,7 @@ impl<'a> Search<'a> {
             let why = self.history().into_iter().find_map(|design| design.reason);
             let why = why.map_or(String::new(), |why| format!(": {why}"));
             return Err(Error::Solver(Box::new(SolverError {
-                code: match self.problem.what {
-                    What::Run => Code::Integrator,
-                    What::Periodic | What::Floquet => Code::NoCycle,
-                    What::Equilibrium => Code::NoEquilibrium,
-                    What::Modes => Code::NoModes,
-                },
+                code: self.problem.what.analysis().fault(),
                 at: At::Time(0.0),
                 what: format!("no design at a start can be computed{why}"),
                 unknown: None,
@@ -209,9 +204,9 @@ impl<'a> Search<'a> {
 
     /// Error of figures.
     fn noise(&self) -> f64 {
-        match self.problem.what {
-            What::Run | What::Periodic | What::Floquet => self.problem.case.solver.rtol.max(EXACT),
-            What::Equilibrium | What::Modes => EXACT,
+        match self.problem.what.analysis().is_in_time() {
+            true => self.problem.case.solver.rtol.max(EXACT),
+            false => EXACT,
         }
     }
 

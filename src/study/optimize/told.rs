@@ -7,8 +7,8 @@ use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::error::numbers::{counted, rounded};
 use crate::numerics::sqp::Ended;
+use crate::study::analysis::Found;
 use crate::study::span::Span;
-use crate::study::sweep::row::Found;
 
 /// What the plain command may differ by without a word.
 const SAME: f64 = 1e-3;

@@ -27,7 +27,7 @@ pub struct Share {
     pub beam: Option<f64>,
     /// Cells along bladders, likewise.
     pub bladders: Option<f64>,
-    /// Effects that are left out, of equilibria.
+    /// Effects that are left out, of equilibria and cycles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<f64>,
 }
@@ -58,19 +58,6 @@ pub struct Meshes {
     pub unknown: Vec<String>,
 }
 
-/// Computes a state at rest on other meshes, and with the effects that the case leaves out; `here` are its numbers.
-///
-/// # Errors
-/// As [`System::new`](crate::discrete::System::new).
-pub fn judge_at_rest(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<Meshes> {
-    let mut found = judge(case, here, compute)?;
-    if let Some(full) = full(case)? {
-        found.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
-        found.sum(here);
-    }
-    Ok(found)
-}
-
 /// Computes a case on other meshes; `here` are its numbers on its own.
 ///
 /// # Errors
@@ -97,6 +84,23 @@ pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Resu
 }
 
 impl Meshes {
+    /// Adds what the effects that a case leaves out do to its numbers.
+    ///
+    /// # Errors
+    /// As [`System::new`](crate::discrete::System::new).
+    pub fn with_effects(
+        mut self,
+        case: &Case,
+        here: &Numbers,
+        compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
+    ) -> Result<Self> {
+        if let Some(full) = full(case)? {
+            self.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
+            self.sum(here);
+        }
+        Ok(self)
+    }
+
     fn compare(
         &mut self,
         which: &str,

@@ -12,8 +12,8 @@ use crate::functions::signals::Table;
 use crate::functions::{Interpolation, Signal};
 use crate::run::dynamics;
 use crate::run::sensitivity::forward::By;
+use crate::study::analysis::derivatives;
 use crate::study::followed::Followed;
-use crate::study::slopes;
 
 /// Equally spaced instants between which a load is a natural cubic spline: one before the start and one after the end, since a natural spline has no
 /// curvature at its ends, which a load may have.
@@ -119,7 +119,7 @@ impl<'a> InTime<'a> {
     /// # Errors
     /// Those of [`System::new`].
     pub fn system(&self, case: &Case) -> Result<System> {
-        slopes::alike_or_own(case, Some(&self.system))
+        derivatives::alike_or_own(case, Some(&self.system))
     }
 }
 

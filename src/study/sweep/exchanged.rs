@@ -14,9 +14,9 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use serde_json::Value;
 
-use super::compute::MODES;
 use super::{Plan, Row};
 use crate::run::summary::Status;
+use crate::study::analysis::modes::MODES;
 
 /// How much better another pairing must be than that by numbers.
 const BETTER: f64 = 0.2;

@@ -5,11 +5,8 @@
 //! table    designs from a CSV file
 //! designs  which values design number k has, and its case
 //! plan     everything that decides what the rows are
-//! row      what came out of a design
+//! row      figures of a design
 //! unit     units of figures, by their names
-//! compute  the row of a case, by each command
-//! multipliers  what a cycle's multipliers tell
-//! power    what a cycle puts in and harvests
 //! exchanged modes that change places from one design to the next
 //! pool     designs on all cores
 //! ```
@@ -17,20 +14,16 @@
 //! A design is known by its number alone, and what it computes by its case: rows depend neither on how many are computed at once
 //! nor on which came first.
 
-pub mod compute;
 pub mod designs;
 pub mod exchanged;
-pub mod multipliers;
 pub mod plan;
 pub mod pool;
-pub mod power;
 pub mod row;
 pub mod table;
 pub mod unit;
 pub mod vary;
 
-pub use compute::Ask;
 pub use designs::{Design, Designs};
-pub use plan::{Plan, Shard, What};
+pub use plan::{Plan, Shard};
 pub use row::Row;
 pub use vary::{Draw, Vary};

@@ -5,35 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::designs::Designs;
 use super::row::Row;
 use super::vary::Draw;
-
-/// Which command each design goes through.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum What {
-    /// `run`.
-    Run,
-    /// `periodic`.
-    Periodic,
-    /// `equilibrium`.
-    Equilibrium,
-    /// `modes`.
-    Modes,
-    /// `floquet`.
-    Floquet,
-}
-
-impl What {
-    /// As it is typed.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Run => "run",
-            Self::Periodic => "periodic",
-            Self::Equilibrium => "equilibrium",
-            Self::Modes => "modes",
-            Self::Floquet => "floquet",
-        }
-    }
-}
+use crate::study::analysis::AnalysisKind;
 
 /// A part of the designs: those whose number leaves `index - 1` when it is divided by `of`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -93,7 +65,7 @@ pub struct Plan {
     /// Name of the first case.
     pub case: String,
     /// What each design goes through.
-    pub command: What,
+    pub command: AnalysisKind,
     /// The cases.
     pub cases: Vec<Listed>,
     /// Changes to all of them.

@@ -5,28 +5,28 @@ use std::collections::BTreeMap;
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::run::summary::Status;
-use crate::study::slopes::{self, Gathered};
-use crate::study::sweep::plan::What;
+use crate::study::analysis::AnalysisKind;
+use crate::study::analysis::derivatives::{self, Gathered};
 
 /// Derivatives by figure, each by the numbers in their order; or why there are none.
-pub type Slopes = Result<slopes::Slopes, String>;
+pub type Slopes = Result<derivatives::Slopes, String>;
 
 /// Derivatives of the figures of a case by each of its numbers: exact, but by differences of cycles where a number moves their period, and of
 /// multipliers.
 /// `difference` is told which number, and gives differences of figures over a step of it.
 pub fn slopes(
     case: &Case,
-    what: What,
+    what: AnalysisKind,
     pointers: &[String],
     stop: &dyn Fn() -> bool,
     difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>,
 ) -> Slopes {
     let exact = || {
         let parameters = Parameter::all(case, pointers)?;
-        if matches!(what, What::Periodic | What::Floquet) && slopes::check(case, what, &parameters).is_err() {
+        if what.analysis().allows(case, &parameters).is_err() {
             return Ok(by_differences(pointers.len(), difference));
         }
-        let (found, slopes) = slopes::slopes(case, what, &parameters, None, stop)?;
+        let (found, slopes) = what.analysis().derivatives(case, &parameters, None, stop)?;
         if found.status == Status::Finished {
             return Ok(Ok(slopes));
         }

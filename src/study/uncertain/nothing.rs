@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::{FirstOrder, Spread};
-use crate::study::sweep::row::Found;
+use crate::study::analysis::Found;
 use crate::study::sweep::unit::unit;
 
 /// Beside others of its unit a figure of this part is round-off.

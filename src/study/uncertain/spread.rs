@@ -8,7 +8,7 @@ use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
 use crate::error::Code;
 use crate::error::numbers::counted;
 use crate::run::summary::Status;
-use crate::study::sweep::row::{Found, word};
+use crate::study::analysis::{Found, word};
 
 /// Endings of what is told of figures and is none of them.
 const NO_FIGURES: [&str; 7] = [

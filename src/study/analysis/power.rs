@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::row::Found;
+use super::Found;
 use crate::discrete::quantities::Interest;
 use crate::run::summary::Quantity;
 

@@ -1,22 +1,60 @@
-//! What a cycle's multipliers tell, with what meshes and steps make of them: by the part of the motion that each is mostly of, whose place
-//! among the others may change.
+//! Multipliers of cycles by the part of the motion that each is mostly of: its place among the others may change.
 
-use super::compute::Ask;
-use super::row::Found;
+use super::derivatives::Slopes;
+use super::{Analysis, Ask, Found, RunCase};
 use crate::case::Case;
-use crate::error::Result;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Code, Error, Result};
 use crate::run::floquet::{self, Floquet, Stability};
+use crate::run::periodic::Scene;
 use crate::run::stop::Stop;
 use crate::study::refine::{meshes, numbers};
 
-/// Multipliers told, those largest.
+/// Multipliers with figures, those largest.
 const COUNT: usize = 6;
 
+/// `slcbeam floquet`.
+pub struct Multipliers;
+
+impl Analysis for Multipliers {
+    fn check(&self, case: &Case) -> Result<()> {
+        Scene::new(case, None)?.held(&case.name)
+    }
+
+    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+        multipliers(case, ask)
+    }
+
+    fn names(&self, _: &Case) -> Result<Vec<String>> {
+        Ok(vec!["growth_per_s".into()])
+    }
+
+    fn allows(&self, _: &Case, _: &[Parameter]) -> Result<()> {
+        Err(no_derivatives())
+    }
+
+    fn derivatives(
+        &self,
+        _: &Case,
+        _: &[Parameter],
+        _: Option<&System>,
+        _: &dyn Fn() -> bool,
+    ) -> Result<(Found, Slopes)> {
+        Err(no_derivatives())
+    }
+
+    fn fault(&self) -> Code {
+        Code::NoCycle
+    }
+}
+
+fn no_derivatives() -> Error {
+    Error::Usage("multipliers of a cycle have no derivatives by numbers of the case".into())
+}
+
 /// The multipliers of a case, with the errors that meshes make on request.
-///
-/// # Errors
-/// Those of [`numbers::cycle`].
-pub fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
+fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
     let stop = Stop::default();
     let (scene, mut cycle) = numbers::cycle(case, None, &stop)?;
     let all = floquet::multipliers(&scene, &mut cycle, COUNT);
@@ -65,7 +103,7 @@ pub fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
 }
 
 /// Moduli, rates and frequencies by part, and the rate of the largest.
-pub fn of_multipliers(all: &Floquet) -> Found {
+fn of_multipliers(all: &Floquet) -> Found {
     let mut found = Found::finished();
     let stable = all.verdict.stability != Stability::Unstable;
     found.put("period_s", all.period_s);

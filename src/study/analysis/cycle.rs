@@ -1,0 +1,140 @@
+//! Steady cycles.
+
+use super::derivatives::{Slopes, of_summary, until};
+use super::power::{self, POWERS};
+use super::{Analysis, Ask, Found, RunCase, accurate, errors, run};
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Code, Result};
+use crate::run::floquet::{self, Floquet, Stability};
+use crate::run::periodic::scene::fault;
+use crate::run::periodic::sensitivity::{allowed, differentiate};
+use crate::run::periodic::{Scene, Settled, record, settle, shoot};
+use crate::run::record::{Control, Unrecorded};
+use crate::run::stop::Stop;
+use crate::run::summary::{Status, Summary};
+use crate::study::refine::{self, meshes, numbers};
+
+/// Multipliers beside a cycle.
+const MULTIPLIERS: usize = 2;
+
+/// `slcbeam periodic`.
+pub struct Periodic;
+
+impl Analysis for Periodic {
+    fn check(&self, case: &Case) -> Result<()> {
+        Scene::new(case, None)?.held(&case.name)
+    }
+
+    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+        cycle(case, ask)
+    }
+
+    fn names(&self, case: &Case) -> Result<Vec<String>> {
+        let all = run::names(case, &["window_max_abs", "window_rms"], &["window"])?;
+        let network = System::new(case)?.model.wet.map(|wet| wet.network);
+        let turbines = network.is_some_and(|network| !network.turbines.is_empty());
+        let powers = POWERS[usize::from(!turbines)..].iter().map(|(_, name)| (*name).into());
+        Ok(all.into_iter().chain(powers).collect())
+    }
+
+    fn allows(&self, case: &Case, parameters: &[Parameter]) -> Result<()> {
+        allowed(case, &Scene::new(case, None)?, parameters)
+    }
+
+    fn derivatives(
+        &self,
+        case: &Case,
+        parameters: &[Parameter],
+        _: Option<&System>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(Found, Slopes)> {
+        let scene = Scene::new(case, None)?;
+        scene.held(&case.name)?;
+        let first = shoot(&scene, None).map_err(fault)?;
+        let mut settled = settle(case, scene, first)?;
+        let period = settled.scene.drive.period;
+        let outcome = differentiate(&mut settled, parameters, &mut Unrecorded(until(stop)))?;
+        let mut all = of_summary(&outcome.summary, parameters);
+        for (k, parameter) in parameters.iter().enumerate() {
+            for (energy, power) in POWERS {
+                let slopes = outcome.summary.sensitivities.get(&parameter.pointer);
+                if let Some(slope) = slopes.and_then(|s| s.quantities.get(energy.name())?.window) {
+                    all.put(k, power.into(), slope / period);
+                }
+            }
+        }
+        let found = of_cycle(&outcome.summary, period, settled.cycle.search.work.steps, None);
+        let mut slopes = all.whole();
+        slopes.retain(|name, _| found.figure(name).is_some());
+        Ok((found, slopes))
+    }
+
+    fn fault(&self) -> Code {
+        Code::NoCycle
+    }
+}
+
+/// The steady cycle.
+fn cycle(case: &Case, ask: Ask) -> Result<Found> {
+    let mut of = |case: &Case| numbers::of_cycle(case, 1, &Stop::default());
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+    let scene = Scene::new(case, None)?;
+    scene.held(&case.name)?;
+    let first = shoot(&scene, None).map_err(fault)?;
+    let Settled {
+        case, scene, mut cycle, ..
+    } = settle(case, scene, first)?;
+    let stability = floquet::multipliers(&scene, &mut cycle, MULTIPLIERS);
+    let outcome = record::record(&case, &scene, &cycle, &mut Unrecorded(|_| Control::Continue))?;
+    let summary = &outcome.summary;
+    let mut found = of_cycle(summary, scene.drive.period, cycle.search.work.steps, Some(&stability));
+    if let Some((_, accuracy)) = &refined {
+        accurate(&mut found, accuracy, &|name| name.into());
+        power::share_errors(&mut found);
+    } else if ask.meshes && summary.status == Status::Finished {
+        let here = numbers::of_summary(&case, summary)?;
+        let by_mesh = meshes::judge(&case, &here, &mut of)?.with_effects(&case, &here, &mut of)?;
+        errors(&mut found, &by_mesh, &|name| name.into());
+        power::share_errors(&mut found);
+    }
+    found.warn(&summary.warnings);
+    Ok(found)
+}
+
+/// Figures of the summary of a cycle, over its period [s], and its stability, where that is known.
+pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> Found {
+    let mut found = Found {
+        steps: Some(steps),
+        status: summary.status,
+        reason: summary.reason.clone(),
+        ..Found::finished()
+    };
+    found.put("period_s", period);
+    if let Some(all) = stability {
+        let stable = all.verdict.stability != Stability::Unstable;
+        found.put("stable", f64::from(u8::from(stable)));
+        found.put("growth_per_s", all.multipliers.first().map(|m| m.growth_per_s));
+    }
+    for (name, quantity) in summary.quantities.iter().chain(&summary.probes) {
+        for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
+            found.put(format!("{name}.{figure}"), value);
+        }
+        found.put(format!("{name}.window_error"), quantity.window_error);
+    }
+    for (_, power) in POWERS {
+        if let Some(figure) = power::figures(&summary.quantities, period)
+            .iter()
+            .find(|f| f.name == power)
+        {
+            found.put(power, figure.value);
+            found.put(figure.open_name(), figure.open);
+        }
+    }
+    found
+}

@@ -1,0 +1,131 @@
+//! Equilibria under the loads at the end of a case.
+
+use super::derivatives::{Gathered, Slopes};
+use super::{Analysis, Ask, Found, RunCase, accurate, errors};
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Code, Error, Result};
+use crate::run::equilibrium::{self, Options, Path};
+use crate::run::record::{Column, Control};
+use crate::run::summary::Status;
+use crate::run::{known, slow};
+use crate::study::refine::{self, meshes, numbers};
+
+/// Points on a path of equilibria at least, as the command has them.
+const POINTS: usize = 16;
+
+/// `slcbeam equilibrium`.
+pub struct Equilibrium;
+
+impl Analysis for Equilibrium {
+    fn check(&self, case: &Case) -> Result<()> {
+        equilibrium::system(case, case.time.end_s).map(|_| ())
+    }
+
+    fn figures(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+        at_rest(case, ask, stop)
+    }
+
+    fn names(&self, case: &Case) -> Result<Vec<String>> {
+        let columns = equilibrium::columns(&equilibrium::system(case, case.time.end_s)?);
+        let keys = columns.iter().map(|column| column.key());
+        Ok(keys.filter(|key| key != "load_factor").collect())
+    }
+
+    fn derivatives(
+        &self,
+        case: &Case,
+        parameters: &[Parameter],
+        _: Option<&System>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(Found, Slopes)> {
+        let options = at_the_end(case);
+        let path = equilibrium::follow(case, &options, &mut |_| match stop() {
+            true => Control::Stop("interrupted".into()),
+            false => Control::Continue,
+        })?;
+        if let Some(fault) = path.fault {
+            return Err(Error::Solver(Box::new(fault)));
+        }
+        let columns = equilibrium::columns(&equilibrium::system(case, options.at_s)?);
+        let slopes = equilibrium::differentiate(case, &options, &path, parameters)?;
+        let mut all = Gathered::new(parameters.len());
+        for (k, one) in slopes.iter().enumerate() {
+            for (column, slope) in columns.iter().zip(&one.row) {
+                all.put(k, column.key(), *slope);
+            }
+        }
+        Ok((of_path(&columns, &path), all.whole()))
+    }
+
+    fn fault(&self) -> Code {
+        Code::NoEquilibrium
+    }
+
+    fn is_in_time(&self) -> bool {
+        false
+    }
+}
+
+/// How the equilibrium under the loads at the end of a case is sought.
+fn at_the_end(case: &Case) -> Options {
+    Options {
+        points: Some(POINTS),
+        ..Options::at(case.time.end_s)
+    }
+}
+
+/// The equilibrium under the loads at the end.
+fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
+    let options = at_the_end(case);
+    let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
+    let path = equilibrium::follow(case, &options, &mut |_| match stop() {
+        true => Control::Stop("interrupted".into()),
+        false => Control::Continue,
+    })?;
+    let system = equilibrium::system(case, options.at_s)?;
+    let columns = equilibrium::columns(&system);
+    let mut found = of_path(&columns, &path);
+    let key = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name);
+        column.map_or_else(|| name.into(), |column| column.key())
+    };
+    if let Some((_, accuracy)) = &refined {
+        accurate(&mut found, accuracy, &key);
+    } else if ask.meshes && path.fault.is_none() {
+        let here = numbers::of_path(case, &columns, &path)?;
+        let by_mesh = meshes::judge(case, &here, &mut of)?.with_effects(case, &here, &mut of)?;
+        errors(&mut found, &by_mesh, &key);
+    }
+    found.warn(&known::at_rest(case, &system));
+    found.warn(slow::warning(case, &system, options.at_s).as_slice());
+    found.warn(&path.warnings());
+    Ok(found)
+}
+
+/// Figures of the last state of a path.
+pub fn of_path(columns: &[Column], path: &Path) -> Found {
+    let mut found = Found {
+        steps: Some(path.work.iterations),
+        ..Found::finished()
+    };
+    if let Some(fault) = &path.fault {
+        found.status = Status::Failed;
+        found.reason = Some(format!("{} {}", fault.code.id(), fault.what));
+    }
+    if let Some(last) = path.states.last() {
+        for (column, value) in columns.iter().zip(&last.row) {
+            found.put(column.key(), *value);
+        }
+        let stability = last.stability.as_ref();
+        found.put("stable", stability.map(|s| f64::from(u8::from(s.unstable == 0))));
+        found.put("unstable_modes", stability.map(|s| s.unstable as f64));
+    }
+    found
+}

@@ -1,0 +1,228 @@
+//! Analyses of a case: each computes figures by name, with errors and derivatives.
+//!
+//! ```text
+//! run          runs in time                          slcbeam run
+//! equilibrium  states at rest                        slcbeam equilibrium
+//! modes        small motions about the start         slcbeam modes
+//! cycle        steady cycles                         slcbeam periodic
+//! multipliers  stability of cycles                   slcbeam floquet
+//!
+//! found        figures of a case, and how its computation ended
+//! derivatives  figures by numbers of the case
+//! power        energies and mean powers of a cycle
+//! ```
+//!
+//! Whatever needs many designs (`sweep`, `fit`, `optimize`, `--uncertain`) knows an analysis by [`Analysis`] alone. A further analysis is a file
+//! here and a name in [`AnalysisKind`].
+
+mod cycle;
+pub mod derivatives;
+mod equilibrium;
+mod found;
+pub mod modes;
+mod multipliers;
+pub mod power;
+mod run;
+
+use std::cell::Cell;
+
+use serde::{Deserialize, Serialize};
+
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Code, Result};
+use crate::run::dynamics::{self, Outcome};
+use crate::run::record::{Control, Progress, Unrecorded};
+use crate::run::summary::{Accuracy, Status};
+use crate::study::evaluations::Evaluations;
+use crate::study::refine::{self, meshes};
+use crate::study::{companion, target};
+use derivatives::Slopes;
+pub use found::{Found, word};
+
+/// Whether an accuracy that was asked for is reached, 1 or 0.
+pub const ACCURACY: &str = "accuracy_reached";
+
+/// Runs a case in time.
+pub type RunCase<'a> = &'a dyn Fn(&Case) -> Result<Outcome>;
+
+/// A computation of a case that yields figures.
+pub trait Analysis: Sync {
+    /// Rejects a case that the analysis cannot compute, before anything is computed.
+    ///
+    /// # Errors
+    /// In the words of the command.
+    fn check(&self, case: &Case) -> Result<()>;
+
+    /// Computes the figures of a case; `run` runs it in time, where that is asked for.
+    ///
+    /// # Errors
+    /// Those of the command.
+    fn figures(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Result<Found>;
+
+    /// Names of the figures of a case.
+    ///
+    /// # Errors
+    /// Those of [`System::new`].
+    fn names(&self, case: &Case) -> Result<Vec<String>>;
+
+    /// Rejects numbers of a case by which figures have no derivatives, before anything is computed.
+    ///
+    /// # Errors
+    /// [`Error::Usage`](crate::error::Error::Usage) with the number.
+    fn allows(&self, _: &Case, _: &[Parameter]) -> Result<()> {
+        Ok(())
+    }
+
+    /// Computes the figures of a case and the derivatives of those that have some by each of its numbers; none of what did not finish. A run has
+    /// the effects of the system that is given beside it. Exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44]
+    /// and cycles [E76].
+    ///
+    /// # Errors
+    /// Those of the command; a number by which nothing is differentiated.
+    fn derivatives(
+        &self,
+        case: &Case,
+        parameters: &[Parameter],
+        alike: Option<&System>,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(Found, Slopes)>;
+
+    /// Code of a case without figures.
+    fn fault(&self) -> Code;
+
+    /// True if the tolerance of time steps limits figures.
+    fn is_in_time(&self) -> bool {
+        true
+    }
+}
+
+/// An analysis by the command that runs it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AnalysisKind {
+    /// `run`.
+    Run,
+    /// `periodic`.
+    Periodic,
+    /// `equilibrium`.
+    Equilibrium,
+    /// `modes`.
+    Modes,
+    /// `floquet`.
+    Floquet,
+}
+
+impl AnalysisKind {
+    /// Name of the command.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Run => "run",
+            Self::Periodic => "periodic",
+            Self::Equilibrium => "equilibrium",
+            Self::Modes => "modes",
+            Self::Floquet => "floquet",
+        }
+    }
+
+    /// Its analysis.
+    pub fn analysis(self) -> &'static dyn Analysis {
+        match self {
+            Self::Run => &run::Run,
+            Self::Periodic => &cycle::Periodic,
+            Self::Equilibrium => &equilibrium::Equilibrium,
+            Self::Modes => &modes::Modes,
+            Self::Floquet => &multipliers::Multipliers,
+        }
+    }
+}
+
+/// A request for the figures of a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ask {
+    /// The analysis.
+    pub what: AnalysisKind,
+    /// Relative error below which every figure is wanted.
+    pub accuracy: Option<f64>,
+    /// Mesh and tolerance with which a search for it begins.
+    pub from: Option<target::Setting>,
+    /// True if errors are measured: by a companion of a run, by two or three meshes of what other commands compute.
+    pub meshes: bool,
+}
+
+/// Computes a case; `run` runs it in time, where that is asked for. `None` where `stop` became true on the way.
+pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Option<Found> {
+    let found = ask.what.analysis().figures(case, ask, stop, run);
+    if stop() {
+        return None;
+    }
+    Some(found.unwrap_or_else(|error| Found::failed(&error)))
+}
+
+/// What was found of a case under a key of a journal, with its warnings, or what `found` finds.
+pub fn stored(
+    evaluations: &Evaluations,
+    key: &impl Serialize,
+    stop: &dyn Fn() -> bool,
+    found: impl FnOnce() -> Option<Found>,
+) -> Option<Found> {
+    let apart = |mut found: Found| {
+        let told = std::mem::take(&mut found.told);
+        (found, told)
+    };
+    let (found, told) = evaluations.get(key, stop, || found().map(apart))?;
+    Some(Found { told, ..found })
+}
+
+/// Runs a case for its summary alone.
+///
+/// # Errors
+/// Those of [`companion::run`].
+pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+    let wait = Cell::new(0_u32);
+    let hook = |_: &Progress| {
+        wait.set(wait.get() + 1);
+        match wait.get().is_multiple_of(16) && stop() {
+            true => Control::Stop("interrupted".into()),
+            false => Control::Continue,
+        }
+    };
+    match ask.accuracy {
+        None if ask.meshes => target::effects::run(case, &mut Unrecorded(hook)),
+        None => dynamics::run(case, &mut Unrecorded(hook)),
+        Some(accuracy) => target::reach(case, accuracy, ask.from.as_ref(), &mut |case, accuracy| {
+            companion::measured(case, System::new(case)?, accuracy, &mut Unrecorded(hook))
+        }),
+    }
+}
+
+/// Errors of an accuracy that was asked for.
+fn accurate(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
+    for (own, estimate) in &accuracy.quantities {
+        found.put(format!("{}.error", name(own)), estimate.total);
+    }
+    reached(found, accuracy);
+}
+
+/// Whether an accuracy that was asked for is reached: a row that lacks it tells so by its reason too.
+fn reached(found: &mut Found, accuracy: &Accuracy) {
+    found.put(ACCURACY, f64::from(u8::from(accuracy.reached)));
+    if let (false, None, Status::Finished) = (accuracy.reached, &found.reason, found.status) {
+        found.reason = Some(format!(
+            "{} accuracy {:e} is not reached",
+            Code::Accuracy.id(),
+            accuracy.asked
+        ));
+    }
+    found.warn(refine::warning(accuracy).as_slice());
+}
+
+/// Errors that meshes make.
+fn errors(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
+    for (own, share) in &by_mesh.quantities {
+        let total = share.known().then(|| share.total());
+        found.put(format!("{}.error", name(own)), total);
+    }
+    found.warn(by_mesh.warning().as_slice());
+}

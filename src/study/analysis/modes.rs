@@ -1,0 +1,158 @@
+//! Modes about the start of a case.
+
+use std::f64::consts::TAU;
+
+use super::derivatives::{Gathered, Slopes};
+use super::{Analysis, Ask, Found, RunCase, reached};
+use crate::case::Case;
+use crate::case::parameter::Parameter;
+use crate::discrete::System;
+use crate::error::{Code, Result};
+use crate::run::{known, modes};
+use crate::study::refine::{self, numbers};
+
+/// Modes with figures, those lowest.
+pub const MODES: usize = 6;
+/// Modes looked for at most, where few of the slowest swing.
+const MOST_MODES: usize = 384;
+/// Damping ratio above which a mode falls to less than a thirtieth within a period: it hardly swings.
+const STRONG: f64 = 0.5;
+
+/// `slcbeam modes`.
+pub struct Modes;
+
+impl Analysis for Modes {
+    fn check(&self, case: &Case) -> Result<()> {
+        System::new(case).map(|_| ())
+    }
+
+    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+        small(case, ask)
+    }
+
+    fn names(&self, _: &Case) -> Result<Vec<String>> {
+        let figures = ["frequency_hz", "growth_per_s", "damping_ratio"];
+        let of = |k: usize| figures.map(|figure| format!("mode_{k}.{figure}"));
+        Ok((1..=MODES).flat_map(of).collect())
+    }
+
+    fn derivatives(
+        &self,
+        case: &Case,
+        parameters: &[Parameter],
+        _: Option<&System>,
+        _: &dyn Fn() -> bool,
+    ) -> Result<(Found, Slopes)> {
+        let (found, _) = swinging(case)?;
+        let slopes = modes::differentiate(case, None, &found.about, &found.modes, parameters)?;
+        let mut all = Gathered::new(parameters.len());
+        for (rank, place) in lowest(&found.modes).into_iter().enumerate() {
+            let name = format!("mode_{}", rank + 1);
+            let s = found.modes[place].s;
+            for (k, slope) in slopes.iter().enumerate() {
+                let d = slope.s[place];
+                all.put(k, format!("{name}.frequency_hz"), d.im / TAU);
+                all.put(k, format!("{name}.growth_per_s"), d.re);
+                // of -re/|s|
+                let size = s.norm();
+                let ratio = -d.re / size + s.re * (s.re * d.re + s.im * d.im) / size.powi(3);
+                all.put(k, format!("{name}.damping_ratio"), ratio);
+            }
+        }
+        Ok((of_modes(&found), all.whole()))
+    }
+
+    fn fault(&self) -> Code {
+        Code::NoModes
+    }
+
+    fn is_in_time(&self) -> bool {
+        false
+    }
+}
+
+/// Modes about the start of a case, so many that six of them swing, as far as there are so many; and what was looked for.
+///
+/// # Errors
+/// Those of [`modes::modes`].
+pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
+    let mut plan = modes::Plan {
+        count: 2 * MODES,
+        near_hz: 0.0,
+        limits: false,
+    };
+    loop {
+        let found = modes::modes(case, &plan)?;
+        if lowest(&found.modes).len() == MODES || found.modes.len() < plan.count || plan.count >= MOST_MODES {
+            return Ok((found, plan));
+        }
+        plan.count *= 2;
+    }
+}
+
+/// Places of those that swing among modes, the lowest first.
+pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
+    let mut swinging: Vec<usize> = (0..all.len()).filter(|k| all[*k].kind.swings()).collect();
+    swinging.sort_by(|a, b| all[*a].s.im.total_cmp(&all[*b].s.im));
+    swinging.truncate(MODES);
+    swinging
+}
+
+/// Small motions about the start: the lowest that swing.
+fn small(case: &Case, ask: Ask) -> Result<Found> {
+    let (mut all, plan) = swinging(case)?;
+    let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
+    let refined = ask
+        .accuracy
+        .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
+        .transpose()?;
+    let case = match &refined {
+        None => case,
+        Some((chosen, _)) => {
+            all = modes::modes(chosen, &plan)?;
+            chosen
+        }
+    };
+    if ask.meshes && refined.is_none() {
+        modes::compare_meshes(case, None, &plan, &mut all);
+    }
+    let mut found = of_modes(&all);
+    if let Some((_, accuracy)) = &refined {
+        reached(&mut found, accuracy);
+        let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
+        found.put("largest_error", worst.reduce(f64::max));
+    }
+    found.warn(&known::at_rest(case, &System::new(case)?));
+    // what is told of is warned of
+    all.modes = lowest(&all.modes)
+        .into_iter()
+        .map(|place| all.modes[place].clone())
+        .collect();
+    found.warn(&all.warnings("the start"));
+    Ok(found)
+}
+
+/// Figures of modes: the lowest that swing.
+pub fn of_modes(all: &modes::Modes) -> Found {
+    let mut found = Found::finished();
+    let stable = !all.modes.iter().any(|mode| mode.kind.grows());
+    found.put("stable", f64::from(u8::from(stable)));
+    for (k, mode) in lowest(&all.modes)
+        .into_iter()
+        .map(|place| &all.modes[place])
+        .enumerate()
+    {
+        let name = format!("mode_{}", k + 1);
+        let size = mode.s.norm();
+        found.put(format!("{name}.frequency_hz"), mode.frequency_hz());
+        found.put(format!("{name}.frequency_bound_hz"), mode.error / TAU);
+        found.put(format!("{name}.frequency_hz.error"), mode.mesh_error());
+        found.put(format!("{name}.damping_ratio"), mode.damping_ratio());
+        found.put(format!("{name}.damping_ratio_bound"), mode.error / size);
+        found.put(format!("{name}.damping_ratio.error"), mode.rate_error());
+        found.put(format!("{name}.growth_per_s"), mode.s.re);
+        let strong = mode.damping_ratio().map(|ratio| f64::from(u8::from(ratio > STRONG)));
+        found.put(format!("{name}.strongly_damped"), strong);
+    }
+    found
+}
