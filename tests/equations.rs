@@ -17,7 +17,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 80] = [
+const INDEX: [(&str, &str, &str); 82] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -238,6 +238,16 @@ const INDEX: [(&str, &str, &str); 80] = [
     ("[E78]", "tests/modes/fourth.rs", "frequencies_are_of_fourth_order"),
     ("[E79]", "tests/modes/fourth.rs", "tension_is_of_fourth_order"),
     ("[E80]", "tests/solvers/corotation.rs", "a_matrix_turns_with_the_beam"),
+    (
+        "[E81]",
+        "tests/modes/response.rs",
+        "a_cantilever_answers_as_its_closed_form",
+    ),
+    (
+        "[E82]",
+        "tests/modes/response.rs",
+        "a_state_space_model_has_the_same_response",
+    ),
 ];
 
 #[test]

@@ -1,7 +1,7 @@
-//! `slcbeam export`: a result for spreadsheets, pandas, MATLAB and ParaView.
+//! `slcbeam export`: a result for spreadsheets, pandas, MATLAB and ParaView; a case as a state-space model.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
@@ -13,12 +13,28 @@ use crate::output::export::{self, Written, instants, tables, vtk};
 use crate::output::folder::CASE;
 use crate::output::kind::Kind;
 use crate::output::numbers::{counted, significant};
+use crate::output::state_space as files;
+use crate::run::record::Column;
+use crate::run::response::Response;
+use crate::run::state_space::StateSpace;
 
 /// `export`.
 #[derive(Debug, Args)]
 pub struct ExportArguments {
-    /// Result folder of a run
+    /// Result folder of a run; a case with --state-space
     pub dir: PathBuf,
+    /// Write the state-space model of small motions of a case, matrices A, B, C and D, to this file: .npz or .json
+    #[arg(long, value_name = "FILE", requires = "input", requires = "output", conflicts_with_all = ["format", "times", "every", "out"], value_parser = super::line::output_path())]
+    pub state_space: Option<PathBuf>,
+    /// Its input, as that of `response`
+    #[arg(long, value_name = "POINTER", requires = "state_space")]
+    pub input: Option<String>,
+    /// Its outputs, as those of `response`
+    #[arg(long, value_name = "NAME", requires = "state_space", value_delimiter = ',')]
+    pub output: Vec<String>,
+    /// The state about which, as that of `response`
+    #[arg(long, value_name = "SECONDS", requires = "state_space", allow_negative_numbers = true, value_parser = super::line::instant)]
+    pub at: Option<f64>,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
     #[arg(
         long,
@@ -53,6 +69,9 @@ pub enum Format {
 
 /// Reads the folder, writes each format asked for, prints where.
 pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
+    if let (Some(file), Some(input)) = (&asked.state_space, &asked.input) {
+        return state_space(asked, file, input);
+    }
     let from = export::read(&asked.dir)?;
     let chosen = instants::choose(&from.field_times, asked.times.as_deref(), asked.every as usize)?;
     let out = asked.out.as_deref().unwrap_or(&asked.dir);
@@ -98,6 +117,45 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
             );
         }
         super::print(&text)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Most states of a model: its matrices are full.
+const MOST_STATES: usize = 4000;
+
+fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<ExitCode> {
+    let case = case::load(&asked.dir, &[])?;
+    let response = Response::new(&case, input, &asked.output, asked.at)?;
+    if response.about.y.len() > MOST_STATES {
+        return Err(Error::Usage(format!(
+            "--state-space: {} are too many for full matrices (at most {MOST_STATES}); use fewer /mesh/cells_per_segment",
+            counted(response.about.y.len() as u64, "unknown")
+        )));
+    }
+    let model = StateSpace::new(&response)?;
+    let outputs: Vec<String> = response.outputs.iter().map(Column::key).collect();
+    files::write(
+        file,
+        &case.name,
+        &response.input,
+        outputs.clone(),
+        response.about.at,
+        &model,
+    )?;
+    let states = model.b.len();
+    if asked.json {
+        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "accelerates": model.accelerates});
+        super::print(&format!("{told:#}\n"))?;
+    } else {
+        let of = if model.accelerates { "second rate of " } else { "" };
+        super::print(&format!(
+            "{}, input {of}{}, outputs {}\n{}\n",
+            counted(states as u64, "state"),
+            response.input,
+            outputs.join(", "),
+            file.display()
+        ))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -26,6 +26,7 @@ mod periodic;
 mod place;
 pub mod progress;
 mod report;
+mod response;
 mod run;
 mod schema;
 mod sense;
@@ -168,6 +169,7 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
         Command::Optimize(asked) => optimize::optimize(asked),
         Command::Compare(asked) => compare::compare(asked),
         Command::Modes(asked) => modes::modes(asked),
+        Command::Response(asked) => response::response(asked),
         Command::Export(asked) => export::export(asked),
         Command::Report(asked) => report::report(asked),
         Command::Mapping(asked) => mapping::mapping(asked),

@@ -36,11 +36,13 @@ pub enum Kind {
     Sense,
     /// `optimize`.
     Optimum,
+    /// `response`.
+    Response,
 }
 
 impl Kind {
     /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
-    const ALL: [Self; 13] = [
+    const ALL: [Self; 14] = [
         Self::Cycle,
         Self::Designs,
         Self::Run,
@@ -54,6 +56,7 @@ impl Kind {
         Self::Fit,
         Self::Sense,
         Self::Optimum,
+        Self::Response,
     ];
 
     /// Name in the page, command, and sign.
@@ -72,6 +75,7 @@ impl Kind {
             Self::Fit => ["fit", "fit", "fit.json"],
             Self::Sense => ["sense", "sense", "sense.json"],
             Self::Optimum => ["optimum", "optimize", "optimum.json"],
+            Self::Response => ["response", "response", "response.json"],
         }
     }
 
@@ -111,6 +115,7 @@ impl Kind {
                 "map.svg",
             ],
             Self::Fit => &["fit.csv", "fit.svg", "fitted-case.json"],
+            Self::Response => &["response.csv", "response.svg"],
             Self::Optimum => &["designs.csv", "optimum.svg", "optimum-case.json"],
         };
         [self.sign()].into_iter().chain(own.iter().copied()).collect()

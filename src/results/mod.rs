@@ -5,6 +5,7 @@
 //! | [`run`] | `summary.json` |
 //! | [`equilibrium`] | `equilibrium.json` |
 //! | [`modes`] | `modes.json` |
+//! | [`response`] | `response.json` |
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
 //! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
 //! | [`sense`] | `sense.json` |
@@ -26,6 +27,7 @@ pub mod modes;
 pub mod optimum;
 pub mod ordered;
 pub mod provenance;
+pub mod response;
 pub mod run;
 pub mod sense;
 pub mod studies;

@@ -41,7 +41,7 @@ use crate::integrate::halt::INTERRUPTED;
 
 pub use growing::{Bounds, growing};
 pub use lowest::lowest;
-pub use pencil::Pencil;
+pub use pencil::{Factors, Pencil};
 
 /// Differential unknowns up to which all eigenvalues are computed at once.
 pub const DENSE: usize = 120;

@@ -155,6 +155,32 @@ impl<'a> Shifted<'a> {
     }
 }
 
+/// Factors of `A + s B` at one s after the other.
+pub struct Factors<'a>(Shifted<'a>);
+
+impl<'a> Factors<'a> {
+    /// Analyses a pencil by its values at `s`.
+    ///
+    /// # Errors
+    /// The pencil is singular for every s.
+    pub fn new(pencil: &Pencil<'a>, s: Complex<f64>) -> Result<Self, SpectralError> {
+        Shifted::new(pencil, s).map(Self)
+    }
+
+    /// Replaces `b` by the solution of `(A + s B) x = b`.
+    ///
+    /// # Errors
+    /// s is an eigenvalue.
+    pub fn solve(&mut self, s: Complex<f64>, b: &mut [Complex<f64>]) -> Result<(), SpectralError> {
+        let at = self.0.factor(s)?;
+        self.0.solve(b);
+        match at == s && b.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err(SpectralError::Singular { column: 0 }),
+        }
+    }
+}
+
 pub(super) fn failure(fault: KluError) -> SpectralError {
     match fault {
         KluError::Singular { column } => SpectralError::Singular { column },

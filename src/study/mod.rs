@@ -13,6 +13,7 @@ pub mod followed;
 pub mod measure;
 pub mod optimize;
 pub mod refine;
+pub mod response;
 pub mod sense;
 pub mod span;
 pub mod stability;

@@ -283,3 +283,95 @@ fn an_error_that_is_not_known_is_not_told() {
         "{even}"
     );
 }
+
+/// Goal: `slcbeam response` fills a folder with a table, a picture and a page, and prints peaks; `export --state-space` writes the matrices.
+#[test]
+fn responses_have_files_and_a_model() {
+    let dir = TempDir::new().unwrap();
+    let run = |arguments: &[&str]| {
+        let output = Command::cargo_bin("slcbeam").unwrap().args(arguments).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+    };
+    let out = dir.path().join("response");
+    let folder = out.to_str().unwrap();
+    let of = ["--input", "/ends/root/clamped/u3_m", "--output", "tip_u3,tip_u1_m"];
+    let asked = [
+        &["response", "cases/wiring-3.json"],
+        &of[..],
+        &["--to", "110", "--quiet", "--out", folder],
+    ]
+    .concat();
+    let (code, said, error) = run(&asked);
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(
+        said.contains("tip_u3_m") && said.contains("damping ratio") && said.contains("poles in the band"),
+        "{said}"
+    );
+    let json: Value = serde_json::from_str(&fs::read_to_string(out.join("response.json")).unwrap()).unwrap();
+    let count = json["frequency_hz"].as_array().unwrap().len();
+    for key in ["real", "imag", "error"] {
+        assert_eq!(json[key].as_array().unwrap().len(), count, "{key}");
+    }
+    let near = |pole: &Value| (pole["frequency_hz"].as_f64().unwrap() - 12.165).abs() < 0.01;
+    assert!(json["poles"].as_array().unwrap().iter().any(near), "{}", json["poles"]);
+    assert_eq!(
+        fs::read_to_string(out.join("response.csv")).unwrap().lines().count(),
+        count + 1
+    );
+    assert!(
+        fs::read_to_string(out.join("response.svg"))
+            .unwrap()
+            .contains("frequency response")
+    );
+    assert!(
+        fs::read_to_string(out.join("report.html"))
+            .unwrap()
+            .contains("Frequency response of small motions")
+    );
+    let file = dir.path().join("model.npz");
+    let (code, said, error) = run(&[
+        &["export", "cases/wiring-3.json", "--state-space", file.to_str().unwrap()],
+        &of[..],
+    ]
+    .concat());
+    assert_eq!((code, error.as_str()), (0, ""));
+    assert!(said.contains("second rate of /ends/root/clamped/u3_m"), "{said}");
+    let mut npz = zip::ZipArchive::new(fs::File::open(&file).unwrap()).unwrap();
+    assert!(
+        ["A", "B", "C", "D", "x0"]
+            .iter()
+            .all(|name| npz.by_name(&format!("{name}.npy")).is_ok())
+    );
+    for (wrong, what) in [
+        (
+            vec!["--input", "/ends/root", "--output", "tip_u1"],
+            "its signals are /ends/root/clamped/u3_m",
+        ),
+        (
+            vec!["--input", "/ends/root/clamped/u3_m", "--output", "tip"],
+            "nearest is tip_u3_m",
+        ),
+        (
+            vec![
+                "--input",
+                "/ends/root/clamped/u3_m",
+                "--output",
+                "tip_u1",
+                "--from",
+                "9",
+                "--to",
+                "3",
+            ],
+            "--from 9 --to 3",
+        ),
+    ] {
+        let nowhere = dir.path().join("nowhere");
+        let (code, _, error) = run(&[
+            &["response", "cases/wiring-3.json", "--out", nowhere.to_str().unwrap()],
+            &wrong[..],
+        ]
+        .concat());
+        assert!(code == 2 && error.contains(what) && !nowhere.exists(), "{code} {error}");
+    }
+}

@@ -4,5 +4,6 @@ mod cli;
 mod common;
 mod fourth;
 mod physics;
+mod response;
 mod sizes;
 mod spectral;

@@ -23,6 +23,7 @@ use super::measure::MeasureArguments;
 use super::new::NewArguments;
 use super::place::PlaceArguments;
 use super::report::ReportArguments;
+use super::response::ResponseArguments;
 use super::schema::SchemaArguments;
 pub use at_rest::{EquilibriumArguments, ModesArguments};
 pub use fit::{CompareArguments, FitArguments, FittedThrough};
@@ -62,6 +63,8 @@ pub enum Command {
     Effects(EffectsArguments),
     /// Find frequencies, damping, shapes and stability of small motions, with the fluid as it is, sealed in, and free
     Modes(ModesArguments),
+    /// Compute the frequency response of small motions: amplitude and phase of outputs over a signal of the case, peaks and poles
+    Response(ResponseArguments),
     /// Find the steady cycle of a periodically driven case and whether it is stable, or a map of where shaking is stable
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
@@ -109,6 +112,7 @@ impl Command {
             Self::Study(a) => a.json,
             Self::Effects(a) => a.json,
             Self::Modes(a) => a.json,
+            Self::Response(a) => a.json,
             Self::Floquet(a) => a.json,
             Self::Periodic(a) => a.json,
             Self::Sweep(a) => a.json,

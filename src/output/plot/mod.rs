@@ -21,6 +21,7 @@
 //! sensed      loads behind pressures, with bands
 //! ```
 
+pub mod bode;
 mod canvas;
 mod colour;
 mod panel;

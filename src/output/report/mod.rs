@@ -42,6 +42,7 @@ mod pack;
 mod page;
 mod parameters;
 mod per_cycle;
+mod response;
 mod run;
 mod scene;
 mod sense;
@@ -138,6 +139,7 @@ fn data(place: &Place, kind: Kind) -> Result<Page> {
         Kind::Fit => fit::data(place),
         Kind::Sense => sense::data(place),
         Kind::Optimum => optimum::data(place),
+        Kind::Response => response::data(place),
     }
 }
 

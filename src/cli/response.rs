@@ -1,0 +1,165 @@
+//! `slcbeam response`: the frequency response of small motions.
+
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::arguments::{CaseArguments, ResultArguments};
+use super::{size, terminal};
+use crate::error::{Code, Error, Result};
+use crate::output::kind::Kind;
+use crate::output::report;
+use crate::output::response as files;
+use crate::results;
+use crate::results::response::{About, Curve, Peak, Pole, Response};
+use crate::study::response::{self, Found, Request, respond};
+
+/// `response`.
+#[derive(Debug, Args)]
+pub struct ResponseArguments {
+    /// The case.
+    #[command(flatten)]
+    pub case: CaseArguments,
+    /// Input: the JSON pointer of a signal of the case, such as /ends/root/clamped/u1_m or /network/ports/0/pressure_pa
+    #[arg(long, value_name = "POINTER")]
+    pub input: String,
+    /// Output: a quantity or a probe, such as tip_u1; repeatable
+    #[arg(long, value_name = "NAME", required = true, value_delimiter = ',')]
+    pub output: Vec<String>,
+    /// First frequency [Hz]
+    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::line::frequency)]
+    pub from: f64,
+    /// Last frequency [Hz]
+    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::line::frequency)]
+    pub to: f64,
+    /// Frequencies at least; more are added beside poles and where the response changes
+    #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::line::count)]
+    pub points: usize,
+    /// About the equilibrium under the loads at this instant [s] [default: about the start]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::line::instant)]
+    pub at: Option<f64>,
+    /// What becomes of the result.
+    #[command(flatten)]
+    pub result: ResultArguments,
+    /// Print response.json instead of the table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Frequencies at most.
+const MOST: usize = 100_000;
+
+/// Computes the response, writes the folder, prints the peaks.
+pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
+    let request = request(asked)?;
+    let case = size::load(&asked.case)?;
+    // an input or output that does not exist is reported before there is a folder
+    let linear = request.of(&case)?;
+    let mut folder = asked.result.place.claim(&case, Kind::Response)?;
+    asked.result.wall.flag();
+    if !asked.result.quiet {
+        terminal::tell(&format!("response of {}", case.name));
+    }
+    let found = respond(&case, &request, linear)?;
+    let told = told(&case.name, &request, &found)?;
+    let written = files::write(&mut folder, &told).map(|_| ());
+    let written = written.and(report::complete(&folder, &case));
+    super::tell(
+        asked.json,
+        folder.dir(),
+        written,
+        || results::text(&told),
+        || files::words(&told),
+    )?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn request(asked: &ResponseArguments) -> Result<Request> {
+    let usage = |what: String| Err(Error::Usage(what));
+    if !(asked.from > 0.0 && asked.from < asked.to && asked.to.is_finite()) {
+        return usage(format!(
+            "--from {} --to {}: two frequencies [Hz] are wanted, the first above 0 and below the second",
+            asked.from, asked.to
+        ));
+    }
+    if !(2..=MOST).contains(&asked.points) {
+        return usage(format!(
+            "--points {}: from 2 to {MOST} frequencies can be asked for",
+            asked.points
+        ));
+    }
+    Ok(Request {
+        input: asked.input.clone(),
+        outputs: asked.output.clone(),
+        at: asked.at,
+        band: [asked.from, asked.to],
+        points: asked.points,
+    })
+}
+
+fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
+    let mut curves = found.curves.iter().map(curve);
+    let Some(first) = curves.next() else {
+        return Err(Error::Usage("--output: at least one is wanted".into()));
+    };
+    let about = &found.response.about;
+    let mut warnings: Vec<String> = vec![];
+    if found.growing > 0 {
+        warnings.push(Code::Growth.warning(format!(
+            "{} of the poles found have a positive real part: small motions grow, and the response is not that of a steady state",
+            found.growing
+        )));
+    }
+    if about.moving() {
+        warnings.push(Code::NotAtRest.warning(
+            "the state is no equilibrium: it would change at once. Use --at SECONDS for the equilibrium under the loads of an instant.",
+        ));
+    }
+    warnings.extend(
+        found
+            .unknown
+            .iter()
+            .map(|why| Code::ErrorEstimate.warning(format!("not known: {why}"))),
+    );
+    Ok(Response {
+        case: case.into(),
+        input: found.response.input.clone(),
+        state: match request.at {
+            Some(_) => About::Equilibrium,
+            None => About::Start,
+        },
+        at_s: about.at,
+        unknowns: about.y.len(),
+        frequency_hz: found.frequencies.clone(),
+        first,
+        further: curves.collect(),
+        poles: found.poles.iter().map(pole).collect(),
+        warnings,
+    })
+}
+
+fn curve(curve: &response::Curve) -> Curve {
+    let peak = |peak: &response::Peak| Peak {
+        frequency_hz: peak.frequency_hz,
+        amplitude: peak.value.norm(),
+        phase_deg: peak.value.arg().to_degrees(),
+        damping_ratio: peak.damping_ratio,
+    };
+    Curve {
+        output: curve.output.key(),
+        unit: curve.output.unit.into(),
+        real: curve.values.iter().map(|value| value.re).collect(),
+        imag: curve.values.iter().map(|value| value.im).collect(),
+        error: curve.errors.clone(),
+        peaks: curve.peaks.iter().map(peak).collect(),
+    }
+}
+
+fn pole(pole: &response::Pole) -> Pole {
+    Pole {
+        re: pole.s.re,
+        im: pole.s.im,
+        frequency_hz: pole.s.im / std::f64::consts::TAU,
+        damping_ratio: -pole.s.re / pole.s.norm(),
+    }
+}

@@ -1,0 +1,79 @@
+//! The page of `response`: amplitude and phase, and the peaks.
+
+use serde_json::json;
+
+use super::{Found, Kind, Page, Place};
+use crate::error::Result;
+use crate::output::folder::CASE;
+use crate::output::numbers::{counted, significant};
+use crate::output::response::{JSON, PICTURE};
+use crate::results::response::{About, Response};
+
+/// Everything the page shows.
+pub fn data(place: &Place) -> Result<Page> {
+    let Found { result: found, head } = place.result::<Response>(JSON)?;
+    let mut page = place.page(Kind::Response, &found.case, Some(&head));
+    page.put("label", "Frequency response of small motions");
+    page.warnings.clone_from(&found.warnings);
+    let (word, tone) = match found.warnings.is_empty() {
+        true => ("finished", "good"),
+        false => ("finished", "fair"),
+    };
+    page.put("status", json!({"word": word, "tone": tone, "reason": null}));
+    let outputs: Vec<&str> = found.curves().map(|curve| curve.output.as_str()).collect();
+    let peaks: usize = found.curves().map(|curve| curve.peaks.len()).sum();
+    let (first, last) = (found.frequency_hz.first(), found.frequency_hz.last());
+    page.put(
+        "answer",
+        format!(
+            "Response of {} to {} from {} to {} Hz: {}, {}.",
+            outputs.join(", "),
+            found.input,
+            significant(first.copied().unwrap_or(0.0), 4),
+            significant(last.copied().unwrap_or(0.0), 4),
+            counted(peaks as u64, "peak"),
+            counted(found.poles.len() as u64, "pole")
+        ),
+    );
+    page.put(
+        "figures",
+        json!([{
+            "title": "Amplitude and phase",
+            "picture": place.picture(PICTURE),
+            "about": "Amplitude in decibel: 20 log10 of the output over the input, in SI units. The phase is that of the output before the input.",
+        }]),
+    );
+    let rows = found.curves().flat_map(|curve| {
+        let row = |peak: &crate::results::response::Peak| {
+            json!([
+                curve.output,
+                peak.frequency_hz,
+                peak.amplitude,
+                peak.phase_deg,
+                peak.damping_ratio
+            ])
+        };
+        curve.peaks.iter().map(row).collect::<Vec<_>>()
+    });
+    page.put(
+        "table",
+        json!({
+            "title": "Peaks",
+            "headings": ["output", "frequency [Hz]", "amplitude", "phase [deg]", "damping ratio [1]"],
+            "rows": rows.collect::<Vec<_>>(), "file": "response.csv",
+        }),
+    );
+    let at = match found.state {
+        About::Start => String::new(),
+        About::Equilibrium => format!(" --at {}", found.at_s),
+    };
+    page.put(
+        "command",
+        format!(
+            "slcbeam response {CASE} --input {} --output {}{at}",
+            found.input,
+            outputs.join(",")
+        ),
+    );
+    Ok(page)
+}

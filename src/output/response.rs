@@ -1,0 +1,146 @@
+//! Files of a frequency response: `response.csv`, `response.json`, `response.svg`, and its text.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use super::columns::{aligned, cells};
+use super::folder::ResultFolder;
+use super::numbers::{counted, shortest, significant};
+use super::plot::bode::{self, Bode, Line};
+use super::records;
+use crate::error::Result;
+use crate::error::numbers::error_percent;
+use crate::results;
+use crate::results::response::{Curve, Peak, Response};
+
+/// One row a frequency.
+pub const CSV: &str = "response.csv";
+/// Everything.
+pub const JSON: &str = "response.json";
+/// Amplitude and phase.
+pub const PICTURE: &str = "response.svg";
+
+/// The text of `response.csv`.
+fn csv(found: &Response) -> String {
+    let columns = |curve: &Curve| {
+        let (name, unit) = (&curve.output, &curve.unit);
+        let parts = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
+        let error = (!curve.error.is_empty()).then(|| format!("error {name} [{unit}/input]"));
+        parts
+            .into_iter()
+            .chain([format!("phase {name} [deg]")])
+            .chain(error)
+            .collect::<Vec<_>>()
+    };
+    let headings: Vec<String> = std::iter::once("frequency [Hz]".into())
+        .chain(found.curves().flat_map(columns))
+        .collect();
+    let row = |(k, f): (usize, &f64)| {
+        let mut row = vec![shortest(*f)];
+        for curve in found.curves() {
+            let (re, im) = (curve.real[k], curve.imag[k]);
+            row.extend([re, im, re.hypot(im), im.atan2(re).to_degrees()].map(shortest));
+            row.extend(curve.error.get(k).map(|error| shortest(*error)));
+        }
+        row
+    };
+    records::text(
+        headings.iter().map(String::as_str),
+        found.frequency_hz.iter().enumerate().map(row),
+    )
+}
+
+/// The table of peaks, and the poles.
+pub fn words(found: &Response) -> String {
+    let mut text = format!(
+        "{}: response to {}, {} to {} Hz, {}\n\n",
+        found.case,
+        found.input,
+        significant(found.frequency_hz[0], 4),
+        significant(*found.frequency_hz.last().unwrap_or(&0.0), 4),
+        counted(found.frequency_hz.len() as u64, "sample")
+    );
+    let mut lines =
+        vec![cells::<7>(" | output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio").map(String::from)];
+    for curve in found.curves() {
+        lines.extend(curve.peaks.iter().map(|peak| row(curve, peak)));
+        if curve.peaks.is_empty() {
+            let largest = curve
+                .real
+                .iter()
+                .zip(&curve.imag)
+                .map(|(re, im)| re.hypot(*im))
+                .fold(0.0, f64::max);
+            let none = [
+                String::new(),
+                curve.output.clone(),
+                "none".into(),
+                format!("below {}", significant(largest, 4)),
+            ];
+            lines.push(std::array::from_fn(|k| none.get(k).cloned().unwrap_or_default()));
+        }
+    }
+    text += &aligned(&lines, &[1]);
+    for curve in found.curves() {
+        if let Some([median, largest]) = errors(curve) {
+            let [median, largest] = [median, largest].map(error_percent);
+            let _ = writeln!(
+                text,
+                "\nerror of {} by the mesh: {median} of the amplitude in the median, {largest} of the largest amplitude at most",
+                curve.output
+            );
+        }
+    }
+    let _ = writeln!(text, "{} in the band", counted(found.poles.len() as u64, "pole"));
+    for warning in &found.warnings {
+        let _ = writeln!(text, "warning: {warning}");
+    }
+    text
+}
+
+fn row(curve: &Curve, peak: &Peak) -> [String; 7] {
+    [
+        String::new(),
+        curve.output.clone(),
+        significant(peak.frequency_hz, 7),
+        significant(peak.amplitude, 5),
+        format!("{:.2}", 20.0 * peak.amplitude.log10()),
+        format!("{:.1}", peak.phase_deg),
+        peak.damping_ratio.map_or(String::new(), |ratio| significant(ratio, 4)),
+    ]
+}
+
+/// Median error of a curve relative to its amplitude, and its largest error relative to the largest amplitude.
+fn errors(curve: &Curve) -> Option<[f64; 2]> {
+    let sizes = || curve.real.iter().zip(&curve.imag).map(|(re, im)| re.hypot(*im));
+    let mut relative: Vec<f64> = curve
+        .error
+        .iter()
+        .zip(sizes())
+        .map(|(error, size)| error / size)
+        .collect();
+    relative.sort_by(f64::total_cmp);
+    let largest = curve.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
+    Some([*relative.get(relative.len() / 2)?, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
+}
+
+/// Writes the files into a folder.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>> {
+    let line = |curve: &Curve| Line {
+        name: curve.output.clone(),
+        real: curve.real.clone(),
+        imag: curve.imag.clone(),
+    };
+    let picture = bode::draw(&Bode {
+        case: found.case.clone(),
+        input: found.input.clone(),
+        frequencies: found.frequency_hz.clone(),
+        lines: found.curves().map(line).collect(),
+    });
+    let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
+    files.extend(picture.map(|text| (PICTURE, text)));
+    folder.fill(files)
+}

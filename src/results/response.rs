@@ -1,0 +1,86 @@
+//! `response.json`: a frequency response.
+
+use serde::{Deserialize, Serialize};
+
+use super::Kept;
+pub use super::modes::About;
+
+/// A frequency response of a case.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Response {
+    /// Name of the case.
+    pub case: String,
+    /// JSON pointer of the input.
+    pub input: String,
+    /// State about which.
+    pub state: About,
+    /// Instant of loads and valves [s].
+    pub at_s: f64,
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Frequencies [Hz].
+    pub frequency_hz: Vec<f64>,
+    /// The first output.
+    #[serde(flatten)]
+    pub first: Curve,
+    /// Further outputs.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further: Vec<Curve>,
+    /// Poles in the band, the lowest first.
+    pub poles: Vec<Pole>,
+    /// Warnings.
+    pub warnings: Vec<String>,
+}
+
+impl Kept for Response {}
+
+impl Response {
+    /// All outputs.
+    pub fn curves(&self) -> impl Iterator<Item = &Curve> {
+        std::iter::once(&self.first).chain(&self.further)
+    }
+}
+
+/// The transfer function of an output, in its unit over that of the input, for exp(i ω t).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Curve {
+    /// Key of the output: `tip_u1_m`.
+    pub output: String,
+    /// Unit of the output.
+    pub unit: String,
+    /// Real part at each frequency.
+    pub real: Vec<f64>,
+    /// Imaginary part at each frequency.
+    pub imag: Vec<f64>,
+    /// Estimated error by the meshes at each frequency, absolute; absent where it is not known.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub error: Vec<f64>,
+    /// Local maxima of the amplitude.
+    pub peaks: Vec<Peak>,
+}
+
+/// A local maximum of the amplitude.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Amplitude.
+    pub amplitude: f64,
+    /// Phase [deg].
+    pub phase_deg: f64,
+    /// Damping ratio of the nearest pole.
+    pub damping_ratio: Option<f64>,
+}
+
+/// A pole `s`; of a pair of conjugates that with positive imaginary part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pole {
+    /// Real part [1/s].
+    pub re: f64,
+    /// Imaginary part [1/s].
+    pub im: f64,
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Damping ratio.
+    pub damping_ratio: f64,
+}

@@ -1,0 +1,159 @@
+//! State-space models of small motions: the linear equations of [`Response`](super::response::Response), solved for rates.
+//!
+//! `[E82]` Unknowns d whose rates appear, and others a, which follow at once (index one):
+//!
+//! ```text
+//! A y + B y' + f_0 u + f_1 u' + f_2 u'' = 0        [B_d  A_a] [d'; a] = -(A_d d + f_0 u + f_1 u' + f_2 u'')
+//! d' = M d + N u        z = C d + D u
+//! ```
+//!
+//! Where the rates of an input matter, as of an end that is moved, the input of the model is u'', and u and u' are two further states.
+
+use super::response::Response;
+use crate::error::{At, Code, Error, Result, SolverError};
+use crate::sparse::Lu;
+
+/// Part of the largest entry below which an entry of an output's row is rounding.
+const NOTHING: f64 = 1e-9;
+
+/// `x' = A x + B w`, `z = C x + D w` about a state: matrices in rows, SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StateSpace {
+    /// `A`, one row a state.
+    pub a: Vec<Vec<f64>>,
+    /// `B`.
+    pub b: Vec<f64>,
+    /// `C`, one row an output.
+    pub c: Vec<Vec<f64>>,
+    /// `D`.
+    pub d: Vec<f64>,
+    /// Names of the states, with units.
+    pub states: Vec<String>,
+    /// True if the input is the second rate of the signal.
+    pub accelerates: bool,
+    /// States at the operating point.
+    pub x0: Vec<f64>,
+    /// Value of the signal there.
+    pub u0: f64,
+    /// Outputs there.
+    pub z0: Vec<f64>,
+}
+
+impl StateSpace {
+    /// Of a linear response.
+    ///
+    /// # Errors
+    /// Equations that cannot be solved for rates; an output that is the rate of an unknown without inertia.
+    pub fn new(response: &Response) -> Result<Self> {
+        let about = &response.about;
+        let pencil = about.pencil();
+        let n = about.y.len();
+        let dynamic: Vec<bool> = (0..n)
+            .map(|column| pencil.pattern.column(column).any(|e| pencil.b[e] != 0.0))
+            .collect();
+        let mut values = vec![0.0; pencil.a.len()];
+        for column in 0..n {
+            for entry in pencil.pattern.column(column) {
+                values[entry] = if dynamic[column] {
+                    pencil.b[entry]
+                } else {
+                    pencil.a[entry]
+                };
+            }
+        }
+        let fault = |what: &str| {
+            Error::Solver(Box::new(SolverError {
+                code: Code::NoModes,
+                at: At::Time(about.at),
+                what: format!("no state-space model: {what}"),
+                unknown: None,
+                cause: None,
+                hint: None,
+            }))
+        };
+        let mut lu = Lu::sparse(pencil.pattern).map_err(|_| fault("the equations cannot be analysed"))?;
+        lu.factor(&values)
+            .map_err(|_| fault("the equations cannot be solved for rates"))?;
+        // rates of dynamic unknowns and values of the others, by each state and by the input and its rates
+        let mut solved = |rhs: &mut Vec<f64>| {
+            rhs.iter_mut().for_each(|x| *x = -*x);
+            lu.solve(rhs);
+        };
+        let places: Vec<usize> = (0..n).filter(|k| dynamic[*k]).collect();
+        let mut by_state = vec![];
+        for &column in &places {
+            let mut rhs = vec![0.0; n];
+            for entry in pencil.pattern.column(column) {
+                rhs[pencil.pattern.rows[entry] as usize] += pencil.a[entry];
+            }
+            solved(&mut rhs);
+            by_state.push(rhs);
+        }
+        let mut by_input = response.forcing.clone();
+        by_input.iter_mut().for_each(&mut solved);
+        let scales = &about.system().layout.scales;
+        let own = |k: usize| scales[places[k]];
+        let mut a: Vec<Vec<f64>> = (0..places.len())
+            .map(|row| {
+                (0..places.len())
+                    .map(|column| own(row) * by_state[column][places[row]] / own(column))
+                    .collect()
+            })
+            .collect();
+        let of_input = |k: usize| -> Vec<f64> { places.iter().map(|&row| scales[row] * by_input[k][row]).collect() };
+        let mut rates = [of_input(0), of_input(1), of_input(2)];
+        let mut c = vec![];
+        let mut direct = vec![];
+        for ([of_state, of_rate], direct_) in response.of_state.iter().zip(&response.direct) {
+            let largest = of_rate.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if (0..n).any(|k| !dynamic[k] && of_rate[k].abs() > NOTHING * largest) {
+                return Err(fault("an output is the rate of an unknown that follows at once"));
+            }
+            // z = C_d d + C_a a + D_d d'
+            let part = |by: &[f64]| -> f64 {
+                let all = (0..n).map(|k| by[k] * if dynamic[k] { of_rate[k] } else { of_state[k] });
+                all.sum()
+            };
+            let row = |k: usize| (of_state[places[k]] + part(&by_state[k])) / own(k);
+            c.push((0..places.len()).map(row).collect::<Vec<f64>>());
+            direct.push([0, 1, 2].map(|k: usize| direct_[k] + part(&by_input[k])));
+        }
+        let mut states: Vec<String> = places.iter().map(|&k| about.system().layout.name(k)).collect();
+        let mut x0: Vec<f64> = places.iter().map(|&k| about.y[k] * scales[k]).collect();
+        let accelerates = direct
+            .iter()
+            .flat_map(|d| &d[1..])
+            .chain(rates[1..].iter().flatten())
+            .any(|x| *x != 0.0);
+        let (b, d) = if accelerates {
+            // u and u' follow the states, u'' is the input
+            for (k, row) in a.iter_mut().enumerate() {
+                row.extend([rates[0][k], rates[1][k]]);
+            }
+            let len = places.len() + 2;
+            let mut of_u = vec![0.0; len];
+            of_u[len - 1] = 1.0;
+            a.push(of_u);
+            a.push(vec![0.0; len]);
+            c.iter_mut().zip(&direct).for_each(|(row, d)| row.extend([d[0], d[1]]));
+            states.extend([response.input.clone(), format!("rate of {}", response.input)]);
+            x0.extend([response.u0, 0.0]);
+            let mut b = std::mem::take(&mut rates[2]);
+            b.extend([0.0, 1.0]);
+            (b, direct.iter().map(|d| d[2]).collect())
+        } else {
+            (std::mem::take(&mut rates[0]), direct.iter().map(|d| d[0]).collect())
+        };
+        Ok(Self {
+            a,
+            b,
+            c,
+            d,
+            states,
+            accelerates,
+            x0,
+            u0: response.u0,
+            z0: response.z0.clone(),
+        })
+    }
+}

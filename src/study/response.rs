@@ -1,0 +1,289 @@
+//! Frequency responses over a band: where they are sampled, their peaks and poles, and what the meshes do to them.
+
+use nalgebra::Complex;
+
+use super::refine::has_cells_along_bladders;
+use crate::case::Case;
+use crate::error::{Error, Result};
+use crate::numerics::threads;
+use crate::run::record::Column;
+use crate::run::response::Response;
+use crate::spectral::{self, Options};
+
+/// Poles looked for in the band.
+const POLES: usize = 48;
+/// Places beside a pole that are sampled, in parts of its decay rate.
+const BESIDE: [f64; 7] = [-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0];
+/// Change of a response from sample to sample, relative to the larger of both, above which there is one between.
+const CHANGE: f64 = 0.1;
+/// Passes in which samples are added, and samples at most.
+const PASSES: usize = 5;
+const MOST: usize = 4000;
+/// Steps of the search for a peak: each leaves 0.62 of the interval.
+const STEPS: usize = 48;
+/// Error of the run's mesh in the difference to half, or twice, the cells of the beam; of twice the fluid cells.
+const OF_HALF: f64 = 1.25 / 3.0;
+const OF_TWICE: f64 = 1.25 * 4.0 / 3.0;
+const OF_FLUID: f64 = 2.0;
+
+/// A request for a response.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// JSON pointer of a signal of the case.
+    pub input: String,
+    /// Names of outputs.
+    pub outputs: Vec<String>,
+    /// Instant of the equilibrium about which [s]; the start of the case without one.
+    pub at: Option<f64>,
+    /// First and last frequency [Hz].
+    pub band: [f64; 2],
+    /// Samples, equally far apart in the logarithm; more are added where the response changes.
+    pub points: usize,
+}
+
+impl Request {
+    /// The linear response of a case.
+    ///
+    /// # Errors
+    /// Those of [`Response::new`].
+    pub fn of(&self, case: &Case) -> Result<Response> {
+        Response::new(case, &self.input, &self.outputs, self.at)
+    }
+}
+
+/// A pole in the band.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// `s` [1/s], that with positive imaginary part of a pair.
+    pub s: Complex<f64>,
+    /// Bound of its numerical error [1/s].
+    pub bound: f64,
+}
+
+/// A local maximum of the amplitude.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// The response there.
+    pub value: Complex<f64>,
+    /// Damping ratio of the nearest pole.
+    pub damping_ratio: Option<f64>,
+}
+
+/// The response of one output.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// The output.
+    pub output: Column,
+    /// Its transfer function at each frequency.
+    pub values: Vec<Complex<f64>>,
+    /// Estimated error by the meshes of beam and fluid, absolute; empty where it is not known.
+    pub errors: Vec<f64>,
+    /// Its peaks.
+    pub peaks: Vec<Peak>,
+}
+
+/// A response over a band.
+pub struct Found {
+    /// The linearisation and its input.
+    pub response: Response,
+    /// Frequencies [Hz].
+    pub frequencies: Vec<f64>,
+    /// One an output.
+    pub curves: Vec<Curve>,
+    /// Poles in the band, the lowest first.
+    pub poles: Vec<Pole>,
+    /// Poles with positive real part.
+    pub growing: usize,
+    /// Why poles or errors are not known.
+    pub unknown: Vec<String>,
+}
+
+/// Computes the response of a case, [`Request::of`] it, over a band.
+///
+/// # Errors
+/// A frequency that is a pole.
+pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Found> {
+    let mut unknown = vec![];
+    let (poles, growing) = poles(&response, request.band).unwrap_or_else(|why| {
+        unknown.push(format!("poles: {why}"));
+        (vec![], 0)
+    });
+    let (frequencies, values) = sample(&response, request, &poles)?;
+    let mut curves = vec![];
+    for (place, output) in response.outputs.iter().enumerate() {
+        let values: Vec<_> = values.iter().map(|all| all[place]).collect();
+        curves.push(Curve {
+            output: output.clone(),
+            peaks: peaks(&response, place, &frequencies, &values, &poles)?,
+            values,
+            errors: vec![],
+        });
+    }
+    for (other, factor) in meshes(case)? {
+        match request.of(&other).and_then(|response| all_at(&response, &frequencies)) {
+            Ok(others) => {
+                for (place, curve) in curves.iter_mut().enumerate() {
+                    curve.errors.resize(frequencies.len(), 0.0);
+                    for ((error, own), other) in curve.errors.iter_mut().zip(&curve.values).zip(&others) {
+                        *error += factor * (own - other[place]).norm();
+                    }
+                }
+            }
+            Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
+            Err(fault) => unknown.push(format!("errors by the mesh: {fault}")),
+        }
+    }
+    if unknown.iter().any(|why| why.starts_with("errors")) {
+        curves.iter_mut().for_each(|curve| curve.errors.clear());
+    }
+    Ok(Found {
+        response,
+        frequencies,
+        curves,
+        poles,
+        growing,
+        unknown,
+    })
+}
+
+/// The case on other meshes, and the error of its own in the difference to each.
+fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
+    let mut all = vec![];
+    let mut other = case.clone();
+    if case.mesh.cells_per_segment.is_multiple_of(2) {
+        other.mesh.cells_per_segment /= 2;
+        all.push((other, OF_HALF));
+    } else {
+        other.mesh.cells_per_segment *= 2;
+        all.push((other, OF_TWICE));
+    }
+    if has_cells_along_bladders(case)? {
+        let mut other = case.clone();
+        other.mesh.cells_per_bladder *= 2;
+        all.push((other, OF_FLUID));
+    }
+    Ok(all)
+}
+
+/// Poles in a band, and how many have a positive real part.
+fn poles(response: &Response, [from, to]: [f64; 2]) -> std::result::Result<(Vec<Pole>, usize), String> {
+    let tau = std::f64::consts::TAU;
+    let middle = Complex::new(0.0, tau * (from.max(1e-3 * to) * to).sqrt());
+    let found = spectral::nearest(&response.about.pencil(), middle, 2 * POLES, &Options::default());
+    let pairs = found.map_err(|failure| failure.to_string())?.pairs;
+    let within = |pair: &&spectral::Pair| pair.s.im > 0.0 && (tau * from..=tau * to).contains(&pair.s.im);
+    let mut poles: Vec<Pole> = pairs
+        .iter()
+        .filter(within)
+        .map(|pair| Pole {
+            s: pair.s,
+            bound: pair.error,
+        })
+        .collect();
+    poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+    let growing = pairs.iter().filter(|pair| pair.s.re > pair.error).count();
+    Ok((poles, growing))
+}
+
+fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
+    let halves = frequencies.split_at(frequencies.len() / 2);
+    let part = |part: &[f64]| -> Result<Vec<_>> {
+        let mut solver = response.solver()?;
+        part.iter().map(|f| solver.at(*f)).collect()
+    };
+    let (first, second) = std::thread::scope(|scope| {
+        let first = threads::begin(scope, || part(halves.0));
+        let second = part(halves.1);
+        (first.join(), second)
+    });
+    Ok(first?.into_iter().chain(second?).collect())
+}
+
+/// Frequencies and values of all outputs: a grid, the neighbourhood of poles, and more where a response changes.
+fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<(Vec<f64>, Vec<Vec<Complex<f64>>>)> {
+    let [from, to] = request.band;
+    let steps = (request.points - 1) as f64;
+    let mut frequencies: Vec<f64> = (0..request.points)
+        .map(|k| from * (to / from).powf(k as f64 / steps))
+        .collect();
+    frequencies[request.points - 1] = to;
+    for pole in poles {
+        let beside = BESIDE.map(|by| (pole.s.im + by * pole.s.re.abs()) / std::f64::consts::TAU);
+        frequencies.extend(beside.into_iter().filter(|f| (from..=to).contains(f)));
+    }
+    frequencies.sort_by(f64::total_cmp);
+    frequencies.dedup_by(|a, b| *a <= *b * (1.0 + 1e-12));
+    let mut values = all_at(response, &frequencies)?;
+    for _ in 0..PASSES {
+        let between = |k: &usize| {
+            let [a, b] = [&values[*k], &values[k + 1]];
+            let changes = |(a, b): (&Complex<f64>, &Complex<f64>)| (a - b).norm() > CHANGE * a.norm().max(b.norm());
+            a.iter().zip(b).any(changes) && frequencies[k + 1] > frequencies[*k] * (1.0 + 1e-9)
+        };
+        let places: Vec<usize> = (0..frequencies.len() - 1).filter(between).collect();
+        if places.is_empty() || frequencies.len() + places.len() > MOST {
+            break;
+        }
+        let added: Vec<f64> = places
+            .iter()
+            .map(|k| (frequencies[*k] * frequencies[k + 1]).sqrt())
+            .collect();
+        let found = all_at(response, &added)?;
+        let mut all: Vec<_> = frequencies
+            .into_iter()
+            .zip(values)
+            .chain(added.into_iter().zip(found))
+            .collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (frequencies, values) = all.into_iter().unzip();
+    }
+    Ok((frequencies, values))
+}
+
+/// Local maxima of an amplitude, each found between its neighbours by golden sections.
+fn peaks(
+    response: &Response,
+    place: usize,
+    frequencies: &[f64],
+    values: &[Complex<f64>],
+    poles: &[Pole],
+) -> Result<Vec<Peak>> {
+    let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
+    let mut solver = response.solver()?;
+    let mut all = vec![];
+    for k in 1..frequencies.len().saturating_sub(1) {
+        let [before, own, after] = [-1, 0, 1].map(|by: isize| values[k.wrapping_add_signed(by)].norm());
+        if !(own > before && own >= after) {
+            continue;
+        }
+        let mut at = |f: f64| -> Result<Complex<f64>> { Ok(solver.at(f)?[place]) };
+        let [mut low, mut high] = [frequencies[k - 1], frequencies[k + 1]];
+        let mut inner = [high - golden * (high - low), low + golden * (high - low)];
+        let mut found = [at(inner[0])?, at(inner[1])?];
+        for _ in 0..STEPS {
+            if found[0].norm() > found[1].norm() {
+                high = inner[1];
+                inner = [high - golden * (high - low), inner[0]];
+                found = [at(inner[0])?, found[0]];
+            } else {
+                low = inner[0];
+                inner = [inner[1], low + golden * (high - low)];
+                found = [found[1], at(inner[1])?];
+            }
+        }
+        let frequency_hz = 0.5 * (low + high);
+        let s = std::f64::consts::TAU * frequency_hz;
+        let nearest = poles
+            .iter()
+            .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
+        let damping = |pole: &Pole| -pole.s.re / pole.s.norm();
+        all.push(Peak {
+            frequency_hz,
+            value: at(frequency_hz)?,
+            damping_ratio: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).map(damping),
+        });
+    }
+    Ok(all)
+}

@@ -1,0 +1,198 @@
+//! Sources: closed forms of Euler-Bernoulli cantilevers and bars; steady cycles of small amplitude of the same equations.
+//! Goal: the frequency response is that of the linearised equations for inputs that move an end, that load it and that press on bladders.
+//! Tolerance: 1e-6 after extrapolation to fine meshes of fourth order; 1e-4 beside cycles, whose amplitude is small but finite.
+
+use nalgebra::Complex;
+use serde_json::{Value, json};
+use slcbeam::run::response::Response;
+use slcbeam::run::state_space::StateSpace;
+use slcbeam::run::stop::Stop;
+use slcbeam::study::refine::numbers;
+
+use super::common::checked;
+
+/// Length 1 m, EI 1 N m^2, 1 kg/m, EA 1.2e5 N.
+fn beam(cells: usize, root: &Value, tip: &Value) -> Value {
+    json!({
+        "name": "response",
+        "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4},
+        "ends": {"root": root, "tip": tip},
+        "effects": {"rotary_inertia": "off"},
+        "mesh": {"segments": cells, "cells_per_segment": 1, "order": 4},
+        "time": {"end_s": 1.0}
+    })
+}
+
+fn at(case: &Value, input: &str, output: &str, hz: f64) -> Complex<f64> {
+    let response = Response::new(&checked(case), input, &[output.into()], None).unwrap();
+    response.solver().unwrap().at(hz).unwrap()[0]
+}
+
+/// The limit of meshes of fourth order, with thirty-two and sixty-four cells.
+fn limit(case: impl Fn(usize) -> Value, input: &str, output: &str, hz: f64) -> Complex<f64> {
+    let [coarse, fine] = [32, 64].map(|cells| at(&case(cells), input, output, hz));
+    fine + (fine - coarse) / 15.0
+}
+
+fn close(found: Complex<f64>, exact: f64) {
+    assert!((found - exact).norm() < 1e-6 * exact.abs(), "{found} for {exact}");
+}
+
+/// Source: with L^4 = m w^2 l^4/EI, a root that is shaken across moves the tip by (cos L + cosh L)/(1 + cos L cosh L), a force at the tip by
+/// (sin L cosh L - cos L sinh L)/(1 + cos L cosh L)/L^3.
+#[test]
+fn a_cantilever_answers_as_its_closed_form() {
+    for hz in [0.2, 0.7, 2.0, 5.0] {
+        let l = (std::f64::consts::TAU * hz).sqrt();
+        let below = 1.0 + l.cos() * l.cosh();
+        let shaken = |cells| beam(cells, &json!({"clamped": {"u1_m": 0.0}}), &json!("free"));
+        close(
+            limit(shaken, "/ends/root/clamped/u1_m", "tip_u1", hz),
+            (l.cos() + l.cosh()) / below,
+        );
+        let pushed = |cells| beam(cells, &json!("clamped"), &json!({"free": {"force_x_n": 0.0}}));
+        let exact = (l.sin() * l.cosh() - l.cos() * l.sinh()) / (below * l.powi(3));
+        close(limit(pushed, "/ends/tip/free/force_x_n", "tip_u1_m", hz), exact);
+    }
+}
+
+/// Source: a bar that is shaken along at one end moves the other by 1/cos(w l sqrt(m/EA)).
+#[test]
+fn a_bar_answers_as_its_closed_form() {
+    for hz in [10.0, 60.0, 200.0] {
+        let shaken = |cells| beam(cells, &json!({"clamped": {"u3_m": 0.0}}), &json!("free"));
+        let exact = 1.0 / (std::f64::consts::TAU * hz / 1.2e5_f64.sqrt()).cos();
+        close(limit(shaken, "/ends/root/clamped/u3_m", "tip_u3", hz), exact);
+    }
+}
+
+/// The paper's beam with bladders that are sealed, or joined in pairs across the beam; no rotary inertia, no inertia of fluid.
+fn papers(pairs: bool, [cells, along]: [usize; 2]) -> Value {
+    let ends = json!(["sealed", "sealed"]);
+    let both = |k: i64| match pairs {
+        true => vec![json!({"bladders": [k, -k], "ends": ends})],
+        false => vec![
+            json!({"bladders": [k], "ends": ends}),
+            json!({"bladders": [-k], "ends": ends}),
+        ],
+    };
+    let chains: Vec<Value> = (1..=10).flat_map(both).collect();
+    json!({
+        "name": "papers", "preset": "matia-gat-beam", "network": {"chains": chains}, "formulation": "conservative",
+        "bladders": {"coupling": "reciprocal", "area_per_moment_m2_per_n_m": {"opening": 5.145e-6, "closing": 5.145e-6}},
+        "ends": {"root": {"clamped": {"u1_m": 0.0}}, "tip": "free"},
+        "effects": {"rotary_inertia": "off", "tube_inertia": "off"},
+        "mesh": {"cells_per_segment": cells, "cells_per_bladder": along}, "time": {"end_s": 1.0}
+    })
+}
+
+/// Source: transfer matrices of an Euler-Bernoulli line whose mean curvature in a segment drives a diffusion line of pressure, in extended
+/// precision. Tolerance: 1e-6 where bladders are sealed; 3e-5 where fluid flows, whose mesh is of first order.
+#[test]
+fn the_papers_beam_answers_as_its_transfer_matrix() {
+    let input = "/ends/root/clamped/u1_m";
+    for (hz, sealed, pairs) in [
+        (5.0, 1.284737428, (1.310464891, -1.41887e-4)),
+        (10.0, 3.556238687, (4.136353783, -0.00719762)),
+        (15.0, -4.530913441, (-3.712125799, -0.01056180)),
+        (50.0, -1.219798019, (-1.282461977, 0.00363774)),
+    ] {
+        let of = |pairs: bool, along: usize| {
+            let [a, b, c] = [4, 8, 16].map(|cells| at(&papers(pairs, [cells, along]), input, "tip_u1", hz));
+            let [first, second] = [(a, b), (b, c)].map(|(coarse, fine)| fine + (fine - coarse) / 3.0);
+            second + (second - first) / 15.0
+        };
+        close(of(false, 2), sealed);
+        let [coarse, fine] = [8, 16].map(|along| of(true, along));
+        let (found, exact) = (2.0 * fine - coarse, Complex::new(pairs.0, pairs.1));
+        assert!(
+            (found - exact).norm() < 3e-5 * exact.norm(),
+            "{hz} Hz: {found} for {exact}"
+        );
+    }
+}
+
+/// Source: [E37], cycles of an amplitude of a millionth of the length. Goal: fluid that flows between bladders damps both alike.
+#[test]
+fn a_small_cycle_has_the_amplitude_of_the_response() {
+    for (hz, chains) in [(9.0, 1), (14.0, 1), (31.0, 10)] {
+        let names: Vec<i64> = (1..=10).chain((1..=10).map(|k| -k)).collect();
+        let chains: Vec<Value> = match chains {
+            1 => vec![json!({"bladders": names, "ends": ["sealed", "sealed"]})],
+            _ => (1..=10)
+                .map(|k| json!({"bladders": [k, -k], "ends": ["sealed", "sealed"]}))
+                .collect(),
+        };
+        let amplitude = 1e-7;
+        let case = |signal: Value| {
+            json!({
+                "name": "small", "preset": "matia-gat-beam", "network": {"chains": chains},
+                "bladders": {"coupling": "reciprocal"}, "formulation": "conservative",
+                "ends": {"root": {"clamped": {"u1_m": signal}}, "tip": "free"},
+                "effects": {"unsteady_friction": "off"}, "effects_tolerance": 1e-9,
+                "mesh": {"cells_per_segment": 2}, "solver": {"rtol": 1e-8}, "time": {"end_s": 1.0}
+            })
+        };
+        let cycle = checked(&case(json!({"sine": {"amplitude": amplitude, "frequency_hz": hz}})));
+        let found = numbers::of_cycle(&cycle, 1, &Stop::default()).unwrap();
+        let largest = found["tip_u1_m.window_max_abs"].value / amplitude;
+        let linear = at(&case(json!(0.0)), "/ends/root/clamped/u1_m", "tip_u1", hz).norm();
+        assert!(
+            (largest - linear).abs() < 1e-4 * linear,
+            "{hz} Hz: {largest} for {linear}"
+        );
+    }
+}
+
+/// Goal: names that do not exist are refused with the nearest that does.
+#[test]
+fn inputs_and_outputs_are_named() {
+    let case = checked(&beam(4, &json!({"clamped": {"u1_m": 0.0}}), &json!("free")));
+    let refused = |input: &str, output: &str| match Response::new(&case, input, &[output.into()], None) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("{input} and {output} are accepted"),
+    };
+    assert!(refused("/ends/root/clamped/u3_m", "tip_u1").contains("/ends/root/clamped/u1_m"));
+    assert!(refused("/ends/root/clamped/u1_m", "tip_u2").contains("nearest is tip_u"));
+    assert!(refused("/ends/root/clamped/u1_m", "kinetic_energy_j").contains("no such linear output"));
+}
+
+/// Source: [E81]. Goal: `C (s - A)⁻¹ B + D` of a state-space model is the response, of an input that moves an end over s², and of one that does not.
+#[test]
+fn a_state_space_model_has_the_same_response() {
+    let chain = json!({"bladders": [1, 2, -1, -2], "ends": ["sealed", {"pressure_pa": 0.0}]});
+    let case = checked(&json!({
+        "name": "states", "preset": "matia-gat-beam", "bladders": {"per_row": 2, "coupling": "reciprocal"},
+        "network": {"chains": [chain]}, "formulation": "conservative",
+        "ends": {"root": {"clamped": {"u1_m": 0.0}}, "tip": "free"},
+        "mesh": {"cells_per_segment": 2}, "time": {"end_s": 1.0}
+    }));
+    let outputs = ["tip_u1".to_owned(), "tip_angle".to_owned()];
+    for (input, accelerates) in [
+        ("/ends/root/clamped/u1_m", true),
+        ("/network/chains/0/ends/1/pressure_pa", false),
+    ] {
+        let response = Response::new(&case, input, &outputs, None).unwrap();
+        let model = StateSpace::new(&response).unwrap();
+        assert_eq!(model.accelerates, accelerates, "{input}");
+        let n = model.b.len();
+        let mut solver = response.solver().unwrap();
+        for hz in [0.5, 3.0, 12.0, 40.0] {
+            let s = Complex::new(0.0, std::f64::consts::TAU * hz);
+            let mut matrix = nalgebra::DMatrix::from_fn(n, n, |i, j| Complex::from(-model.a[i][j]));
+            (0..n).for_each(|k| matrix[(k, k)] += s);
+            let b = nalgebra::DVector::from_iterator(n, model.b.iter().map(|b| Complex::from(*b)));
+            let x = matrix.lu().solve(&b).unwrap();
+            let exact = solver.at(hz).unwrap();
+            for (k, exact) in exact.into_iter().enumerate() {
+                let of_states: Complex<f64> = model.c[k].iter().zip(x.iter()).map(|(c, x)| x * *c).sum();
+                let over = if accelerates { s * s } else { Complex::from(1.0) };
+                let found = (of_states + model.d[k]) * over;
+                assert!(
+                    (found - exact).norm() < 1e-6 * exact.norm(),
+                    "{input} {hz} Hz: {found} for {exact}"
+                );
+            }
+        }
+    }
+}
