@@ -12,7 +12,10 @@ use crate::error::{Error, Result};
 use crate::output::columns::aligned;
 use crate::output::folder::replace_alike;
 use crate::output::numbers::{counted, pretty_unit, significant};
-use crate::output::plot::measured;
+use crate::output::plot::canvas::Stroke;
+use crate::output::plot::colour::{Colour, PALETTE};
+use crate::output::plot::extent;
+use crate::output::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use crate::study::measure::table;
 use crate::study::measure::{Estimate, Experiment, Measured, Options, SIGNIFICANT, measure as fit};
 
@@ -69,7 +72,7 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
         false => in_words(&found),
     })?;
     if let Some(path) = &asked.plot
-        && let Some(text) = measured::draw(&picture(&found))
+        && let Some(text) = picture(&found)
     {
         replace_alike(path, &text, &["<svg"])?;
     }
@@ -187,29 +190,44 @@ fn in_words(found: &Measured) -> String {
     text + &format!("\nin the case:\n{:#}\n", keys(found))
 }
 
-fn picture(found: &Measured) -> measured::Measured {
+/// Data, fit with its band of 95 %, and residuals.
+fn picture(found: &Measured) -> Option<String> {
     /// Points of the curve.
     const COUNT: usize = 100;
-    let xs = &found.points.x;
-    let (low, high) = xs
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));
+    const BAND: Colour = Colour(0xd5, 0xe3, 0xf0);
+    let (xs, ys) = (&found.points.x, &found.points.y);
+    let (low, high) = extent(xs.iter().copied()).filter(|_| xs.len() > 1)?;
     let places = (0..=COUNT).map(|k| low + (high - low) * k as f64 / COUNT as f64);
+    let fit: Vec<_> = places.map(|x| (x, found.at(x)[0], found.at(x)[1])).collect();
     let about = found.coefficients.first().map_or_else(String::new, |one| {
         let [value, error] =
             [(one.estimate.value, 5), (one.estimate.error, 2)].map(|(x, digits)| significant(x, digits));
         let name = one.pointer.splitn(3, '/').last().unwrap_or_default();
         format!("{name} = {value} ± {error} {}", pretty_unit(one.unit))
     });
-    measured::Measured {
-        name: found.experiment.name().to_owned(),
-        about,
-        axes: found
-            .experiment
-            .columns()
-            .map(|q| (q.name().to_owned(), q.unit().to_owned())),
-        points: xs.iter().copied().zip(found.points.y.iter().copied()).collect(),
-        residuals: found.fit.residuals.clone(),
-        fit: places.map(|x| (x, found.at(x)[0], found.at(x)[1])).collect(),
-    }
+    let [x, y] = found.experiment.columns();
+    let x = PictureAxis::new(x.name(), x.unit(), 7);
+    let panel = |height: f64, name: &str, ticks: usize, about_fit: f64, values: &[f64]| {
+        let band: Vec<_> = fit
+            .iter()
+            .map(|(x, y, half)| (*x, about_fit * y - half, about_fit * y + half))
+            .collect();
+        let rings = xs.iter().copied().zip(values.iter().copied());
+        let series = vec![
+            PictureSeries::band(&band, BAND),
+            PictureSeries::marks(rings, Glyph::Ring(2.6, 1.1), PALETTE[1]),
+        ];
+        Panel::new(
+            (520.0, height),
+            x.clone(),
+            PictureAxis::new(name, y.unit(), ticks),
+            series,
+        )
+    };
+    let mut data = panel(280.0, y.name(), 7, 1.0, ys);
+    let line = fit.iter().map(|(x, y, _)| (*x, *y));
+    data.series
+        .insert(1, PictureSeries::line(line, Stroke::solid(PALETTE[0], 1.6)));
+    let residuals = panel(130.0, "residual", 4, 0.0, &found.fit.residuals);
+    Picture::stacked(found.experiment.name().to_owned(), about, [data, residuals]).svg()
 }

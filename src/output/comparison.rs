@@ -1,7 +1,8 @@
 //! The picture of a comparison, from two recordings.
 
-use super::plot::Curve;
-use super::plot::overlay::{self, Overlay, Pair};
+use super::plot::canvas::Stroke;
+use super::plot::colour::PALETTE;
+use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use crate::discrete::quantities::{Observable, Role};
 use crate::study::compare::interpolate::cubic;
 use crate::study::compare::{Comparison, Recording};
@@ -12,23 +13,24 @@ const ROWS: usize = 1500;
 /// The text of the picture; `None` when no quantity is in both.
 pub fn picture(a: &Recording, b: &Recording, comparison: &Comparison) -> Option<String> {
     let headlines = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
-    let pairs = headlines.filter_map(|one| {
-        comparison.histories.iter().find(|d| d.name == one.name())?;
-        pair(a, b, one.name())
-    });
-    overlay::draw(&Overlay {
-        names: [a.label.clone(), b.label.clone()],
-        pairs: pairs.collect(),
-    })
+    let shared = headlines.filter(|one| comparison.histories.iter().any(|d| d.name == one.name()));
+    let panels = shared.filter_map(|one| pair(a, b, one.name())).flatten();
+    let about = "below each quantity the first less the second";
+    Picture::stacked("two runs over each other".into(), about, panels).svg()
 }
 
-fn pair(a: &Recording, b: &Recording, name: &str) -> Option<Pair> {
+/// One quantity of both, and its difference.
+fn pair(a: &Recording, b: &Recording, name: &str) -> Option<[Panel; 2]> {
     let (of_a, of_b) = (a.column(name)?, b.column(name)?);
-    let curve = |name: &str, points: Vec<(f64, f64)>| Curve {
-        name: name.into(),
-        unit: of_a.unit.clone(),
-        points: points.iter().copied().step_by((points.len() / ROWS).max(1)).collect(),
+    let x = PictureAxis::new("time t", "s", 10).between(
+        a.times.first()?.min(*b.times.first()?),
+        a.times.last()?.max(*b.times.last()?),
+    );
+    let curve = |points: Vec<(f64, f64)>, colour: usize, width: f64| {
+        let every = (points.len() / ROWS).max(1);
+        PictureSeries::line(points.into_iter().step_by(every), Stroke::solid(PALETTE[colour], width))
     };
+    let points = |times: &[f64], values: &[f64]| times.iter().copied().zip(values.iter().copied()).collect();
     let (first, last) = (b.times.first()?, b.times.last()?);
     let between = a
         .times
@@ -36,10 +38,14 @@ fn pair(a: &Recording, b: &Recording, name: &str) -> Option<Pair> {
         .zip(&of_a.values)
         .filter(|(t, _)| (first..=last).contains(t));
     let difference = between.map(|(&t, x)| (t, x - cubic(&b.times, t).mean(|k| of_b.values[k])));
-    let points = |times: &[f64], values: &[f64]| times.iter().copied().zip(values.iter().copied()).collect();
-    Some(Pair {
-        a: curve(name, points(&a.times, &of_a.values)),
-        b: curve(name, points(&b.times, &of_b.values)),
-        difference: curve("difference", difference.collect()),
-    })
+    let both = vec![
+        curve(points(&a.times, &of_a.values), 0, 2.2).named(&*a.label),
+        curve(points(&b.times, &of_b.values), 1, 1.1).named(&*b.label),
+    ];
+    let y = |name: &str, ticks: usize| PictureAxis::new(name, &*of_a.unit, ticks);
+    let less = vec![curve(difference.collect(), 9, 1.0)];
+    Some([
+        Panel::new((650.0, 120.0), x.clone(), y(name, 4), both),
+        Panel::new((650.0, 62.0), x, y("less", 3), less),
+    ])
 }

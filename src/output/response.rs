@@ -6,7 +6,10 @@ use std::path::PathBuf;
 use super::columns::{aligned, cells};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
-use super::plot::bode::{self, Bode, Line};
+use super::plot::canvas::Stroke;
+use super::plot::colour::PALETTE;
+use super::plot::extent;
+use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
@@ -129,18 +132,48 @@ fn errors(curve: &Curve) -> Option<[f64; 2]> {
 /// # Errors
 /// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>> {
-    let line = |curve: &Curve| Line {
-        name: curve.output.clone(),
-        real: curve.real.clone(),
-        imag: curve.imag.clone(),
-    };
-    let picture = bode::draw(&Bode {
-        case: found.case.clone(),
-        input: found.input.clone(),
-        frequencies: found.frequency_hz.clone(),
-        lines: found.curves().map(line).collect(),
-    });
+    let picture = picture(found).and_then(|picture| picture.svg());
     let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
     files.extend(picture.map(|text| (PICTURE, text)));
     folder.fill(files)
+}
+
+/// Least amplitude that is drawn, below the largest one [dB].
+const DEEPEST: f64 = 160.0;
+
+/// Amplitude and phase over frequency.
+fn picture(found: &Response) -> Option<Picture> {
+    let band = (*found.frequency_hz.first()?, *found.frequency_hz.last()?);
+    let x = || PictureAxis::new("frequency", "Hz", 8).between(band.0, band.1).logarithmic(true);
+    let decibel = |curve: &Curve| -> Vec<f64> {
+        let parts = curve.real.iter().zip(&curve.imag);
+        parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
+    };
+    let (mut amplitudes, mut phases) = (vec![], vec![]);
+    let (_, highest) = extent(found.curves().flat_map(decibel))?;
+    for (curve, colour) in found.curves().zip(PALETTE.iter().cycle()) {
+        let stroke = Stroke::solid(*colour, 1.6);
+        let points = found.frequency_hz.iter().copied().zip(decibel(curve));
+        let points = points.filter(|(_, amplitude)| *amplitude > highest - DEEPEST);
+        amplitudes.push(PictureSeries::line(points, stroke).named(&curve.output));
+        let mut phase: Vec<(f64, f64)> = vec![];
+        for (f, (re, im)) in found.frequency_hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
+            let angle = im.atan2(*re).to_degrees();
+            // a jump by a turn is no part of the curve
+            if phase.last().is_some_and(|(_, before)| (angle - before).abs() > 270.0) {
+                phase.push((*f, f64::NAN));
+            }
+            phase.push((*f, angle));
+        }
+        phases.push(PictureSeries::line(phase, stroke));
+    }
+    let panels = [
+        Panel::new((620.0, 250.0), x(), PictureAxis::new("amplitude", "dB", 6), amplitudes),
+        Panel::new((620.0, 150.0), x(), PictureAxis::new("phase", "°", 5).between(-180.0, 180.0), phases),
+    ];
+    Some(Picture::stacked(
+        format!("{} · frequency response", found.case),
+        format!("to {}", found.input),
+        panels,
+    ))
 }

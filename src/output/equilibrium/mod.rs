@@ -6,8 +6,10 @@ use std::path::PathBuf;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::shortest;
-use super::plot::Curve;
-use super::plot::loadpath::{self, LoadPath};
+use super::plot::canvas::{Anchor, Stroke, Words};
+use super::plot::colour::PALETTE;
+use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries, equally_scaled};
+use super::plot::{extent, over_time};
 use super::records;
 use crate::case::schema::Case;
 use crate::discrete::quantities::{Observable, Role};
@@ -118,7 +120,7 @@ pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
         (JSON, json(found)),
         (CASE, case.json.clone()),
     ];
-    files.extend(loadpath::draw(&drawn(found)).map(|text| (PICTURE, text)));
+    files.extend(drawn(found).map(|text| (PICTURE, text)));
     folder.fill_with(&case, files)
 }
 
@@ -167,56 +169,88 @@ fn about(options: &Options) -> String {
     }
 }
 
-/// The picture's data.
-fn drawn(found: &Found) -> LoadPath {
+/// Share of the loads over displacement, unbroken where stable, and shapes on the way.
+fn drawn(found: &Found) -> Option<String> {
     let states = &found.path.states;
-    let stable = |s: &State| s.stability.as_ref().is_none_or(|s| s.unstable == 0);
+    let stable = |k: usize| states[k].stability.as_ref().is_none_or(|s| s.unstable == 0);
     // of probes the deflection: ends may be held
     let shown = |name: &str| match Observable::named(name) {
         Some(one) => one.role() == Role::Headline,
         None => name.ends_with("_u1"),
     };
-    let curves = found.columns.iter().enumerate().filter(|(_, c)| shown(&c.name));
     let nearest = |share: f64| {
         let far = |k: &usize| (states[*k].load_factor() - share).abs();
         (0..states.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
     };
-    let every = states.len().div_ceil(DRAWN).max(1);
-    let chosen = (0..states.len()).rev().step_by(every).collect::<Vec<_>>();
-    let length = found.case.beam.length_m;
-    let shape = |k: &usize| {
-        let (u1, u3) = (&states[*k].u1, &states[*k].u3);
-        let theta = |i: usize| length * i as f64 / (u1.len() - 1) as f64;
-        (
-            *k,
-            u1.clone(),
-            u3.iter().enumerate().map(|(i, u)| theta(i) + u).collect(),
-        )
-    };
-    LoadPath {
-        case: found.case.name.clone(),
-        about: about(found.options),
-        shares: states.iter().map(State::load_factor).collect(),
-        stable: states.iter().map(stable).collect(),
-        curves: curves
-            .map(|(k, column)| Curve {
-                name: column.name.replace('_', " "),
-                unit: column.unit.into(),
-                points: states.iter().map(|s| (s.load_factor(), s.row[k])).collect(),
-            })
-            .collect(),
-        marks: found
-            .path
-            .events
-            .iter()
-            .map(|e| {
-                let letter = match e.kind {
-                    Kind::LimitPoint => 'L',
-                    Kind::Bifurcation => 'B',
+    let over = |(k, column): (usize, &Column)| {
+        let points: Vec<_> = states.iter().map(|s| (s.row[k], s.load_factor())).collect();
+        let mut series: Vec<_> = (1..points.len())
+            .map(|k| {
+                let stroke = match stable(k - 1) && stable(k) {
+                    true => Stroke::solid(PALETTE[0], 1.8),
+                    false => Stroke::dashed(PALETTE[1], 1.8, (3.0, 3.0)),
                 };
-                (nearest(e.load_factor()), letter)
+                PictureSeries::line(points[k - 1..=k].iter().copied(), stroke)
             })
-            .collect(),
-        shapes: chosen.iter().rev().map(shape).collect(),
+            .collect();
+        series.push(PictureSeries::marks(
+            points.iter().copied(),
+            Glyph::Square(1.4),
+            PALETTE[0],
+        ));
+        for event in &found.path.events {
+            let letter = match event.kind {
+                Kind::LimitPoint => "L",
+                Kind::Bifurcation => "B",
+            };
+            let at = points[nearest(event.load_factor())];
+            series.push(PictureSeries::marks([at], Glyph::Box(4.0), PALETTE[3]));
+            series.push(PictureSeries::label(
+                at,
+                (8.0, -8.0),
+                letter,
+                Words::new(11.0, Anchor::Left),
+            ));
+        }
+        let moves = points.iter().any(|p| p.0.abs() > 0.0);
+        let x = PictureAxis::new(column.name.replace('_', " "), column.unit, 4);
+        moves.then(|| Panel::new((200.0, 240.0), x, PictureAxis::new("load factor", "1", 6), series))
+    };
+    let curves = found.columns.iter().enumerate().filter(|(_, c)| shown(&c.name));
+    let panels: Vec<Panel> = curves.filter_map(over).collect();
+    if states.len() < 2 || panels.is_empty() {
+        return None;
     }
+    let width = 230.0 * panels.len().max(2) as f64 - 30.0;
+    let rows = [Some(panels), shapes_drawn(found, width).map(|panel| vec![panel])];
+    let picture = Picture {
+        title: format!("{} · equilibria", found.case.name),
+        about: about(found.options),
+        rows: rows.into_iter().flatten().collect(),
+    };
+    picture.svg()
+}
+
+/// Some shapes of the path, from blue to red, equally scaled along and across.
+fn shapes_drawn(found: &Found, width: f64) -> Option<Panel> {
+    let states = &found.path.states;
+    let chosen: Vec<&State> = states
+        .iter()
+        .rev()
+        .step_by(states.len().div_ceil(DRAWN).max(1))
+        .collect();
+    let shape = |state: &State| -> Vec<(f64, f64)> {
+        let theta = |i: usize| found.case.beam.length_m * i as f64 / (state.u1.len() - 1) as f64;
+        let all = state.u1.iter().zip(&state.u3).enumerate();
+        all.map(|(i, (u1, u3))| (theta(i) + u3, *u1)).collect()
+    };
+    let shapes: Vec<_> = chosen.into_iter().rev().map(shape).collect();
+    let over = |of: fn(&(f64, f64)) -> f64| extent(shapes.iter().flatten().map(of));
+    let (z, x, height) = equally_scaled(over(|p| p.0)?, over(|p| p.1)?, width);
+    let places: Vec<f64> = (0..shapes.len()).map(|k| k as f64).collect();
+    let name = "shape: z = θ + u₃; blue at rest, red at the end of the path";
+    let z = PictureAxis::new(name, "m", 8).between(z.0, z.1);
+    let x = PictureAxis::new("x = u₁", "m", ((height / 34.0) as usize).max(3)).between(x.0, x.1);
+    let panel = Panel::new((width, height), z, x, over_time(&places, shapes));
+    Some(panel.headed("squares: states; dashed: unstable; B bifurcation, L limit point"))
 }

@@ -4,7 +4,9 @@ mod words;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
-use super::plot::fitted::{self, Fitted as Drawn, Part};
+use super::plot::canvas::Stroke;
+use super::plot::colour::PALETTE;
+use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::case::readable;
 use crate::error::Result;
@@ -38,7 +40,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Re
         (CASE, case.json.clone()),
         (FITTED, fitted.json),
     ];
-    files.extend(fitted::draw(&drawn(problem, found)).map(|text| (PICTURE, text)));
+    files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
     folder.fill_with(&case, files).map(|_| ())
 }
 
@@ -97,14 +99,15 @@ fn table(problem: &Problem, found: &Fitted) -> String {
     records::text(headings, rows)
 }
 
-fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
+fn drawn(problem: &Problem, found: &Fitted) -> Option<String> {
     let aside = beside(problem);
-    let (name, xs) = &aside[0];
+    let (name, xs) = aside.first()?;
     let x = match &problem.abscissa {
-        Abscissa::Time(_) => ("time t".into(), "s".into()),
-        Abscissa::Drives(_) => (readable::pointer_name(name), readable::pointer_unit(name).into()),
+        Abscissa::Time(_) => PictureAxis::new("time t", "s", 8),
+        Abscissa::Drives(_) => PictureAxis::new(readable::pointer_name(name), readable::pointer_unit(name), 8),
     };
-    let part = |(k, one): (usize, &Matched)| {
+    let line = aside.len() == 1;
+    let panels = problem.matched.iter().enumerate().map(|(k, one)| {
         let places = places(problem, k);
         let points = |value: &dyn Fn(usize) -> f64| -> Vec<(f64, f64)> {
             let all = places.iter().enumerate();
@@ -113,15 +116,14 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
             all
         };
         let data = |i: usize| problem.observations[i].value;
-        Part {
-            name: one.name.replace('_', " "),
-            unit: one.unit.clone(),
-            data: points(&data),
-            model: points(&|i| found.model[i]),
-            residuals: points(&|i| found.model[i] - data(i)),
-            noise: Some(2.0 * found.fit.columns[k].noise),
-        }
-    };
+        let curves = [
+            points(&data),
+            points(&|i| found.model[i]),
+            points(&|i| found.model[i] - data(i)),
+        ];
+        let noise = Some(2.0 * found.fit.columns[k].noise);
+        over_data((&one.name, &one.unit), &x, line, curves, noise)
+    });
     let estimates = found.fit.parameters.iter().map(|one| {
         let error = one
             .standard_error
@@ -129,39 +131,64 @@ fn drawn(problem: &Problem, found: &Fitted) -> Drawn {
         let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}{error}", significant(one.value, 5))
     });
-    Drawn {
-        name: format!("{}, fitted", found.fit.case),
-        about: estimates.collect::<Vec<_>>().join(", "),
-        x,
-        line: aside.len() == 1,
-        parts: problem.matched.iter().enumerate().map(part).collect(),
-    }
+    let about = estimates.collect::<Vec<_>>().join(", ");
+    Picture::stacked(format!("{}, fitted", found.fit.case), about, panels.flatten()).svg()
+}
+
+/// Panels of one quantity: data with the model, and residuals with two standard deviations of the noise where it is known.
+fn over_data(
+    (name, unit): (&str, &str),
+    x: &PictureAxis,
+    line: bool,
+    [data, model, residuals]: [Vec<(f64, f64)>; 3],
+    noise: Option<f64>,
+) -> [Panel; 2] {
+    let rings = |points: Vec<(f64, f64)>| PictureSeries::marks(points, Glyph::Ring(2.6, 1.1), PALETTE[1]);
+    let stroke = Stroke::solid(PALETTE[0], 1.6);
+    let levels: Vec<f64> = noise.into_iter().flat_map(|noise| [-noise, noise]).collect();
+    let ends = [data.first(), data.last()].map(|p| p.map_or(0.0, |p| p.0));
+    let dashed = Stroke::dashed(PALETTE[9], 0.8, (4.0, 3.0));
+    let level = |level: &f64| PictureSeries::line(ends.map(|x| (x, *level)), dashed);
+    let left = levels.iter().map(level).chain([rings(residuals)]).collect();
+    let model = match line {
+        true => PictureSeries::line(model, stroke),
+        false => PictureSeries::marks(model, Glyph::Ring(1.3, 1.6), PALETTE[0]),
+    };
+    let both = vec![model.named("model"), rings(data).named("measured")];
+    [
+        Panel::new(
+            (620.0, 220.0),
+            x.clone(),
+            PictureAxis::new(name.replace('_', " "), unit, 6),
+            both,
+        ),
+        Panel::new(
+            (620.0, 90.0),
+            x.clone(),
+            PictureAxis::new("model − data", unit, 3),
+            left,
+        ),
+    ]
 }
 
 /// The picture of a run over data: its curves are given by name, time [s] and value.
 pub fn picture(found: &Beside, curve: impl Fn(&str) -> Vec<(f64, f64)>) -> Option<String> {
-    let part = |column: &crate::study::fit::beside::Column| {
-        let at = |values: &[f64]| column.times_s.iter().copied().zip(values.iter().copied()).collect();
-        let residuals: Vec<f64> = column
-            .computed
-            .iter()
-            .zip(&column.measured)
-            .map(|(a, b)| a - b)
-            .collect();
-        Part {
-            name: column.quantity.replace('_', " "),
-            unit: column.unit.clone(),
-            data: at(&column.measured),
-            model: curve(&column.quantity),
-            residuals: at(&residuals),
-            noise: None,
-        }
-    };
-    fitted::draw(&Drawn {
-        name: format!("{} over {}", found.case, found.data),
-        about: "a run over measured data".into(),
-        x: ("time t".into(), "s".into()),
-        line: true,
-        parts: found.columns.iter().map(part).collect(),
-    })
+    let panels = found.columns.iter().flat_map(|column| {
+        let at = |values: &mut dyn Iterator<Item = f64>| column.times_s.iter().copied().zip(values).collect();
+        let residuals = column.computed.iter().zip(&column.measured).map(|(a, b)| a - b);
+        let curves = [
+            at(&mut column.measured.iter().copied()),
+            curve(&column.quantity),
+            at(&mut { residuals }),
+        ];
+        over_data(
+            (&column.quantity, &column.unit),
+            &PictureAxis::new("time t", "s", 8),
+            true,
+            curves,
+            None,
+        )
+    });
+    let title = format!("{} over {}", found.case, found.data);
+    Picture::stacked(title, "a run over measured data", panels).svg()
 }

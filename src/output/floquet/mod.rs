@@ -1,19 +1,22 @@
 //! What stability leaves behind: `floquet.csv`, `floquet.json`, `floquet.svg` of one case, `map.csv`, `map.json`, `map.svg` of
 //! a map, and their words.
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use super::columns::{aligned, cells, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
-use super::plot::multipliers::{self, Dot, Multipliers};
-use super::plot::tongue::{self, Tongue, TonguePanel};
+use super::plot::canvas::{INK, Stroke};
+use super::plot::colour::{self, Colour, PALETTE};
+use super::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::error::Result;
 use crate::results;
 use crate::results::cycles::{Cycle, Floquet, Map};
 use crate::study::refine::meshes::Meshes;
+use crate::study::stability::Sheet;
 
 /// The text of `floquet.csv`: one row a multiplier.
 pub fn csv(floquet: &Floquet) -> String {
@@ -87,21 +90,11 @@ pub fn words(found: &Cycle) -> String {
 
 /// Writes the files of one case into a folder.
 pub fn write(folder: &mut ResultFolder, found: &Cycle) -> Result<Vec<PathBuf>> {
-    let dots = found.floquet.multipliers.iter().map(|m| Dot {
-        re: m.re,
-        im: m.im,
-        name: m.part.to_string(),
-    });
-    let picture = multipliers::draw(&Multipliers {
-        case: found.case.clone(),
-        words: found.floquet.verdict.words.clone(),
-        dots: dots.collect(),
-    });
     let mut files = vec![
         ("floquet.csv", csv(&found.floquet)),
         ("floquet.json", results::text(found)),
     ];
-    files.extend(picture.map(|text| ("floquet.svg", text)));
+    files.extend(multipliers(found).map(|text| ("floquet.svg", text)));
     folder.fill(files)
 }
 
@@ -176,25 +169,115 @@ pub fn map_words(map: &Map) -> String {
 
 /// Writes the files of a map into a folder.
 pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<Vec<PathBuf>> {
-    let panels = map.sheets.iter().map(|sheet| TonguePanel {
-        name: sheet
-            .permeability_factor
-            .map_or("dry".into(), |f| format!("permeabilities × {}", shortest(f))),
-        growth: sheet
-            .points
-            .iter()
-            .map(|column| column.iter().map(|p| p.growth_per_s).collect())
-            .collect(),
-    });
-    let picture = tongue::draw(&Tongue {
-        case: map.case.clone(),
-        frequencies: map.frequencies_hz.clone(),
-        amplitudes: map.amplitudes_m.clone(),
-        onset: map.mathieu.as_ref().map(|m| m.onset_m.clone()),
-        own: map.own,
-        panels: panels.collect(),
-    });
     let mut files = vec![("map.csv", map_csv(map)), ("map.json", results::text(map))];
-    files.extend(picture.map(|text| ("map.svg", text)));
+    files.extend(tongues(map).map(|text| ("map.svg", text)));
     folder.fill(files)
+}
+
+/// Multipliers with a name in the picture.
+const NAMED: usize = 6;
+
+/// Multipliers about the unit circle.
+fn multipliers(found: &Cycle) -> Option<String> {
+    let all = &found.floquet.multipliers;
+    let reach = 1.15 * all.first()?.modulus.max(1.0);
+    let circle = (0..=180)
+        .map(|k| f64::from(k) * TAU / 180.0)
+        .map(|a| (a.cos(), a.sin()));
+    let mut series = vec![PictureSeries::line(
+        circle,
+        Stroke::solid(Colour(0x6b, 0x72, 0x7a), 1.2),
+    )];
+    for (k, m) in all.iter().enumerate() {
+        let colour = if m.modulus > 1.0 { UNSTABLE } else { PALETTE[0] };
+        let dots = PictureSeries::marks(
+            [(m.re, m.im), (m.re, -m.im)],
+            Glyph::Polygon(3.6, 16, 0.0, true),
+            colour,
+        );
+        let im = if m.im > 0.0 {
+            format!(" ± {:.4} i", m.im)
+        } else {
+            String::new()
+        };
+        let value = format!("{:.4}{im}", m.re).replacen('-', "−", 1);
+        let name = if k < NAMED {
+            format!("{}\n{value}", m.part)
+        } else {
+            String::new()
+        };
+        series.push(dots.named(name));
+    }
+    let axis = |name: &str| PictureAxis::new(name, "1", 6).between(-reach, reach);
+    let panel = Panel {
+        legend_beside: true,
+        ..Panel::new((420.0, 420.0), axis("real part"), axis("imaginary part"), series)
+    };
+    let title = format!("{} · Floquet multipliers", found.case);
+    Picture::stacked(title, &*found.floquet.verdict.words, [panel]).svg()
+}
+
+/// Growth over the largest one below which a point counts as stable in the picture.
+const NOTHING: f64 = 2e-3;
+const UNSTABLE: Colour = Colour(0xb5, 0x2b, 0x2b);
+const STABLE: Colour = Colour(0xee, 0xf2, 0xf6);
+const MISSING: Colour = Colour(0xc9, 0xcd, 0xd2);
+
+/// Growth over frequency and amplitude of the shaking, a panel a permeability; dashed: Mathieu's equation.
+fn tongues(map: &Map) -> Option<String> {
+    let range = |all: &[f64]| {
+        let (first, last) = (*all.first()?, *all.last()?);
+        Some((first, last, 0.5 * (last - first) / (all.len() - 1).max(1) as f64))
+    };
+    let (across, up) = (range(&map.frequencies_hz)?, range(&map.amplitudes_m)?);
+    let points = map.sheets.iter().flat_map(|sheet| sheet.points.iter().flatten());
+    let grown = points.filter_map(|point| point.growth_per_s).filter(|g| g.is_finite());
+    let most = grown.fold(0.0, f64::max);
+    let colour = |growth: Option<f64>| match growth {
+        None => MISSING,
+        Some(g) if g > NOTHING * most && most > 0.0 => colour::of_growth(g / most),
+        Some(_) => STABLE,
+    };
+    let axis = |name: &str, unit: &str, (first, last, half): (f64, f64, f64)| {
+        PictureAxis::new(name, unit, 6).between(first - half, last + half)
+    };
+    let (x, y) = (axis("frequency", "Hz", across), axis("amplitude", "m", up));
+    let (half_x, half_y) = (across.2, up.2);
+    let panel = |(k, sheet): (usize, &Sheet)| {
+        let mut series = vec![];
+        for (f, column) in map.frequencies_hz.iter().zip(&sheet.points) {
+            for (a, point) in map.amplitudes_m.iter().zip(column) {
+                let corners = [(f - half_x, a - half_y), (f + half_x, a + half_y)];
+                series.push(PictureSeries::cell(corners, colour(point.growth_per_s)));
+            }
+        }
+        let within = |a: f64| if a <= up.1 + half_y { a } else { f64::NAN };
+        let onset = map
+            .mathieu
+            .iter()
+            .flat_map(|m| map.frequencies_hz.iter().zip(&m.onset_m));
+        let dashed = Stroke::dashed(INK, 1.4, (5.0, 3.0));
+        series.push(PictureSeries::line(onset.map(|(f, a)| (*f, within(*a))), dashed));
+        let inside = |value: f64, (first, last, half): (f64, f64, f64)| (first - half..=last + half).contains(&value);
+        let own = (inside(map.own.0, across) && inside(map.own.1, up)).then_some(map.own);
+        series.push(PictureSeries::marks(own, Glyph::Ring(5.0, 1.8), PALETTE[0]));
+        let name = sheet
+            .permeability_factor
+            .map_or("dry".into(), |f| format!("permeabilities × {}", shortest(f)));
+        let bar = (k + 1 == map.sheets.len()).then(|| ColourBar {
+            colours: colour::scale(colour::of_growth),
+            axis: PictureAxis::new("growth", "1/s", 5).between(0.0, most),
+            besides: Some((STABLE, "stable".into())),
+        });
+        Panel {
+            bar,
+            ..Panel::new((330.0, 300.0), x.clone(), y.clone(), series).headed(name)
+        }
+    };
+    Picture {
+        title: format!("{} · shaken along its axis", map.case),
+        about: "growth rate of the largest disturbance; dashed: principal tongue of Mathieu's equation, first mode, dry; ring: the case".into(),
+        rows: vec![map.sheets.iter().enumerate().map(panel).collect()],
+    }
+    .svg()
 }

@@ -4,7 +4,10 @@ mod words;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
-use super::plot::optimum::{self, Dot, Optimum as Drawn, Part};
+use super::plot::canvas::{FAINT_INK, Stroke};
+use super::plot::colour::PALETTE;
+use super::plot::extent;
+use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::case::readable;
 use crate::error::{Result, visible};
@@ -38,7 +41,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) ->
         (CASE, case.json.clone()),
         (BEST, best.json),
     ];
-    files.extend(optimum::draw(&drawn(problem, found)).map(|text| (PICTURE, text)));
+    files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
     folder.fill_with(&case, files).map(|_| ())
 }
 
@@ -73,42 +76,56 @@ fn table(problem: &Problem, found: &Optimised) -> String {
     records::text(headings, rows)
 }
 
-fn drawn(problem: &Problem, found: &Optimised) -> Drawn {
+/// Numbers drawn at most.
+const DRAWN: usize = 6;
+
+/// The figure over the designs in order, and over each number.
+fn drawn(problem: &Problem, found: &Optimised) -> Option<String> {
     let optimum = &found.optimum;
-    let dots = |x: &dyn Fn(usize, &Design) -> f64| -> Vec<Dot> {
-        let dot = |(k, one): (usize, &Design)| {
-            let figure = one.figures.as_ref()?[0];
-            Some(Dot {
-                at: (x(k, one), figure),
-                held: one.held,
-            })
+    let name = readable::figure_name(&optimum.goal.figure);
+    let figures = || found.history.iter().filter_map(|one| Some(one.figures.as_ref()?[0]));
+    extent(figures())?;
+    let y = PictureAxis::new(name, unit(&optimum.goal.figure), 5).with(&figures().collect::<Vec<_>>());
+    let panel = |x: PictureAxis, at: &dyn Fn(usize, &Design) -> f64, best: Option<f64>| {
+        let held = |wanted: bool| {
+            let all = found
+                .history
+                .iter()
+                .enumerate()
+                .filter(move |(_, one)| one.held == wanted);
+            all.filter_map(|(k, one)| Some((at(k, one), one.figures.as_ref()?[0])))
         };
-        found.history.iter().enumerate().filter_map(dot).collect()
+        let rings = [(true, PALETTE[0], "a design"), (false, FAINT_INK, "beyond a limit")];
+        let mut series: Vec<_> = rings
+            .map(|(wanted, colour, name)| {
+                let marks = PictureSeries::marks(held(wanted), Glyph::Ring(2.6, 1.1), colour);
+                marks.named(name)
+            })
+            .into();
+        let large = PictureSeries::marks(best.map(|x| (x, optimum.value)), Glyph::Ring(5.2, 1.6), PALETTE[1]);
+        series.push(large.named("the best"));
+        Panel::new((620.0, 190.0), x, y.clone(), series)
     };
-    let best = |x: f64| Some((x, optimum.value));
-    let designs = Part {
-        name: "design".into(),
-        unit: "1".into(),
-        logarithmic: false,
-        dots: dots(&|k, _| k as f64),
-        best: None,
-    };
-    let numbers = problem.spans.iter().enumerate().map(|(i, span)| Part {
-        name: readable::pointer_name(&span.pointer),
-        unit: readable::pointer_unit(&span.pointer).into(),
-        logarithmic: span.logarithmic() && span.low > 0.0,
-        dots: dots(&|_, one| one.values[i]),
-        best: best(optimum.variables[i].value),
+    let mut designs = panel(PictureAxis::new("design", "1", 8), &|k, _| k as f64, None);
+    let in_order = found.history.iter().enumerate();
+    let in_order = in_order.filter_map(|(k, one)| Some((k as f64, one.figures.as_ref()?[0])));
+    designs.series.insert(
+        0,
+        PictureSeries::line(in_order, Stroke::dashed(PALETTE[9], 0.8, (3.0, 3.0))),
+    );
+    let numbers = problem.spans.iter().enumerate().take(DRAWN).map(|(i, span)| {
+        let (name, unit) = (
+            readable::pointer_name(&span.pointer),
+            readable::pointer_unit(&span.pointer),
+        );
+        let x = PictureAxis::new(name, unit, 8).logarithmic(span.logarithmic() && span.low > 0.0);
+        panel(x, &|_, one| one.values[i], Some(optimum.variables[i].value))
     });
-    let numbers_told = optimum.variables.iter().map(|one| {
+    let told = optimum.variables.iter().map(|one| {
         let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}", significant(one.value, 5))
     });
-    Drawn {
-        name: format!("{}, {}", optimum.case, optimum.goal.figure),
-        about: numbers_told.collect::<Vec<_>>().join(", "),
-        figure: readable::figure_name(&optimum.goal.figure),
-        unit: unit(&optimum.goal.figure).into(),
-        parts: std::iter::once(designs).chain(numbers).collect(),
-    }
+    let title = format!("{}, {}", optimum.case, optimum.goal.figure);
+    let about = told.collect::<Vec<_>>().join(", ");
+    Picture::stacked(title, about, std::iter::once(designs).chain(numbers)).svg()
 }

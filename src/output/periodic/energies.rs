@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use crate::output::numbers::{percent, quantity, significant};
-use crate::output::plot::cycles::Quantity as Panel;
 use crate::results::cycles::Along;
 use crate::results::run::Quantity;
 use crate::study::analysis::power::{self, Figure};
@@ -55,20 +54,6 @@ pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
         Some(value + &f.open.map_or(String::new(), |e| format!(" ± {}", percent(e))))
     };
     shown.iter().map(|f| cell(&f.name).unwrap_or("–".into())).collect()
-}
-
-/// Panels of the picture: mean power and efficiency, where every cycle has them.
-pub fn panels(found: &Along) -> Vec<Panel> {
-    let drawn = harvested(found).into_iter().filter(|f| matches!(f.unit, "W" | "1"));
-    let panel = |f: Figure| {
-        let value = |m: &Member| column(&energies(m), &f.name);
-        Some(Panel {
-            values: found.members.iter().map(value).collect::<Option<_>>()?,
-            name: f.words.into(),
-            unit: f.unit.into(),
-        })
-    };
-    drawn.filter_map(panel).collect()
 }
 
 /// Lines of words about one cycle: name and value, how far the balance is open beside it, and what else is known of its error.

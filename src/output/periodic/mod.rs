@@ -10,7 +10,9 @@ pub use energies::{energies, headings as energy_headings, shown as energy_shown}
 use super::columns::aligned;
 use super::folder::ResultFolder;
 use super::numbers::{counted, quantity, shortest, significant};
-use super::plot::cycles::{self, Cycles, Quantity};
+use super::plot::canvas::Stroke;
+use super::plot::colour::PALETTE;
+use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
 use crate::case::readable;
 use crate::discrete::quantities::Interest;
@@ -114,38 +116,51 @@ pub fn words(found: &Along) -> String {
 
 /// Writes the files of a sweep into a folder, which is made.
 pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
-    let quantities = SHOWN.iter().filter_map(|one| {
-        let values: Option<Vec<f64>> = found.members.iter().map(|m| largest(m, *one)).collect();
-        Some(Quantity {
-            name: format!("largest {}", short(*one)),
-            unit: one.unit().into(),
-            values: values?,
-        })
-    });
-    let growth = found.members.iter().map(|m| m.floquet.verdict.growth_per_s);
-    let picture = cycles::draw(&Cycles {
-        case: found.case.clone(),
-        parameter_name: readable::pointer_name(&found.pointer),
-        parameter_unit: readable::pointer_unit(&found.pointer).into(),
-        logarithmic: found.logarithmic,
-        parameter: found.members.iter().map(|m| m.value).collect(),
-        stable: found
-            .members
-            .iter()
-            .map(|m| m.floquet.verdict.stability != Stability::Unstable)
-            .collect(),
-        quantities: quantities
-            .chain(energies::panels(found))
-            .chain([Quantity {
-                name: "growth".into(),
-                unit: "1/s".into(),
-                values: growth.collect(),
-            }])
-            .collect(),
-    });
     let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
-    files.extend(picture.map(|text| ("sweep.svg", text)));
+    files.extend(picture(found).map(|text| ("sweep.svg", text)));
     folder.fill(files)
+}
+
+/// Cycles along the parameter, a panel a quantity; orange rings: cycles that are not stable.
+fn picture(found: &Along) -> Option<String> {
+    found.members.first()?;
+    let (name, unit) = (
+        readable::pointer_name(&found.pointer),
+        readable::pointer_unit(&found.pointer),
+    );
+    let x = PictureAxis::new(name, unit, 7).logarithmic(found.logarithmic);
+    let panel = |name: &str, unit: &str, value: &dyn Fn(&Member) -> Option<f64>| {
+        let point = |m: &Member| Some((m.value, value(m)?));
+        let points: Vec<_> = found.members.iter().map(point).collect::<Option<_>>()?;
+        let unstable = |m: &Member| m.floquet.verdict.stability == Stability::Unstable;
+        let of = |which: bool| {
+            let all = points
+                .iter()
+                .zip(&found.members)
+                .filter(move |(_, m)| unstable(m) == which);
+            PictureSeries::marks(all.map(|(p, _)| *p), Glyph::Ring(3.4, 1.4), PALETTE[usize::from(which)])
+        };
+        let line = PictureSeries::line(points.iter().copied(), Stroke::solid(PALETTE[0], 1.4));
+        let y = PictureAxis::new(name, unit, 5).with(&[0.0]);
+        Some(Panel::new(
+            (560.0, 170.0),
+            x.clone(),
+            y,
+            vec![line, of(false), of(true)],
+        ))
+    };
+    let quantities = SHOWN
+        .iter()
+        .map(|one| panel(&format!("largest {}", short(*one)), one.unit(), &|m| largest(m, *one)));
+    // mean power and efficiency
+    let harvested = energies::harvested(found)
+        .into_iter()
+        .filter(|f| matches!(f.unit, "W" | "1"));
+    let harvested = harvested.map(|f| panel(f.words, f.unit, &|m| energies::column(&energies(m), &f.name)));
+    let growth = panel("growth", "1/s", &|m| Some(m.floquet.verdict.growth_per_s));
+    let about = "one cycle a value, found by shooting; orange rings: cycles that are not stable";
+    let panels = quantities.chain(harvested).chain([growth]).flatten();
+    Picture::stacked(format!("{} · steady cycles", found.case), about, panels).svg()
 }
 
 /// Largest values and energies over the period, in words; energies with how far their balance is open beside them, and with what is

@@ -14,7 +14,7 @@ pub const INK: Colour = Colour(0x22, 0x26, 0x2b);
 pub const FAINT_INK: Colour = Colour(0x5f, 0x66, 0x6e);
 
 /// How a line looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour.
     pub colour: Colour,
@@ -44,7 +44,7 @@ impl Stroke {
 }
 
 /// Which point of a text is given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor {
     /// Left end, vertical middle.
     Left,
@@ -55,7 +55,7 @@ pub enum Anchor {
 }
 
 /// How words look.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Words {
     /// Size in points.
     pub size: f64,

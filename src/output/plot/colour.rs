@@ -60,6 +60,26 @@ pub fn of_value(value: f64, low: f64, high: f64) -> Colour {
     mixed(&ONE_SIGN, if high <= 0.0 { 1.0 - share } else { share })
 }
 
+/// Light to dark red for growth from nothing to the largest.
+const GROWTH: [(f64, [u8; 3]); 5] = [
+    (0.0, [0xfd, 0xe8, 0xc8]),
+    (0.25, [0xf7, 0xb8, 0x7a]),
+    (0.5, [0xe3, 0x6f, 0x45]),
+    (0.75, [0xb5, 0x2b, 0x2b]),
+    (1.0, [0x5f, 0x06, 0x1a]),
+];
+
+/// Colour of a growth over the largest one.
+pub fn of_growth(share: f64) -> Colour {
+    mixed(&GROWTH, share)
+}
+
+/// Colours of a scale from 0 to 1.
+pub fn scale(of: impl Fn(f64) -> Colour) -> Vec<Colour> {
+    const PIECES: usize = 96;
+    (0..PIECES).map(|k| of((k as f64 + 0.5) / PIECES as f64)).collect()
+}
+
 /// Lines told apart by every eye: Okabe and Ito's colours without yellow, which white swallows, and three of Tol's.
 pub const PALETTE: [Colour; 10] = [
     Colour(0x00, 0x72, 0xb2),

@@ -1,9 +1,7 @@
 //! `deflection.svg`: shapes of the beam over the last cycle, blue to red.
 
-use super::canvas::{Canvas, Stroke, picture};
-use super::panel::{Panel, Place, time_bar, title};
-use super::ticks::Scale;
-use super::{Span, colour, extent};
+use super::picture::{Panel, Picture, PictureAxis, equally_scaled};
+use super::{Span, extent, over_time, time_bar};
 
 /// Displacements of the beam at a few instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,12 +25,8 @@ const LARGE: f64 = 0.05;
 /// Share of the length below which displacements are round-off.
 const SMALL: f64 = 1e-7;
 
-const LEFT: f64 = 72.0;
-const TOP: f64 = 66.0;
+/// Width of a panel [pt].
 const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 176.0;
-const GAP: f64 = 22.0;
-const SHEET: f64 = 740.0;
 
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &Deflection) -> Option<String> {
@@ -42,93 +36,37 @@ pub fn draw(data: &Deflection) -> Option<String> {
     if length <= 0.0 {
         return None;
     }
-    let e1 = extent(data.u1.iter().flatten().copied());
-    let e3 = extent(data.u3.iter().flatten().copied());
-    let largest = [e1, e3]
-        .iter()
-        .flatten()
-        .fold(0.0, |m: f64, e| m.max(e.0.abs()).max(e.1.abs()));
-    let x = Scale::exact(start, end, "m", 8);
-    let floor = SMALL * length;
-    let panels = [
-        ("transverse u₁", &data.u1, Scale::around(e1, floor, "m", 5)),
-        ("axial u₃", &data.u3, Scale::around(e3, floor, "m", 5)),
-    ];
-    let drawn = panels.iter().filter(|(_, u, _)| !u.is_empty()).count();
-    if drawn == 0 {
-        return None;
+    let theta = || data.theta.iter().copied();
+    let along = PictureAxis::new("material coordinate θ", "m", 8).between(start, end);
+    let both = [("transverse u₁", &data.u1), ("axial u₃", &data.u3)];
+    let drawn = both.into_iter().filter(|(_, u)| !u.is_empty());
+    let mut panels: Vec<Panel> = drawn
+        .map(|(name, u)| {
+            let curves = u.iter().map(|u| theta().zip(u.iter().copied()).collect());
+            let y = PictureAxis::new(name, "m", 5).above(SMALL * length);
+            Panel::new((WIDTH, 176.0), along.clone(), y, over_time(&data.times, curves))
+        })
+        .collect();
+    panels.first_mut()?.bar = Some(time_bar(from, to));
+    let all = data.u1.iter().chain(&data.u3).flatten();
+    let largest = all.fold(0.0, |m: f64, u| m.max(u.abs()));
+    if largest > LARGE * length && panels.len() == 2 {
+        panels.extend(shape(data));
     }
-    let shape = (largest > LARGE * length && drawn == 2)
-        .then(|| Shape::of(data))
-        .flatten();
-    let last = TOP + drawn as f64 * HEIGHT + (drawn - 1) as f64 * GAP;
-    let bottom = shape.as_ref().map_or(last, |s| last + 62.0 + s.height);
-    Some(picture(SHEET, bottom + 48.0, |canvas| {
-        title(
-            canvas,
-            LEFT,
-            &format!("{} · deflection", data.case),
-            &super::about(data.span, from, to),
-        );
-        for (k, (name, u, y)) in panels.into_iter().filter(|(_, u, _)| !u.is_empty()).enumerate() {
-            let top = TOP + k as f64 * (HEIGHT + GAP);
-            let place = Place::new(LEFT, top, WIDTH, HEIGHT);
-            let panel = Panel { place, x: x.clone(), y };
-            let curves = u.iter().map(|u| data.theta.iter().copied().zip(u.iter().copied()));
-            draw_over_time(canvas, &panel, &data.times, curves);
-            let x_name = (k + 1 == drawn).then_some("material coordinate θ");
-            panel.axes(canvas, x_name, name);
-        }
-        if let Some(shape) = shape {
-            let place = Place::new(LEFT, last + 62.0, WIDTH, shape.height);
-            let panel = Panel::new(place, shape.z, shape.x);
-            let curves = data.u1.iter().zip(&data.u3).map(|(u1, u3)| {
-                let z = data.theta.iter().zip(u3).map(|(t, u)| t + u);
-                z.zip(u1.iter().copied())
-            });
-            draw_over_time(canvas, &panel, &data.times, curves);
-            panel.axes(canvas, Some("shape: z = θ + u₃"), "x = u₁");
-        }
-        let bar = Place::new(LEFT + WIDTH + 26.0, TOP + 8.0, 15.0, last - TOP - 8.0);
-        time_bar(canvas, bar, from, to);
-    }))
+    let about = super::about(data.span, from, to);
+    Picture::stacked(format!("{} · deflection", data.case), about, panels).svg()
 }
 
-/// Axes of the true shape, equally scaled.
-struct Shape {
-    x: Scale,
-    z: Scale,
-    height: f64,
-}
-
-impl Shape {
-    fn of(data: &Deflection) -> Option<Self> {
-        let z = data
-            .u3
-            .iter()
-            .flat_map(|u3| data.theta.iter().zip(u3).map(|(t, u)| t + u));
-        let z = Scale::around(extent(z), 0.0, "m", 8);
-        let (lo, hi) = extent(data.u1.iter().flatten().copied())?;
-        let per_point = (z.hi - z.lo) / WIDTH;
-        let height = ((hi - lo) * 1.1 / per_point).clamp(60.0, 420.0);
-        let half = 0.5 * height * per_point;
-        let middle = 0.5 * (lo + hi);
-        let x = Scale::exact(middle - half, middle + half, "m", ((height / 30.0) as usize).max(3));
-        Some(Self { x, z, height })
-    }
-}
-
-/// Curves in the colours of their times, over the grid.
-pub(super) fn draw_over_time<C: Iterator<Item = (f64, f64)>>(
-    canvas: &mut Canvas,
-    panel: &Panel,
-    times: &[f64],
-    curves: impl Iterator<Item = C>,
-) {
-    panel.grid(canvas);
-    let (from, to) = (times[0], times[times.len() - 1]);
-    let range = if to > from { to - from } else { 1.0 };
-    for (t, curve) in times.iter().zip(curves) {
-        panel.curve(canvas, curve, Stroke::solid(colour::of_time((t - from) / range), 1.3));
-    }
+/// The true shape, equally scaled.
+fn shape(data: &Deflection) -> Option<Panel> {
+    let curve = |(u1, u3): (&Vec<f64>, &Vec<f64>)| -> Vec<(f64, f64)> {
+        let z = data.theta.iter().zip(u3).map(|(t, u)| t + u);
+        z.zip(u1.iter().copied()).collect()
+    };
+    let curves: Vec<_> = data.u1.iter().zip(&data.u3).map(curve).collect();
+    let over = |of: fn(&(f64, f64)) -> f64| extent(curves.iter().flatten().map(of));
+    let (z, x, height) = equally_scaled(over(|p| p.0)?, over(|p| p.1)?, WIDTH);
+    let z = PictureAxis::new("shape: z = θ + u₃", "m", 8).between(z.0, z.1);
+    let x = PictureAxis::new("x = u₁", "m", ((height / 30.0) as usize).max(3)).between(x.0, x.1);
+    Some(Panel::new((WIDTH, height), z, x, over_time(&data.times, curves)))
 }

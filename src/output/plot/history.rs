@@ -1,10 +1,9 @@
 //! `history.svg`: what the beam does over time, one panel a quantity.
 
-use super::canvas::{Stroke, picture};
+use super::canvas::Stroke;
 use super::colour::PALETTE;
-use super::panel::{Panel, Place, title};
-use super::ticks::Scale;
-use super::{Curve, extent};
+use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
+use super::{Curve, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Curves over time.
@@ -43,42 +42,31 @@ fn name(curves: &[&Curve]) -> &'static str {
     }
 }
 
-const LEFT: f64 = 78.0;
-const TOP: f64 = 62.0;
-const WIDTH: f64 = 640.0;
-const HEIGHT: f64 = 112.0;
-const GAP: f64 = 16.0;
-const SHEET: f64 = 748.0;
-
 /// Draws it; `None` when there is nothing to draw.
 pub fn draw(data: &History) -> Option<String> {
     let shown = panels(data);
-    let all = shown.iter().flatten();
-    let (from, to) = extent(all.flat_map(|c| c.points.iter().map(|p| p.0)))?;
-    let x = Scale::exact(from, to, "s", 10);
-    let bottom = TOP + shown.len() as f64 * (HEIGHT + GAP) - GAP;
-    Some(picture(SHEET, bottom + 48.0, |canvas| {
-        title(
-            canvas,
-            LEFT,
-            &format!("{} · history", data.case),
-            "quantities over the whole run",
-        );
-        for (k, curves) in shown.iter().enumerate() {
-            let top = TOP + k as f64 * (HEIGHT + GAP);
-            let place = Place::new(LEFT, top, WIDTH, HEIGHT);
-            let values = curves.iter().flat_map(|c| c.points.iter().map(|p| p.1));
-            let y = Scale::around(extent(values), floor(&curves[0].unit), &curves[0].unit, 4);
-            let panel = Panel { place, x: x.clone(), y };
-            panel.grid(canvas);
-            for (c, curve) in curves.iter().enumerate() {
-                // The second curve of a panel in the palette's other half.
-                let colour = PALETTE[(k + 5 * c) % PALETTE.len()];
-                panel.curve(canvas, curve.points.iter().copied(), Stroke::solid(colour, 1.2));
-            }
-            panel.axes(canvas, (k + 1 == shown.len()).then_some("time t"), name(curves));
-        }
-    }))
+    let x = times_of(shown.iter().flatten().copied())?;
+    let panels = shown.iter().enumerate().map(|(k, curves)| {
+        // the second curve of a panel in the palette's other half
+        let colour = |c: usize| PALETTE[(k + 5 * c) % PALETTE.len()];
+        let line = |(c, curve): (usize, &&Curve)| {
+            PictureSeries::line(curve.points.iter().copied(), Stroke::solid(colour(c), 1.2))
+        };
+        let unit = &*curves[0].unit;
+        let y = PictureAxis::new(name(curves), unit, 4).above(floor(unit));
+        Panel::new(
+            (640.0, 112.0),
+            x.clone(),
+            y,
+            curves.iter().enumerate().map(line).collect(),
+        )
+    });
+    Picture::stacked(
+        format!("{} · history", data.case),
+        "quantities over the whole run",
+        panels,
+    )
+    .svg()
 }
 
 /// Curves panel by panel; what is zero throughout is left out, unless it is motion or pressure.

@@ -1,52 +1,39 @@
 //! Pictures of a run: plain data in, SVG text out. One picture a file; data that is absent makes no picture.
 //!
 //! ```text
+//! picture     a picture as data: panels, axes, series, colour scales
+//! drawing     the only place that lays out and draws one
 //! canvas      lines, rectangles and words, in points, as SVG
-//! colour      blue to red over time, and a palette every eye can tell apart
+//! colour      scales of colours, and a palette every eye can tell apart
 //! ticks       round numbers along an axis, with SI prefixes
-//! panel       a frame with grid, ticks and curves
-//! deflection, pressure, history, energy   the pictures of a run
+//! labels      labels that do not overprint
+//! deflection, pressure, history, energy   a run
 //! workprecision   what accuracy costs
 //! ablation    what each effect does
-//! loadpath    equilibria under growing loads
-//! modes       shapes of modes with their pressures
-//! overlay     two runs over each other
-//! multipliers   about the unit circle
-//! tongue      growth over frequency and amplitude
-//! cycles      steady cycles along a parameter
 //! designs     many designs along one number, over two, through all
 //! cell        a cell of the section under one load
-//! fitted      a model over data, and what is between them
-//! measured    measurements with their fit
-//! sensed      loads behind pressures, with bands
 //! ```
+//!
+//! Pictures of one command alone are built beside its files.
 
-pub mod bode;
-mod canvas;
-mod colour;
-mod panel;
+pub mod canvas;
+pub mod colour;
+mod drawing;
+mod labels;
+pub mod picture;
 mod ticks;
 
 pub mod ablation;
 pub mod cell;
-pub mod cycles;
 pub mod deflection;
 pub mod designs;
 pub mod energy;
-pub mod fitted;
 pub mod history;
-mod labels;
-pub mod loadpath;
-pub mod measured;
-pub mod modes;
-pub mod multipliers;
-pub mod optimum;
-pub mod overlay;
 pub mod pressure;
-pub mod sensed;
-pub mod tongue;
 pub mod workprecision;
 
+use self::canvas::Stroke;
+use self::picture::{ColourBar, PictureAxis, PictureSeries};
 use super::numbers;
 use crate::discrete::quantities::Observable;
 
@@ -54,7 +41,6 @@ pub use ablation::AblationBars;
 pub use deflection::Deflection;
 pub use energy::Energy;
 pub use history::History;
-pub use overlay::Overlay;
 pub use pressure::Pressure;
 pub use workprecision::WorkPrecision;
 
@@ -127,7 +113,7 @@ pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span
 }
 
 /// Least and largest finite value, `None` when there is none.
-fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.filter(|x| x.is_finite()).fold(None, |so_far, x| match so_far {
         None => Some((x, x)),
         Some((lo, hi)) => Some((f64::min(lo, x), f64::max(hi, x))),
@@ -141,4 +127,30 @@ fn about(span: Span, from: f64, to: f64) -> String {
         return format!("at {}", time(to));
     }
     format!("{}, {} to {}", span.label(), time(from), time(to))
+}
+
+/// Curves in the colours of their times.
+pub fn over_time(times: &[f64], curves: impl IntoIterator<Item = Vec<(f64, f64)>>) -> Vec<PictureSeries> {
+    let (from, to) = extent(times.iter().copied()).unwrap_or_default();
+    let range = if to > from { to - from } else { 1.0 };
+    let colours = times.iter().map(|t| colour::of_time((t - from) / range));
+    let lines = colours
+        .zip(curves)
+        .map(|(colour, curve)| PictureSeries::line(curve, Stroke::solid(colour, 1.3)));
+    lines.collect()
+}
+
+/// The axis of the times of curves; `None` where there is no point.
+fn times_of<'a>(curves: impl Iterator<Item = &'a Curve>) -> Option<PictureAxis> {
+    let (from, to) = extent(curves.flat_map(|c| c.points.iter().map(|p| p.0)))?;
+    Some(PictureAxis::new("time t", "s", 10).between(from, to))
+}
+
+/// The scale of the colours of times.
+fn time_bar(from: f64, to: f64) -> ColourBar {
+    ColourBar {
+        colours: colour::scale(colour::of_time),
+        axis: PictureAxis::new("t", "s", 5).between(from, to),
+        besides: None,
+    }
 }

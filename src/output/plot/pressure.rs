@@ -1,11 +1,9 @@
 //! `pressure.svg`: pressure along the networks over the last cycle, blue to red.
 
-use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
+use super::canvas::Stroke;
 use super::colour::Colour;
-use super::deflection::draw_over_time;
-use super::panel::{Panel, Place, time_bar, title};
-use super::ticks::Scale;
-use super::{Span, extent};
+use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
+use super::{Span, extent, over_time, time_bar};
 
 /// Pressure of all cells at a few instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,11 +24,6 @@ pub struct Pressure {
     pub pressure: Vec<Vec<f64>>,
 }
 
-const LEFT: f64 = 72.0;
-const TOP: f64 = 66.0;
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 300.0;
-const SHEET: f64 = 900.0;
 const BAND: Colour = Colour(0xf3, 0xf5, 0xf8);
 const DIVIDE: Colour = Colour(0x8a, 0x91, 0x99);
 
@@ -41,45 +34,40 @@ pub fn draw(data: &Pressure) -> Option<String> {
     if n == 0 || data.pressure.iter().any(|p| p.len() != n) {
         return None;
     }
-    let y = Scale::around(extent(data.pressure.iter().flatten().copied()), 1e-3, "Pa", 6);
     let bladders = runs(n, |k| data.bladder.get(k).copied().unwrap_or(0));
     let networks = networks(data, &bladders);
     let margin = 0.5 * least_step(&data.x_f).unwrap_or(1.0);
     let (lo, hi) = extent(data.x_f.iter().copied())?;
-    let x = Scale::exact(lo - margin, hi + margin, "1", 10);
-    let place = Place::new(LEFT, TOP, WIDTH, HEIGHT);
-    let panel = Panel { place, x, y };
-    Some(picture(SHEET, TOP + HEIGHT + 72.0, |canvas| {
-        title(
-            canvas,
-            LEFT,
-            &format!("{} · pressure", data.case),
-            &super::about(data.span, from, to),
-        );
-        bands(canvas, &panel, data, &bladders, margin);
-        let curves = data
-            .pressure
-            .iter()
-            .map(|p| broken(&data.x_f, p, &networks).into_iter());
-        draw_over_time(canvas, &panel, &data.times, curves);
-        for pair in networks.windows(2) {
-            let middle = 0.5 * (data.x_f[pair[0].1 - 1] + data.x_f[pair[1].0]);
-            let at = panel.at((middle, panel.y.lo)).0;
-            let dashed = Stroke::dashed(DIVIDE, 1.0, (5.0, 4.0));
-            canvas.line(&[(at, TOP), (at, TOP + HEIGHT)], dashed);
-        }
-        let shifted = Panel {
-            x: Scale {
-                ticks: Vec::new(),
-                ..panel.x.clone()
-            },
-            ..panel.clone()
-        };
-        shifted.axes(canvas, None, "pressure p");
-        labels(canvas, &panel, data, &bladders);
-        let bar = Place::new(LEFT + WIDTH + 26.0, TOP + 8.0, 15.0, HEIGHT - 8.0);
-        time_bar(canvas, bar, from, to);
-    }))
+    let name = "coordinate along the networks, bladders [R j]";
+    let mut x = PictureAxis::new(name, "1", 10).between(lo - margin, hi + margin);
+    let mut y = PictureAxis::new("pressure p", "Pa", 6).above(1e-3);
+    let (low, high) = y.limits(data.pressure.iter().flatten().copied());
+    y = y.between(low, high);
+    // bladders as bands behind the curves; what lies between are tubes
+    let mut series = vec![];
+    for &(start, end) in &bladders {
+        let (left, right) = (data.x_f[start] - margin, data.x_f[end - 1] + margin);
+        series.push(PictureSeries::band(&[(left, low, high), (right, low, high)], BAND));
+        let middle = 0.5 * (data.x_f[start] + data.x_f[end - 1]);
+        let label = data
+            .bladder
+            .get(start)
+            .map(|bladder| format!("[{bladder}]").replace('-', "−"));
+        x.groups.extend(label.map(|label| (middle, label)));
+    }
+    let curves = data.pressure.iter().map(|p| broken(&data.x_f, p, &networks));
+    series.extend(over_time(&data.times, curves));
+    for pair in networks.windows(2) {
+        let middle = 0.5 * (data.x_f[pair[0].1 - 1] + data.x_f[pair[1].0]);
+        let dashed = Stroke::dashed(DIVIDE, 1.0, (5.0, 4.0));
+        series.push(PictureSeries::line([(middle, low), (middle, high)], dashed));
+    }
+    let panel = Panel {
+        bar: Some(time_bar(from, to)),
+        ..Panel::new((720.0, 300.0), x, y, series)
+    };
+    let about = super::about(data.span, from, to);
+    Picture::stacked(format!("{} · pressure", data.case), about, [panel]).svg()
 }
 
 /// Half-open ranges of cells with equal keys.
@@ -132,46 +120,4 @@ fn broken(x: &[f64], y: &[f64], networks: &[(usize, usize)]) -> Vec<(f64, f64)> 
         points.push((f64::NAN, f64::NAN));
     }
     points
-}
-
-/// Bladders as bands behind the curves; what lies between are tubes.
-fn bands(canvas: &mut Canvas, panel: &Panel, data: &Pressure, bladders: &[(usize, usize)], margin: f64) {
-    for &(start, end) in bladders {
-        let left = panel.at((data.x_f[start] - margin, panel.y.hi));
-        let right = panel.at((data.x_f[end - 1] + margin, panel.y.lo));
-        canvas.rectangle(left, right, BAND);
-    }
-}
-
-/// `[R j]` below each bladder, as many as fit, and the name of the axis.
-fn labels(canvas: &mut Canvas, panel: &Panel, data: &Pressure, bladders: &[(usize, usize)]) {
-    let (left, bottom) = (panel.place.left, panel.place.bottom());
-    let mut free_from = left - 20.0;
-    for &(start, end) in bladders {
-        let Some(bladder) = data.bladder.get(start) else {
-            break;
-        };
-        let text = format!("[{bladder}]").replace('-', "−");
-        // Brackets are half as wide as digits.
-        let half = 3.0 * (text.chars().count() - 1) as f64;
-        let at = panel.at((0.5 * (data.x_f[start] + data.x_f[end - 1]), 0.0)).0;
-        if at - half >= free_from {
-            canvas.text((at, bottom + 12.0), &text, Words::new(10.5, Anchor::Centre));
-            free_from = at + half + 3.0;
-        }
-    }
-    for (x, label) in &panel.x.ticks {
-        let at = panel.at((*x, 0.0)).0;
-        canvas.text(
-            (at, bottom + 29.0),
-            label,
-            Words::new(10.5, Anchor::Centre).coloured(FAINT_INK),
-        );
-    }
-    let name = "coordinate along the networks, bladders [R j]";
-    canvas.text(
-        (left + 0.5 * panel.place.width, bottom + 49.0),
-        name,
-        Words::new(12.5, Anchor::Centre),
-    );
 }

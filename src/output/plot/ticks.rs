@@ -1,18 +1,22 @@
 //! Round numbers along an axis.
 
-use crate::output::numbers::{pretty_unit, scaled_unit, significant};
+use crate::output::numbers::{pretty_unit, scaled_unit, significant, superscript};
 
 /// Intervals that are tried beyond as many as are wanted, until two ticks lie within an axis.
 const MORE: usize = 8;
+/// Ticks of a logarithmic axis at most.
+const MOST_TICKS: usize = 12;
 
-/// A linear axis with its ticks.
+/// A linear or logarithmic axis with its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scale {
-    /// Least value shown.
+    /// Least value shown, or its logarithm.
     pub lo: f64,
-    /// Largest value shown.
+    /// Largest value shown, or its logarithm.
     pub hi: f64,
-    /// Value and label of each tick.
+    /// Whether `lo`, `hi` and ticks are decimal logarithms.
+    pub logarithmic: bool,
+    /// Value (or its logarithm) and label of each tick.
     pub ticks: Vec<(f64, String)>,
     /// Unit of the labels, SI prefix included; empty when dimensionless.
     pub unit: String,
@@ -42,6 +46,7 @@ impl Scale {
         Self {
             lo,
             hi,
+            logarithmic: false,
             ticks: ticks.collect(),
             unit: shown_unit,
         }
@@ -50,12 +55,22 @@ impl Scale {
     /// Of logarithms of values in a unit from `lo` to `hi`, with a margin, and about `count` ticks at these multiples of powers of ten.
     pub fn logarithmic((lo, hi): (f64, f64), margin: f64, multiples: &[f64], (unit, count): (&str, usize)) -> Self {
         let mut scale = Self::exact(lo - margin, hi + margin, "1", count);
-        let (factor, shown_unit) = scaled_unit(10_f64.powf(0.5 * (lo + hi)), unit);
+        scale.logarithmic = true;
+        let (factor, shown_unit) = match unit {
+            "1" => (1.0, String::new()),
+            _ => scaled_unit(10_f64.powf(0.5 * (lo + hi)), unit),
+        };
         scale.unit = shown_unit;
         let decades = lo.floor() as i32..=hi.ceil() as i32;
         let marks = decades.flat_map(|n| multiples.iter().map(move |m| m * 10_f64.powi(n)));
         let seen = marks.filter(|v| (scale.lo..=scale.hi).contains(&v.log10()));
-        let ticks: Vec<_> = seen.map(|v| (v.log10(), significant(v / factor, 1))).collect();
+        let label = |v: f64| match multiples.len() == 1 && unit == "1" {
+            true => format!("10{}", superscript(v.log10().round() as i32)),
+            false => significant(v / factor, 1),
+        };
+        let mut ticks: Vec<_> = seen.map(|v| (v.log10(), label(v))).collect();
+        let every = ticks.len().div_ceil(MOST_TICKS).max(1);
+        ticks = ticks.into_iter().step_by(every).collect();
         // within less than a decade there may be none of them
         scale.ticks = match ticks.len() {
             0 | 1 => scale
@@ -82,9 +97,14 @@ impl Scale {
         scale
     }
 
-    /// Where a value lies, 0 at `lo`, 1 at `hi`.
-    pub fn share(&self, value: f64) -> f64 {
-        (value - self.lo) / (self.hi - self.lo)
+    /// Share of the axis at which a tick stands: 0 at `lo`, 1 at `hi`.
+    pub fn share(&self, tick: f64) -> f64 {
+        (tick - self.lo) / (self.hi - self.lo)
+    }
+
+    /// Share of the axis at which a value stands.
+    pub fn share_of(&self, value: f64) -> f64 {
+        self.share(if self.logarithmic { value.log10() } else { value })
     }
 
     /// A name with the unit behind it: `u₁ [mm]`.

@@ -6,11 +6,13 @@ use std::path::PathBuf;
 
 use super::folder::ResultFolder;
 use super::numbers::shortest;
-use super::plot::sensed::{self, Drawn, Part, Series};
+use super::plot::canvas::Stroke;
+use super::plot::colour::{Colour, PALETTE};
+use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records::{self, number};
 use crate::error::Result;
 use crate::results;
-use crate::results::sense::{BandKind, Banded, Sensed};
+use crate::results::sense::{BandKind, Banded, Chosen, Sensed};
 
 pub use words::{about_band, about_noise, about_sight, answer, list, table, words};
 
@@ -38,7 +40,7 @@ pub fn write(folder: &mut ResultFolder, found: &Sensed) -> Result<Vec<PathBuf>> 
     if !found.choice.is_empty() {
         files.push((SENSORS, sensors(found)));
     }
-    files.extend(sensed::draw(&drawn(found)).map(|text| (PICTURE, text)));
+    files.extend(drawn(found).map(|text| (PICTURE, text)));
     folder.fill(files)
 }
 
@@ -84,131 +86,119 @@ fn sensors(found: &Sensed) -> String {
     records::text(headings, rows)
 }
 
-/// What the picture shows.
-fn drawn(found: &Sensed) -> Drawn {
-    let named = |name: &str, unit: &str| (name.to_owned(), unit.to_owned());
-    let half = |one: &Banded| 0.5 * (one.high - one.low);
-    let mut parts = vec![];
+const BAND: Colour = Colour(0xd5, 0xe3, 0xf0);
+
+/// Loads with their bands, pressures as measured and as the loads make them, errors over the number of sensors.
+fn drawn(found: &Sensed) -> Option<String> {
+    let mut panels = vec![];
     match found.rows.as_slice() {
         [] => {}
         [row] => {
             let of_profile = found.amplitudes.iter().zip(&row.amplitudes);
-            let line: Vec<_> = of_profile
+            let line = of_profile
                 .filter(|(a, _)| a.unit == "N/m")
-                .filter_map(|(a, one)| Some((a.place?, one.as_ref()?)))
-                .map(|(place, one)| (place, one.value, half(one)))
-                .collect();
-            if line.len() > 1 {
-                let series = Series { line, points: vec![] };
-                let across = match found.band {
-                    BandKind::LocalMean => "mean force across",
-                    _ => "force across",
-                };
-                parts.push(Part {
-                    axes: [named("share of the length", "1"), named(across, "N/m")],
-                    series: vec![series],
-                });
-            }
+                .filter_map(|(a, one)| Some((a.place?, one.as_ref()?)));
+            let across = match found.band {
+                BandKind::LocalMean => "mean force across",
+                _ => "force across",
+            };
+            panels.extend(banded(line, ["share of the length", "1", across, "N/m"]));
         }
         rows => {
             let timed = rows.iter().all(|row| row.t_s.is_some());
+            let [x, unit] = if timed { ["t", "s"] } else { ["row", "1"] };
             for (k, a) in found.amplitudes.iter().enumerate().take(MOST) {
-                let told = rows.iter().enumerate().filter_map(|(j, row)| {
-                    let one = row.amplitudes[k].as_ref()?;
+                let line = rows.iter().enumerate().filter_map(|(j, row)| {
                     let x = row.t_s.filter(|_| timed).unwrap_or(j as f64 + 1.0);
-                    Some((x, one.value, half(one)))
+                    Some((x, row.amplitudes[k].as_ref()?))
                 });
-                let line: Vec<_> = told.collect();
-                if line.len() > 1 {
-                    parts.push(Part {
-                        axes: [
-                            if timed { named("t", "s") } else { named("row", "1") },
-                            named(&a.name, &a.unit),
-                        ],
-                        series: vec![Series { line, points: vec![] }],
-                    });
-                }
+                panels.extend(banded(line, [x, unit, &a.name, &a.unit]));
             }
         }
     }
     match found.over_time {
-        Some(_) => parts.extend(pressures_over_time(found)),
-        None => parts.extend(pressures(found)),
+        Some(_) => panels.extend(pressures_over_time(found)),
+        None => panels.extend(pressures(found)),
     }
     for (k, a) in found.amplitudes.iter().enumerate().take(MOST) {
-        let of = found
-            .choice
-            .iter()
-            .filter_map(|one| Some((one.bladders.len() as f64, one.errors[k]?, 0.0)));
-        let line: Vec<_> = of.collect();
+        let of = |one: &Chosen| Some((one.bladders.len() as f64, one.errors[k]?));
+        let line: Vec<_> = found.choice.iter().filter_map(of).collect();
         if line.len() > 1 {
-            parts.push(Part {
-                axes: [
-                    named("sensors", "1"),
-                    named(&format!("standard error of {}", a.name), &a.unit),
-                ],
-                series: vec![Series {
-                    points: line.iter().map(|(x, y, _)| (*x, *y)).collect(),
-                    line,
-                }],
-            });
+            let name = format!("standard error of {}", a.name);
+            panels.push(plane(["sensors", "1", &name, &a.unit], beside(line.clone(), line, 0)));
         }
     }
-    let about = match found.rows.is_empty() {
-        true => "what pressures tell of loads, by the number of sensors".into(),
-        false => {
-            let loads = match found.band {
+    let about = match (found.rows.is_empty(), found.band) {
+        (true, _) => "what pressures tell of loads, by the number of sensors".into(),
+        (false, band) => {
+            let loads = match band {
                 BandKind::LocalMean => "means around places",
                 _ => "loads",
             };
             format!("{loads} with bands of 95 %; pressures: rings measured, lines modelled, blue the upper row")
         }
     };
-    Drawn {
-        case: format!("{} · loads from pressures", found.case),
+    let picture = Picture {
+        title: format!("{} · loads from pressures", found.case),
         about,
-        parts,
-    }
+        rows: panels.chunks(2).map(<[Panel]>::to_vec).collect(),
+    };
+    picture.svg()
+}
+
+/// Axes with names and units.
+fn plane([x, x_unit, y, y_unit]: [&str; 4], series: Vec<PictureSeries>) -> Panel {
+    let y = PictureAxis::new(y, y_unit, 6).with(&[0.0]);
+    Panel::new((330.0, 220.0), PictureAxis::new(x, x_unit, 7), y, series)
+}
+
+/// Places and values with their bands; nothing of a single place.
+fn banded<'a>(line: impl Iterator<Item = (f64, &'a Banded)>, axes: [&str; 4]) -> Option<Panel> {
+    let half = |one: &Banded| 0.5 * (one.high - one.low);
+    let line: Vec<_> = line.map(|(x, one)| (x, one.value, half(one))).collect();
+    let band: Vec<_> = line.iter().map(|(x, y, half)| (*x, y - half, y + half)).collect();
+    let curve = PictureSeries::line(line.iter().map(|p| (p.0, p.1)), Stroke::solid(PALETTE[0], 1.6));
+    (line.len() > 1).then(|| plane(axes, vec![PictureSeries::band(&band, BAND), curve]))
+}
+
+/// A line and rings in one colour.
+fn beside(line: Vec<(f64, f64)>, points: Vec<(f64, f64)>, colour: usize) -> Vec<PictureSeries> {
+    let colour = PALETTE[colour];
+    vec![
+        PictureSeries::line(line, Stroke::solid(colour, 1.6)),
+        PictureSeries::marks(points, Glyph::Ring(2.6, 1.1), colour),
+    ]
 }
 
 /// Bladders whose pressures over time are drawn, at most.
 const DRAWN: usize = 3;
 
 /// Pressures over time of the bladders in which they are largest.
-fn pressures_over_time(found: &Sensed) -> Vec<Part> {
+fn pressures_over_time(found: &Sensed) -> Vec<Panel> {
     let size = |k: usize| {
         let all = found.rows.iter().filter_map(|row| row.measured_pa[k]);
         all.fold(0.0_f64, |most, p| most.max(p.abs()))
     };
     let mut order: Vec<usize> = (0..found.bladders.len()).collect();
     order.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
-    let part = |k: &usize| {
+    let panel = |k: &usize| {
         let timed = || found.rows.iter().filter_map(|row| Some((row.t_s?, row)));
-        let series = Series {
-            line: timed().map(|(t, row)| (t, row.modelled_pa[*k], 0.0)).collect(),
-            points: timed().filter_map(|(t, row)| Some((t, row.measured_pa[*k]?))).collect(),
-        };
-        Part {
-            axes: [
-                ("t".into(), "s".into()),
-                (format!("pressure of bladder {}", found.bladders[*k]), "Pa".into()),
-            ],
-            series: vec![series],
-        }
+        let line = timed().map(|(t, row)| (t, row.modelled_pa[*k]));
+        let points = timed().filter_map(|(t, row)| Some((t, row.measured_pa[*k]?)));
+        let name = format!("pressure of bladder {}", found.bladders[*k]);
+        plane(["t", "s", &name, "Pa"], beside(line.collect(), points.collect(), 0))
     };
-    order.iter().take(DRAWN).map(part).collect()
+    order.iter().take(DRAWN).map(panel).collect()
 }
 
 /// Pressures along the beam of the row in which they are largest.
-fn pressures(found: &Sensed) -> Option<Part> {
+fn pressures(found: &Sensed) -> Option<Panel> {
     let size = |row: &&results::sense::Row| {
-        row.measured_pa
-            .iter()
-            .flatten()
-            .fold(0.0_f64, |most, p| most.max(p.abs()))
+        let all = row.measured_pa.iter().flatten();
+        all.fold(0.0_f64, |most, p| most.max(p.abs()))
     };
     let row = found.rows.iter().max_by(|a, b| size(a).total_cmp(&size(b)))?;
-    let series = [1, -1].map(|side: i64| {
+    let series = [(0, 1), (1, -1)].into_iter().flat_map(|(colour, side)| {
         let own = || {
             found
                 .bladders
@@ -216,17 +206,9 @@ fn pressures(found: &Sensed) -> Option<Part> {
                 .enumerate()
                 .filter(move |(_, label)| label.signum() == side)
         };
-        Series {
-            line: own()
-                .map(|(k, label)| (label.abs() as f64, row.modelled_pa[k], 0.0))
-                .collect(),
-            points: own()
-                .filter_map(|(k, label)| Some((label.abs() as f64, row.measured_pa[k]?)))
-                .collect(),
-        }
+        let line = own().map(|(k, label)| (label.abs() as f64, row.modelled_pa[k]));
+        let points = own().filter_map(|(k, label)| Some((label.abs() as f64, row.measured_pa[k]?)));
+        beside(line.collect(), points.collect(), colour)
     });
-    Some(Part {
-        axes: [("bladder".into(), "1".into()), ("pressure".into(), "Pa".into())],
-        series: series.into(),
-    })
+    Some(plane(["bladder", "1", "pressure", "Pa"], series.collect()))
 }

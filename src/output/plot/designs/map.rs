@@ -2,75 +2,64 @@
 
 use std::slice;
 
-use super::{Drawn, LEFT, Numbers, TOP, name};
-use crate::output::numbers::quantity;
-use crate::output::plot::canvas::{Anchor, Canvas, Words, picture};
-use crate::output::plot::colour::of_value;
+use super::{Drawn, Numbers};
+use crate::output::plot::colour::{of_value, scale};
 use crate::output::plot::extent;
-use crate::output::plot::panel::{Panel, Place, title};
-
-/// Side of a map, and what lies between two.
-const SIDE: f64 = 320.0;
-const BETWEEN: f64 = 74.0;
-/// Half the side of a cell where designs are no grid.
-const DOT: f64 = 4.0;
+use crate::output::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, PictureSeries};
 
 /// Every figure over the first two varied numbers, as colours; `None` when there is nothing to draw.
 pub fn over_two(data: &Drawn) -> Option<String> {
     let [x, y, ..] = &data.varied[..] else { return None };
-    let (mut across, mut up) = (x.scale(7)?, y.scale(7)?);
     let (columns, lines) = (x.places(), y.places());
     // cells touch where the designs are a grid, and are small where they are not
     let grid = (columns.len() * lines.len()) as f64 <= 1.5 * data.designs.len() as f64;
-    for (scale, places) in [(&mut across, &columns), (&mut up, &lines)] {
+    let axis = |one: &Numbers, places: &[f64]| {
         let (lo, hi) = (*places.first()?, *places.last()?);
         let margin = 0.04 * if hi > lo { hi - lo } else { 1.0 };
-        (scale.lo, scale.hi) = match &edges(places)[..] {
+        let (lo, hi) = match &edges(places)[..] {
             [first, .., last] if grid => (*first, *last),
             _ => (lo - margin, hi + margin),
         };
-        let range = scale.lo..=scale.hi;
-        scale.ticks.retain(|(at, _)| range.contains(at));
-    }
-    let rows = data.figures.len() as f64;
-    (rows > 0.0).then(|| {
-        picture(LEFT + SIDE + 150.0, TOP + rows * (SIDE + BETWEEN), |canvas| {
-            title(canvas, 16.0, &data.case, &data.about("a cell a design"));
-            for (k, figure) in data.figures.iter().enumerate() {
-                let Some((low, high)) = extent(figure.values.iter().copied()) else {
-                    continue;
-                };
-                let place = Place::new(LEFT, TOP + k as f64 * (SIDE + BETWEEN), SIDE, SIDE);
-                let panel = Panel::new(place, across.clone(), up.clone());
-                let cells = x.on_axis().into_iter().zip(y.on_axis()).zip(&figure.values);
-                for (n, ((a, b), value)) in cells.enumerate() {
-                    if !(a.is_finite() && b.is_finite() && value.is_finite()) {
-                        continue;
-                    }
-                    let (left, right) = around(&columns, a);
-                    let (low_edge, high_edge) = around(&lines, b);
-                    let at = panel.at((a, b));
-                    let (from, to) = match grid {
-                        true => (panel.at((left, high_edge)), panel.at((right, low_edge))),
-                        false => ((at.0 - DOT, at.1 - DOT), (at.0 + DOT, at.1 + DOT)),
-                    };
-                    // a little more, so that no hairline shows between cells
-                    let most = if grid { 0.0 } else { DOT };
-                    let to = (
-                        (to.0 + 0.4).min(place.right() + most),
-                        (to.1 + 0.4).min(place.bottom() + most),
-                    );
-                    let colour = of_value(*value, low, high);
-                    data.thing(canvas, n, slice::from_ref(figure), |canvas| {
-                        canvas.rectangle(from, to, colour)
-                    });
-                }
-                panel.axes(canvas, Some(&x.label), &y.label);
-                name(canvas, place, &figure.label);
-                bar(canvas, place, figure, low, high);
+        let axis = PictureAxis::new(&*one.label, &*one.unit, 7).logarithmic(one.logarithmic);
+        Some(axis.between(one.raised(lo), one.raised(hi)))
+    };
+    let (across, up) = (axis(x, &columns)?, axis(y, &lines)?);
+    let panel = |figure: &Numbers| {
+        let (low, high) = extent(figure.values.iter().copied())?;
+        let mut series = vec![];
+        for (n, value) in figure.values.iter().enumerate() {
+            let (a, b) = (x.shown(x.values[n]), y.shown(y.values[n]));
+            if !(a.is_finite() && b.is_finite() && value.is_finite()) {
+                continue;
             }
+            let colour = of_value(*value, low, high);
+            let ((left, right), (bottom, top)) = (around(&columns, a), around(&lines, b));
+            let drawn = match grid {
+                true => PictureSeries::cell(
+                    [(left, bottom), (right, top)].map(|(a, b)| (x.raised(a), y.raised(b))),
+                    colour,
+                ),
+                false => PictureSeries::marks([(x.values[n], y.values[n])], Glyph::Square(4.0), colour),
+            };
+            series.push(data.linked(n, slice::from_ref(figure), drawn));
+        }
+        let bar = ColourBar {
+            colours: scale(|share| of_value(low + share * (high - low), low, high)),
+            axis: PictureAxis::new("", &*figure.unit, 5).between(low, high),
+            besides: None,
+        };
+        let panel = Panel::new((320.0, 320.0), across.clone(), up.clone(), series).headed(&*figure.label);
+        Some(Panel {
+            bar: Some(bar),
+            ..panel
         })
-    })
+    };
+    Picture::stacked(
+        data.case.clone(),
+        data.about("a cell a design"),
+        data.figures.iter().filter_map(panel),
+    )
+    .svg()
 }
 
 /// Between places in their order: half way to the neighbours, and as far beyond the first and the last.
@@ -91,20 +80,4 @@ pub(super) fn around(places: &[f64], at: f64) -> (f64, f64) {
         .partition_point(|place| *place < at)
         .min(places.len().saturating_sub(1));
     (edges[k], edges[k + 1])
-}
-
-fn bar(canvas: &mut Canvas, beside: Place, figure: &Numbers, low: f64, high: f64) {
-    const PIECES: usize = 64;
-    let (left, height) = (beside.right() + 24.0, beside.height / PIECES as f64);
-    for k in 0..PIECES {
-        let bottom = beside.bottom() - k as f64 * height;
-        let share = (k as f64 + 0.5) / PIECES as f64;
-        let colour = of_value(low + share * (high - low), low, high);
-        canvas.rectangle((left, bottom - height - 0.4), (left + 14.0, bottom), colour);
-    }
-    for share in [0.0, 0.5, 1.0] {
-        let at = (left + 20.0, beside.bottom() - beside.height * share);
-        let value = quantity(low + share * (high - low), &figure.unit, 3);
-        canvas.text(at, &value, Words::new(11.0, Anchor::Left));
-    }
 }

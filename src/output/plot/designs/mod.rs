@@ -4,12 +4,10 @@ mod map;
 
 use std::slice;
 
-use super::canvas::{Anchor, Canvas, FAINT_INK, Stroke, Words, picture};
+use super::canvas::{Anchor, FAINT_INK, Stroke, Words};
 use super::colour::PALETTE;
 use super::extent;
-use super::labels::LabelRoom;
-use super::panel::{Panel, Place, title};
-use super::ticks::Scale;
+use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use crate::output::numbers::{count, quantity};
 use crate::study::sweep::exchanged::Exchange;
 
@@ -63,19 +61,21 @@ impl Drawn {
         mode.is_some_and(|mode| all.any(|found| found.all.contains(&mode)))
     }
 
-    /// Draws what stands for a design. Where there are few it says its numbers and leads to its row.
-    fn thing(&self, canvas: &mut Canvas, n: usize, figures: &[Numbers], draw: impl FnOnce(&mut Canvas)) {
-        if self.designs.len() * self.figures.len() > SAID {
-            return draw(canvas);
-        }
+    /// A series that stands for a design. Where there are few it says its numbers and leads to its row.
+    fn linked(&self, n: usize, figures: &[Numbers], series: PictureSeries) -> PictureSeries {
         let said = |one: &Numbers| {
             let unit = if one.unit.is_empty() { "1" } else { &one.unit };
             format!("{} {}", one.label, quantity(one.values[n], unit, 4))
         };
-        let all: Vec<String> = self.varied.iter().chain(figures).map(said).collect();
-        let number = self.designs[n];
-        let words = format!("design {number}: {}", all.join(", "));
-        canvas.thing(&words, &format!("design-{number}"), draw);
+        let link = (self.designs.len() * self.figures.len() <= SAID).then(|| {
+            let all: Vec<String> = self.varied.iter().chain(figures).map(said).collect();
+            let number = self.designs[n];
+            (
+                format!("design {number}: {}", all.join(", ")),
+                format!("design-{number}"),
+            )
+        });
+        PictureSeries { link, ..series }
     }
 
     /// What stands below the title.
@@ -91,13 +91,6 @@ impl Drawn {
     }
 }
 
-const LEFT: f64 = 100.0;
-const TOP: f64 = 78.0;
-const WIDTH: f64 = 560.0;
-const HEIGHT: f64 = 170.0;
-const GAP: f64 = 36.0;
-/// Width and height of the number of a design; numbers that would overlap one before them are left out.
-const ROOM: (f64, f64) = (17.0, 10.0);
 /// Points that say what they are at most: words are some 300 bytes each, and a page leaves pictures that are too large to their files.
 const SAID: usize = 1000;
 /// Curves told apart by colours.
@@ -106,6 +99,11 @@ const TOLD: usize = 8;
 impl Numbers {
     fn shown(&self, x: f64) -> f64 {
         if self.logarithmic { x.log10() } else { x }
+    }
+
+    /// Value of a place on the axis.
+    fn raised(&self, at: f64) -> f64 {
+        if self.logarithmic { 10_f64.powf(at) } else { at }
     }
 
     fn on_axis(&self) -> Vec<f64> {
@@ -122,109 +120,61 @@ impl Numbers {
     }
 
     /// The axis; none where there is no value.
-    fn scale(&self, count: usize) -> Option<Scale> {
-        let (lo, hi) = extent(self.on_axis().into_iter())?;
-        let unit = if self.unit.is_empty() { "1" } else { &self.unit };
-        if !self.logarithmic {
-            return Some(Scale::around(Some((lo, hi)), 0.0, unit, count));
-        }
-        let margin = 0.04 * (hi - lo).max(0.1);
-        let multiples: &[f64] = if hi - lo > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        Some(Scale::logarithmic((lo, hi), margin, multiples, (unit, count)))
+    fn axis(&self, name: &str, ticks: usize) -> Option<PictureAxis> {
+        extent(self.on_axis().into_iter())?;
+        let axis = PictureAxis::new(name, &*self.unit, ticks).logarithmic(self.logarithmic);
+        Some(axis.with(&self.values))
     }
 }
 
 /// A panel a figure along the first varied number; `None` when there is nothing to draw.
 pub fn along(data: &Drawn) -> Option<String> {
-    let x = data.varied.first()?;
-    let scale = x.scale(7)?;
-    let xs = x.on_axis();
-    let panels = data.figures.len() as f64;
-    let height = TOP + panels * HEIGHT + (panels - 1.0) * GAP + 52.0 + 18.0 * legend_rows(data);
-    (panels > 0.0).then(|| {
-        picture(LEFT + WIDTH + 30.0, height, |canvas| {
-            title(
-                canvas,
-                16.0,
-                &data.case,
-                &data.about("a ring a design, its number above it where there is room"),
-            );
-            for (k, figure) in data.figures.iter().enumerate() {
-                let place = Place::new(LEFT, TOP + k as f64 * (HEIGHT + GAP), WIDTH, HEIGHT);
-                let Some(y) = figure.scale(5) else { continue };
-                let panel = Panel::new(place, scale.clone(), y);
-                panel.grid(canvas);
-                let points: Vec<(f64, f64)> = xs.iter().copied().zip(figure.on_axis()).collect();
-                for (curve, _) in data.curves.iter().enumerate() {
-                    let colour = PALETTE[curve % PALETTE.len()];
-                    let mut own: Vec<_> = data
-                        .curve
-                        .iter()
-                        .zip(&points)
-                        .zip(&data.designs)
-                        .filter(|((c, _), _)| **c == curve)
-                        .map(|((_, p), number)| (*p, *number))
-                        .collect();
-                    if data.joined {
-                        own.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
-                        for piece in own.chunk_by(|a, b| !data.parted(&figure.name, [a.1, b.1])) {
-                            let points = piece.iter().map(|(point, _)| *point);
-                            panel.curve(canvas, points, Stroke::solid(colour, 1.2));
-                        }
-                    }
-                }
-                let mut numbers = LabelRoom::new(ROOM);
-                for (n, ((point, curve), number)) in points.iter().zip(&data.curve).zip(&data.designs).enumerate() {
-                    if !(point.0.is_finite() && point.1.is_finite()) {
-                        continue;
-                    }
-                    let at = panel.at(*point);
-                    let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.3);
-                    data.thing(canvas, n, slice::from_ref(figure), |canvas| {
-                        canvas.ring(at, 3.0, stroke)
-                    });
-                    if k == 0 && numbers.claim(at) {
-                        let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
-                        canvas.text((at.0, at.1 - 9.0), &number.to_string(), words);
-                    }
-                }
-                let last = k + 1 == data.figures.len();
-                panel.axes(canvas, last.then_some(x.label.as_str()), "");
-                name(canvas, place, &figure.label);
+    let along = data.varied.first()?;
+    let x = along.axis(&along.label, 7)?;
+    let panels = data.figures.iter().enumerate().filter_map(|(k, figure)| {
+        let mut series = curves(data, along, figure);
+        let points = along.values.iter().zip(&figure.values).zip(&data.curve).enumerate();
+        for (n, ((x, y), curve)) in points.filter(|(_, ((x, y), _))| x.is_finite() && y.is_finite()) {
+            let ring = PictureSeries::marks([(*x, *y)], Glyph::Ring(3.0, 1.3), PALETTE[curve % PALETTE.len()]);
+            series.push(data.linked(n, slice::from_ref(figure), ring));
+            if k == 0 {
+                let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
+                let number = data.designs[n].to_string();
+                series.push(PictureSeries::label((*x, *y), (0.0, -9.0), number, words));
             }
-            legend(canvas, data, height);
-        })
-    })
-}
-
-/// What a panel is of, above it: names of figures are too long to stand beside an axis.
-fn name(canvas: &mut Canvas, place: Place, text: &str) {
-    let words = Words::new(11.5, Anchor::Left);
-    canvas.text((place.left, place.top - 11.0), text, words);
-}
-
-fn legend_rows(data: &Drawn) -> f64 {
-    if data.curves.len() > 1 {
-        data.curves.len().min(TOLD + 1) as f64
-    } else {
-        0.0
-    }
-}
-
-fn legend(canvas: &mut Canvas, data: &Drawn, height: f64) {
-    let rows = legend_rows(data);
-    for k in 0..rows as usize {
-        let y = height - 18.0 * (rows - k as f64) + 4.0;
-        let text = match data.curves.get(k) {
-            Some(text) if k < TOLD => text.clone(),
-            _ => format!("and {} more", data.curves.len() - TOLD),
-        };
-        if k < TOLD {
-            let colour = PALETTE[k % PALETTE.len()];
-            canvas.line(&[(LEFT, y), (LEFT + 22.0, y)], Stroke::solid(colour, 1.8));
         }
-        canvas.text((LEFT + 30.0, y), &text, Words::new(11.0, Anchor::Left));
+        Some(Panel::new((560.0, 170.0), x.clone(), figure.axis("", 5)?, series).headed(&*figure.label))
+    });
+    let about = data.about("a ring a design, its number above it where there is room");
+    Picture::stacked(data.case.clone(), about, panels).svg()
+}
+
+/// Lines through the designs of each curve, in pieces between which modes are not joined; named where there are several.
+fn curves(data: &Drawn, along: &Numbers, figure: &Numbers) -> Vec<PictureSeries> {
+    let mut series = vec![];
+    for (curve, name) in data.curves.iter().enumerate() {
+        let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.2);
+        if data.curves.len() > 1 && curve <= TOLD {
+            series.push(match curve < TOLD {
+                true => PictureSeries::line([], stroke).named(&**name),
+                false => PictureSeries::note(format!("and {} more", data.curves.len() - TOLD)),
+            });
+        }
+        let mut own: Vec<usize> = (0..data.designs.len())
+            .filter(|n| data.curve[*n] == curve && data.joined)
+            .collect();
+        own.sort_by(|a, b| along.values[*a].total_cmp(&along.values[*b]));
+        let parted = |a: &usize, b: &usize| data.parted(&figure.name, [data.designs[*a], data.designs[*b]]);
+        let pieces = own.chunk_by(|a, b| !parted(a, b));
+        let points = |piece: &[usize]| {
+            piece
+                .iter()
+                .map(|n| (along.values[*n], figure.values[*n]))
+                .collect::<Vec<_>>()
+        };
+        series.extend(pieces.map(|piece| PictureSeries::line(points(piece), stroke)));
     }
+    series
 }
 
 #[cfg(test)]

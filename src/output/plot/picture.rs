@@ -1,0 +1,261 @@
+//! A picture as data: rows of panels, each with two axes and series. [`Picture::svg`] is the only place that draws one.
+
+use super::canvas::{Anchor, INK, Stroke, Words};
+use super::colour::Colour;
+
+/// A picture.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Picture {
+    /// Title; without one there is no head.
+    pub title: String,
+    /// Line below the title.
+    pub about: String,
+    /// Panels from top to bottom, those of a row from left to right. Neighbours with equal axes show their labels once.
+    pub rows: Vec<Vec<Panel>>,
+}
+
+/// A pair of axes with series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Panel {
+    /// Width and height of the frame [pt].
+    pub size: (f64, f64),
+    /// Heading above the frame.
+    pub heading: (String, Words),
+    /// Horizontal axis.
+    pub x: PictureAxis,
+    /// Vertical axis.
+    pub y: PictureAxis,
+    /// Series in the order in which they are drawn; areas stand below the grid.
+    pub series: Vec<PictureSeries>,
+    /// Colour scale beside the frame.
+    pub bar: Option<ColourBar>,
+    /// True if the legend stands beside the frame, not above it.
+    pub legend_beside: bool,
+    /// True if frame, grid and ticks are left out.
+    pub bare: bool,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PictureAxis {
+    /// Name.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+    /// Number of ticks at most.
+    pub ticks: usize,
+    /// Least and largest value; those of the series with a margin where absent.
+    pub range: Option<(f64, f64)>,
+    /// Values that the axis contains besides those of the series.
+    pub with: Vec<f64>,
+    /// Least half range of values that are zero but for rounding errors.
+    pub floor: f64,
+    /// True if the axis is logarithmic.
+    pub logarithmic: bool,
+    /// Labels in place of round numbers.
+    pub labels: Option<Vec<(f64, String)>>,
+    /// Labels between frame and ticks.
+    pub groups: Vec<(f64, String)>,
+}
+
+/// Data drawn alike, with a name in the legend if it has one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PictureSeries {
+    /// Entry of the legend.
+    pub name: String,
+    /// Text shown under the pointer, and the element of the page to which it links.
+    pub link: Option<(String, String)>,
+    /// Shape.
+    pub kind: SeriesKind,
+}
+
+/// Kinds of series; coordinates are values of both axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SeriesKind {
+    /// A line, broken where a coordinate is not finite.
+    Line(Vec<(f64, f64)>, Stroke),
+    /// Symbols at points.
+    Marks(Vec<(f64, f64)>, Glyph, Colour),
+    /// A filled polygon below the grid.
+    Area(Vec<(f64, f64)>, Colour),
+    /// A filled rectangle between two corners, as far as it lies in the frame.
+    Cell([(f64, f64); 2], Colour),
+    /// Text at a distance [pt] from a point; left out where it would overlap an earlier one.
+    Label((f64, f64), (f64, f64), String, Words),
+}
+
+/// A symbol with its radius [pt].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Glyph {
+    /// Circle with a line width.
+    Ring(f64, f64),
+    /// Filled square.
+    Square(f64),
+    /// Outline of a square.
+    Box(f64),
+    /// Two crossing lines.
+    Cross(f64),
+    /// Polygon with a number of corners and an angle of the first one; filled or hollow.
+    Polygon(f64, usize, f64, bool),
+}
+
+/// A colour scale.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourBar {
+    /// Colours from the least value to the largest.
+    pub colours: Vec<Colour>,
+    /// Name, unit and range of the values.
+    pub axis: PictureAxis,
+    /// A colour besides, with its meaning.
+    pub besides: Option<(Colour, String)>,
+}
+
+impl Picture {
+    /// One column of panels.
+    pub fn stacked(title: String, about: impl Into<String>, panels: impl IntoIterator<Item = Panel>) -> Self {
+        Self {
+            title,
+            about: about.into(),
+            rows: panels.into_iter().map(|panel| vec![panel]).collect(),
+        }
+    }
+}
+
+impl Panel {
+    /// Axes of a size with series.
+    pub fn new(size: (f64, f64), x: PictureAxis, y: PictureAxis, series: Vec<PictureSeries>) -> Self {
+        Self {
+            size,
+            heading: (String::new(), Words::new(12.0, Anchor::Left)),
+            x,
+            y,
+            series,
+            bar: None,
+            legend_beside: false,
+            bare: false,
+        }
+    }
+
+    /// The same with a heading.
+    pub fn headed(mut self, text: impl Into<String>) -> Self {
+        self.heading.0 = text.into();
+        self
+    }
+}
+
+impl PictureAxis {
+    /// Around the values of the series.
+    pub fn new(name: impl Into<String>, unit: impl Into<String>, ticks: usize) -> Self {
+        Self {
+            name: name.into(),
+            unit: unit.into(),
+            ticks,
+            ..Self::default()
+        }
+    }
+
+    /// The same between two values.
+    pub fn between(self, lo: f64, hi: f64) -> Self {
+        Self {
+            range: Some((lo, hi)),
+            ..self
+        }
+    }
+
+    /// The same with values that it contains.
+    pub fn with(self, values: &[f64]) -> Self {
+        Self {
+            with: values.to_vec(),
+            ..self
+        }
+    }
+
+    /// The same for values that are zero below a floor.
+    pub fn above(self, floor: f64) -> Self {
+        Self { floor, ..self }
+    }
+
+    /// The same, logarithmic if asked for.
+    pub fn logarithmic(self, logarithmic: bool) -> Self {
+        Self { logarithmic, ..self }
+    }
+}
+
+impl PictureSeries {
+    fn new(kind: SeriesKind) -> Self {
+        Self {
+            name: String::new(),
+            link: None,
+            kind,
+        }
+    }
+
+    /// A line.
+    pub fn line(points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) -> Self {
+        Self::new(SeriesKind::Line(points.into_iter().collect(), stroke))
+    }
+
+    /// Symbols.
+    pub fn marks(points: impl IntoIterator<Item = (f64, f64)>, glyph: Glyph, colour: Colour) -> Self {
+        Self::new(SeriesKind::Marks(points.into_iter().collect(), glyph, colour))
+    }
+
+    /// A polygon.
+    pub fn area(points: impl IntoIterator<Item = (f64, f64)>, colour: Colour) -> Self {
+        Self::new(SeriesKind::Area(points.into_iter().collect(), colour))
+    }
+
+    /// The band between two curves: `(x, low, high)`.
+    pub fn band(points: &[(f64, f64, f64)], colour: Colour) -> Self {
+        let low = points.iter().map(|p| (p.0, p.1));
+        let high = points.iter().rev().map(|p| (p.0, p.2));
+        Self::area(low.chain(high), colour)
+    }
+
+    /// A rectangle.
+    pub fn cell(corners: [(f64, f64); 2], colour: Colour) -> Self {
+        Self::new(SeriesKind::Cell(corners, colour))
+    }
+
+    /// Text.
+    pub fn label(at: (f64, f64), off: (f64, f64), text: impl Into<String>, words: Words) -> Self {
+        Self::new(SeriesKind::Label(at, off, text.into(), words))
+    }
+
+    /// Nothing but an entry of the legend.
+    pub fn note(text: impl Into<String>) -> Self {
+        Self::line([], Stroke::solid(INK, 0.0)).named(text)
+    }
+
+    /// The same with an entry of the legend.
+    pub fn named(self, name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            ..self
+        }
+    }
+
+    /// Points that decide the range of an axis.
+    pub fn points(&self) -> &[(f64, f64)] {
+        match &self.kind {
+            SeriesKind::Line(points, _) | SeriesKind::Marks(points, ..) | SeriesKind::Area(points, _) => points,
+            SeriesKind::Cell(corners, _) => corners,
+            SeriesKind::Label(..) => &[],
+        }
+    }
+}
+
+/// Ranges and height at which lengths across and along are equally scaled, for a width [pt].
+pub fn equally_scaled(x: (f64, f64), y: (f64, f64), width: f64) -> ((f64, f64), (f64, f64), f64) {
+    /// Largest height [pt].
+    const MOST: f64 = 420.0;
+    let [across, up] = [x, y].map(|(lo, hi)| 1.1 * (hi - lo));
+    let per_point = (across / width).max(up / MOST);
+    let height = (up / per_point).max(60.0);
+    let about = |(lo, hi): (f64, f64), half: f64| (0.5 * (lo + hi) - half, 0.5 * (lo + hi) + half);
+    (
+        about(x, 0.5 * width * per_point),
+        about(y, 0.5 * height * per_point),
+        height,
+    )
+}
