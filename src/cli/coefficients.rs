@@ -13,7 +13,7 @@ use super::arguments::CaseArguments;
 use super::interrupt::WallArguments;
 use crate::case::{self, section};
 use crate::error::{Error, Result};
-use crate::output::columns::aligned;
+use crate::output::columns::table;
 use crate::output::numbers::significant;
 
 /// `coefficients`.
@@ -105,18 +105,13 @@ fn of_energy(energy: StrainEnergy) -> String {
         "pressure, upper [Pa]",
         "pressure, lower [Pa]",
     ];
-    let mut lines = vec![["", "from", "to"].map(str::to_owned).to_vec()];
-    lines.extend(
-        names
-            .into_iter()
-            .zip(energy.limits)
-            .map(|(name, [low, high])| vec![name.to_owned(), significant(low, 4), significant(high, 4)]),
-    );
+    let rows = names.into_iter().zip(energy.limits);
+    let rows = rows.map(|(name, [low, high])| [name.to_owned(), significant(low, 4), significant(high, 4)]);
     format!(
         "\nenergy at finite strain beyond the quadratic one: degree {}, error of its slopes {:.0e}, known within the ellipsoid of\n\n{}",
         energy.degree,
         energy.error,
-        aligned(&lines, &[0])
+        table("< | from | to", rows)
     )
 }
 
@@ -143,11 +138,11 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
 }
 
 fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) -> String {
-    let strings = |cells: &[&str]| cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<_>>();
-    let mut lines = vec![strings(&["coefficient", "value", "unit", "error"])];
+    let mut headings = "<coefficient | value | <unit | error".to_owned();
     if spatial.is_some() {
-        lines[0].extend(strings(&["in 3-D", "plane off"]));
+        headings += " | in 3-D | plane off";
     }
+    let mut lines = vec![];
     for row in rows(found).iter().filter(|row| row.value != 0.0) {
         let mut line = vec![
             row.key.into(),
@@ -164,12 +159,11 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         }
         lines.push(line);
     }
-    let mut matrix = vec![strings(&["", "N", "M", "p upper", "p lower"])];
     let names = ["stretch", "curvature", "area, upper", "area, lower"];
-    matrix.extend(names.into_iter().zip(found.numbers.compliance).map(|(name, row)| {
+    let matrix = names.into_iter().zip(found.numbers.compliance).map(|(name, row)| {
         let numbers = row.iter().map(|c| format!("{c:.4e}"));
-        std::iter::once(name.to_owned()).chain(numbers).collect()
-    }));
+        std::iter::once(name.to_owned()).chain(numbers).collect::<Vec<_>>()
+    });
     format!(
         "section {} m high, {} m wide, a bladder every {} m; E {} Pa, nu {}\n\n{}\ncompliance (areas times l_b/pitch), symmetric to {:.0e}\n\n{}",
         section.height_m,
@@ -177,8 +171,8 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         section.pitch_m,
         section.material.young_modulus_pa,
         section.material.poisson_ratio,
-        aligned(&lines, &[0, 2]),
+        table(&headings, lines),
         found.asymmetry,
-        aligned(&matrix, &[0])
+        table("< | N | M | p upper | p lower", matrix)
     )
 }

@@ -10,7 +10,7 @@ use super::arguments::CompareArguments;
 use super::terminal;
 use crate::case;
 use crate::error::{Error, Result};
-use crate::output::columns::aligned;
+use crate::output::columns::{self, aligned};
 use crate::output::folder::{CASE, replace_alike};
 use crate::output::kind::Kind;
 use crate::output::numbers::{percent, quantity, significant};
@@ -253,12 +253,9 @@ fn table(found: &Comparison) -> String {
         changes(&mut text, &found.numerics);
     }
     let histories = found.histories.iter().chain(&found.fields).map(line);
-    let headings = [
-        ["", "relative to", "the larger", "largest at", "", "interpolation"],
-        ["quantity", "L2", "max", "time [s]", "place", "adds at most"],
-    ];
-    let headings = headings.map(|line| line.map(String::from)).into_iter();
-    text += &aligned(&headings.chain(histories).collect::<Vec<_>>(), &[0]);
+    let second = ["quantity", "L2", "max", "time [s]", "place", "adds at most"].map(String::from);
+    let headings = "< | relative to | the larger | largest at |  | interpolation";
+    text += &columns::table(headings, [second].into_iter().chain(histories));
     let figures = found.figures.iter().map(|f| {
         let change = f.change.map_or_else(|| "-".into(), signed_percent);
         let of_largest = format!("{:.1e}", f.relative);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use crate::case;
 use crate::error::{Error, Result};
-use crate::output::columns::aligned;
+use crate::output::columns::table;
 use crate::output::folder::replace_alike;
 use crate::output::numbers::{counted, pretty_unit, significant};
 use crate::output::plot::canvas::Stroke;
@@ -141,8 +141,7 @@ fn in_words(found: &Measured) -> String {
             unit.to_owned(),
         ]
     };
-    let heading = ["", "value", "standard error", "95 %", "unit"].map(str::to_owned);
-    let mut lines = vec![heading, line("slope", &found.slope, &per(y.unit(), x.unit()))];
+    let mut lines = vec![line("slope", &found.slope, &per(y.unit(), x.unit()))];
     lines.extend(found.offset.as_ref().map(|offset| line("offset", offset, y.unit())));
     let key = |pointer: &'static str| pointer.trim_start_matches('/');
     lines.extend(
@@ -168,7 +167,7 @@ fn in_words(found: &Measured) -> String {
         significant(found.fit.deviation, 3),
         y.unit(),
         significant(found.explained, 6),
-        aligned(&lines, &[0, 4])
+        table("< | value | standard error | 95 % | <unit", lines)
     );
     if let Some(p) = found.cubic_chance {
         text += &format!("cubic term {} from zero (p {})\n", verdict(p), chance(p));

@@ -6,7 +6,7 @@ use serde_json::json;
 use slcbeam_section::paper::{PRINTED, PaperTable, Variant, paper_table};
 
 use crate::error::{Error, Result};
-use crate::output::columns::{aligned, cells};
+use crate::output::columns::table as table_of;
 use crate::output::numbers::significant;
 
 /// What the paper leaves open: Poisson's ratio, fillets of the square of 7.8 mm [m], height of its centre [m]; its walls allow 3.9 to 6.9 mm.
@@ -15,7 +15,6 @@ const FILLETS_M: [f64; 4] = [0.0, 0.001, 0.0025, 0.0039];
 const CENTERS_M: [f64; 3] = [0.0044, 0.0049, 0.0054];
 
 const HEADINGS: &str = "nu | fillet [mm] | centre [mm] | f_e | f_i | a_p [m^2/Pa] | a_M [m^2/(N m)] | a_N [m^2/N] | psi' [rad] | zeta' [m] | q1 [m^4] | misfit";
-const COLUMNS: usize = 12;
 
 /// Computes and prints.
 pub fn paper(in_json: bool) -> Result<ExitCode> {
@@ -29,10 +28,9 @@ pub fn paper(in_json: bool) -> Result<ExitCode> {
 
 fn in_words(table: &PaperTable) -> String {
     let number = |x: f64| significant(x, 3);
-    let mut lines = vec![cells::<COLUMNS>(HEADINGS).map(String::from)];
+    let mut lines = vec![];
     let mut row = |head: [String; 3], values: Vec<String>, misfit: String| {
-        let mut all = head.into_iter().chain(values).chain([misfit]);
-        lines.push(std::array::from_fn(|_| all.next().unwrap_or_default()));
+        lines.push(head.into_iter().chain(values).chain([misfit]).collect::<Vec<_>>());
     };
     let printed = PRINTED.map(|p| match p.low == p.high {
         true => number(p.low),
@@ -68,7 +66,7 @@ fn in_words(table: &PaperTable) -> String {
          f_e: {} times the printed one, which is a secant of a large pull\n\
          psi': {} times the printed one whatever the shape\n\
          q1: {} times the printed one, which is that of a square of {} mm; the printed one of tubes is that of a radius of {} mm\n",
-        aligned(&lines, &[]),
+        table_of(HEADINGS, lines),
         every(0),
         every(5),
         every(7),

@@ -10,7 +10,7 @@ use super::arguments::VerifyArguments;
 use super::{interrupt, line, terminal};
 use crate::error::Result;
 use crate::numerics::threads;
-use crate::output::columns::{aligned, cells};
+use crate::output::columns;
 use crate::output::numbers::significant;
 use crate::results;
 use crate::results::verify::{Figure, Row};
@@ -62,10 +62,11 @@ fn exit_code(rows: &[Row]) -> u8 {
     }
 }
 
-const HEADINGS: &str = "name | quantity | computed | exact | error | tolerance | order | limit | estimate | verdict";
+const HEADINGS: &str =
+    "<name | <quantity | <computed | <exact | <error | <tolerance | <order | <limit | <estimate | <verdict";
 
 fn table(rows: &[Row]) -> String {
-    let mut lines = vec![cells::<10>(HEADINGS).map(String::from)];
+    let mut lines = vec![];
     for row in rows {
         lines.extend(row.figures.iter().flatten().map(|figure| line(row, figure)));
         if let Some(failure) = &row.failure {
@@ -76,7 +77,7 @@ fn table(rows: &[Row]) -> String {
             lines.push(failed);
         }
     }
-    let mut text = aligned(&lines, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]);
+    let mut text = columns::table(HEADINGS, lines);
     text += "\nerror: r relative, a absolute; order: observed in the mesh size between the two finest of three meshes;\n\
              limit: error of the limit to which they point (Richardson); estimate: error that the meshes alone show\n\nsources\n";
     for row in rows {

@@ -13,6 +13,21 @@ pub fn warnings(all: &[String]) -> String {
     all.iter().map(|warning| format!("warning: {warning}\n")).collect()
 }
 
+/// A table under its headings, which have bars between: `name | <words`. Cells stand on the right, on the left in columns whose heading
+/// begins with `<`.
+pub fn table<L: AsRef<[String]>>(headings: &str, rows: impl IntoIterator<Item = L>) -> String {
+    let headings: Vec<&str> = headings.split('|').map(str::trim).collect();
+    let left: Vec<usize> = (0..headings.len()).filter(|k| headings[*k].starts_with('<')).collect();
+    let mut lines = vec![
+        headings
+            .iter()
+            .map(|text| text.trim_start_matches('<').to_owned())
+            .collect(),
+    ];
+    lines.extend(rows.into_iter().map(|row| row.as_ref().to_vec()));
+    aligned(&lines, &left)
+}
+
 /// A line a row, columns two blanks apart and as wide as their widest cell; cells stand on the right except in the columns of `left`.
 /// An empty first column indents.
 pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {

@@ -103,14 +103,7 @@ pub fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
         };
         bars.extend(row.left_out.as_ref().map(|c| bar(&name, c, Some(row.verdict))));
     }
-    let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
-    for (name, compared) in [
-        ("as the case says", found.given.as_ref()),
-        ("auto", found.auto.as_ref()),
-        ("recommended", recommended),
-    ] {
-        bars.extend(compared.map(|c| bar(name, c, None)));
-    }
+    bars.extend(table::beside(found).map(|(name, c)| bar(name, c, None)));
     AblationBars {
         case: found.case.clone(),
         measure: shown.words().into(),

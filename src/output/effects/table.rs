@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Shown;
 use crate::case::schema::Effect;
-use crate::output::columns::aligned;
+use crate::output::columns;
 use crate::output::numbers::{counted, percent, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::trial::Ending;
@@ -12,9 +12,7 @@ use crate::study::effects::ablation::Compared;
 use crate::study::effects::change::Judged;
 use crate::study::effects::{Ablation, Row, Verdict};
 
-const HEADINGS: [&str; 10] = [
-    "left out", "verdict", "change", "largest", "in", "unknowns", "steps", "work", "time", "decides",
-];
+const HEADINGS: &str = "<left out | <verdict | change | largest | <in | unknowns | steps | work | time | <decides";
 
 /// The table in a measure: each effect, what is left out by nobody, and how changes are to be read.
 pub fn table(found: &Ablation, shown: &Shown) -> String {
@@ -33,7 +31,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
         counted(full.counters.residual_evaluations, "residual"),
         significant(full.wall_s(), 3)
     );
-    let mut lines = vec![HEADINGS.map(String::from)];
+    let mut lines = vec![];
     for row in &found.rows {
         if let Some(compared) = &row.left_out {
             let number = format!("auto {}: {}", if row.auto { "on" } else { "off" }, row.number);
@@ -41,7 +39,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
         }
     }
     lines.extend(beside(found).map(|(name, c)| line(found, shown, name, "", c, String::new())));
-    text += &aligned(&lines, &[0, 1, 4, 9]);
+    text += &columns::table(HEADINGS, lines);
     text += &legend(found, shown);
     let mut reasons = vec![];
     for row in &found.rows {
@@ -74,7 +72,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
 }
 
 /// What stands beside the effects: the case's own choice, the program's and what is recommended, as far as they were run.
-fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
+pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
     let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
     let all = [
         ("as the case says", found.given.as_ref()),

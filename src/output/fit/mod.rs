@@ -33,15 +33,14 @@ pub const FITTED: &str = "fitted-case.json";
 /// Something cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Result<()> {
     let (own, fitted) = (problem.case.written(), found.case.written());
-    let case = own.with_tables(fitted.tables);
     let mut files = vec![
         (CSV, table(problem, found)),
         (JSON, results::text(&found.fit)),
-        (CASE, case.json.clone()),
-        (FITTED, fitted.json),
+        (CASE, own.json.clone()),
+        (FITTED, fitted.json.clone()),
     ];
     files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with(&case, files).map(|_| ())
+    folder.fill_with_both([&own, &fitted], files).map(|_| ())
 }
 
 /// Names with units, and values, of what stands beside the rows.

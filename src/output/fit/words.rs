@@ -1,7 +1,7 @@
 //! A fit, and a run over data, in words.
 
 use crate::error::{listed, visible};
-use crate::output::columns::{aligned, warnings};
+use crate::output::columns::{table, warnings};
 use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::study::fit::beside::Beside;
 use crate::study::fit::found::{Bound, Estimate, Fit};
@@ -21,13 +21,9 @@ pub fn words(fit: &Fit) -> String {
         counted(fit.steps as u64, "step"),
         counted(fit.simulations as u64, "simulation")
     );
-    let heading = ["", "estimate", "standard error", "95 %", "bounds"].map(String::from);
-    let lines: Vec<_> = std::iter::once(heading)
-        .chain(fit.parameters.iter().map(line))
-        .collect();
-    text += &aligned(&lines, &[0, 3, 4]);
+    let headings = "< | estimate | standard error | <95 % | <bounds";
+    text += &table(headings, fit.parameters.iter().map(line));
     text += &correlations(fit);
-    let heading = ["", "values", "noise", "rms", "largest", "R²"].map(String::from);
     let columns = fit.columns.iter().map(|column| {
         let left = &column.left;
         let noise = match column.noise_given {
@@ -43,8 +39,7 @@ pub fn words(fit: &Fit) -> String {
             significant(left.r_squared, 6),
         ]
     });
-    let lines: Vec<_> = std::iter::once(heading).chain(columns).collect();
-    text += &format!("\n{}", aligned(&lines, &[0]));
+    text += &format!("\n{}", table("< | values | noise | rms | largest | R²", columns));
     let loss = match fit.loss {
         Loss::Squares => "",
         Loss::Huber => ", Huber's loss",
@@ -139,17 +134,7 @@ fn worst(fit: &Fit) -> Option<String> {
 
 /// A run over data.
 pub fn comparison(found: &Beside) -> String {
-    let heading = [
-        "run less data",
-        "values",
-        "rms",
-        "largest",
-        "at",
-        "bias",
-        "rms, relative",
-        "largest, relative",
-        "R²",
-    ];
+    let headings = "<run less data | values | rms | largest | at | bias | rms, relative | largest, relative | R²";
     let line = |column: &crate::study::fit::beside::Column| {
         let (left, unit) = (&column.left, &column.unit);
         [
@@ -164,13 +149,10 @@ pub fn comparison(found: &Beside) -> String {
             significant(left.r_squared, 4),
         ]
     };
-    let lines: Vec<_> = std::iter::once(heading.map(String::from))
-        .chain(found.columns.iter().map(line))
-        .collect();
     format!(
         "{} over {}\n\n{}\nrelative to the largest value of the data\n",
         visible(&found.run),
         visible(&found.data),
-        aligned(&lines, &[0])
+        table(headings, found.columns.iter().map(line))
     )
 }

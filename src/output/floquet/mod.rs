@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::columns::{aligned, cells, warnings};
+use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
 use super::plot::canvas::{INK, Stroke};
@@ -48,9 +48,7 @@ pub fn words(found: &Cycle) -> String {
         significant(*period_s, 6),
         counted(found.cycle.steps_per_period as u64, "step")
     );
-    let headings = cells::<7>(" | multiplier | modulus | growth [1/s] | frequency [Hz] | by steps [1/s] | part");
-    let mut lines = vec![headings.map(String::from)];
-    lines.extend(multipliers.iter().map(|m| {
+    let rows = multipliers.iter().map(|m| {
         [
             String::new(),
             if m.im > 0.0 {
@@ -64,8 +62,9 @@ pub fn words(found: &Cycle) -> String {
             format!("{:.1e}", -m.numerical_damping_per_s),
             format!("{} ({:.0} %)", m.part, 100.0 * m.share),
         ]
-    }));
-    text += &aligned(&lines, &[1, 6]);
+    });
+    let headings = " | <multiplier | modulus | growth [1/s] | frequency [Hz] | by steps [1/s] | <part";
+    text += &table(headings, rows);
     if let Some(periods) = &found.periods {
         let _ = writeln!(text, "\n{}", periods.words());
     }

@@ -213,6 +213,18 @@ impl ResultFolder {
         Ok(written)
     }
 
+    /// The same of a result that has another case, whose tables stand beside those of its own.
+    pub fn fill_with_both<T: AsRef<[u8]>>(
+        &mut self,
+        [own, other]: [&Written; 2],
+        files: Vec<(&str, T)>,
+    ) -> Result<Vec<PathBuf>> {
+        let mut both = own.clone();
+        let new = |table: &&(String, String)| own.tables.iter().all(|(name, _)| *name != table.0);
+        both.tables.extend(other.tables.iter().filter(new).cloned());
+        self.fill_with(&both, files)
+    }
+
     /// Removes one file, if it is there.
     pub fn remove(&self, name: &str) -> Result<()> {
         remove(&self.path(name)).map(|_| ())

@@ -34,15 +34,14 @@ pub const BEST: &str = "optimum-case.json";
 /// Something cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) -> Result<()> {
     let (own, best) = (problem.case.written(), found.case.written());
-    let case = own.with_tables(best.tables);
     let mut files = vec![
         (CSV, table(problem, found)),
         (JSON, results::text(&found.optimum)),
-        (CASE, case.json.clone()),
-        (BEST, best.json),
+        (CASE, own.json.clone()),
+        (BEST, best.json.clone()),
     ];
     files.extend(drawn(problem, found).map(|text| (PICTURE, text)));
-    folder.fill_with(&case, files).map(|_| ())
+    folder.fill_with_both([&own, &best], files).map(|_| ())
 }
 
 fn table(problem: &Problem, found: &Optimised) -> String {

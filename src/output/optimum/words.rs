@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::error::visible;
-use crate::output::columns::{aligned, warnings};
+use crate::output::columns::{table, warnings};
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
@@ -36,16 +36,12 @@ pub fn words(found: &Optimum) -> String {
     }
     text += &alternatives(found);
     if !found.variables.is_empty() {
-        let heading = ["", "best", "at first", "bounds", "1 % worse at"].map(String::from);
-        let lines: Vec<_> = std::iter::once(heading)
-            .chain(found.variables.iter().map(line))
-            .collect();
-        text += &format!("\n{}", aligned(&lines, &[0, 3, 4]));
+        let headings = "< | best | at first | <bounds | <1 % worse at";
+        text += &format!("\n{}", table(headings, found.variables.iter().map(line)));
     }
     if !found.limits.is_empty() {
-        let heading = ["", "at the best", "limit", ""].map(String::from);
-        let lines: Vec<_> = std::iter::once(heading).chain(found.limits.iter().map(limit)).collect();
-        text += &format!("\n{}", aligned(&lines, &[0, 3]));
+        let limits = found.limits.iter().map(limit);
+        text += &format!("\n{}", table("< | at the best | limit | <", limits));
     }
     let failed: usize = found.failed.values().sum();
     text += &format!(
@@ -99,7 +95,6 @@ fn alternatives(found: &Optimum) -> String {
     if found.alternatives.is_empty() {
         return String::new();
     }
-    let heading = ["".into(), "".into(), found.goal.figure.clone(), "".into()];
     let line = |one: &Compared| {
         let told = match (&one.reason, one.held) {
             (Some(reason), _) => visible(reason).into_owned(),
@@ -111,12 +106,12 @@ fn alternatives(found: &Optimum) -> String {
     };
     let ranked = ranked(found);
     let shown = ranked.iter().take(SHOWN).map(|one| line(one));
-    let lines: Vec<_> = std::iter::once(heading).chain(shown).collect();
+    let headings = format!(" | < | {} | <", found.goal.figure);
     let more = match ranked.len().saturating_sub(SHOWN) {
         0 => String::new(),
         n => format!("  and {n} more in optimum.json\n"),
     };
-    format!("\n{}{more}", aligned(&lines, &[1, 3]))
+    format!("\n{}{more}", table(&headings, shown))
 }
 
 /// Alternatives from the best on: those that hold the limits before those that do not, and what has nothing last.

@@ -121,28 +121,23 @@ impl Canvas {
 
     /// A line through points; broken where a coordinate is not finite.
     pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
-        for piece in points.split(|p| !(p.0.is_finite() && p.1.is_finite())) {
-            match stroke.dash {
-                None => self.unbroken(piece, stroke),
-                Some(dash) => dashes(piece, dash).iter().for_each(|d| self.unbroken(d, stroke)),
-            }
-        }
-    }
-
-    fn unbroken(&mut self, points: &[(f64, f64)], stroke: Stroke) {
-        if points.len() < 2 {
-            return;
-        }
-        let mut points: Vec<_> = points.iter().map(|&p| fine(p)).collect();
-        points.dedup();
-        if points.len() == 1 {
-            points.push(points[0]);
-        }
         let (colour, width) = (stroke.colour, tenths(stroke.width).max(0.1));
-        self.put(format_args!(
-            "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" points=\"{}\"/>",
-            listed(&points)
-        ));
+        let dash = stroke
+            .dash
+            .map(|(dash, gap)| format!(" stroke-dasharray=\"{dash} {gap}\""));
+        let dash = dash.unwrap_or_default();
+        let pieces = points.split(|p| !(p.0.is_finite() && p.1.is_finite()));
+        for piece in pieces.filter(|piece| piece.len() > 1) {
+            let mut points: Vec<_> = piece.iter().map(|&p| fine(p)).collect();
+            points.dedup();
+            if points.len() == 1 {
+                points.push(points[0]);
+            }
+            self.put(format_args!(
+                "<polyline fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dash} points=\"{}\"/>",
+                listed(&points)
+            ));
+        }
     }
 
     /// A filled rectangle between two corners, the upper left one first.
@@ -169,10 +164,11 @@ impl Canvas {
     }
 
     /// An open ring about a point.
-    pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, stroke: Stroke) {
-        let angles = (0..=16).map(|k| f64::from(k) * std::f64::consts::TAU / 16.0);
-        let points = angles.map(|angle| (x + radius * angle.cos(), y + radius * angle.sin()));
-        self.line(&points.collect::<Vec<_>>(), stroke);
+    pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
+        let ((x, y), radius, colour, width) = (fine(centre), tenths(radius), stroke.colour, stroke.width);
+        self.put(format_args!(
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
+        ));
     }
 
     /// Words at a point.
@@ -232,36 +228,4 @@ fn listed(points: &[(f64, f64)]) -> String {
     }
     text.pop();
     text
-}
-
-/// Cuts a line into dashes of equal length.
-fn dashes(points: &[(f64, f64)], (dash, gap): (f64, f64)) -> Vec<Vec<(f64, f64)>> {
-    let mut pieces = Vec::new();
-    let mut piece: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
-    let (mut left, mut drawing) = (dash, true);
-    for pair in points.windows(2) {
-        let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
-        let length = (x1 - x0).hypot(y1 - y0);
-        let mut done = 0.0;
-        while length - done > left {
-            done += left;
-            let at = (x0 + (x1 - x0) * done / length, y0 + (y1 - y0) * done / length);
-            if drawing {
-                piece.push(at);
-                pieces.push(std::mem::take(&mut piece));
-            } else {
-                piece = vec![at];
-            }
-            drawing = !drawing;
-            left = if drawing { dash } else { gap };
-        }
-        left -= length - done;
-        if drawing {
-            piece.push((x1, y1));
-        }
-    }
-    if piece.len() > 1 {
-        pieces.push(piece);
-    }
-    pieces
 }

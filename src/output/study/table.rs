@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::words::spoken;
-use crate::output::columns::{aligned, cells};
+use crate::output::columns;
 use crate::output::numbers::{counted, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
@@ -31,7 +31,7 @@ pub fn table(study: &Study) -> String {
         significant(measure.size.max, 3),
         measure.unit
     );
-    let mut lines = vec![cells::<13>(HEADINGS).map(String::from)];
+    let mut lines = vec![];
     let mut unfinished = vec![];
     for (k, point) in study
         .points
@@ -44,7 +44,7 @@ pub fn table(study: &Study) -> String {
             None => unfinished.push(reasons(point)),
         }
     }
-    text += &aligned(&lines, &[]);
+    text += &columns::table(HEADINGS, lines);
     text += "\n* no other point is both cheaper and more accurate   ? the reference is not ten times better than this point\n\
              time: least of the timed runs; failed: rejected steps and Newton failures\n";
     if !unfinished.is_empty() {
@@ -131,9 +131,8 @@ fn references(study: &Study) -> String {
 
 /// What is known of each measure: order in space, own error of the limit.
 fn limits(study: &Study) -> String {
-    let headings = cells::<6>("limit of each measure | order | limit by | own error | of it in space | size");
-    let mut lines = vec![headings.map(String::from)];
-    lines.extend(study.measures.iter().map(|m| {
+    let headings = "<limit of each measure | order | <limit by | own error | of it in space | <size";
+    let rows = study.measures.iter().map(|m| {
         [
             m.name.clone(),
             m.order.map_or("-".into(), |o| {
@@ -148,8 +147,8 @@ fn limits(study: &Study) -> String {
                 .map_or_else(|| "unknown".into(), |n| format!("{:.1e}", n.max)),
             format!("{} {}", significant(m.size.max, 3), m.unit),
         ]
-    }));
-    let mut text = format!("\n{}", aligned(&lines, &[0, 2, 5]));
+    });
+    let mut text = format!("\n{}", columns::table(headings, rows));
     text += "~ errors in time are above a tenth of the differences between meshes\n";
     if !study.left_out.is_empty() {
         let _ = writeln!(

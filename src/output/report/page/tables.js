@@ -78,7 +78,7 @@ function tableCard(table) {
   return figure(table.title, null, table.about ? el("p", { class: "caption", text: table.about }) : null, sortable(table.headings, table.rows, { label: table.title || table.name, leads: table.leads }), table.left_out ? el("p", { class: "caption", text: `${count(table.left_out)} more rows are in the file.` }) : null, file);
 }
 
-const DRAWN = new Set(["svg", "g", "a", "title", "rect", "polyline", "polygon", "text"]);
+const DRAWN = new Set(["svg", "g", "a", "title", "rect", "circle", "polyline", "polygon", "text"]);
 
 /** A drawing of the program as a part of the page: its words are text, its points say what they are and lead to their rows. What is no
  * drawing of the program's is shown as an image, which runs nothing. */
