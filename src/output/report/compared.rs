@@ -26,25 +26,22 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
     let names = names(found);
     let name = format!("{} and {}", names[0], others(names.len() - 1));
     let mut page = begun("Results side by side", name);
-    page.put("answer", answer(found, &names));
-    page.put("warnings", warnings::groups(&[]));
-    page.put(
-        "facts",
-        found
-            .folders()
-            .iter()
-            .zip(&names)
-            .map(|(folder, name)| format!("{name}: {folder}"))
-            .chain(found.remarks().into_iter().map(String::from))
-            .collect::<Vec<_>>(),
-    );
+    let folders = found.folders();
+    let facts = folders
+        .iter()
+        .zip(&names)
+        .map(|(folder, name)| format!("{name}: {folder}"));
+    let facts = facts.chain(found.remarks().into_iter().map(String::from));
+    page.fill(json!({
+        "answer": answer(found, &names), "warnings": warnings::groups(&[]), "facts": facts.collect::<Vec<_>>(),
+        "tables": tables(found, &names),
+    }));
     let order = || {
         std::iter::once(&all[reference]).chain(all.iter().enumerate().filter(|(k, _)| *k != reference).map(|(_, r)| r))
     };
     if let Some(overlay) = overlay(&order().collect::<Vec<_>>(), &names) {
         page.put("overlay", overlay);
     }
-    page.put("tables", tables(found, &names));
     put(&page, dir)
 }
 
@@ -55,41 +52,38 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
 pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
     let name = format!("{} over {}", found.case, file_name(&found.data));
     let mut page = begun("A run over measured data", name);
-    page.put(
-        "facts",
-        vec![format!("Run: {}", found.run), format!("Data: {}", found.data)],
-    );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Data and run", "picture": pack::image("image/svg+xml", picture.as_bytes()),
-            "about": "Rings are measured, the line is the run. Below, run less data.",
-        }]),
-    );
     let row = |one: &Column| {
         let left = &one.left;
-        json!([
-            one.matched.words(),
-            one.quantity,
-            one.unit,
+        let (rms, largest) = (100.0 * left.rms_relative, 100.0 * left.max_relative);
+        let numbers = json!([
             left.count,
             left.rms,
             left.max,
             one.max_at_s,
             left.bias,
-            100.0 * left.rms_relative,
-            100.0 * left.max_relative,
+            rms,
+            largest,
             left.r_squared
-        ])
+        ]);
+        let numbers = numbers.as_array().cloned().unwrap_or_default();
+        [
+            vec![json!(one.matched.words()), json!(one.quantity), json!(one.unit)],
+            numbers,
+        ]
+        .concat()
     };
-    page.put(
-        "table",
-        json!({
+    page.fill(json!({
+        "facts": [format!("Run: {}", found.run), format!("Data: {}", found.data)],
+        "figures": [{
+            "title": "Data and run", "picture": pack::image("image/svg+xml", picture.as_bytes()),
+            "about": "Rings are measured, the line is the run. Below, run less data.",
+        }],
+        "table": {
             "title": "Run less data", "about": "In the unit of the quantity; percent are of the largest value of the data.",
             "headings": ["match", "quantity", "unit", "values", "rms", "largest", "at [s]", "bias", "rms [%]", "largest [%]", "R²"],
             "rows": found.columns.iter().map(row).collect::<Vec<_>>(),
-        }),
-    );
+        },
+    }));
     put(&page, dir)
 }
 
@@ -99,10 +93,7 @@ fn begun(label: &str, name: String) -> Page {
         name: name.clone(),
         ..Page::default()
     };
-    page.put("kind", "comparison");
-    page.put("version", env!("CARGO_PKG_VERSION"));
-    page.put("label", label);
-    page.put("name", name);
+    page.fill(json!({"kind": "comparison", "version": env!("CARGO_PKG_VERSION"), "label": label, "name": name}));
     page
 }
 

@@ -83,25 +83,20 @@ pub fn of_cycle(found: &Cycle) -> Value {
 pub fn floquet(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Cycle>(Kind::Floquet.sign())?;
     let mut page = place.page(Kind::Floquet, &found.case, Some(&head));
-    page.put("label", "Stability of the steady cycle");
     page.warnings.clone_from(&found.warnings);
     let (word, tone) = match found.floquet.verdict.stability {
         Stability::Unstable => ("unstable", "bad"),
         Stability::Neutral => ("neutral", "fair"),
         Stability::Stable => ("stable", "good"),
     };
-    page.put("status", json!({"word": word, "tone": tone, "reason": null}));
-    page.put("answer", answer(&found));
-    page.put(
-        "figures",
-        json!([{
-            "title": "Multipliers in the complex plane",
-            "picture": place.picture("floquet.svg"),
+    page.fill(json!({
+        "label": "Stability of the steady cycle", "status": {"word": word, "tone": tone, "reason": null}, "answer": answer(&found),
+        "figures": [{
+            "title": "Multipliers in the complex plane", "picture": place.picture("floquet.svg"),
             "about": "Within the circle of radius 1 disturbances die away; a mark outside it is a disturbance that grows.",
-        }]),
-    );
-    page.put("table", multipliers(&found));
-    page.put("command", format!("slcbeam floquet {CASE}"));
+        }],
+        "table": multipliers(&found), "command": format!("slcbeam floquet {CASE}"),
+    }));
     Ok(page)
 }
 
@@ -109,7 +104,6 @@ pub fn floquet(place: &Place) -> Result<Page> {
 pub fn map(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Map>(Kind::Map.sign())?;
     let mut page = place.page(Kind::Map, &found.case, Some(&head));
-    page.put("label", "Where shaking is stable");
     page.warnings.clone_from(&found.warnings);
     let (mut rows, mut answers, mut all) = (vec![], vec![], 0);
     for sheet in &found.sheets {
@@ -134,40 +128,26 @@ pub fn map(place: &Place) -> Result<Page> {
         ));
     }
     let (columns, lines) = (found.frequencies_hz.len(), found.amplitudes_m.len());
-    page.put("answer", answers.join(" "));
-    page.put(
-        "facts",
-        vec![
+    let range = |v: &[f64]| format!("{}:{}", v.first().unwrap_or(&0.0), v.last().unwrap_or(&0.0));
+    let (across, up) = (range(&found.frequencies_hz), range(&found.amplitudes_m));
+    page.fill(json!({
+        "label": "Where shaking is stable", "answer": answers.join(" "),
+        "facts": [
             format!("{columns} {}", if columns == 1 { "frequency" } else { "frequencies" }),
             counted(lines as u64, "amplitude"),
         ],
-    );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Growth over frequency and amplitude",
-            "picture": place.picture("map.svg"),
+        "figures": [{
+            "title": "Growth over frequency and amplitude", "picture": place.picture("map.svg"),
             "about": "Each cell is one frequency and one amplitude of shaking. Where the colour says growth, bending swings up by itself \
                       even though the beam is shaken along its axis only.",
-        }]),
-    );
-    page.put(
-        "table",
-        json!({
+        }],
+        "table": {
             "title": "Every point", "about": "",
             "headings": ["permeability factor", "frequency [Hz]", "amplitude [m]", "growth [1/s]", "verdict"],
             "left_out": all - rows.len(), "rows": rows, "file": "map.csv",
-        }),
-    );
-    let range = |v: &[f64]| format!("{}:{}", v.first().unwrap_or(&0.0), v.last().unwrap_or(&0.0));
-    page.put(
-        "command",
-        format!(
-            "slcbeam floquet {CASE} --map frequency,amplitude --range {},{} --points {columns},{lines}",
-            range(&found.frequencies_hz),
-            range(&found.amplitudes_m),
-        ),
-    );
+        },
+        "command": format!("slcbeam floquet {CASE} --map frequency,amplitude --range {across},{up} --points {columns},{lines}"),
+    }));
     Ok(page)
 }
 
@@ -182,7 +162,6 @@ pub fn sweep(place: &Place) -> Result<Page> {
         ..
     } = &found;
     let mut page = place.page(Kind::Sweep, &found.case, Some(&head));
-    page.put("label", "Steady cycles along a parameter");
     page.warnings.clone_from(&found.warnings);
     let unstable = |m: &&Member| m.floquet.verdict.stability == Stability::Unstable;
     let (low, high) = members.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| {
@@ -192,24 +171,6 @@ pub fn sweep(place: &Place) -> Result<Page> {
         0 => String::new(),
         n => format!(" For {n} values none was found."),
     };
-    page.put(
-        "answer",
-        format!(
-            "{} steady cycles were found for {pointer} from {} to {}; {} of them unstable.{without}",
-            members.len(),
-            significant(low, 3),
-            significant(high, 3),
-            members.iter().filter(unstable).count(),
-        ),
-    );
-    page.put(
-        "figures",
-        json!([{
-            "title": "Along the parameter",
-            "picture": place.picture("sweep.svg"),
-            "about": "What the steady cycle does for each value of the parameter, each found from the one before, without its transient.",
-        }]),
-    );
     // every cycle of one case has the same figures of energy
     let told = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];
@@ -227,21 +188,23 @@ pub fn sweep(place: &Place) -> Result<Page> {
         row.extend([json!(verdict.growth_per_s), json!(verdict.words)]);
         row
     };
-    page.put(
-        "table",
-        json!({
-            "title": "Every cycle", "about": "Largest values within the cycle, its energies with how far their balance is open beside them, and how fast the slowest \
-                      disturbance grows (below 0: dies away).",
-            "headings": headings,
-            "left_out": members.len().saturating_sub(MOST_ROWS),
-            "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
-        }),
-    );
     let spread = if *logarithmic { ":log" } else { "" };
     let values = members.len() + missing.len();
-    page.put(
-        "command",
-        format!("slcbeam periodic {CASE} --sweep {pointer}={low}:{high}:{values}{spread}"),
-    );
+    page.fill(json!({
+        "label": "Steady cycles along a parameter",
+        "answer": format!("{} steady cycles were found for {pointer} from {} to {}; {} of them unstable.{without}",
+                   members.len(), significant(low, 3), significant(high, 3), members.iter().filter(unstable).count()),
+        "figures": [{
+            "title": "Along the parameter", "picture": place.picture("sweep.svg"),
+            "about": "What the steady cycle does for each value of the parameter, each found from the one before, without its transient.",
+        }],
+        "table": {
+            "title": "Every cycle", "about": "Largest values within the cycle, its energies with how far their balance is open beside them, and how fast the slowest \
+                      disturbance grows (below 0: dies away).",
+            "headings": headings, "left_out": members.len().saturating_sub(MOST_ROWS),
+            "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
+        },
+        "command": format!("slcbeam periodic {CASE} --sweep {pointer}={low}:{high}:{values}{spread}"),
+    }));
     Ok(page)
 }

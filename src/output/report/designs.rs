@@ -26,7 +26,6 @@ pub fn data(place: &Place) -> Result<Page> {
     let survey = Survey::of(&place.path(JOURNAL), &plan)?;
     let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &plan.title(), Some(&head));
-    page.put("label", "Many designs");
     page.warnings = warnings(&plan, &survey)?;
     let kinds: Vec<String> = found
         .statuses
@@ -38,33 +37,17 @@ pub fn data(place: &Place) -> Result<Page> {
         1 => " 1 design is missing; the same command goes on with it.".into(),
         n => format!(" {} are missing; the same command goes on with them.", several(n)),
     };
-    page.put(
-        "answer",
-        format!(
-            "{} went through {}: {}.{missing}",
-            several(found.rows),
-            plan.command.word(),
-            if kinds.is_empty() {
-                "none".into()
-            } else {
-                kinds.join(", ")
-            },
-        ),
-    );
+    let kinds = if kinds.is_empty() {
+        "none".into()
+    } else {
+        kinds.join(", ")
+    };
     let varied: Vec<String> = plan
         .axes
         .iter()
         .map(|axis| format!("{} = {}", axis.pointer, axis.spec.as_deref().unwrap_or("as listed")))
         .collect();
     let cases = plan.cases.iter().map(|case| format!("case {}", case.name));
-    page.put(
-        "facts",
-        varied
-            .into_iter()
-            .chain(cases)
-            .map(|text| capital(&text))
-            .collect::<Vec<_>>(),
-    );
     // a lean folder has no pictures of its own
     let drawn = pictures::draw(&plan, &survey)?;
     let figure = |title: &str, file: &str, about: &str| {
@@ -82,10 +65,13 @@ pub fn data(place: &Place) -> Result<Page> {
         ),
         figure("Over two numbers", "map.svg", "Each cell is a design that finished."),
     ];
-    page.put("figures", figures.into_iter().flatten().collect::<Vec<_>>());
-    page.put("table", rows(place, &found, &survey)?);
-    let command = plan.command_line(&[]);
-    page.put("command", command);
+    let facts = varied.into_iter().chain(cases).map(|text| capital(&text));
+    page.fill(json!({
+        "label": "Many designs",
+        "answer": format!("{} went through {}: {kinds}.{missing}", several(found.rows), plan.command.word()),
+        "facts": facts.collect::<Vec<_>>(), "figures": figures.into_iter().flatten().collect::<Vec<_>>(),
+        "table": rows(place, &found, &survey)?, "command": plan.command_line(&[]),
+    }));
     Ok(page)
 }
 

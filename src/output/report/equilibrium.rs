@@ -40,26 +40,10 @@ const TILES: [(&str, &str, &str, &str); 4] = [
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Equilibrium>(JSON)?;
     let mut page = place.page(Kind::Equilibrium, &found.case, Some(&head));
-    let tone = if found.status == Status::Failed { "bad" } else { "good" };
-    page.put("label", "Static equilibrium");
-    page.put("headlines", super::history::headlines());
-    page.put(
-        "status",
-        json!({"word": found.status, "tone": tone, "reason": found.reason}),
-    );
     page.warnings.clone_from(&found.warnings);
     let at = found.loads_at_s;
     // of the last stage, where it was reached
     let share = found.load_factor.unwrap_or(0.0) - found.via_s.len() as f64;
-    page.put("answer", answer(&found, share));
-    page.put(
-        "facts",
-        vec![
-            counted(found.states as u64, "state"),
-            counted(found.solver.newton_iterations, "Newton step"),
-            format!("found in {}", duration(found.wall_s.total)),
-        ],
-    );
     let tile = |label: &str, (name, value): (&str, Option<f64>), unit: &str, note: &str| {
         let value = value?;
         let least = if unit == "Pa" { 1e-9 } else { 1e-15 };
@@ -82,18 +66,20 @@ pub fn data(place: &Place) -> Result<Page> {
     let others = TILES
         .iter()
         .map(|(label, name, unit, note)| tile(label, (name, last(name)), unit, note));
-    page.put("tiles", [first].into_iter().chain(others).flatten().collect::<Vec<_>>());
-    page.put("events", json!(found.events));
-    page.put("derivatives", json!(found.sensitivities));
-    page.put("path", sheet::read(&place.path(CSV), |_| true));
-    page.put("shapes", shapes(&place.path(SHAPES)));
-    page.put(
-        "command",
-        format!(
-            "slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}",
-            via(&found)
-        ),
-    );
+    let tone = if found.status == Status::Failed { "bad" } else { "good" };
+    page.fill(json!({
+        "label": "Static equilibrium", "headlines": super::history::headlines(),
+        "status": {"word": found.status, "tone": tone, "reason": found.reason}, "answer": answer(&found, share),
+        "facts": [
+            counted(found.states as u64, "state"),
+            counted(found.solver.newton_iterations, "Newton step"),
+            format!("found in {}", duration(found.wall_s.total)),
+        ],
+        "tiles": std::iter::once(first).chain(others).flatten().collect::<Vec<_>>(),
+        "events": found.events, "derivatives": found.sensitivities,
+        "path": sheet::read(&place.path(CSV), |_| true), "shapes": shapes(&place.path(SHAPES)),
+        "command": format!("slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}", via(&found)),
+    }));
     Ok(page)
 }
 

@@ -1,6 +1,6 @@
 //! The page of a fit.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
@@ -12,32 +12,7 @@ use crate::results::fit::{Bound, Estimate, Fit};
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Fit>(JSON)?;
     let mut page = place.page(Kind::Fit, &found.case, Some(&head));
-    page.put("label", "Fitted to data");
     page.warnings.clone_from(&found.warnings);
-    page.put(
-        "answer",
-        format!(
-            "{} fitted to {} of {}; the case with the estimates is {FITTED}.",
-            match found.parameters.len() {
-                1 => "One number of the case was".into(),
-                n => format!("{n} numbers of the case were"),
-            },
-            counted(found.observations as u64, "value"),
-            found.data
-        ),
-    );
-    page.put(
-        "facts",
-        vec![
-            format!(
-                "chi-square {} over {}",
-                significant(found.chi_square, 4),
-                found.degrees_of_freedom
-            ),
-            counted(found.simulations as u64, "simulation"),
-            format!("found in {}", duration(found.wall_s)),
-        ],
-    );
     let tile = |one: &Estimate| {
         let error = one
             .standard_error
@@ -50,29 +25,23 @@ pub fn data(place: &Place) -> Result<Page> {
         };
         json!({"label": one.pointer, "value": format!("{}{error}", significant(one.value, 5)), "note": note})
     };
-    page.put("tiles", found.parameters.iter().map(tile).collect::<Vec<_>>());
-    let picture = place.picture(PICTURE);
-    let figure = picture.map(|picture| {
-        json!({
-            "title": "Data and model", "picture": picture,
-            "about": "Rings are measured, the model is that of the estimates. Below, model less data; broken lines are two standard \
-                      deviations of the noise.",
-        })
-    });
-    page.put("figures", figure.into_iter().collect::<Vec<_>>());
     let row = |(k, one): (usize, &Estimate)| {
-        let mut cells = vec![
-            json!(one.pointer),
-            json!(one.value),
-            json!(one.standard_error),
-            json!(one.interval_95.map(|i| i[0])),
-            json!(one.interval_95.map(|i| i[1])),
-            json!(one.finer_change),
-        ];
-        cells.extend(found.correlation[k].iter().map(|r| json!(r)));
-        Value::from(cells)
+        let interval = |k: usize| one.interval_95.map(|i| i[k]);
+        let cells = json!([
+            one.pointer,
+            one.value,
+            one.standard_error,
+            interval(0),
+            interval(1),
+            one.finer_change
+        ]);
+        let correlations = json!(found.correlation[k]);
+        let both = [cells, correlations]
+            .into_iter()
+            .filter_map(|all| all.as_array().cloned());
+        both.flatten().collect::<Vec<_>>()
     };
-    let mut headings: Vec<String> = [
+    let mut headings = [
         "number",
         "estimate",
         "standard error",
@@ -88,14 +57,30 @@ pub fn data(place: &Place) -> Result<Page> {
             .iter()
             .map(|one| format!("correlation with {}", one.pointer)),
     );
-    page.put(
-        "table",
-        json!({
-            "title": "Estimates",
-            "about": "In the unit that each key names. The last columns are the correlations of the estimates.",
+    let numbers = match found.parameters.len() {
+        1 => "One number of the case was".into(),
+        n => format!("{n} numbers of the case were"),
+    };
+    let values = counted(found.observations as u64, "value");
+    page.fill(json!({
+        "label": "Fitted to data",
+        "answer": format!("{numbers} fitted to {values} of {}; the case with the estimates is {FITTED}.", found.data),
+        "facts": [
+            format!("chi-square {} over {}", significant(found.chi_square, 4), found.degrees_of_freedom),
+            counted(found.simulations as u64, "simulation"),
+            format!("found in {}", duration(found.wall_s)),
+        ],
+        "tiles": found.parameters.iter().map(tile).collect::<Vec<_>>(),
+        "figures": [{
+            "title": "Data and model", "picture": place.picture(PICTURE),
+            "about": "Rings are measured, the model is that of the estimates. Below, model less data; broken lines are two standard \
+                      deviations of the noise.",
+        }],
+        "table": {
+            "title": "Estimates", "about": "In the unit that each key names. The last columns are the correlations of the estimates.",
             "headings": headings, "rows": found.parameters.iter().enumerate().map(row).collect::<Vec<_>>(), "file": CSV,
-        }),
-    );
-    page.put("command", format!("slcbeam run {FITTED}"));
+        },
+        "command": format!("slcbeam run {FITTED}"),
+    }));
     Ok(page)
 }

@@ -226,20 +226,15 @@ impl<'a> Place<'a> {
             name: name.into(),
             ..Page::default()
         };
-        page.put("kind", kind.name());
-        page.put("version", env!("CARGO_PKG_VERSION"));
-        page.put("made", head.map(Head::words));
-        page.put("name", name);
-        page.put("about", self.case.as_ref().map_or("", |c| c.about.as_str()));
-        page.put("files", self.files());
         let section = self.case.as_ref().and_then(|c| c.section.as_ref());
-        page.put("cell", section.map_or_else(Vec::new, cell::pictures));
-        page.put("scene", self.case.as_ref().and_then(scene::of));
-        // their place: see `text`
-        page.put("parameters", Value::Null);
-        let text = self.case_text.clone();
-        page.put("case_text", text.filter(|text| text.len() < LARGEST_TEXT));
-        page.put("characteristic", numbers);
+        let text = self.case_text.as_ref().filter(|text| text.len() < LARGEST_TEXT);
+        page.fill(json!({
+            "kind": kind.name(), "version": env!("CARGO_PKG_VERSION"), "made": head.map(Head::words), "name": name,
+            "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
+            "cell": section.map_or_else(Vec::new, cell::pictures), "scene": self.case.as_ref().and_then(scene::of),
+            // their place: see `text`
+            "parameters": null, "case_text": text, "characteristic": numbers,
+        }));
         page
     }
 }
@@ -256,6 +251,13 @@ struct Page {
 }
 
 impl Page {
+    /// Adds the members of an object.
+    fn fill(&mut self, members: Value) {
+        if let Value::Object(members) = members {
+            self.data.extend(members);
+        }
+    }
+
     fn put(&mut self, key: &str, value: impl Into<Value>) {
         self.data.insert(key.into(), value.into());
     }

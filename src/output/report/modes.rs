@@ -34,39 +34,18 @@ const MOST_NUMBERS: usize = 420_000;
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Modes>(JSON)?;
     let mut page = place.page(Kind::Modes, &found.case, Some(&head));
-    page.put("label", "Modes of small motions");
     let (word, tone) = if found.stable {
         ("stable", "good")
     } else {
         ("unstable", "bad")
     };
-    page.put("status", json!({"word": word, "tone": tone, "reason": null}));
-    page.put(
-        "answer",
-        format!(
-            "Small motions about {}, loads and valves held as at t = {} s: {}.",
-            found.about, found.at_s, found.verdict
-        ),
-    );
-    page.put(
-        "facts",
-        vec![
-            counted(found.unknowns as u64, "unknown"),
-            counted(found.finite_eigenvalues as u64, "finite eigenvalue"),
-        ],
-    );
     let table = sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name));
-    page.put("table", moving_alone(with_bands(table, &found), &found));
-    page.put("modes", json!(found.modes));
     page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
         let told = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
         page.warnings.push(told);
     }
-    page.put("shapes", shapes.unwrap_or_default());
-    page.put("picture", place.picture(PICTURE));
-    page.put("passivity", found.coupling.map(|coupling| capital(&coupling.words)));
     let near = match found.near_hz {
         0.0 => String::new(),
         near => format!(" --near {near}"),
@@ -80,10 +59,18 @@ pub fn data(place: &Place) -> Result<Page> {
         .of_kind
         .map_or(String::new(), |sort| format!(" --kind {}", sort.word()));
     let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
-    page.put(
-        "command",
-        format!("slcbeam modes {CASE}{at} --count {moving}{near}{kind}"),
-    );
+    page.fill(json!({
+        "label": "Modes of small motions", "status": {"word": word, "tone": tone, "reason": null},
+        "answer": format!("Small motions about {}, loads and valves held as at t = {} s: {}.", found.about, found.at_s, found.verdict),
+        "facts": [
+            counted(found.unknowns as u64, "unknown"),
+            counted(found.finite_eigenvalues as u64, "finite eigenvalue"),
+        ],
+        "table": moving_alone(with_bands(table, &found), &found), "modes": found.modes,
+        "shapes": shapes.unwrap_or_default(), "picture": place.picture(PICTURE),
+        "passivity": found.coupling.map(|coupling| capital(&coupling.words)),
+        "command": format!("slcbeam modes {CASE}{at} --count {moving}{near}{kind}"),
+    }));
     Ok(page)
 }
 

@@ -14,7 +14,6 @@ use crate::results::optimum::{Derivatives, Optimum, Variable};
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Optimum>(JSON)?;
     let mut page = place.page(Kind::Optimum, &found.case, Some(&head));
-    page.put("label", "The best between bounds");
     page.warnings.clone_from(&found.warnings);
     let goal = &found.goal;
     // a figure with its unit
@@ -22,16 +21,6 @@ pub fn data(place: &Place) -> Result<Page> {
     let begin = found
         .begin
         .map_or(String::new(), |begin| format!(", {} to begin with", figure(begin)));
-    page.put(
-        "answer",
-        format!(
-            "The {} {} of `slcbeam {}` is {}{begin}; the case with the best numbers is {BEST}.",
-            if goal.largest { "largest" } else { "least" },
-            goal.figure,
-            found.command.word(),
-            figure(found.value)
-        ),
-    );
     let mut facts = vec![
         several(found.evaluations),
         match found.derivatives {
@@ -48,7 +37,6 @@ pub fn data(place: &Place) -> Result<Page> {
         let words = percent(error / found.value.abs());
         facts.insert(0, format!("estimated error of the simulation {words}"));
     }
-    page.put("facts", facts);
     let tile = |one: &Variable| {
         let note = match one.within_1_percent {
             Some(_) => format!("1 % worse at {}", told(one)),
@@ -56,15 +44,6 @@ pub fn data(place: &Place) -> Result<Page> {
         };
         json!({"label": one.pointer, "value": significant(one.value, 5), "note": note})
     };
-    page.put("tiles", found.variables.iter().map(tile).collect::<Vec<_>>());
-    let figure = place.picture(PICTURE).map(|picture| {
-        json!({
-            "title": "The way to the best", "picture": picture,
-            "about": "Rings are designs that were computed, in their order and over each number; faint ones are beyond a limit. The large ring \
-                      is the best.",
-        })
-    });
-    page.put("figures", figure.into_iter().collect::<Vec<_>>());
     let alternatives = ranked(&found).into_iter().map(|one| {
         let told = [json!(one.name), json!(one.value)];
         Value::from([&told[..], &vec![Value::Null; 6]].concat())
@@ -95,16 +74,26 @@ pub fn data(place: &Place) -> Result<Page> {
             one.gain.filter(|_| one.reached)
         ])
     });
-    page.put(
-        "table",
-        json!({
+    let sought = if goal.largest { "largest" } else { "least" };
+    let command = found.command.word();
+    page.fill(json!({
+        "label": "The best between bounds",
+        "answer": format!("The {sought} {} of `slcbeam {command}` is {}{begin}; the case with the best numbers is {BEST}.",
+                   goal.figure, figure(found.value)),
+        "facts": facts, "tiles": found.variables.iter().map(tile).collect::<Vec<_>>(),
+        "figures": [{
+            "title": "The way to the best", "picture": place.picture(PICTURE),
+            "about": "Rings are designs that were computed, in their order and over each number; faint ones are beyond a limit. The large ring \
+                      is the best.",
+        }],
+        "table": {
             "title": "Numbers, limits and alternatives",
             "about": format!("In the unit that each key names; alternatives by {}{}. What a unit brings is what the figure gains where the bound or the limit is let go by one.", goal.figure, bracketed(&goal.figure)),
             "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
             "rows": numbers.chain(limits).chain(alternatives).collect::<Vec<_>>(), "file": CSV,
-        }),
-    );
-    page.put("command", format!("slcbeam {} {BEST}", found.command.word()));
+        },
+        "command": format!("slcbeam {command} {BEST}"),
+    }));
     Ok(page)
 }
 

@@ -86,14 +86,13 @@ pub fn data(place: &Place) -> Result<Page> {
     page.warnings.extend(notes);
     if place.path(CYCLE).is_file() {
         let cycle = place.result::<Cycle>(CYCLE)?.result;
-        page.put("label", "Steady cycle");
-        page.put("answer", cycles::answer(&cycle));
-        page.put("sections", cycles::of_cycle(&cycle));
-        page.put("command", format!("slcbeam periodic {CASE}"));
+        page.fill(json!({
+            "label": "Steady cycle", "answer": cycles::answer(&cycle), "sections": cycles::of_cycle(&cycle),
+            "command": format!("slcbeam periodic {CASE}"),
+        }));
     } else {
-        page.put("label", "Run");
-        page.put("answer", summary.as_ref().and_then(answer));
-        page.put("command", format!("slcbeam run {CASE}"));
+        let answer = summary.as_ref().and_then(answer);
+        page.fill(json!({"label": "Run", "answer": answer, "command": format!("slcbeam run {CASE}")}));
     }
     Ok(page)
 }
@@ -116,14 +115,12 @@ fn fill(page: &mut Page, summary: &Summary, history: &History) {
         Status::OutOfRange => ("left the model's range", "bad"),
         Status::Failed => ("failed", "bad"),
     };
-    page.put("status", json!({"word": word, "tone": tone, "reason": summary.reason}));
     page.warnings.clone_from(&summary.warnings);
-    page.put("facts", facts_line(summary));
-    page.put("tiles", tiles(summary));
-    page.put("ledger", energy_balance::of(summary, history));
-    page.put("effects", facts::effects(summary));
-    page.put("work", facts::work(summary));
-    page.put("remarks", remarks(summary));
+    page.fill(json!({
+        "status": {"word": word, "tone": tone, "reason": summary.reason}, "facts": facts_line(summary), "tiles": tiles(summary),
+        "ledger": energy_balance::of(summary, history), "effects": facts::effects(summary), "work": facts::work(summary),
+        "remarks": remarks(summary),
+    }));
 }
 
 /// One line under the title.

@@ -30,19 +30,8 @@ pub fn study(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Study>(study_files::JSON)?;
     let mut page = place.page(Kind::Study, &found.case, Some(&head));
     let measure = found.measure().map_or("", |measure| measure.name.as_str());
-    page.put("label", "What accuracy costs");
-    page.put("answer", capital(&study_files::sentence(&found)));
     page.warnings.clone_from(&found.notes);
-    page.put(
-        "facts",
-        vec![
-            counted(found.points.len() as u64, "setting"),
-            format!("{} spent", duration(found.spent)),
-            format!("judged by {measure}"),
-        ],
-    );
     let charts = study_files::picture(&found).and_then(|data| cost(&data));
-    page.put("charts", charts.into_iter().collect::<Vec<_>>());
     let row = |(k, point): (usize, &Point)| {
         let (trial, error) = (&point.trial, found.error(k));
         let setting = trial.setting;
@@ -63,18 +52,24 @@ pub fn study(place: &Place) -> Result<Page> {
         .iter()
         .enumerate()
         .filter(|(_, p)| p.trial.counters.steps > 0);
-    page.put(
-        "table",
-        json!({
+    page.fill(json!({
+        "label": "What accuracy costs", "answer": capital(&study_files::sentence(&found)),
+        "facts": [
+            counted(found.points.len() as u64, "setting"),
+            format!("{} spent", duration(found.spent)),
+            format!("judged by {measure}"),
+        ],
+        "charts": charts.into_iter().collect::<Vec<_>>(),
+        "table": {
             "title": "Every setting",
             "about": format!("The error is the largest difference of {measure} from the best reference, over its largest value. \
                       \"Judged\" says whether that reference is exact enough to tell."),
             "headings": ["cells a segment", "method", "tolerance", "unknowns", "steps", "least wall time [s]", "largest error",
                          "judged", "worth using"],
             "rows": ran.map(row).collect::<Vec<_>>(), "file": study_files::CSV,
-        }),
-    );
-    page.put("command", format!("slcbeam study {CASE}{}", options(&found.plan)));
+        },
+        "command": format!("slcbeam study {CASE}{}", options(&found.plan)),
+    }));
     Ok(page)
 }
 
@@ -188,17 +183,6 @@ fn options(plan: &Plan) -> String {
 pub fn effects(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
     let mut page = place.page(Kind::Effects, &found.case, Some(&head));
-    page.put("label", "What each effect does");
-    page.put("answer", effects_files::sentence(&found));
-    let compared = found.rows.iter().filter(|r| r.left_out.is_some()).count();
-    page.put(
-        "facts",
-        vec![
-            format!("{compared} effects left out in turn"),
-            format!("{} spent", duration(found.spent_s)),
-        ],
-    );
-    page.put("charts", vec![changes(&found)]);
     let row = |r: &Row| -> Value {
         let left_out = r.left_out.as_ref();
         let largest = left_out.and_then(|c| c.largest.as_ref());
@@ -213,20 +197,20 @@ pub fn effects(place: &Place) -> Result<Page> {
             r.reason.as_ref().unwrap_or(&r.number),
         ])
     };
-    page.put(
-        "table",
-        json!({
+    let compared = found.rows.iter().filter(|r| r.left_out.is_some()).count();
+    page.fill(json!({
+        "label": "What each effect does", "answer": effects_files::sentence(&found),
+        "facts": [format!("{compared} effects left out in turn"), format!("{} spent", duration(found.spent_s))],
+        "charts": [changes(&found)],
+        "table": {
             "title": "Every effect",
             "about": format!("\"Change\" is the largest relative change of any quantity when the effect is left out; work and time are \
                       those without it, over those of the full model (1 is the same). The integrator's own tolerance is {}.",
                       significant(found.rtol, 1)),
             "headings": ["effect", "verdict", "change", "of", "unknowns saved or added", "work", "time", "why"],
             "rows": found.rows.iter().map(row).collect::<Vec<_>>(), "file": effects_files::CSV,
-        }),
-    );
-    page.put(
-        "command",
-        format!("slcbeam effects {CASE} --budget {}s", found.plan.budget_s),
-    );
+        },
+        "command": format!("slcbeam effects {CASE} --budget {}s", found.plan.budget_s),
+    }));
     Ok(page)
 }
