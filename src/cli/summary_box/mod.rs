@@ -26,6 +26,12 @@ const LEAST_SHARE: f64 = 0.005;
 const BETWEEN: &str = "\u{a0}· ";
 /// Width of the names of entries.
 const NAME: usize = 11;
+/// Quantities whose largest values have bands and slopes, with their symbols.
+const SHOWN: [(Interest, &str); 3] = [
+    (Interest::TipU1, "u₁"),
+    (Interest::TipU3, "u₃"),
+    (Interest::MaxPressure, "p"),
+];
 
 /// How a row is painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,11 +143,6 @@ fn step(summary: &Summary) -> Option<String> {
 
 /// Between which values uncertain numbers leave the largest figures, beside their numerical errors.
 fn uncertain(summary: &Summary) -> Option<String> {
-    let shown = [
-        (Interest::TipU1, "u₁"),
-        (Interest::TipU3, "u₃"),
-        (Interest::MaxPressure, "p"),
-    ];
     let of = |(one, word): (Interest, &str)| {
         let value = get(summary, one)?.largest()?;
         let figures = ["extreme", "max_abs", "window_max_abs"];
@@ -150,7 +151,7 @@ fn uncertain(summary: &Summary) -> Option<String> {
         // a narrow box breaks between the ends
         Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))
     };
-    let shown: Vec<String> = shown.into_iter().filter_map(of).collect();
+    let shown: Vec<String> = SHOWN.into_iter().filter_map(of).collect();
     (!shown.is_empty()).then(|| format!("largest, 95 %: {}", shown.join(BETWEEN)))
 }
 
@@ -166,12 +167,7 @@ fn sensitivities(summary: &Summary) -> Option<String> {
                 .is_finite()
                 .then(|| format!("{word} {sign}{} %", significant(ratio, 3)))
         };
-        let shown = [
-            (Interest::TipU1, "u₁"),
-            (Interest::TipU3, "u₃"),
-            (Interest::MaxPressure, "p"),
-        ];
-        let shown: Vec<String> = shown
+        let shown: Vec<String> = SHOWN
             .into_iter()
             .filter_map(|(one, word)| relative(one, word))
             .collect();

@@ -173,6 +173,9 @@ impl Canvas {
 
     /// Words at a point.
     pub fn text(&mut self, at: (f64, f64), text: &str, words: Words) {
+        if text.is_empty() {
+            return;
+        }
         let anchor = match words.anchor {
             Anchor::Left => "start",
             Anchor::Centre => "middle",

@@ -2,8 +2,9 @@
 
 use slcbeam_section::picture::Picture;
 
-use super::canvas::{FAINT_INK, INK, Stroke, picture};
+use super::canvas::{FAINT_INK, INK, Stroke};
 use super::colour::{Colour, PALETTE};
+use super::picture::{self, Panel, PictureAxis, PictureSeries};
 
 /// Height of the cell [pt].
 const HEIGHT: f64 = 200.0;
@@ -30,29 +31,30 @@ pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
     let [along, high] = [0, 1].map(|k| cell.nodes_m.iter().map(|p| p[k].abs()).fold(0.0, f64::max));
     let largest = displacements.iter().map(|u| u[0].hypot(u[1])).fold(0.0, f64::max);
     let factor = round(SHOWN * 2.0 * high / largest)?;
-    let (scale, margin) = (HEIGHT / (2.0 * high), 1.2 * SHOWN * HEIGHT);
     let at = |k: usize, factor: f64| {
         let (p, u) = (cell.nodes_m[k], displacements[k]);
-        (
-            margin + scale * (along + p[0] + factor * u[0]),
-            margin + scale * (high - p[1] - factor * u[1]),
-        )
+        (p[0] + factor * u[0], p[1] + factor * u[1])
     };
-    let size = (2.0 * (margin + scale * along), 2.0 * margin + HEIGHT);
-    let svg = picture(size.0, size.1, |canvas| {
-        for (triangle, material) in cell.triangles.iter().zip(&cell.materials) {
-            let [a, b, c, ab, bc, ca] = triangle.map(|k| at(k, factor));
-            let sides = [a, ab, b, bc, c, ca, a];
-            canvas.polygon(&sides[..6], fill(*material));
-            canvas.line(&sides, SIDES);
-        }
-        for edge in &cell.outline {
-            canvas.line(&edge.map(|k| at(k, 0.0)), Stroke::solid(FAINT_INK, 0.5));
-        }
-        for edge in &cell.outline {
-            canvas.line(&edge.map(|k| at(k, factor)), Stroke::solid(INK, 1.2));
-        }
-    });
+    let mut series = vec![];
+    for (triangle, material) in cell.triangles.iter().zip(&cell.materials) {
+        let [a, b, c, ab, bc, ca] = triangle.map(|k| at(k, factor));
+        let sides = [a, ab, b, bc, c, ca, a];
+        series.push(PictureSeries::area(sides, fill(*material)));
+        series.push(PictureSeries::line(sides, SIDES));
+    }
+    for (factor, stroke) in [(0.0, Stroke::solid(FAINT_INK, 0.5)), (factor, Stroke::solid(INK, 1.2))] {
+        let edges = cell.outline.iter().map(|edge| edge.map(|k| at(k, factor)));
+        series.extend(edges.map(|edge| PictureSeries::line(edge, stroke)));
+    }
+    let margin = 2.4 * SHOWN * high;
+    let [x, y] = [along + margin, high + margin].map(|half| PictureAxis::default().between(-half, half));
+    let scale = HEIGHT / (2.0 * high);
+    let size = (2.0 * scale * (along + margin), 2.0 * scale * (high + margin));
+    let panel = Panel {
+        bare: true,
+        ..Panel::new(size, x, y, series)
+    };
+    let svg = picture::Picture::stacked(String::new(), "", [panel]).svg()?;
     Some(Deformed { factor, svg })
 }
 

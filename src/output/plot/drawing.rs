@@ -72,7 +72,10 @@ impl Picture {
         let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
         let before: Vec<f64> = (0..columns).map(|k| widest(&rows, k, Laid::before)).collect();
         let behind: Vec<f64> = (0..columns).map(|k| widest(&rows, k, Laid::behind)).collect();
-        let mut width = LEAST.max(width_of(&self.title, 18.0) + MARGIN);
+        let mut width = match self.title.is_empty() {
+            true => 0.0,
+            false => LEAST.max(width_of(&self.title, 18.0) + MARGIN),
+        };
         for row in &mut rows {
             let mut left = 0.0;
             for (k, laid) in row.iter_mut().enumerate() {
@@ -81,7 +84,7 @@ impl Picture {
             }
             width = width.max(left);
         }
-        let letters = ((width - 2.0 * MARGIN) / (0.5 * NORMAL)) as usize;
+        let letters = ((width - 2.0 * MARGIN) / (0.5 * NORMAL)).max(1.0) as usize;
         let about = textwrap::wrap(&self.about, letters);
         let mut top = match self.title.is_empty() {
             true => 0.0,
@@ -220,6 +223,7 @@ impl<'a> Laid<'a> {
     /// Room left of the frame.
     fn before(&self) -> f64 {
         match self.labelled[1] {
+            _ if self.panel.bare => 0.0,
             true => self.beside() + if self.name().is_empty() { 4.0 } else { 14.0 },
             false => MARGIN,
         }
@@ -231,6 +235,7 @@ impl<'a> Laid<'a> {
         let bar = self.panel.bar.as_ref().map_or(0.0, |_| BAR);
         let legend = names.fold(0.0, f64::max);
         bar + match self.panel.legend_beside && legend > 0.0 {
+            _ if self.panel.bare => 0.0,
             true => 18.0 + SAMPLE + legend + MARGIN,
             false => 24.0,
         }

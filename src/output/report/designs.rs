@@ -5,8 +5,7 @@ use serde_json::{Value, json};
 use super::{Found, Kind, MOST_ROWS, Page, Place, capital, pack};
 use crate::error::Result;
 use crate::output::folder::{CASE, REPORT};
-use crate::output::numbers::count;
-use crate::output::sweep::words::several;
+use crate::output::sweep::words::{kinds, several};
 use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, pictures, table, warnings};
 use crate::results::sweep::{Plan, Sweep};
 
@@ -27,20 +26,11 @@ pub fn data(place: &Place) -> Result<Page> {
     let found = about(&plan, &survey);
     let mut page = place.page(Kind::Designs, &plan.title(), Some(&head));
     page.warnings = warnings(&plan, &survey)?;
-    let kinds: Vec<String> = found
-        .statuses
-        .iter()
-        .map(|(status, n)| format!("{} {}", count(*n as u64), status.replace('_', " ")))
-        .collect();
+    let kinds = kinds(found.statuses.iter().map(|(status, n)| (&**status, n)));
     let missing = match found.missing {
         0 => String::new(),
         1 => " 1 design is missing; the same command goes on with it.".into(),
         n => format!(" {} are missing; the same command goes on with them.", several(n)),
-    };
-    let kinds = if kinds.is_empty() {
-        "none".into()
-    } else {
-        kinds.join(", ")
     };
     let varied: Vec<String> = plan
         .axes

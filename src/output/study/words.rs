@@ -25,29 +25,16 @@ pub fn sentence(study: &Study) -> String {
             continue;
         };
         let trial = &study.points[k].trial;
-        let of = if parts.is_empty() {
-            format!(" of {}", spoken(&measure.name))
-        } else {
-            String::new()
-        };
         if last == Some(k) {
             // The cheapest run of all is more accurate than asked: it answers the looser question, too.
             parts.pop();
-            let of = if parts.is_empty() {
-                format!(" of {}", spoken(&measure.name))
-            } else {
-                String::new()
-            };
-            parts.push(format!(
-                "{accuracy}{of} costs {}",
-                price(trial.wall_min_s, trial.setting, &schemes)
-            ));
-        } else {
-            parts.push(format!(
-                "{accuracy}{of} costs {}",
-                price(trial.wall_min_s, trial.setting, &schemes)
-            ));
         }
+        let of = match parts.is_empty() {
+            true => format!(" of {}", spoken(&measure.name)),
+            false => String::new(),
+        };
+        let price = price(trial.wall_min_s, trial.setting, &schemes);
+        parts.push(format!("{accuracy}{of} costs {price}"));
         last = Some(k);
     }
     if parts.is_empty() {

@@ -20,16 +20,7 @@ const TOLD: usize = 5;
 /// The journal cannot be read.
 pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
     let (plan, rows) = (&told.plan, told.rows);
-    let kinds: Vec<String> = survey
-        .statuses
-        .iter()
-        .map(|(status, n)| format!("{} {}", count(*n as u64), spoken(*status)))
-        .collect();
-    let kinds = if kinds.is_empty() {
-        "none".into()
-    } else {
-        kinds.join(", ")
-    };
+    let kinds = kinds(survey.statuses.iter().map(|(status, n)| (word(*status), n)));
     let shard = plan
         .shard
         .map_or(String::new(), |shard| format!(", shard {}", shard.words()));
@@ -96,9 +87,9 @@ pub fn several(count_of: usize) -> String {
     counted(count_of as u64, "design")
 }
 
-fn spoken(status: Status) -> &'static str {
-    match status {
-        Status::OutOfRange => "out of range",
-        other => word(other),
-    }
+/// How many designs there are of which status.
+pub fn kinds<'a>(statuses: impl Iterator<Item = (&'a str, &'a usize)>) -> String {
+    let kinds = statuses.map(|(status, n)| format!("{} {}", count(*n as u64), status.replace('_', " ")));
+    let kinds = kinds.collect::<Vec<_>>().join(", ");
+    if kinds.is_empty() { "none".into() } else { kinds }
 }
