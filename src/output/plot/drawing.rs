@@ -1,11 +1,10 @@
-//! Draws a picture as SVG: lays out its panels, then their grids, series, axes, legends and colour scales.
+//! Draws a picture as SVG: grids, series, axes, legends and colour scales of its panels.
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
 use super::colour::Colour;
-use super::extent;
 use super::labels::LabelRoom;
-use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries, SeriesKind};
-use super::ticks::Scale;
+use super::layout::{MARGIN, NORMAL, PlacedPanel, SAMPLE, SMALL, lay, width_of};
+use super::picture::{Glyph, Picture, PictureSeries, SeriesKind};
 
 const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
 const ZERO: Colour = Colour(0xa9, 0xaf, 0xb6);
@@ -15,93 +14,13 @@ const FRAME: Stroke = Stroke {
     dash: None,
 };
 const PAPER: Colour = Colour(0xff, 0xff, 0xff);
-/// Size of tick labels and legends [pt].
-const SMALL: f64 = 11.0;
-/// Size of axis names [pt].
-const NORMAL: f64 = 12.5;
-/// Width of a letter over the size of its text.
-const LETTER: f64 = 0.53;
-/// Least width of a sheet [pt].
-const LEAST: f64 = 560.0;
-/// Margin of a sheet [pt].
-const MARGIN: f64 = 16.0;
-/// Room of a colour scale [pt].
-const BAR: f64 = 96.0;
-/// Room of the sample of a legend [pt].
-const SAMPLE: f64 = 32.0;
-
-/// Estimated width of a text [pt].
-fn width_of(text: &str, size: f64) -> f64 {
-    let longest = text.lines().map(|line| line.chars().count()).max();
-    LETTER * size * longest.unwrap_or(0) as f64
-}
-
-/// A panel with its scales and its place on the sheet.
-struct Laid<'a> {
-    panel: &'a Panel,
-    x: Scale,
-    y: Scale,
-    /// True if labels and name of the axis are shown.
-    labelled: [bool; 2],
-    left: f64,
-    top: f64,
-    legend: Vec<Entry<'a>>,
-}
-
-/// An entry of a legend: its text and the series whose samples stand before it.
-struct Entry<'a> {
-    text: &'a str,
-    series: Vec<&'a PictureSeries>,
-    /// Offset from the frame's corner.
-    at: (f64, f64),
-}
-
-/// Largest room of the panels above each other.
-fn widest<'a>(rows: &[Vec<Laid<'a>>], column: usize, of: fn(&Laid<'a>) -> f64) -> f64 {
-    rows.iter()
-        .filter_map(|row| row.get(column))
-        .map(of)
-        .fold(0.0, f64::max)
-}
 
 impl Picture {
     /// The SVG text; `None` if there is nothing to draw.
     pub fn svg(&self) -> Option<String> {
-        let mut rows = self.laid();
-        rows.iter().flatten().next()?;
-        let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-        let before: Vec<f64> = (0..columns).map(|k| widest(&rows, k, Laid::before)).collect();
-        let behind: Vec<f64> = (0..columns).map(|k| widest(&rows, k, Laid::behind)).collect();
-        let mut width = match self.title.is_empty() {
-            true => 0.0,
-            false => LEAST.max(width_of(&self.title, 18.0) + MARGIN),
-        };
-        for row in &mut rows {
-            let mut left = 0.0;
-            for (k, laid) in row.iter_mut().enumerate() {
-                laid.left = left + before[k];
-                left = laid.left + laid.panel.size.0 + behind[k];
-            }
-            width = width.max(left);
-        }
-        let letters = ((width - 2.0 * MARGIN) / (0.5 * NORMAL)).max(1.0) as usize;
-        let about = textwrap::wrap(&self.about, letters);
-        let mut top = match self.title.is_empty() {
-            true => 0.0,
-            false => 46.0 + 16.0 * about.len() as f64,
-        };
-        let mut named = vec![];
-        for row in &mut rows {
-            let above = row.iter_mut().map(|laid| laid.entries(&mut named, width));
-            let above = above.fold(0.0, f64::max);
-            let below = row.iter().map(Laid::below).fold(0.0, f64::max);
-            let height = row.iter().map(|laid| laid.panel.size.1).fold(0.0, f64::max);
-            for laid in row.iter_mut() {
-                laid.top = top + above;
-            }
-            top += above + height + below;
-        }
-        Some(picture(width.ceil(), top.ceil(), |canvas| {
+        self.rows.iter().flatten().next()?;
+        let (rows, (width, height), about) = lay(self);
+        Some(picture(width, height, |canvas| {
             let bold = Words {
                 bold: true,
                 ..Words::new(16.0, Anchor::Left)
@@ -114,185 +33,9 @@ impl Picture {
             rows.iter().flatten().for_each(|laid| laid.draw(canvas));
         }))
     }
-
-    /// Panels with their scales; those above each other share the range of an axis that has one name and unit.
-    fn laid(&self) -> Vec<Vec<Laid<'_>>> {
-        let alike = |k: usize, x: &PictureAxis| {
-            let all = self.rows.iter().filter_map(move |row| row.get(k));
-            let of = |panel: &Panel| (panel.x.name.clone(), panel.x.unit.clone());
-            let own = (x.name.clone(), x.unit.clone());
-            all.filter(move |panel| of(panel) == own)
-                .flat_map(|panel| panel.series.iter().flat_map(|one| one.points()).map(|p| p.0))
-        };
-        let mut rows: Vec<Vec<Laid>> = self.rows.iter().map(|_| vec![]).collect();
-        for (row, panels) in rows.iter_mut().zip(&self.rows) {
-            for (k, panel) in panels.iter().enumerate() {
-                let values = panel.series.iter().flat_map(|one| one.points()).map(|p| p.1);
-                row.push(Laid {
-                    panel,
-                    x: panel.x.scale(alike(k, &panel.x)),
-                    y: panel.y.scale(values),
-                    labelled: [true; 2],
-                    left: 0.0,
-                    top: 0.0,
-                    legend: vec![],
-                });
-            }
-        }
-        let same = |a: (&Scale, &PictureAxis), b: (&Scale, &PictureAxis)| a.0 == b.0 && a.1.name == b.1.name;
-        for r in 0..rows.len() {
-            for k in 0..rows[r].len() {
-                let (row, below) = (&rows[r], rows.get(r + 1).and_then(|row| row.get(k)));
-                let own = &row[k];
-                let x = below.is_none_or(|next| !same((&own.x, &own.panel.x), (&next.x, &next.panel.x)));
-                let before = k.checked_sub(1).map(|before| &row[before]);
-                let y = before.is_none_or(|next| !same((&own.y, &own.panel.y), (&next.y, &next.panel.y)));
-                rows[r][k].labelled = [x, y].map(|shown| shown && !own.panel.bare);
-            }
-        }
-        rows
-    }
 }
 
-impl PictureAxis {
-    /// Least and largest value shown of a linear axis with these values.
-    pub fn limits(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
-        let scale = self.scale(values);
-        (scale.lo, scale.hi)
-    }
-
-    /// The scale of values.
-    fn scale(&self, values: impl Iterator<Item = f64>) -> Scale {
-        let unit = if self.unit.is_empty() { "1" } else { &self.unit };
-        let values = values.chain(self.with.iter().copied());
-        let shown = |x: f64| if self.logarithmic { x.log10() } else { x };
-        let (found, margin) = match self.range {
-            Some((lo, hi)) => (Some((shown(lo), shown(hi))), 0.0),
-            None => (extent(values.map(shown)), 1.0),
-        };
-        let mut scale = match (self.logarithmic, found) {
-            (true, Some((lo, hi))) => {
-                let margin = margin * (0.04 * (hi - lo)).max(0.05);
-                let multiples: &[f64] = if hi - lo > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-                Scale::logarithmic((lo, hi), margin, multiples, (unit, self.ticks))
-            }
-            (false, Some((lo, hi))) if self.range.is_some() => Scale::exact(lo, hi, unit, self.ticks),
-            _ => Scale::around(found, self.floor, unit, self.ticks),
-        };
-        if let Some(labels) = &self.labels {
-            let within = labels.iter().map(|(at, text)| (shown(*at), text.clone()));
-            scale.ticks = within
-                .filter(|(at, _)| (0.0..=1.0).contains(&scale.share(*at)))
-                .collect();
-            scale.unit.clear();
-        }
-        scale
-    }
-}
-
-impl<'a> Laid<'a> {
-    fn right(&self) -> f64 {
-        self.left + self.panel.size.0
-    }
-
-    fn bottom(&self) -> f64 {
-        self.top + self.panel.size.1
-    }
-
-    /// Point on the sheet of shares of both axes.
-    fn place(&self, x: f64, y: f64) -> (f64, f64) {
-        (self.left + self.panel.size.0 * x, self.bottom() - self.panel.size.1 * y)
-    }
-
-    /// Point on the sheet of a pair of values.
-    fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
-        self.place(self.x.share_of(x), self.y.share_of(y))
-    }
-
-    /// Distance of the name of the vertical axis from the frame.
-    fn beside(&self) -> f64 {
-        let labels = self.y.ticks.iter().map(|(_, label)| width_of(label, SMALL));
-        (20.0 + 1.1 * labels.fold(0.0, f64::max)).max(52.0)
-    }
-
-    /// Name of the vertical axis with its unit.
-    fn name(&self) -> String {
-        self.y.named(&self.panel.y.name).trim().into()
-    }
-
-    /// Room left of the frame.
-    fn before(&self) -> f64 {
-        match self.labelled[1] {
-            _ if self.panel.bare => 0.0,
-            true => self.beside() + if self.name().is_empty() { 4.0 } else { 14.0 },
-            false => MARGIN,
-        }
-    }
-
-    /// Room right of the frame.
-    fn behind(&self) -> f64 {
-        let names = self.panel.series.iter().map(|one| width_of(&one.name, SMALL));
-        let bar = self.panel.bar.as_ref().map_or(0.0, |_| BAR);
-        let legend = names.fold(0.0, f64::max);
-        bar + match self.panel.legend_beside && legend > 0.0 {
-            _ if self.panel.bare => 0.0,
-            true => 18.0 + SAMPLE + legend + MARGIN,
-            false => 24.0,
-        }
-    }
-
-    /// Room below the frame.
-    fn below(&self) -> f64 {
-        let groups = if self.panel.x.groups.is_empty() { 0.0 } else { 16.0 };
-        match (self.panel.bare, self.labelled[0]) {
-            (true, _) => 0.0,
-            (false, true) => 48.0 + groups,
-            (false, false) => 14.0,
-        }
-    }
-
-    /// Places the entries of the legend, without those of earlier panels; the room above the frame.
-    fn entries(&mut self, named: &mut Vec<&'a str>, width: f64) -> f64 {
-        let new = |one: &&PictureSeries| !one.name.is_empty() && !named.contains(&&*one.name);
-        for one in self.panel.series.iter().filter(new) {
-            match self.legend.iter_mut().find(|entry| entry.text == one.name) {
-                Some(entry) => entry.series.push(one),
-                None => self.legend.push(Entry {
-                    text: &one.name,
-                    series: vec![one],
-                    at: (0.0, 0.0),
-                }),
-            }
-        }
-        named.extend(self.legend.iter().map(|entry| entry.text));
-        let heading: f64 = if self.panel.heading.0.is_empty() { 0.0 } else { 20.0 };
-        let bar = self.panel.bar.as_ref().map_or(0.0, |_| 20.0);
-        let besides = if self.panel.bar.is_some() { BAR } else { 0.0 };
-        if self.panel.legend_beside {
-            let mut down = 8.0_f64;
-            for entry in &mut self.legend {
-                entry.at = (self.panel.size.0 + besides + 18.0, down);
-                down += 5.0 + 14.0 * entry.text.lines().count() as f64;
-            }
-            return heading.max(bar);
-        }
-        let (mut across, mut lines) = (0.0, 0.0);
-        for entry in &mut self.legend {
-            let wide = SAMPLE + width_of(entry.text, SMALL) + 14.0;
-            if across > 0.0 && self.left + across + wide > width {
-                (across, lines) = (0.0, lines + 1.0);
-            }
-            entry.at = (across, 18.0 * lines);
-            across += wide;
-        }
-        let rows = if self.legend.is_empty() { 0.0 } else { lines + 1.0 };
-        let above = (heading + 18.0 * rows + if rows > 0.0 { 4.0 } else { 0.0 }).max(bar);
-        for entry in &mut self.legend {
-            entry.at.1 += 9.0 - above;
-        }
-        above
-    }
-
+impl PlacedPanel<'_> {
     fn draw(&self, canvas: &mut Canvas) {
         let (series, bare) = (&self.panel.series, self.panel.bare);
         let below = |one: &&PictureSeries| matches!(one.kind, SeriesKind::Area(..));

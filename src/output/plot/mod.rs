@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! picture     a picture as data: panels, axes, series, colour scales
-//! drawing     the only place that lays out and draws one
+//! layout      where its panels, labels and legends stand
+//! drawing     the only place that draws one
 //! canvas      lines, rectangles and words, in points, as SVG
 //! colour      scales of colours, and a palette every eye can tell apart
 //! ticks       round numbers along an axis, with SI prefixes
@@ -20,6 +21,7 @@ pub mod canvas;
 pub mod colour;
 mod drawing;
 mod labels;
+mod layout;
 pub mod picture;
 mod ticks;
 

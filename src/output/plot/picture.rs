@@ -2,6 +2,8 @@
 
 use super::canvas::{Anchor, INK, Stroke, Words};
 use super::colour::Colour;
+use super::extent;
+use super::ticks::Scale;
 
 /// A picture.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -178,6 +180,42 @@ impl PictureAxis {
     /// The same, logarithmic if asked for.
     pub fn logarithmic(self, logarithmic: bool) -> Self {
         Self { logarithmic, ..self }
+    }
+}
+
+impl PictureAxis {
+    /// Least and largest value shown of a linear axis with these values.
+    pub fn limits(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        let scale = self.scale(values);
+        (scale.lo, scale.hi)
+    }
+
+    /// The scale of values.
+    pub fn scale(&self, values: impl Iterator<Item = f64>) -> Scale {
+        let unit = if self.unit.is_empty() { "1" } else { &self.unit };
+        let values = values.chain(self.with.iter().copied());
+        let shown = |x: f64| if self.logarithmic { x.log10() } else { x };
+        let (found, margin) = match self.range {
+            Some((lo, hi)) => (Some((shown(lo), shown(hi))), 0.0),
+            None => (extent(values.map(shown)), 1.0),
+        };
+        let mut scale = match (self.logarithmic, found) {
+            (true, Some((lo, hi))) => {
+                let margin = margin * (0.04 * (hi - lo)).max(0.05);
+                let multiples: &[f64] = if hi - lo > 3.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+                Scale::logarithmic((lo, hi), margin, multiples, (unit, self.ticks))
+            }
+            (false, Some((lo, hi))) if self.range.is_some() => Scale::exact(lo, hi, unit, self.ticks),
+            _ => Scale::around(found, self.floor, unit, self.ticks),
+        };
+        if let Some(labels) = &self.labels {
+            let within = labels.iter().map(|(at, text)| (shown(*at), text.clone()));
+            scale.ticks = within
+                .filter(|(at, _)| (0.0..=1.0).contains(&scale.share(*at)))
+                .collect();
+            scale.unit.clear();
+        }
+        scale
     }
 }
 
