@@ -199,6 +199,7 @@ impl PictureAxis {
             Some((lo, hi)) => (Some((shown(lo), shown(hi))), 0.0),
             None => (extent(values.map(shown)), 1.0),
         };
+        let found = found.filter(|(lo, hi)| lo.is_finite() && hi.is_finite());
         let mut scale = match (self.logarithmic, found) {
             (true, Some((lo, hi))) => {
                 let margin = margin * (0.04 * (hi - lo)).max(0.05);

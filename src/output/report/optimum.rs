@@ -1,6 +1,6 @@
 //! The page of a best.
 
-use serde_json::{Value, json};
+use serde_json::json;
 
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
@@ -44,10 +44,9 @@ pub fn data(place: &Place) -> Result<Page> {
         };
         json!({"label": one.pointer, "value": significant(one.value, 5), "note": note})
     };
-    let alternatives = ranked(&found).into_iter().map(|one| {
-        let told = [json!(one.name), json!(one.value)];
-        Value::from([&told[..], &vec![Value::Null; 6]].concat())
-    });
+    let alternatives = ranked(&found);
+    let alternatives = alternatives.iter();
+    let alternatives = alternatives.map(|one| json!([one.name, one.value, null, null, null, null, null, null]));
     let numbers = found.variables.iter().map(|one| {
         json!([
             one.pointer,
@@ -63,16 +62,8 @@ pub fn data(place: &Place) -> Result<Page> {
     let limits = found.limits.iter().map(|one| {
         let bound = quantity(one.limit.bound, unit(&one.limit.figure), 6);
         let words = format!("{} {} {bound}", one.limit.figure, one.limit.sign());
-        json!([
-            words,
-            one.value,
-            null,
-            null,
-            null,
-            null,
-            null,
-            one.gain.filter(|_| one.reached)
-        ])
+        let gain = one.gain.filter(|_| one.reached);
+        json!([words, one.value, null, null, null, null, null, gain])
     });
     let sought = if goal.largest { "largest" } else { "least" };
     let command = found.command.word();
