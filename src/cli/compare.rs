@@ -150,21 +150,17 @@ fn several(found: &Beside) -> String {
         let _ = writeln!(text, "\n{remark}");
     }
     let letters: Vec<String> = (1..=found.comparisons.len()).map(letter).collect();
-    let mut lines = vec![
-        [
-            vec!["root mean square of the difference from A, over that of the larger".to_string()],
-            letters.clone(),
-        ]
-        .concat(),
-    ];
+    let letters = letters.join(" | ");
+    let mut lines: Vec<Vec<String>> = vec![];
     for (name, norms) in found.norms() {
         let cells = norms
             .iter()
             .map(|x| x.map_or_else(|| "-".into(), |x| format!("{x:.1e}")));
         lines.push([name].into_iter().chain(cells).collect());
     }
-    text += &format!("\n{}", aligned(&lines, &[0]));
-    let mut lines = vec![[vec!["figure".to_string(), "A".into()], letters].concat()];
+    let headings = format!("<root mean square of the difference from A, over that of the larger | {letters}");
+    text += &format!("\n{}", columns::table(&headings, lines));
+    let mut lines: Vec<Vec<String>> = vec![];
     for figure in found.figures() {
         let cells = figure.others.iter().map(|one| match one {
             Some((value, Some(change))) => format!("{} ({})", significant(*value, 5), signed_percent(*change)),
@@ -176,7 +172,7 @@ fn several(found: &Beside) -> String {
     }
     text += &format!(
         "\n{}in brackets: the difference from A over the size of A's figure\n",
-        aligned(&lines, &[0])
+        columns::table(&format!("<figure | A | {letters}"), lines)
     );
     text
 }
@@ -273,8 +269,7 @@ fn table(found: &Comparison) -> String {
         ]
     });
     let names = found.figures.iter().map(|f| &f.name);
-    let largest = "|B − A| over the quantity's largest";
-    let headings = ["figure", "A", "B", "(B − A)/|A|", largest, "within error bars"];
+    let headings = "<figure | A | B | (B − A)/|A| | |B − A| over the quantity's largest | within error bars";
     text += &beside(headings, names, figures);
     let costs = found.costs.iter().map(|c| {
         let ratio = if c.a > 0.0 {
@@ -284,7 +279,7 @@ fn table(found: &Comparison) -> String {
         };
         [number(c.a), number(c.b), ratio]
     });
-    text += &beside(["cost", "A", "B", "B / A"], found.costs.iter().map(|c| &c.name), costs);
+    text += &beside("<cost | A | B | B / A", found.costs.iter().map(|c| &c.name), costs);
     if !found.left_out.is_empty() {
         let _ = writeln!(text, "\nnot compared\n  {}", found.left_out.join("\n  "));
     }
@@ -306,15 +301,13 @@ fn signed_percent(share: f64) -> String {
 }
 
 /// Numbers of both, a name a line.
-fn beside<'a, const N: usize, const M: usize>(
-    headings: [&str; N],
+fn beside<'a, const M: usize>(
+    headings: &str,
     names: impl Iterator<Item = &'a String>,
     numbers: impl Iterator<Item = [String; M]>,
 ) -> String {
-    let line = |(name, numbers): (&String, [String; M])| [name.clone()].into_iter().chain(numbers).collect();
-    let mut lines: Vec<Vec<String>> = vec![headings.iter().map(ToString::to_string).collect()];
-    lines.extend(names.zip(numbers).map(line));
-    format!("\n{}", aligned(&lines, &[0]))
+    let line = |(name, numbers): (&String, [String; M])| [std::slice::from_ref(name), &numbers[..]].concat();
+    format!("\n{}", columns::table(headings, names.zip(numbers).map(line)))
 }
 
 fn line(d: &Difference) -> [String; 6] {

@@ -13,10 +13,10 @@ pub fn warnings(all: &[String]) -> String {
     all.iter().map(|warning| format!("warning: {warning}\n")).collect()
 }
 
-/// A table under its headings, which have bars between: `name | <words`. Cells stand on the right, on the left in columns whose heading
+/// A table under its headings, which have ` | ` between: `name | <words`. Cells stand on the right, on the left in columns whose heading
 /// begins with `<`.
 pub fn table<L: AsRef<[String]>>(headings: &str, rows: impl IntoIterator<Item = L>) -> String {
-    let headings: Vec<&str> = headings.split('|').map(str::trim).collect();
+    let headings: Vec<&str> = headings.split(" | ").map(str::trim).collect();
     let left: Vec<usize> = (0..headings.len()).filter(|k| headings[*k].starts_with('<')).collect();
     let mut lines = vec![
         headings

@@ -144,7 +144,11 @@ const DEEPEST: f64 = 160.0;
 /// Amplitude and phase over frequency.
 fn picture(found: &Response) -> Option<Picture> {
     let band = (*found.frequency_hz.first()?, *found.frequency_hz.last()?);
-    let x = || PictureAxis::new("frequency", "Hz", 8).between(band.0, band.1).logarithmic(true);
+    let x = || {
+        PictureAxis::new("frequency", "Hz", 8)
+            .between(band.0, band.1)
+            .logarithmic(true)
+    };
     let decibel = |curve: &Curve| -> Vec<f64> {
         let parts = curve.real.iter().zip(&curve.imag);
         parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
@@ -169,7 +173,12 @@ fn picture(found: &Response) -> Option<Picture> {
     }
     let panels = [
         Panel::new((620.0, 250.0), x(), PictureAxis::new("amplitude", "dB", 6), amplitudes),
-        Panel::new((620.0, 150.0), x(), PictureAxis::new("phase", "°", 5).between(-180.0, 180.0), phases),
+        Panel::new(
+            (620.0, 150.0),
+            x(),
+            PictureAxis::new("phase", "°", 5).between(-180.0, 180.0),
+            phases,
+        ),
     ];
     Some(Picture::stacked(
         format!("{} · frequency response", found.case),

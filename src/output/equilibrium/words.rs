@@ -3,7 +3,7 @@
 use super::Found;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
-use crate::output::columns::{aligned, warnings};
+use crate::output::columns::{self, aligned, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
 use crate::run::equilibrium::State;
 use crate::run::record::Column;
@@ -144,18 +144,17 @@ fn table(found: &Found) -> String {
     let every = states.len().div_ceil(ROWS).max(1);
     let mut shown: Vec<&State> = states.iter().rev().step_by(every).collect();
     shown.reverse();
-    let headings = columns.iter().map(|(_, name)| name.clone());
-    let mut lines = vec![headings.chain(["unstable".into()]).collect::<Vec<_>>()];
-    lines.extend(shown.iter().map(|state| {
+    let headings: String = columns.iter().map(|(_, name)| format!("{name} | ")).collect();
+    let lines = shown.iter().map(|state| {
         let unstable = state.stability.as_ref().map_or("–".into(), |s| s.unstable.to_string());
         let numbers = columns.iter().map(|(k, _)| {
             let value = state.row[*k];
             let counts = *k == 0 || value.abs() > floor(found, found.columns[*k].unit);
             significant(if counts { value } else { 0.0 }, 6)
         });
-        numbers.chain([unstable]).collect()
-    }));
-    aligned(&lines, &[])
+        numbers.chain([unstable]).collect::<Vec<_>>()
+    });
+    columns::table(&format!("{headings}unstable"), lines)
 }
 
 /// Whether it is the pressure of one bladder.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 pub use energies::{energies, headings as energy_headings, shown as energy_shown};
 
-use super::columns::aligned;
+use super::columns::{aligned, table};
 use super::folder::ResultFolder;
 use super::numbers::{counted, quantity, shortest, significant};
 use super::plot::canvas::Stroke;
@@ -70,30 +70,25 @@ pub fn csv(found: &Along) -> String {
 /// The table, and what it took.
 pub fn words(found: &Along) -> String {
     let harvested = energies::harvested(found);
-    let mut headings = ["", &found.pointer, "largest |u1| [m]", "largest pressure [Pa]"]
-        .map(String::from)
-        .to_vec();
-    headings.extend(energy_headings(&harvested));
-    headings.push("verdict".into());
-    let left = [1, headings.len() - 1];
-    let mut lines = vec![headings];
-    lines.extend(found.members.iter().map(|m| {
+    let energies: String = energy_headings(&harvested)
+        .map(|heading| format!(" | {heading}"))
+        .collect();
+    let headings = format!(
+        " | <{} | largest |u1| [m] | largest pressure [Pa]{energies} | <verdict",
+        found.pointer
+    );
+    let lines = found.members.iter().map(|m| {
         let number = |one| largest(m, one).map_or("–".into(), |x| significant(x, 4));
-        let numbers = [
-            significant(m.value, 4),
-            number(Interest::TipU1),
-            number(Interest::MaxPressure),
-        ];
-        let words = m.floquet.verdict.words.clone();
-        let energies = energy_shown(m, &harvested);
-        [String::new()]
-            .into_iter()
-            .chain(numbers)
-            .chain(energies)
-            .chain([words])
-            .collect()
-    }));
-    let mut text = aligned(&lines, &left);
+        let (tip, pressure) = (number(Interest::TipU1), number(Interest::MaxPressure));
+        let numbers = vec![String::new(), significant(m.value, 4), tip, pressure];
+        [
+            numbers,
+            energy_shown(m, &harvested),
+            vec![m.floquet.verdict.words.clone()],
+        ]
+        .concat()
+    });
+    let mut text = table(&headings, lines);
     if !harvested.is_empty() {
         text += "  ±: how far the balance of energy is open beside a figure; what meshes do to it, `slcbeam periodic` tells of each value\n";
     }

@@ -1,7 +1,7 @@
 //! Loads from pressures in words.
 
 use crate::error;
-use crate::output::columns::aligned;
+use crate::output::columns::table as table_of;
 use crate::output::numbers::{count, counted, significant, trimmed};
 use crate::results::sense::{BandKind, Banded, NoiseFrom, Sensed, Unknown};
 use crate::study::sense::basis::Basis;
@@ -20,16 +20,15 @@ pub fn words(found: &Sensed) -> String {
             text += &format!("\n{doubts}");
         }
         let (headings, rows) = table(found);
-        let mut lines = vec![headings];
         // of a curve some instants from its start to its end, of measurements by themselves the first
         let every = match found.over_time {
             Some(_) => rows.len().div_ceil(ROWS),
             None => 1,
         };
         let all = rows.len();
-        lines.extend(rows.into_iter().step_by(every.max(1)).take(ROWS));
-        let more = all + 1 - lines.len();
-        text += &format!("\n{}", aligned(&lines, &[0]));
+        let lines: Vec<_> = rows.into_iter().step_by(every.max(1)).take(ROWS).collect();
+        let more = all - lines.len();
+        text += &format!("\n{}", table_of(&format!("<{}", headings.join(" | ")), lines));
         match more {
             0 => {}
             _ => text += &format!("{} in sense.csv\n", counted(more as u64, "more row")),
@@ -307,10 +306,12 @@ pub fn list(bladders: &[i64]) -> String {
 
 /// The best bladders to measure.
 fn sensors(found: &Sensed) -> String {
-    let mut lines = vec![vec!["sensors".to_owned()]];
-    lines[0].extend(found.amplitudes.iter().map(|a| format!("{} [{}]", a.name, a.unit)));
-    lines[0].push("bladders".into());
-    let last = lines[0].len() - 1;
+    let errors: String = found
+        .amplitudes
+        .iter()
+        .map(|a| format!(" | {} [{}]", a.name, a.unit))
+        .collect();
+    let mut lines = vec![];
     for one in found.choice.iter().take(ROWS) {
         let mut line = vec![one.bladders.len().to_string()];
         line.extend(
@@ -328,7 +329,7 @@ fn sensors(found: &Sensed) -> String {
     format!(
         "the best bladders to measure, and the standard errors of the loads for a noise of {} Pa\n{}{more}",
         significant(found.choice_noise_pa, 3),
-        aligned(&lines, &[last])
+        table_of(&format!("sensors{errors} | <bladders"), lines)
     )
 }
 
