@@ -18,18 +18,6 @@ pub struct Written {
     pub tables: Vec<(String, String)>,
 }
 
-impl Written {
-    /// Adds tables of another case that this one does not have.
-    pub fn with_tables(mut self, tables: Vec<(String, String)>) -> Self {
-        for table in tables {
-            if self.tables.iter().all(|(name, _)| *name != table.0) {
-                self.tables.push(table);
-            }
-        }
-        self
-    }
-}
-
 /// Times and values.
 type Points = (Vec<f64>, Vec<f64>);
 

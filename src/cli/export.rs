@@ -26,6 +26,9 @@ pub struct ExportArguments {
     /// Write the state-space model of small motions of a case, matrices A, B, C and D, to this file: .npz or .json
     #[arg(long, value_name = "FILE", requires = "input", requires = "output", conflicts_with_all = ["format", "times", "every", "out"], value_parser = super::line::output_path())]
     pub state_space: Option<PathBuf>,
+    /// Change a value of the case first; repeatable
+    #[arg(long = "set", value_name = "POINTER=JSON", requires = "state_space")]
+    pub sets: Vec<String>,
     /// Its input, as that of `response`
     #[arg(long, value_name = "POINTER", requires = "state_space")]
     pub input: Option<String>,
@@ -125,7 +128,7 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
 const MOST_STATES: usize = 4000;
 
 fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<ExitCode> {
-    let case = case::load(&asked.dir, &[])?;
+    let case = case::load(&asked.dir, &asked.sets)?;
     let response = Response::new(&case, input, &asked.output, asked.at)?;
     if response.about.y.len() > MOST_STATES {
         return Err(Error::Usage(format!(
@@ -145,10 +148,10 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
     )?;
     let states = model.b.len();
     if asked.json {
-        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "accelerates": model.accelerates});
+        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate});
         super::print(&format!("{told:#}\n"))?;
     } else {
-        let of = if model.accelerates { "second rate of " } else { "" };
+        let of = ["", "rate of ", "second rate of "][model.input_rate.min(2)];
         super::print(&format!(
             "{}, input {of}{}, outputs {}\n{}\n",
             counted(states as u64, "state"),

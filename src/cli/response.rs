@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
 use super::{size, terminal};
+use crate::error::numbers::error_percent;
 use crate::error::{Code, Error, Result};
 use crate::output::kind::Kind;
 use crate::output::report;
@@ -46,6 +47,8 @@ pub struct ResponseArguments {
     pub json: bool,
 }
 
+/// Median error of a response that is warned of.
+const LARGE: f64 = 0.05;
 /// Frequencies at most.
 const MOST: usize = 100_000;
 
@@ -76,9 +79,9 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
 
 fn request(asked: &ResponseArguments) -> Result<Request> {
     let usage = |what: String| Err(Error::Usage(what));
-    if !(asked.from > 0.0 && asked.from < asked.to && asked.to.is_finite()) {
+    if !(asked.from > 0.0 && asked.from <= asked.to && asked.to.is_finite()) {
         return usage(format!(
-            "--from {} --to {}: two frequencies [Hz] are wanted, the first above 0 and below the second",
+            "--from {} --to {}: two frequencies [Hz] are wanted, the first above 0 and not above the second",
             asked.from, asked.to
         ));
     }
@@ -88,9 +91,15 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
             asked.points
         ));
     }
+    let mut outputs: Vec<String> = vec![];
+    for name in &asked.output {
+        if !outputs.contains(name) {
+            outputs.push(name.clone());
+        }
+    }
     Ok(Request {
         input: asked.input.clone(),
-        outputs: asked.output.clone(),
+        outputs,
         at: asked.at,
         band: [asked.from, asked.to],
         points: asked.points,
@@ -121,7 +130,7 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
             .iter()
             .map(|why| Code::ErrorEstimate.warning(format!("not known: {why}"))),
     );
-    Ok(Response {
+    let mut told = Response {
         case: case.into(),
         input: found.response.input.clone(),
         state: match request.at {
@@ -135,7 +144,18 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
         further: curves.collect(),
         poles: found.poles.iter().map(pole).collect(),
         warnings,
-    })
+    };
+    let coarse = |curve: &Curve| {
+        let [median, _] = curve.errors().filter(|[median, _]| *median > LARGE)?;
+        Some(Code::ErrorEstimate.warning(format!(
+            "error of {} by the mesh: {} in the median over frequencies. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to.",
+            curve.output,
+            error_percent(median)
+        )))
+    };
+    let coarse: Vec<String> = told.curves().filter_map(coarse).collect();
+    told.warnings.extend(coarse);
+    Ok(told)
 }
 
 fn curve(curve: &response::Curve) -> Curve {

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::columns::{aligned, cells};
+use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
 use super::plot::canvas::Stroke;
@@ -63,42 +63,31 @@ pub fn words(found: &Response) -> String {
         significant(*found.frequency_hz.last().unwrap_or(&0.0), 4),
         counted(found.frequency_hz.len() as u64, "sample")
     );
-    let mut lines =
-        vec![cells::<7>(" | output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio").map(String::from)];
+    let mut rows = vec![];
     for curve in found.curves() {
-        lines.extend(curve.peaks.iter().map(|peak| row(curve, peak)));
+        rows.extend(curve.peaks.iter().map(|peak| row(curve, peak)));
         if curve.peaks.is_empty() {
-            let largest = curve
-                .real
-                .iter()
-                .zip(&curve.imag)
-                .map(|(re, im)| re.hypot(*im))
-                .fold(0.0, f64::max);
-            let none = [
-                String::new(),
-                curve.output.clone(),
-                "none".into(),
-                format!("below {}", significant(largest, 4)),
-            ];
-            lines.push(std::array::from_fn(|k| none.get(k).cloned().unwrap_or_default()));
+            let cells = ["", &curve.output, "none", "", "", "", ""];
+            rows.push(cells.map(String::from));
         }
     }
-    text += &aligned(&lines, &[1]);
+    text += &table(
+        " | <output | peak [Hz] | amplitude | [dB] | phase [°] | damping ratio",
+        rows,
+    );
+    text.push('\n');
     for curve in found.curves() {
-        if let Some([median, largest]) = errors(curve) {
+        if let Some([median, largest]) = curve.errors() {
             let [median, largest] = [median, largest].map(error_percent);
             let _ = writeln!(
                 text,
-                "\nerror of {} by the mesh: {median} of the amplitude in the median, {largest} of the largest amplitude at most",
+                "error of {} by the mesh: {median} in the median over frequencies; at most {largest} of the largest amplitude",
                 curve.output
             );
         }
     }
     let _ = writeln!(text, "{} in the band", counted(found.poles.len() as u64, "pole"));
-    for warning in &found.warnings {
-        let _ = writeln!(text, "warning: {warning}");
-    }
-    text
+    text + &warnings(&found.warnings)
 }
 
 fn row(curve: &Curve, peak: &Peak) -> [String; 7] {
@@ -111,20 +100,6 @@ fn row(curve: &Curve, peak: &Peak) -> [String; 7] {
         format!("{:.1}", peak.phase_deg),
         peak.damping_ratio.map_or(String::new(), |ratio| significant(ratio, 4)),
     ]
-}
-
-/// Median error of a curve relative to its amplitude, and its largest error relative to the largest amplitude.
-fn errors(curve: &Curve) -> Option<[f64; 2]> {
-    let sizes = || curve.real.iter().zip(&curve.imag).map(|(re, im)| re.hypot(*im));
-    let mut relative: Vec<f64> = curve
-        .error
-        .iter()
-        .zip(sizes())
-        .map(|(error, size)| error / size)
-        .collect();
-    relative.sort_by(f64::total_cmp);
-    let largest = curve.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
-    Some([*relative.get(relative.len() / 2)?, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
 }
 
 /// Writes the files into a folder.
@@ -171,14 +146,14 @@ fn picture(found: &Response) -> Option<Picture> {
         }
         phases.push(PictureSeries::line(phase, stroke));
     }
+    let quarters = [-180.0, -90.0, 0.0, 90.0, 180.0].map(|angle| (angle, format!("{angle}").replace('-', "−")));
+    let phase_axis = PictureAxis {
+        labels: Some(quarters.to_vec()),
+        ..PictureAxis::new("phase [°]", "", 5).between(-180.0, 180.0)
+    };
     let panels = [
         Panel::new((620.0, 250.0), x(), PictureAxis::new("amplitude", "dB", 6), amplitudes),
-        Panel::new(
-            (620.0, 150.0),
-            x(),
-            PictureAxis::new("phase", "°", 5).between(-180.0, 180.0),
-            phases,
-        ),
+        Panel::new((620.0, 150.0), x(), phase_axis, phases),
     ];
     Some(Picture::stacked(
         format!("{} · frequency response", found.case),

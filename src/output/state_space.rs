@@ -17,8 +17,8 @@ struct Named<'a> {
     case: &'a str,
     /// Signal of the case.
     input: &'a str,
-    /// `second rate` where the input of the model is the second rate of the signal.
-    input_is: &'a str,
+    /// Rate of the signal that is the input of the model: 0, 1 or 2.
+    input_rate: usize,
     outputs: Vec<String>,
     states: &'a [String],
     at_s: f64,
@@ -42,7 +42,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
             let named = Named {
                 case,
                 input,
-                input_is: if model.accelerates { "second rate" } else { "value" },
+                input_rate: model.input_rate,
                 outputs,
                 states: &model.states,
                 at_s,
@@ -67,7 +67,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
     put_whole(path, |file| file.write_all(&bytes))
 }
 
-/// `A`, `B`, `C`, `D`, `x0`, `u0`, `z0`.
+/// `A`, `B`, `C`, `D`, `input_rate`, `x0`, `u0`, `z0`.
 fn arrays(model: &StateSpace) -> io::Result<Vec<u8>> {
     let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
     let [n, outputs] = [model.b.len() as u64, model.d.len() as u64];
@@ -76,6 +76,7 @@ fn arrays(model: &StateSpace) -> io::Result<Vec<u8>> {
     write_array(&mut npz, "B", &[n, 1], model.b.clone())?;
     write_array(&mut npz, "C", &[outputs, n], all(&model.c))?;
     write_array(&mut npz, "D", &[outputs, 1], model.d.clone())?;
+    write_array(&mut npz, "input_rate", &[1], [model.input_rate as f64])?;
     write_array(&mut npz, "x0", &[n], model.x0.clone())?;
     write_array(&mut npz, "u0", &[1], [model.u0])?;
     write_array(&mut npz, "z0", &[outputs], model.z0.clone())?;

@@ -59,6 +59,22 @@ pub struct Curve {
     pub peaks: Vec<Peak>,
 }
 
+impl Curve {
+    /// Median over frequencies of the relative error, and the largest error over the largest amplitude.
+    pub fn errors(&self) -> Option<[f64; 2]> {
+        let sizes = || self.real.iter().zip(&self.imag).map(|(re, im)| re.hypot(*im));
+        let mut relative: Vec<f64> = self
+            .error
+            .iter()
+            .zip(sizes())
+            .map(|(error, size)| error / size)
+            .collect();
+        relative.sort_by(f64::total_cmp);
+        let largest = self.error.iter().copied().reduce(f64::max)? / sizes().fold(0.0, f64::max);
+        Some([*relative.get(relative.len() / 2)?, largest]).filter(|both| both.iter().all(|e| e.is_finite()))
+    }
+}
+
 /// A local maximum of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {

@@ -13,6 +13,7 @@
 
 use nalgebra::Complex;
 
+use crate::case::schema::{Choice, Effect, Effects};
 use crate::case::{self, Case};
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::System;
@@ -23,19 +24,19 @@ use crate::error::numbers::counted;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::functions::Signal;
 use crate::functions::signals::Polynomial;
-use crate::model::Model;
+use crate::model::effects::EffectSet;
+use crate::model::{Model, Network};
 use crate::run::modes::{Linearised, at_equilibrium, linearise};
 use crate::run::record::Column;
 use crate::spectral::{Factors, SpectralError};
 
-/// Change of the scaled residual by which an input is differentiated.
-const STEP: f64 = 1e-4;
+/// Changes of the scaled residual over which an input is differentiated: the longer one where both agree to [`ALIKE`].
+const STEPS: [f64; 2] = [1e-4, 1e-8];
+const ALIKE: f64 = 1e-6;
 /// Change of a scaled unknown by which outputs are differentiated.
 const OF_OUTPUTS: f64 = 1e-5;
 /// Change of an opening, which lies between 0 and 1.
 const OF_OPENINGS: f64 = 1e-5;
-/// Number that marks the signal of the input: too small to act.
-const MARK: f64 = 1e-300;
 
 /// A scaled linear response from one input to outputs.
 pub struct Response {
@@ -162,7 +163,7 @@ impl Frequencies<'_> {
 fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
     let all = case::controls(case);
     let below = format!("{input}/signal");
-    let Some((pointer, ..)) = all.iter().find(|(at, ..)| *at == input || *at == below) else {
+    let Some((pointer, _, signal)) = all.iter().find(|(at, ..)| *at == input || *at == below) else {
         let known = || all.iter().map(|(at, ..)| at.as_str());
         let meant = case::nearest(input, known()).map_or_else(String::new, |near| format!("; nearest is {near}"));
         let listed = known().collect::<Vec<_>>().join(", ");
@@ -172,11 +173,28 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
         }));
     };
     let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
-    let own = resolved.pointer(pointer).cloned().unwrap_or_default();
-    let set = format!("{pointer}={}", serde_json::json!({"sum": [own, MARK]}));
+    let own = serde_json::to_value(signal).unwrap_or_default();
+    let set = format!("{pointer}={}", serde_json::json!({"product": [own, 1.0]}));
     let path = &case.source.path;
     let base = path.parent().unwrap_or(path);
-    Ok((case::parse(&resolved.to_string(), path, base, &[set])?, pointer.clone()))
+    let marked = case::parse(&resolved.to_string(), path, base, &[set])?;
+    Ok((with_memory(marked)?, pointer.clone()))
+}
+
+/// The case with unsteady friction of tubes, which a search for modes leaves out unless it is named: a response needs no search among the
+/// decays of its memory.
+fn with_memory(case: Case) -> Result<Case> {
+    let memory = Effect::UnsteadyFriction;
+    let mut choices = case.effects.choices();
+    let there = EffectSet::whole(&case, Network::of(&case)?.as_ref()).has(memory);
+    if choices.of(memory) != Choice::Auto || !there {
+        return Ok(case);
+    }
+    choices.set(memory, Choice::On);
+    Ok(Case {
+        effects: Effects::Chosen(choices),
+        ..case
+    })
 }
 
 /// Everything that has a response of first order: motion of the tip, pressures, flows, forces, probes.
@@ -239,6 +257,8 @@ struct Instant<'a> {
 impl<'a> Instant<'a> {
     fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
         let dae = &mut about.dae;
+        // all signals are held: at 0 a polynomial of the input has its value without rounding
+        dae.enter_smooth_interval(0.0);
         let system = dae.system();
         let probed = probes::columns(system).count();
         let rows = [
@@ -246,7 +266,7 @@ impl<'a> Instant<'a> {
             Row::new(vec![], [stations::columns(system, false).len(), 0]),
         ];
         Self {
-            at: about.at,
+            at: 0.0,
             yp: vec![0.0; about.y.len()],
             y: about.y.clone(),
             integrals: vec![0.0; dae.integrals()],
@@ -258,13 +278,12 @@ impl<'a> Instant<'a> {
         }
     }
 
-    /// Puts the input at `value + x (t - at)^k/k!`.
+    /// Puts the input at `value + x t^k/k!`.
     fn put(&mut self, k: usize, x: f64) {
-        let at = self.at;
         let coefficients = match k {
             0 => vec![self.value + x],
-            1 => vec![self.value - x * at, x],
-            _ => vec![self.value + 0.5 * x * at * at, -x * at, 0.5 * x],
+            1 => vec![self.value, x],
+            _ => vec![self.value, 0.0, 0.5 * x],
         };
         let places = self.places.clone();
         self.dae
@@ -298,34 +317,64 @@ impl<'a> Instant<'a> {
     /// Derivatives of `read` by the input and its first two rates.
     fn derivatives(&mut self, read: fn(&mut Self) -> Vec<f64>) -> [Vec<f64>; 3] {
         [0, 1, 2].map(|k| {
-            let step = self.step(k);
-            let mut at = |x: f64| {
-                self.put(k, x);
-                read(self)
+            let found = match self.opens {
+                true => self.one_sided(k, read),
+                false => self.central(k, read),
             };
-            let all = [0.0, 1.0, -1.0, 2.0].map(|x| at(step * x));
             self.put(0, 0.0);
-            let of = |i: usize| match self.opens {
-                // towards the middle of its range, to second order
-                true => (4.0 * all[1][i] - 3.0 * all[0][i] - all[3][i]) / (2.0 * step),
-                false => (all[1][i] - all[2][i]) / (2.0 * step),
-            };
-            (0..all[0].len()).map(of).collect()
+            found
         })
     }
 
-    /// Step over which the input, or a rate of it, is differentiated.
-    fn step(&mut self, k: usize) -> f64 {
-        if self.opens {
-            return if self.value > 0.5 { -OF_OPENINGS } else { OF_OPENINGS };
+    /// Towards the middle of the range of an opening, to second order.
+    fn one_sided(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
+        let step = if self.value > 0.5 { -OF_OPENINGS } else { OF_OPENINGS };
+        let [none, one, two] = [0.0, step, 2.0 * step].map(|x| {
+            self.put(k, x);
+            read(self)
+        });
+        let all = none.iter().zip(&one).zip(&two);
+        all.map(|((none, one), two)| (4.0 * one - 3.0 * none - two) / (2.0 * step))
+            .collect()
+    }
+
+    /// Central differences. A law with a kink in its slope, as of a check valve at rest, has an error of first order in the step, which two
+    /// short steps remove.
+    fn central(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
+        let change = self.change(k);
+        let mut over = |step: f64| -> Vec<f64> {
+            let [before, after] = [-step, step].map(|x| {
+                self.put(k, x);
+                read(self)
+            });
+            before
+                .iter()
+                .zip(&after)
+                .map(|(before, after)| (after - before) / (2.0 * step))
+                .collect()
+        };
+        if change == 0.0 {
+            return over(1.0);
         }
-        let mut at = |x: f64| {
+        let [long, short] = STEPS.map(|step| over(step / change));
+        let largest = long.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if long.iter().zip(&short).all(|(a, b)| (a - b).abs() <= ALIKE * largest) {
+            return long;
+        }
+        let half = over(0.5 * STEPS[1] / change);
+        half.iter()
+            .zip(&short)
+            .map(|(half, whole)| 2.0 * half - whole)
+            .collect()
+    }
+
+    /// Largest change of the scaled residual by a unit of the input, or of a rate of it.
+    fn change(&mut self, k: usize) -> f64 {
+        let [none, one] = [0.0, 1.0].map(|x| {
             self.put(k, x);
             self.residual()
-        };
-        let [none, one] = [0.0, 1.0].map(&mut at);
-        let changed = none.iter().zip(&one).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-        if changed > 0.0 { STEP / changed } else { 1.0 }
+        });
+        none.iter().zip(&one).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
     }
 
     fn derivatives_of_residual(&mut self) -> [Vec<f64>; 3] {

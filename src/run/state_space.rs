@@ -7,7 +7,7 @@
 //! d' = M d + N u        z = C d + D u
 //! ```
 //!
-//! Where the rates of an input matter, as of an end that is moved, the input of the model is u'', and u and u' are two further states.
+//! Where rates of an input matter, as of an end that is moved or of a volume, the input of the model is the highest of them, and the lower ones are further states.
 
 use super::response::Response;
 use crate::error::{At, Code, Error, Result, SolverError};
@@ -29,8 +29,8 @@ pub struct StateSpace {
     pub d: Vec<f64>,
     /// Names of the states, with units.
     pub states: Vec<String>,
-    /// True if the input is the second rate of the signal.
-    pub accelerates: bool,
+    /// Rate of the signal that is the input: 0 its value, 1 or 2.
+    pub input_rate: usize,
     /// States at the operating point.
     pub x0: Vec<f64>,
     /// Value of the signal there.
@@ -120,37 +120,38 @@ impl StateSpace {
         }
         let mut states: Vec<String> = places.iter().map(|&k| about.system().layout.name(k)).collect();
         let mut x0: Vec<f64> = places.iter().map(|&k| about.y[k] * scales[k]).collect();
-        let accelerates = direct
-            .iter()
-            .flat_map(|d| &d[1..])
-            .chain(rates[1..].iter().flatten())
-            .any(|x| *x != 0.0);
-        let (b, d) = if accelerates {
-            // u and u' follow the states, u'' is the input
-            for (k, row) in a.iter_mut().enumerate() {
-                row.extend([rates[0][k], rates[1][k]]);
+        let used = |k: &usize| direct.iter().any(|d| d[*k] != 0.0) || rates[*k].iter().any(|x| *x != 0.0);
+        let input_rate = [2, 1].into_iter().find(used).unwrap_or(0);
+        // lower rates of the input follow the states
+        let mut b = std::mem::take(&mut rates[input_rate]);
+        for (k, row) in a.iter_mut().enumerate() {
+            row.extend(rates[..input_rate].iter().map(|rate| rate[k]));
+        }
+        c.iter_mut()
+            .zip(&direct)
+            .for_each(|(row, d)| row.extend(&d[..input_rate]));
+        let len = places.len() + input_rate;
+        for rate in 0..input_rate {
+            let mut row = vec![0.0; len];
+            if rate + 1 < input_rate {
+                row[places.len() + rate + 1] = 1.0;
             }
-            let len = places.len() + 2;
-            let mut of_u = vec![0.0; len];
-            of_u[len - 1] = 1.0;
-            a.push(of_u);
-            a.push(vec![0.0; len]);
-            c.iter_mut().zip(&direct).for_each(|(row, d)| row.extend([d[0], d[1]]));
-            states.extend([response.input.clone(), format!("rate of {}", response.input)]);
-            x0.extend([response.u0, 0.0]);
-            let mut b = std::mem::take(&mut rates[2]);
-            b.extend([0.0, 1.0]);
-            (b, direct.iter().map(|d| d[2]).collect())
-        } else {
-            (std::mem::take(&mut rates[0]), direct.iter().map(|d| d[0]).collect())
-        };
+            a.push(row);
+            b.push(if rate + 1 == input_rate { 1.0 } else { 0.0 });
+            states.push(match rate {
+                0 => response.input.clone(),
+                _ => format!("rate of {}", response.input),
+            });
+            x0.push(if rate == 0 { response.u0 } else { 0.0 });
+        }
+        let d = direct.iter().map(|d| d[input_rate]).collect();
         Ok(Self {
             a,
             b,
             c,
             d,
             states,
-            accelerates,
+            input_rate,
             x0,
             u0: response.u0,
             z0: response.z0.clone(),

@@ -6,6 +6,7 @@ use super::refine::has_cells_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::numerics::threads;
+use crate::run::modes;
 use crate::run::record::Column;
 use crate::run::response::Response;
 use crate::spectral::{self, Options};
@@ -19,6 +20,8 @@ const CHANGE: f64 = 0.1;
 /// Passes in which samples are added, and samples at most.
 const PASSES: usize = 5;
 const MOST: usize = 4000;
+/// Part of the largest amplitude below which a maximum is rounding error.
+const NOISE: f64 = 1e-6;
 /// Steps of the search for a peak: each leaves 0.62 of the interval.
 const STEPS: usize = 48;
 /// Error of the run's mesh in the difference to half, or twice, the cells of the beam; of twice the fluid cells.
@@ -106,7 +109,7 @@ pub struct Found {
 /// A frequency that is a pole.
 pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Found> {
     let mut unknown = vec![];
-    let (poles, growing) = poles(&response, request.band).unwrap_or_else(|why| {
+    let (poles, growing) = poles(case, request.at, &response, request.band).unwrap_or_else(|why| {
         unknown.push(format!("poles: {why}"));
         (vec![], 0)
     });
@@ -167,23 +170,47 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
     Ok(all)
 }
 
-/// Poles in a band, and how many have a positive real part.
-fn poles(response: &Response, [from, to]: [f64; 2]) -> std::result::Result<(Vec<Pole>, usize), String> {
+/// Poles in a band, and how many poles have a positive real part. They are found without the memory of unsteady friction, whose decays crowd
+/// the search, and corrected one by one.
+fn poles(
+    case: &Case,
+    at: Option<f64>,
+    response: &Response,
+    band: [f64; 2],
+) -> std::result::Result<(Vec<Pole>, usize), String> {
+    let words = |failure: spectral::SpectralError| failure.to_string();
+    let plain = match at {
+        Some(at) => modes::at_equilibrium(case, at),
+        None => modes::linearise(case, 0.0, None),
+    };
+    let plain = plain.map_err(|fault| fault.to_string())?;
     let tau = std::f64::consts::TAU;
-    let middle = Complex::new(0.0, tau * (from.max(1e-3 * to) * to).sqrt());
-    let found = spectral::nearest(&response.about.pencil(), middle, 2 * POLES, &Options::default());
-    let pairs = found.map_err(|failure| failure.to_string())?.pairs;
-    let within = |pair: &&spectral::Pair| pair.s.im > 0.0 && (tau * from..=tau * to).contains(&pair.s.im);
-    let mut poles: Vec<Pole> = pairs
-        .iter()
-        .filter(within)
-        .map(|pair| Pole {
-            s: pair.s,
-            bound: pair.error,
-        })
-        .collect();
-    poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+    let [from, to] = band.map(|hz| tau * hz);
+    let middle = Complex::new(0.0, (from.max(1e-3 * to) * to).sqrt());
+    let options = Options::default();
+    let pairs = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &options)
+        .map_err(words)?
+        .pairs;
     let growing = pairs.iter().filter(|pair| pair.s.re > pair.error).count();
+    let mut poles = vec![];
+    for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
+        let (mut s, mut bound) = (pair.s, pair.error);
+        if plain.y.len() != response.about.y.len() && (0.5 * from..=2.0 * to).contains(&s.im) {
+            let near = spectral::nearest(&response.about.pencil(), s, 4, &options)
+                .map_err(words)?
+                .pairs;
+            let found = near.iter().min_by(|a, b| (a.s - s).norm().total_cmp(&(b.s - s).norm()));
+            (s, bound) = found.map_or((s, bound), |found| (found.s, found.error));
+        }
+        // a damping within its error is none
+        if s.re.abs() <= bound {
+            s.re = 0.0;
+        }
+        poles.push(Pole { s, bound });
+    }
+    poles.retain(|pole| (from..=to).contains(&pole.s.im));
+    poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
+    poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
     Ok((poles, growing))
 }
 
@@ -204,11 +231,10 @@ fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f6
 /// Frequencies and values of all outputs: a grid, the neighbourhood of poles, and more where a response changes.
 fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<(Vec<f64>, Vec<Vec<Complex<f64>>>)> {
     let [from, to] = request.band;
-    let steps = (request.points - 1) as f64;
-    let mut frequencies: Vec<f64> = (0..request.points)
-        .map(|k| from * (to / from).powf(k as f64 / steps))
-        .collect();
-    frequencies[request.points - 1] = to;
+    let points = if from < to { request.points } else { 1 };
+    let steps = (points.max(2) - 1) as f64;
+    let mut frequencies: Vec<f64> = (0..points).map(|k| from * (to / from).powf(k as f64 / steps)).collect();
+    frequencies[points - 1] = to;
     for pole in poles {
         let beside = BESIDE.map(|by| (pole.s.im + by * pole.s.re.abs()) / std::f64::consts::TAU);
         frequencies.extend(beside.into_iter().filter(|f| (from..=to).contains(f)));
@@ -252,10 +278,11 @@ fn peaks(
 ) -> Result<Vec<Peak>> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut solver = response.solver()?;
+    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut all = vec![];
     for k in 1..frequencies.len().saturating_sub(1) {
         let [before, own, after] = [-1, 0, 1].map(|by: isize| values[k.wrapping_add_signed(by)].norm());
-        if !(own > before && own >= after) {
+        if !(own > before && own >= after) || own < NOISE * largest {
             continue;
         }
         let mut at = |f: f64| -> Result<Complex<f64>> { Ok(solver.at(f)?[place]) };
@@ -278,7 +305,7 @@ fn peaks(
         let nearest = poles
             .iter()
             .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
-        let damping = |pole: &Pole| -pole.s.re / pole.s.norm();
+        let damping = |pole: &Pole| 0.0 - pole.s.re / pole.s.norm();
         all.push(Peak {
             frequency_hz,
             value: at(frequency_hz)?,

@@ -205,7 +205,7 @@ class Answer(Mapping[str, Any]):
 
 
 #: Files that tell what a command found, those first that stand beside another.
-MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum")
+MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum", "response")
 
 
 def read(dir: str | os.PathLike[str]) -> Answer:

@@ -164,6 +164,26 @@ def modes(case: CaseLike, *, out: Place = None, progress: bool = False, **option
     return _do("modes", [case], out=out, progress=progress, options=options)
 
 
+def response(
+    case: CaseLike, input: str, output: str | Iterable[str], *, out: Place = None, progress: bool = False, **options: Any
+) -> Answer:
+    """The frequency response of small motions (``slcbeam response``).
+
+    :param input: JSON pointer of a signal of the case.
+    :param output: a quantity or a probe, or several.
+    :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ..
+    :returns: ``response.json``; ``tables["response"]``.
+
+    >>> import slcbeam
+    >>> found = slcbeam.response("wiring-3", "/ends/root/clamped/u3_m", "tip_u3", to=110)
+    >>> round(found["poles"][0]["frequency_hz"], 3)
+    12.165
+    """
+    outputs = [output] if isinstance(output, str) else list(output)
+    options = {"input": input, "output": outputs, **options}
+    return _do("response", [case], out=out, progress=progress, options=options)
+
+
 def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
     """The steady cycle of a periodically driven case, directly (``slcbeam periodic``).
 
