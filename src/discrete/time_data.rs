@@ -281,16 +281,21 @@ impl TimeData {
         }
         let first = self.clock.is_none();
         self.clock = Some(clock);
+        let still = system.model.still;
+        let jet = |s: &Signal| match s.jet(clock) {
+            moving if !still => moving,
+            Jet { value, .. } => Jet::constant(value),
+        };
         for (values, end) in self.ends.iter_mut().zip(&system.model.ends) {
             let motion = |m: &Translation| match m {
-                Translation::Displacement(s) => (Some(s.jet(clock)), 0.0),
+                Translation::Displacement(s) => (Some(jet(s)), 0.0),
                 Translation::Force(s) => (None, s.jet(clock).value),
             };
             (values.u[0], values.force.x) = motion(&end.transverse);
             (values.u[1], values.force.z) = motion(&end.axial);
             (values.slope, values.moment) = match &end.rotation {
-                Rotation::Slope(s) => (Some(s.jet(clock)), Jet::default()),
-                Rotation::Moment(s) => (None, s.jet(clock)),
+                Rotation::Slope(s) => (Some(jet(s)), Jet::default()),
+                Rotation::Moment(s) => (None, jet(s)),
             };
             values.follower = end
                 .follower
@@ -301,7 +306,7 @@ impl TimeData {
         self.point_forces(system, clock);
         let around = system.model.surroundings.as_ref();
         if let Some([x, z]) = around.and_then(|around| around.stream.as_ref()) {
-            let [x, z] = [x, z].map(|signal| signal.jet(clock));
+            let [x, z] = [x, z].map(jet);
             self.stream = Planar::new(x.value, z.value);
             self.stream_rate = Planar::new(x.rate, z.rate);
         }

@@ -242,6 +242,8 @@ pub struct Model {
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
     pub scales: Scales,
+    /// True where ends and streams have no velocity, however they depend on the time: for equilibria, whose time is the share of the loads.
+    pub still: bool,
 }
 
 impl Model {
@@ -332,6 +334,7 @@ impl Model {
             surroundings: Surroundings::of(case),
             wet,
             scales,
+            still: false,
         }
     }
 

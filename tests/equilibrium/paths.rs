@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use serde_json::json;
+use serde_json::{Value, json};
 use slcbeam::error::At;
 use slcbeam::run::equilibrium::{self, Kind, Options};
 
@@ -146,4 +146,37 @@ fn a_path_that_turns_back_beyond_the_range_ends() {
     assert_eq!(path.events.last().expect("an event").kind, Kind::LimitPoint);
     let shares = path.states.iter().map(|state| state.share);
     assert!(shares.clone().all(|share| share >= 0.0) && path.last().share < shares.fold(0.0, f64::max));
+}
+
+/// Source: nothing loads a beam whose root stands at 1 mm, so that its tip stands there too. Goal: whatever opposes a velocity is no load of a
+/// state at rest: dashpots, drag that goes with the square of the velocity, a fluid around the beam, damping of a wall.
+#[test]
+fn what_opposes_a_velocity_loads_nothing_at_rest() {
+    let held = |at: f64, key: &str, opposes: Value| {
+        let root = json!({"clamped": {"u1_m": {"ramp": {"to": at, "start_s": 0.1, "duration_s": 0.2}}}});
+        let mut case = json!({
+            "name": "held", "beam": {"length_m": 0.1, "height_m": 0.005, "width_m": 0.02, "young_modulus_pa": 1e6, "density_kg_m3": 1000},
+            "ends": {"root": root, "tip": "free"}, "mesh": {"segments": 10}, "time": {"end_s": 6.0}
+        });
+        match key {
+            "damping" => case["beam"][key] = opposes,
+            _ => case[key] = opposes,
+        }
+        let (_, of) = solved(&parse(&case));
+        of("tip_u1")
+    };
+    for (key, opposes) in [
+        ("attachments", json!([{"at": 0.65, "damping_x_n_s_m": 1.0}])),
+        ("damping", json!({"quadratic_drag_n_s2_m3": 1e4})),
+        ("surroundings", json!({"density_kg_m3": 998, "drag_coefficient": 2.0})),
+    ] {
+        let tip = held(1e-3, key, opposes);
+        assert!((tip - 1e-3).abs() < 1e-9, "{key}: {tip}");
+    }
+    let wall = |damping: f64| {
+        let wall = json!([{"point_m": [-0.003, 0], "normal": [1, 0], "stiffness_pa": 1e4, "smoothing_m": 5e-4, "damping_s_m": damping}]);
+        held(-4e-3, "contacts", wall)
+    };
+    let (damped, plain) = (wall(100.0), wall(0.0));
+    assert!(plain > -3.9e-3 && (damped - plain).abs() < 1e-9, "{damped} for {plain}");
 }

@@ -149,6 +149,7 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
             *flow = still;
         }
     }
+    model.still = true;
     model.relaxation.clear();
     let section = &mut model.section;
     (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
