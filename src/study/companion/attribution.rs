@@ -27,6 +27,8 @@ const LARGEST_WORK: u64 = 5_000_000;
 /// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
 const TRUSTED: f64 = 4.0;
 const TRUSTED_OF_ACCURACY: f64 = 2.0;
+/// Expected error over an accuracy, up to which its causes are measured again.
+const CLOSE: f64 = 3.0;
 /// Part of an accuracy below which a companion alone shows that it is reached.
 const SURE: f64 = 0.5;
 /// Most steps of a companion over those of the run where the tolerance decides on them.
@@ -75,8 +77,13 @@ pub(super) fn attribute(
     let cells = summary.companion.as_ref().map_or([0; 2], |companion| {
         [companion.cells_per_segment, companion.cells_per_bladder]
     });
-    let mut found = BTreeMap::new();
-    if accuracy.is_some() && !tolerance_binds(summary) {
+    if accuracy.is_some() {
+        let mut errors = std::mem::take(&mut summary.errors);
+        error::raise_to_balance(summary, &mut errors);
+        summary.errors = errors;
+    }
+    let mut found = accuracy.map_or_else(BTreeMap::new, |accuracy| believed(accuracy, summary, floors));
+    if accuracy.is_some() && !tolerance_binds(summary) && !found.contains_key(&Cause::TimeSteps) {
         changes(case, summary, cells, vec![Cause::TimeSteps], &mut found, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
         summary.errors = added(&of_companion, &found, f64::INFINITY);
@@ -136,6 +143,32 @@ fn least(accuracy: Option<&Accurate>) -> f64 {
     accuracy.map_or(NAMED_FROM, |accuracy| SURE * accuracy.asked)
 }
 
+/// Expected errors by cause that the companion does not contradict and that need not be known better.
+fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap<Cause, Figures> {
+    let (asked, mut expected) = (accuracy.asked, accuracy.expected.clone());
+    let with = |part: f64| {
+        let mut errors = summary.errors.clone();
+        let values = errors.values_mut().flat_map(BTreeMap::values_mut);
+        values.for_each(|error| *error *= part);
+        error::relative(summary, &added(&errors, &accuracy.expected, f64::INFINITY), floors)
+    };
+    let sums = with(0.0);
+    let sum = |name: &String| sums.get(name).copied().unwrap_or(0.0);
+    if with(1.0 / TRUSTED)
+        .iter()
+        .any(|(name, error)| *error > asked.max(sum(name)))
+    {
+        return BTreeMap::new();
+    }
+    // orders of refinements are expected to be low
+    expected.retain(|_, errors| {
+        let own = error::relative(summary, errors, floors);
+        let close = |name: &String| asked < sum(name) && sum(name) <= CLOSE * asked;
+        own.iter().all(|(name, error)| *error <= NAMED * asked || !close(name))
+    });
+    expected
+}
+
 /// Whether a looser tolerance makes the companion take larger steps, so that its figures tell of those of the run.
 fn tolerance_binds(summary: &Summary) -> bool {
     let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
@@ -164,7 +197,7 @@ fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, most: f64) -
     of_companion.iter().map(of).collect()
 }
 
-/// Errors of all figures by each cause, beside those that are found already. All effects that are left out are one cause where they make no large
+/// Errors of all figures by each cause that is not found already. All effects that are left out are one cause where they make no large
 /// error together.
 fn measure(
     case: &Case,
@@ -182,9 +215,8 @@ fn measure(
         [one] => Some(Cause::Effect(*one)),
         _ => Some(Cause::Effects),
     });
-    let settled = |cause: &Cause| Some((*cause, accuracy?.settled.get(&cause.pointer())?.clone()));
-    found.extend(first.iter().filter_map(settled));
-    first.retain(|cause| !found.contains_key(cause));
+    let by_effect = found.keys().any(|cause| matches!(cause, Cause::Effect(_)));
+    first.retain(|cause| !(found.contains_key(cause) || *cause == Cause::Effects && by_effect));
     let mut causes = changes(case, summary, cells, first, &mut found, recorder)?;
     let together = found.get(&Cause::Effects);
     let share = |errors: &Figures| {
@@ -193,12 +225,18 @@ fn measure(
             .fold(0.0, f64::max)
     };
     if effects.len() > 1
+        && !by_effect
         && together.is_none_or(|errors| share(errors) > NAMED * least(accuracy))
         && causes != Ended::Interrupted
     {
         found.remove(&Cause::Effects);
         let each = effects.into_iter().map(Cause::Effect).collect();
         causes = causes.max(changes(case, summary, cells, each, &mut found, recorder)?);
+    }
+    if accuracy.is_some()
+        && let Some(errors) = found.get_mut(&Cause::TimeSteps)
+    {
+        error::raise_to_balance(summary, errors);
     }
     Ok(match causes {
         Ended::All => Causes::Complete(found),

@@ -12,7 +12,7 @@ use crate::run::record::Recorder;
 use crate::run::summary::{Figures, Summary};
 
 /// Largest work of a run with one change, relative to that of the run.
-const LONGEST: u64 = 20;
+const LONGEST: u64 = 8;
 /// Factors by which the tolerance is tightened, one after the other, until the run takes so many times the steps.
 const TIGHTER: [f64; 3] = [1e1, 1e2, 1e4];
 const MORE_STEPS: f64 = 1.55;

@@ -43,9 +43,8 @@ use crate::run::checkpoint::Checkpoint;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress, Recorder, Unrecorded};
 use crate::run::summary::{CompanionRun, Figures, Status, Summary};
-use crate::study::counted::Floors;
 use attribution::attribute;
-use variant::Variant;
+use variant::{Cause, Variant};
 
 /// Largest work of a companion with all effects, relative to the work of the run; above it the companion has the effects of the run.
 const LARGEST_WORK: u64 = 3;
@@ -92,30 +91,32 @@ pub fn resume(case: &Case, system: System, from: &Checkpoint, recorder: &mut dyn
 pub struct Accurate {
     /// Relative error.
     pub asked: f64,
-    /// Causes whose errors are known to be small, by their pointer; they are not measured again.
-    settled: BTreeMap<String, Figures>,
+    /// Errors by their causes, as a coarser run leads to expect them.
+    expected: BTreeMap<Cause, Figures>,
 }
 
 impl Accurate {
-    /// Part of an accuracy below which a cause is not measured again on finer meshes.
-    const SETTLED: f64 = 0.1;
-
-    /// Nothing is settled yet.
+    /// Nothing is expected yet.
     pub fn new(asked: f64) -> Self {
         Self {
             asked,
-            settled: BTreeMap::new(),
+            expected: BTreeMap::new(),
         }
     }
 
-    /// Takes over from a coarser run which causes are settled.
-    pub fn settle(&mut self, coarser: &Summary, floors: &Floors) {
+    /// Expects of a finer case the errors that a coarser run was measured to have, less what its refinements take away.
+    pub fn expect(&mut self, coarser: &Summary, from: &Case, to: &Case) {
         let Some(companion) = &coarser.companion else { return };
-        for (pointer, errors) in error::relative_by_cause(coarser, floors) {
-            if errors.values().all(|error| *error <= Self::SETTLED * self.asked) {
-                self.settled.insert(pointer.into(), companion.causes[pointer].clone());
-            }
-        }
+        let effects = from.effects != to.effects;
+        let causes = companion.causes.iter().filter_map(|(pointer, errors)| {
+            let cause = Cause::at(pointer)?;
+            let left = cause.left(from, to);
+            let mut errors = errors.clone();
+            let values = errors.values_mut().flat_map(BTreeMap::values_mut);
+            values.for_each(|error| *error *= left);
+            (!(effects && Cause::is_effect(pointer))).then_some((cause, errors))
+        });
+        self.expected = causes.collect();
     }
 }
 
@@ -197,13 +198,7 @@ fn accompany(
                 summary.warnings.retain(|warning| !expected.contains(warning));
             }
             summary.companion = Some(companion);
-            if accuracy.is_some() {
-                error::raise_to_balance(summary);
-            }
             attribute(case, summary, accuracy, recorder)?;
-            if accuracy.is_some() {
-                error::raise_to_balance(summary);
-            }
         }
         Err(reason) => {
             let reason = match summary.status {

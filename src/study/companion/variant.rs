@@ -49,6 +49,43 @@ impl Cause {
         pointer.starts_with(&Self::Effects.pointer())
     }
 
+    /// The cause at a pointer.
+    pub fn at(pointer: &str) -> Option<Self> {
+        let settings = [Self::BeamMesh, Self::FluidMesh, Self::TimeSteps, Self::Effects];
+        let effects = Effect::CHOSEN.iter().map(|effect| Self::Effect(*effect));
+        settings
+            .into_iter()
+            .chain(effects)
+            .find(|cause| cause.pointer() == pointer)
+    }
+
+    /// Error after a refinement over that before: twice the cells of the beam or of a bladder, or a decade of the tolerance. Boundary layers in
+    /// bladders are of first order, and so are some figures of second on meshes of fourth order.
+    pub fn falls(self, case: &Case) -> f64 {
+        match self {
+            Self::BeamMesh if case.mesh.order() == 4 => 0.125,
+            Self::BeamMesh | Self::TimeSteps => 0.25,
+            Self::FluidMesh => 0.5,
+            Self::Effects | Self::Effect(_) => 1.0,
+        }
+    }
+
+    /// Refinements of this setting from one case to another.
+    fn refinements(self, from: &Case, to: &Case) -> f64 {
+        let doublings = |from: usize, to: usize| (to as f64 / from as f64).log2();
+        match self {
+            Self::BeamMesh => doublings(from.mesh.cells_per_segment, to.mesh.cells_per_segment),
+            Self::FluidMesh => doublings(from.mesh.cells_per_bladder, to.mesh.cells_per_bladder),
+            Self::TimeSteps => (from.solver.rtol / to.solver.rtol).log10(),
+            Self::Effects | Self::Effect(_) => 0.0,
+        }
+    }
+
+    /// Expected error of a refined case over that of the case.
+    pub fn left(self, from: &Case, to: &Case) -> f64 {
+        self.falls(from).powf(self.refinements(from, to))
+    }
+
     /// JSON pointer of the setting.
     pub fn pointer(self) -> String {
         match self {

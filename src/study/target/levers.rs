@@ -21,12 +21,6 @@ const FARTHEST: [i32; 3] = [2, 3, 3];
 /// Finest meshes, and the tightest tolerance in decades.
 const FINEST: [usize; 2] = [128, 64];
 const TIGHTEST: i32 = 10;
-/// Error after a decade of the tolerance over that before.
-const DECADE: f64 = 0.25;
-/// The same of twice the fluid cells: boundary layers at first order.
-const FLUID: f64 = 0.5;
-/// The same of twice the beam cells, at second and at fourth order: these meshes have quantities of second order too.
-const BEAM: [f64; 2] = [0.25, 0.125];
 /// Work after twice the beam cells, twice the fluid cells and a decade, over that before.
 const WORK: [f64; 3] = [3.0, 2.0, 1.8];
 /// Largest cost of a refinement, over that of the run before.
@@ -125,7 +119,7 @@ impl Levers {
 
     /// Doublings of the beam's cells, of a bladder's cells, and decades: the cheapest that should do, or those that come nearest.
     fn refinement(&self, case: &Case, wanted: &[[f64; 3]], budget: f64, decade: f64) -> [i32; 3] {
-        let ratios = [BEAM[usize::from(case.mesh.order() == 4)], FLUID, DECADE];
+        let ratios = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps].map(|cause| cause.falls(case));
         let left = |finer: [i32; 3]| {
             let of = |parts: &[f64; 3]| (0..3).map(|k| parts[k] * ratios[k].powi(finer[k])).sum::<f64>();
             most(wanted.iter().map(of).collect::<Vec<_>>().iter()) / (FILL * self.asked)

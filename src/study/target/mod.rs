@@ -71,7 +71,7 @@ pub fn reach(case: &Case, asked: f64, from: Option<&Setting>, record: Record) ->
         let Some(next) = levers.next(&case, &outcome.summary, &floors)? else {
             break;
         };
-        wanted.settle(&outcome.summary, &floors);
+        wanted.expect(&outcome.summary, &case, &next.case);
         let finer = record(&next.case, &wanted)?;
         if finer.summary.status != Status::Finished {
             cut_short = finer.summary.reason;
