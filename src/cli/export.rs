@@ -7,8 +7,10 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
+use super::response::cautions;
 use crate::case;
-use crate::error::{Error, Result};
+use crate::error::{Code, Error, Result};
+use crate::output::columns::warnings;
 use crate::output::export::{self, Written, instants, tables, vtk};
 use crate::output::folder::CASE;
 use crate::output::kind::Kind;
@@ -16,7 +18,8 @@ use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
 use crate::run::record::Column;
 use crate::run::response::Response;
-use crate::run::state_space::StateSpace;
+use crate::run::response::state_space::StateSpace;
+use crate::study::response::growing;
 
 /// `export`.
 #[derive(Debug, Args)]
@@ -29,6 +32,9 @@ pub struct ExportArguments {
     /// Change a value of the case first; repeatable
     #[arg(long = "set", value_name = "POINTER=JSON", requires = "state_space")]
     pub sets: Vec<String>,
+    /// Write over a file that is there
+    #[arg(long, requires = "state_space")]
+    pub force: bool,
     /// Its input, as that of `response`
     #[arg(long, value_name = "POINTER", requires = "state_space")]
     pub input: Option<String>,
@@ -128,6 +134,12 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
 const MOST_STATES: usize = 4000;
 
 fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<ExitCode> {
+    if file.exists() && !asked.force {
+        return Err(Error::Usage(format!(
+            "--state-space {}: the file is there already and is not written over; give another one, or --force",
+            file.display()
+        )));
+    }
     let case = case::load(&asked.dir, &asked.sets)?;
     let response = Response::new(&case, input, &asked.output, asked.at)?;
     if response.about.y.len() > MOST_STATES {
@@ -147,17 +159,22 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         &model,
     )?;
     let states = model.b.len();
+    let found = match growing(&case, asked.at) {
+        Ok(growing) => cautions(growing, response.about.moving()),
+        Err(why) => vec![Code::ErrorEstimate.warning(format!("not known: poles: {why}"))],
+    };
     if asked.json {
-        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate});
+        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
         super::print(&format!("{told:#}\n"))?;
     } else {
         let of = ["", "rate of ", "second rate of "][model.input_rate.min(2)];
         super::print(&format!(
-            "{}, input {of}{}, outputs {}\n{}\n",
+            "{}, input {of}{}, outputs {}\n{}\n{}",
             counted(states as u64, "state"),
             response.input,
             outputs.join(", "),
-            file.display()
+            file.display(),
+            warnings(&found)
         ))?;
     }
     Ok(ExitCode::SUCCESS)

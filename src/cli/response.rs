@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
 use super::{size, terminal};
-use crate::error::numbers::error_percent;
+use crate::error::numbers::{counted, error_percent};
 use crate::error::{Code, Error, Result};
 use crate::output::kind::Kind;
 use crate::output::report;
@@ -112,18 +112,7 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
         return Err(Error::Usage("--output: at least one is wanted".into()));
     };
     let about = &found.response.about;
-    let mut warnings: Vec<String> = vec![];
-    if found.growing > 0 {
-        warnings.push(Code::Growth.warning(format!(
-            "{} of the poles found have a positive real part: small motions grow, and the response is not that of a steady state",
-            found.growing
-        )));
-    }
-    if about.moving() {
-        warnings.push(Code::NotAtRest.warning(
-            "the state is no equilibrium: it would change at once. Use --at SECONDS for the equilibrium under the loads of an instant.",
-        ));
-    }
+    let mut warnings = cautions(found.growing, about.moving());
     warnings.extend(
         found
             .unknown
@@ -156,6 +145,23 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
     let coarse: Vec<String> = told.curves().filter_map(coarse).collect();
     told.warnings.extend(coarse);
     Ok(told)
+}
+
+/// Warnings of a state about which motions are not small for long.
+pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
+    let mut warnings = vec![];
+    if growing > 0 {
+        warnings.push(Code::Growth.warning(format!(
+            "{} with a positive real part: small motions grow, and the response is not that of a steady state",
+            counted(growing as u64, "pole")
+        )));
+    }
+    if moving {
+        warnings.push(Code::NotAtRest.warning(
+            "the state is no equilibrium: it would change at once. Use --at SECONDS for the equilibrium under the loads of an instant.",
+        ));
+    }
+    warnings
 }
 
 fn curve(curve: &response::Curve) -> Curve {

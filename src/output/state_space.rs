@@ -9,7 +9,7 @@ use zip::ZipWriter;
 use super::arrays::write_array;
 use super::folder::{fault, put_whole};
 use crate::error::{Error, Result};
-use crate::run::state_space::StateSpace;
+use crate::run::response::state_space::StateSpace;
 
 /// A model with what names it.
 #[derive(Serialize)]

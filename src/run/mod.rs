@@ -30,7 +30,6 @@ pub mod response;
 pub mod schedule;
 pub mod sensitivity;
 pub mod slow;
-pub mod state_space;
 pub mod step_response;
 pub mod stop;
 pub mod stretch;

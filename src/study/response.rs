@@ -5,6 +5,7 @@ use nalgebra::Complex;
 use super::refine::has_cells_along_bladders;
 use crate::case::Case;
 use crate::error::{Error, Result};
+use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::run::modes;
 use crate::run::record::Column;
@@ -22,6 +23,8 @@ const PASSES: usize = 5;
 const MOST: usize = 4000;
 /// Part of the largest amplitude below which a maximum is rounding error.
 const NOISE: f64 = 1e-6;
+/// Part of an amplitude by which a maximum stands out.
+const FLAT: f64 = 1e-9;
 /// Steps of the search for a peak: each leaves 0.62 of the interval.
 const STEPS: usize = 48;
 /// Error of the run's mesh in the difference to half, or twice, the cells of the beam; of twice the fluid cells.
@@ -109,10 +112,19 @@ pub struct Found {
 /// A frequency that is a pole.
 pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Found> {
     let mut unknown = vec![];
-    let (poles, growing) = poles(case, request.at, &response, request.band).unwrap_or_else(|why| {
+    let found = poles(case, request.at, &response, request.band);
+    let Poles { poles, growing, whole } = found.unwrap_or_else(|why| {
         unknown.push(format!("poles: {why}"));
-        (vec![], 0)
+        Poles {
+            whole: true,
+            ..Poles::default()
+        }
     });
+    if !whole {
+        unknown.push(format!(
+            "poles beyond the {POLES} lowest pairs in the band, beside which peaks may be missed"
+        ));
+    }
     let (frequencies, values) = sample(&response, request, &poles)?;
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
@@ -172,18 +184,9 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
 
 /// Poles in a band, and how many poles have a positive real part. They are found without the memory of unsteady friction, whose decays crowd
 /// the search, and corrected one by one.
-fn poles(
-    case: &Case,
-    at: Option<f64>,
-    response: &Response,
-    band: [f64; 2],
-) -> std::result::Result<(Vec<Pole>, usize), String> {
+fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
-    let plain = match at {
-        Some(at) => modes::at_equilibrium(case, at),
-        None => modes::linearise(case, 0.0, None),
-    };
-    let plain = plain.map_err(|fault| fault.to_string())?;
+    let plain = plain(case, at)?;
     let tau = std::f64::consts::TAU;
     let [from, to] = band.map(|hz| tau * hz);
     let middle = Complex::new(0.0, (from.max(1e-3 * to) * to).sqrt());
@@ -191,7 +194,9 @@ fn poles(
     let pairs = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &options)
         .map_err(words)?
         .pairs;
-    let growing = pairs.iter().filter(|pair| pair.s.re > pair.error).count();
+    let farthest = pairs.iter().map(|pair| (pair.s - middle).norm()).fold(0.0, f64::max);
+    let whole = pairs.len() < 2 * POLES || farthest >= (to - middle.im).max(middle.im - from);
+    let growing = growing_among(&pairs);
     let mut poles = vec![];
     for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
         let (mut s, mut bound) = (pair.s, pair.error);
@@ -211,7 +216,42 @@ fn poles(
     poles.retain(|pole| (from..=to).contains(&pole.s.im));
     poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
     poles.dedup_by(|a, b| (a.s - b.s).norm() < 1e-9 * b.s.norm());
-    Ok((poles, growing))
+    Ok(Poles { poles, growing, whole })
+}
+
+/// Poles in a band.
+#[derive(Default)]
+struct Poles {
+    poles: Vec<Pole>,
+    growing: usize,
+    /// False if there may be others.
+    whole: bool,
+}
+
+/// The linearisation without the memory of unsteady friction.
+fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised, String> {
+    let plain = match at {
+        Some(at) => modes::at_equilibrium(case, at),
+        None => modes::linearise(case, 0.0, None),
+    };
+    plain.map_err(|fault| fault.to_string())
+}
+
+/// Poles, or pairs of conjugates, whose real part is positive.
+fn growing_among(pairs: &[spectral::Pair]) -> usize {
+    let growing = pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error);
+    growing.count()
+}
+
+/// Poles, or pairs of conjugates, that grow, of those near the frequency of the state.
+///
+/// # Errors
+/// None are found.
+pub fn growing(case: &Case, at: Option<f64>) -> std::result::Result<usize, String> {
+    let plain = plain(case, at)?;
+    let middle = Complex::new(0.0, plain.frequency());
+    let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &Options::default());
+    Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs))
 }
 
 fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
@@ -220,8 +260,9 @@ fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f6
         let mut solver = response.solver()?;
         part.iter().map(|f| solver.at(*f)).collect()
     };
+    let heard = &halt::heard();
     let (first, second) = std::thread::scope(|scope| {
-        let first = threads::begin(scope, || part(halves.0));
+        let first = threads::begin(scope, || heard.during(|| part(halves.0)));
         let second = part(halves.1);
         (first.join(), second)
     });
@@ -282,7 +323,8 @@ fn peaks(
     let mut all = vec![];
     for k in 1..frequencies.len().saturating_sub(1) {
         let [before, own, after] = [-1, 0, 1].map(|by: isize| values[k.wrapping_add_signed(by)].norm());
-        if !(own > before && own >= after) || own < NOISE * largest {
+        let rises = (own - before) + (own - after);
+        if !(own > before && own >= after) || own < NOISE * largest || rises < FLAT * own {
             continue;
         }
         let mut at = |f: f64| -> Result<Complex<f64>> { Ok(solver.at(f)?[place]) };

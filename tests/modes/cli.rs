@@ -330,11 +330,16 @@ fn responses_have_files_and_a_model() {
             .contains("Frequency response of small motions")
     );
     let file = dir.path().join("model.npz");
-    let (code, said, error) = run(&[
+    let export = [
         &["export", "cases/wiring-3.json", "--state-space", file.to_str().unwrap()],
         &of[..],
     ]
-    .concat());
+    .concat();
+    fs::write(&file, "kept").unwrap();
+    let (code, _, error) = run(&export);
+    assert!(code == 2 && error.contains("--force"), "{code} {error}");
+    assert_eq!(fs::read_to_string(&file).unwrap(), "kept");
+    let (code, said, error) = run(&[&export[..], &["--force"]].concat());
     assert_eq!((code, error.as_str()), (0, ""));
     assert!(said.contains("second rate of /ends/root/clamped/u3_m"), "{said}");
     let mut npz = zip::ZipArchive::new(fs::File::open(&file).unwrap()).unwrap();
@@ -343,6 +348,20 @@ fn responses_have_files_and_a_model() {
             .iter()
             .all(|name| npz.by_name(&format!("{name}.npy")).is_ok())
     );
+    // where nothing flows an opening changes nothing, and rounding makes no peaks
+    let nothing = dir.path().join("nothing");
+    let (code, said, _) = run(&[
+        "response",
+        "cases/network-tour.json",
+        "--input",
+        "/network/tubes/2/opening",
+        "--output",
+        "tip_u1",
+        "--quiet",
+        "--out",
+        nothing.to_str().unwrap(),
+    ]);
+    assert!(code == 0 && said.contains("none"), "{code} {said}");
     for (wrong, what) in [
         (
             vec!["--input", "/ends/root", "--output", "tip_u1"],

@@ -11,32 +11,26 @@
 //! One complex factorisation serves all outputs at a frequency. The rates of u come in where an input moves an end: the displacements of the
 //! beam are those relative to it.
 
+mod instant;
+pub mod state_space;
+
+use std::collections::BTreeSet;
+
 use nalgebra::Complex;
 
+use self::instant::Instant;
 use crate::case::schema::{Choice, Effect, Effects};
 use crate::case::{self, Case};
-use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::System;
-use crate::discrete::ledger;
-use crate::discrete::quantities::Extremes;
-use crate::discrete::quantities::{Group, Look, Observable, Row, probes, stations};
+use crate::discrete::quantities::{Group, Observable, probes, stations};
 use crate::error::numbers::counted;
 use crate::error::{At, Code, Error, Result, SolverError};
-use crate::functions::Signal;
-use crate::functions::signals::Polynomial;
+use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::model::{Model, Network};
 use crate::run::modes::{Linearised, at_equilibrium, linearise};
 use crate::run::record::Column;
 use crate::spectral::{Factors, SpectralError};
-
-/// Changes of the scaled residual over which an input is differentiated: the longer one where both agree to [`ALIKE`].
-const STEPS: [f64; 2] = [1e-4, 1e-8];
-const ALIKE: f64 = 1e-6;
-/// Change of a scaled unknown by which outputs are differentiated.
-const OF_OUTPUTS: f64 = 1e-5;
-/// Change of an opening, which lies between 0 and 1.
-const OF_OPENINGS: f64 = 1e-5;
 
 /// A scaled linear response from one input to outputs.
 pub struct Response {
@@ -51,11 +45,11 @@ pub struct Response {
     /// Values of the outputs.
     pub z0: Vec<f64>,
     /// `f_k` of the rows.
-    pub(super) forcing: [Vec<f64>; 3],
+    forcing: [Vec<f64>; 3],
     /// Rows of C and D, one entry an unknown.
-    pub(super) of_state: Vec<[Vec<f64>; 2]>,
+    of_state: Vec<[Vec<f64>; 2]>,
     /// `d_k` of each output.
-    pub(super) direct: Vec<[f64; 3]>,
+    direct: Vec<[f64; 3]>,
 }
 
 impl Response {
@@ -64,6 +58,7 @@ impl Response {
     /// # Errors
     /// [`Error::Usage`] for an input or an output that the case does not have; those of [`linearise`].
     pub fn new(case: &Case, input: &str, outputs: &[String], at: Option<f64>) -> Result<Self> {
+        System::new(case)?;
         let (case, input) = marked(case, input)?;
         let mut system = System::with(&case, Model::of_modes(&case)?)?;
         let marks = case::controls(&case);
@@ -143,6 +138,9 @@ impl Frequencies<'_> {
     pub fn at(&mut self, hz: f64) -> Result<Vec<Complex<f64>>> {
         let s = Complex::new(0.0, std::f64::consts::TAU * hz);
         let of = self.of;
+        if halt::asked() {
+            return Err(of.failed(&SpectralError::Interrupted));
+        }
         let [f0, f1, f2] = &of.forcing;
         let forcing = f0
             .iter()
@@ -214,13 +212,17 @@ fn motion(system: &System) -> Vec<Observable> {
 
 /// The place of an output by its name, with or without its unit.
 fn find(columns: &[Column], name: &str) -> Result<usize> {
-    let known = |column: &Column| column.unit != "W" && column.unit != "J";
+    // what a port lets in is an integral
+    let integral = |column: &Column| column.name.starts_with("port_") && column.unit == "m^3";
+    let known = |column: &Column| !matches!(column.unit, "W" | "J") && !integral(column);
     let place = columns
         .iter()
         .position(|column| known(column) && (column.name == name || column.key() == name));
     place.ok_or_else(|| {
         let mut keys: Vec<String> = columns.iter().filter(|column| known(column)).map(Column::key).collect();
-        keys.dedup();
+        keys.sort_by_key(|key| key.starts_with("bladder_"));
+        let mut seen = BTreeSet::new();
+        keys.retain(|key| seen.insert(key.clone()));
         let meant = case::nearest(name, keys.iter().map(String::as_str));
         let meant = meant.map_or_else(String::new, |near| format!("; nearest is {near}"));
         let more = keys.len().saturating_sub(LISTED);
@@ -239,177 +241,3 @@ fn find(columns: &[Column], name: &str) -> Result<usize> {
 
 /// Names listed in a message at most.
 const LISTED: usize = 24;
-
-/// The state and the signals about it.
-struct Instant<'a> {
-    dae: &'a mut BeamDae,
-    at: f64,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    places: Vec<usize>,
-    /// Value of the input, and the range to which it is limited.
-    value: f64,
-    opens: bool,
-    rows: [Row; 2],
-    integrals: Vec<f64>,
-}
-
-impl<'a> Instant<'a> {
-    fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
-        let dae = &mut about.dae;
-        // all signals are held: at 0 a polynomial of the input has its value without rounding
-        dae.enter_smooth_interval(0.0);
-        let system = dae.system();
-        let probed = probes::columns(system).count();
-        let rows = [
-            Row::new(motion(system), [stations::columns(system, true).len(), probed]),
-            Row::new(vec![], [stations::columns(system, false).len(), 0]),
-        ];
-        Self {
-            at: 0.0,
-            yp: vec![0.0; about.y.len()],
-            y: about.y.clone(),
-            integrals: vec![0.0; dae.integrals()],
-            dae,
-            places,
-            value,
-            opens,
-            rows,
-        }
-    }
-
-    /// Puts the input at `value + x t^k/k!`.
-    fn put(&mut self, k: usize, x: f64) {
-        let coefficients = match k {
-            0 => vec![self.value + x],
-            1 => vec![self.value, x],
-            _ => vec![self.value, 0.0, 0.5 * x],
-        };
-        let places = self.places.clone();
-        self.dae
-            .put_signal(&places, &Signal::Polynomial(Polynomial { coefficients }));
-    }
-
-    fn residual(&mut self) -> Vec<f64> {
-        let mut values = vec![0.0; self.y.len()];
-        // what cannot be evaluated has no derivative, and the solution is not finite
-        if self.dae.residual(self.at, &self.y, &self.yp, &mut values).is_err() {
-            values.fill(f64::NAN);
-        }
-        values
-    }
-
-    fn outputs(&mut self) -> Vec<f64> {
-        let (system, now, state) = self.dae.evaluate(self.at, &self.y, &self.yp);
-        let look = Look {
-            system,
-            now,
-            w: state,
-            stored: ledger::energies(system, now, state),
-            at: Extremes::of(system, now, &state),
-        };
-        let [first, second] = &mut self.rows;
-        first.take(self.at, &look, &[], 0.0);
-        second.take(self.at, &look, &self.integrals, 0.0);
-        first.values().iter().chain(second.values()).copied().collect()
-    }
-
-    /// Derivatives of `read` by the input and its first two rates.
-    fn derivatives(&mut self, read: fn(&mut Self) -> Vec<f64>) -> [Vec<f64>; 3] {
-        [0, 1, 2].map(|k| {
-            let found = match self.opens {
-                true => self.one_sided(k, read),
-                false => self.central(k, read),
-            };
-            self.put(0, 0.0);
-            found
-        })
-    }
-
-    /// Towards the middle of the range of an opening, to second order.
-    fn one_sided(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
-        let step = if self.value > 0.5 { -OF_OPENINGS } else { OF_OPENINGS };
-        let [none, one, two] = [0.0, step, 2.0 * step].map(|x| {
-            self.put(k, x);
-            read(self)
-        });
-        let all = none.iter().zip(&one).zip(&two);
-        all.map(|((none, one), two)| (4.0 * one - 3.0 * none - two) / (2.0 * step))
-            .collect()
-    }
-
-    /// Central differences. A law with a kink in its slope, as of a check valve at rest, has an error of first order in the step, which two
-    /// short steps remove.
-    fn central(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
-        let change = self.change(k);
-        let mut over = |step: f64| -> Vec<f64> {
-            let [before, after] = [-step, step].map(|x| {
-                self.put(k, x);
-                read(self)
-            });
-            before
-                .iter()
-                .zip(&after)
-                .map(|(before, after)| (after - before) / (2.0 * step))
-                .collect()
-        };
-        if change == 0.0 {
-            return over(1.0);
-        }
-        let [long, short] = STEPS.map(|step| over(step / change));
-        let largest = long.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        if long.iter().zip(&short).all(|(a, b)| (a - b).abs() <= ALIKE * largest) {
-            return long;
-        }
-        let half = over(0.5 * STEPS[1] / change);
-        half.iter()
-            .zip(&short)
-            .map(|(half, whole)| 2.0 * half - whole)
-            .collect()
-    }
-
-    /// Largest change of the scaled residual by a unit of the input, or of a rate of it.
-    fn change(&mut self, k: usize) -> f64 {
-        let [none, one] = [0.0, 1.0].map(|x| {
-            self.put(k, x);
-            self.residual()
-        });
-        none.iter().zip(&one).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
-    }
-
-    fn derivatives_of_residual(&mut self) -> [Vec<f64>; 3] {
-        self.derivatives(Self::residual)
-    }
-
-    fn derivatives_of_outputs(&mut self, chosen: &[usize]) -> Vec<[f64; 3]> {
-        let all = self.derivatives(Self::outputs);
-        chosen
-            .iter()
-            .map(|&place| [0, 1, 2].map(|k: usize| all[k][place]))
-            .collect()
-    }
-
-    /// Rows of C and D.
-    fn rows(&mut self, chosen: &[usize]) -> Vec<[Vec<f64>; 2]> {
-        let n = self.y.len();
-        let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
-        for column in 0..n {
-            for rate in [false, true] {
-                let mut at = |x: f64| {
-                    let state = if rate { &mut self.yp } else { &mut self.y };
-                    let own = state[column];
-                    state[column] = own + x;
-                    let values = self.outputs();
-                    let state = if rate { &mut self.yp } else { &mut self.y };
-                    state[column] = own;
-                    values
-                };
-                let [before, after] = [-OF_OUTPUTS, OF_OUTPUTS].map(&mut at);
-                for (row, &place) in rows.iter_mut().zip(chosen) {
-                    row[usize::from(rate)][column] = (after[place] - before[place]) / (2.0 * OF_OUTPUTS);
-                }
-            }
-        }
-        rows
-    }
-}

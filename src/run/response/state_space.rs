@@ -9,7 +9,7 @@
 //!
 //! Where rates of an input matter, as of an end that is moved or of a volume, the input of the model is the highest of them, and the lower ones are further states.
 
-use super::response::Response;
+use super::Response;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::sparse::Lu;
 

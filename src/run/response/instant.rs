@@ -1,0 +1,222 @@
+//! Derivatives of residual and outputs at one instant, by the input, its rates and the state.
+
+use super::motion;
+use crate::dae::{BeamDae, Dae as _};
+use crate::discrete::ledger;
+use crate::discrete::quantities::{Extremes, Look, Row, probes, stations};
+use crate::functions::Signal;
+use crate::functions::signals::Polynomial;
+use crate::integrate::halt;
+use crate::run::modes::Linearised;
+
+/// Changes of the scaled residual over which an input is differentiated.
+const OF_INPUT: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+/// Changes of an opening, which lies between 0 and 1.
+const OF_OPENING: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+/// Changes of a scaled unknown by which outputs are differentiated.
+const OF_STATE: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
+/// Largest change of the scaled residual, by a valve from shut to open, that is rounding.
+const ROUNDING: f64 = 1e-10;
+/// Quotient of neighbouring steps.
+const SHORTER: f64 = 10.0;
+
+/// Limits of difference quotients over shorter and shorter steps, of each component that whose neighbours agree best; 0 where it is no more
+/// than they differ. Extrapolation removes the error of first order that a kink in a law makes, as of a check valve at rest.
+fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
+    let extrapolated = |i: usize, k: usize| {
+        let (long, short) = (quotients[k][i], quotients[k + 1][i]);
+        (SHORTER * short - long) / (SHORTER - 1.0)
+    };
+    let of = |i: usize| {
+        let all = (0..quotients.len() - 2).map(|k| {
+            let value = extrapolated(i, k + 1);
+            ((value - extrapolated(i, k)).abs(), value)
+        });
+        let finite = all.filter(|(apart, _)| apart.is_finite());
+        match finite.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((apart, value)) if value.abs() > apart => value,
+            Some(_) => 0.0,
+            None => f64::NAN,
+        }
+    };
+    (0..quotients[0].len()).map(of).collect()
+}
+
+/// The state and the signals about it.
+pub struct Instant<'a> {
+    dae: &'a mut BeamDae,
+    at: f64,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    places: Vec<usize>,
+    /// Value of the input, and the range to which it is limited.
+    value: f64,
+    opens: bool,
+    rows: [Row; 2],
+    integrals: Vec<f64>,
+}
+
+impl<'a> Instant<'a> {
+    pub fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
+        let dae = &mut about.dae;
+        // all signals are held: at 0 a polynomial of the input has its value without rounding
+        dae.enter_smooth_interval(0.0);
+        let system = dae.system();
+        let probed = probes::columns(system).count();
+        let rows = [
+            Row::new(motion(system), [stations::columns(system, true).len(), probed]),
+            Row::new(vec![], [stations::columns(system, false).len(), 0]),
+        ];
+        Self {
+            at: 0.0,
+            yp: vec![0.0; about.y.len()],
+            y: about.y.clone(),
+            integrals: vec![0.0; dae.integrals()],
+            dae,
+            places,
+            value,
+            opens,
+            rows,
+        }
+    }
+
+    /// Puts the input at `value + x t^k/k!`.
+    fn put(&mut self, k: usize, x: f64) {
+        let coefficients = match k {
+            0 => vec![self.value + x],
+            1 => vec![self.value, x],
+            _ => vec![self.value, 0.0, 0.5 * x],
+        };
+        let places = self.places.clone();
+        self.dae
+            .put_signal(&places, &Signal::Polynomial(Polynomial { coefficients }));
+    }
+
+    fn residual(&mut self) -> Vec<f64> {
+        let mut values = vec![0.0; self.y.len()];
+        // what cannot be evaluated has no derivative, and the solution is not finite
+        if self.dae.residual(self.at, &self.y, &self.yp, &mut values).is_err() {
+            values.fill(f64::NAN);
+        }
+        values
+    }
+
+    pub fn outputs(&mut self) -> Vec<f64> {
+        let (system, now, state) = self.dae.evaluate(self.at, &self.y, &self.yp);
+        let look = Look {
+            system,
+            now,
+            w: state,
+            stored: ledger::energies(system, now, state),
+            at: Extremes::of(system, now, &state),
+        };
+        let [first, second] = &mut self.rows;
+        first.take(self.at, &look, &[], 0.0);
+        second.take(self.at, &look, &self.integrals, 0.0);
+        first.values().iter().chain(second.values()).copied().collect()
+    }
+
+    /// Derivatives of `read` by the input and its first two rates.
+    fn derivatives(&mut self, read: fn(&mut Self) -> Vec<f64>) -> [Vec<f64>; 3] {
+        [0, 1, 2].map(|k| {
+            let found = match self.opens {
+                true => self.one_sided(k, read),
+                false => self.central(k, read),
+            };
+            self.put(0, 0.0);
+            found
+        })
+    }
+
+    /// Towards the middle of the range of an opening, to second order.
+    fn one_sided(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
+        let towards = if self.value > 0.5 { -1.0 } else { 1.0 };
+        let quotients = OF_OPENING.map(|size| {
+            let step = towards * size;
+            let [none, one, two] = [0.0, step, 2.0 * step].map(|x| {
+                self.put(k, x);
+                read(self)
+            });
+            let all = none.iter().zip(&one).zip(&two);
+            all.map(|((none, one), two)| (4.0 * one - 3.0 * none - two) / (2.0 * step))
+                .collect()
+        });
+        limits(&quotients)
+    }
+
+    fn central(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
+        let change = self.change(k);
+        let unit = if change == 0.0 { 1.0 } else { 1.0 / change };
+        let quotients = OF_INPUT.map(|size| {
+            let step = size * unit;
+            let [before, after] = [-step, step].map(|x| {
+                self.put(k, x);
+                read(self)
+            });
+            quotient(&before, &after, step)
+        });
+        limits(&quotients)
+    }
+
+    /// Largest change of the scaled residual by a unit of the input, or of a rate of it.
+    fn change(&mut self, k: usize) -> f64 {
+        let [none, one] = [0.0, 1.0].map(|x| {
+            self.put(k, x);
+            self.residual()
+        });
+        none.iter().zip(&one).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+    }
+
+    pub fn derivatives_of_residual(&mut self) -> [Vec<f64>; 3] {
+        let mut found = self.derivatives(Self::residual);
+        let largest = found.iter().flatten().fold(0.0_f64, |m, x| m.max(x.abs()));
+        if self.opens && largest <= ROUNDING {
+            found.iter_mut().for_each(|rate| rate.fill(0.0));
+        }
+        found
+    }
+
+    pub fn derivatives_of_outputs(&mut self, chosen: &[usize]) -> Vec<[f64; 3]> {
+        let all = self.derivatives(Self::outputs);
+        chosen
+            .iter()
+            .map(|&place| [0, 1, 2].map(|k: usize| all[k][place]))
+            .collect()
+    }
+
+    /// Rows of C and D.
+    pub fn rows(&mut self, chosen: &[usize]) -> Vec<[Vec<f64>; 2]> {
+        let n = self.y.len();
+        let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
+        // a response that was interrupted is told by the first solution
+        for column in (0..n).take_while(|_| !halt::asked()) {
+            for rate in [false, true] {
+                let mut over = |step: f64| {
+                    let [before, after] = [-step, step].map(|x| {
+                        let state = if rate { &mut self.yp } else { &mut self.y };
+                        let own = state[column];
+                        state[column] += x;
+                        let values = self.outputs();
+                        let state = if rate { &mut self.yp } else { &mut self.y };
+                        state[column] = own;
+                        chosen.iter().map(|&place| values[place]).collect::<Vec<_>>()
+                    });
+                    quotient(&before, &after, step)
+                };
+                // most outputs depend on few unknowns
+                if over(OF_STATE[0]).iter().all(|x| *x == 0.0) {
+                    continue;
+                }
+                for (row, limit) in rows.iter_mut().zip(limits(&OF_STATE.map(over))) {
+                    row[usize::from(rate)][column] = limit;
+                }
+            }
+        }
+        rows
+    }
+}
+
+fn quotient(before: &[f64], after: &[f64], step: f64) -> Vec<f64> {
+    let all = before.iter().zip(after);
+    all.map(|(before, after)| (after - before) / (2.0 * step)).collect()
+}
