@@ -154,7 +154,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap
     };
     let sums = with(0.0);
     let sum = |name: &String| sums.get(name).copied().unwrap_or(0.0);
-    if with(1.0 / TRUSTED)
+    if with(1.0 / TRUSTED_OF_ACCURACY)
         .iter()
         .any(|(name, error)| *error > asked.max(sum(name)))
     {
