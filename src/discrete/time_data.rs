@@ -279,13 +279,8 @@ impl TimeData {
         if self.clock == Some(clock) {
             return;
         }
-        let first = self.clock.is_none();
-        self.clock = Some(clock);
-        let still = system.model.still;
-        let jet = |s: &Signal| match s.jet(clock) {
-            moving if !still => moving,
-            Jet { value, .. } => Jet::constant(value),
-        };
+        let first = self.clock.replace(clock).is_none();
+        let jet = |s: &Signal| system.model.jet(s, clock);
         for (values, end) in self.ends.iter_mut().zip(&system.model.ends) {
             let motion = |m: &Translation| match m {
                 Translation::Displacement(s) => (Some(jet(s)), 0.0),

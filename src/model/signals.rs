@@ -2,7 +2,7 @@
 
 use super::{Attachment, Load, Model, Network, Surroundings};
 use crate::case::{ResolvedEnd, Rotation, Translation};
-use crate::functions::{Clock, Signal};
+use crate::functions::{Clock, Jet, Signal};
 
 impl Model {
     /// Puts another signal in place of every one: of ends, loads, ports, sources and pumps by `load`, of valves by `opening`.
@@ -51,6 +51,14 @@ impl Model {
     pub fn freeze(&mut self, t: f64) {
         let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
         self.replace_signals(at, at);
+    }
+
+    /// The value of a signal with its derivatives, which are 0 in a model that is still.
+    pub fn jet(&self, signal: &Signal, clock: Clock) -> Jet {
+        match signal.jet(clock) {
+            moving if !self.still => moving,
+            Jet { value, .. } => Jet::constant(value),
+        }
     }
 
     /// Visits every signal that takes part.

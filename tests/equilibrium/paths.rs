@@ -174,7 +174,7 @@ fn what_opposes_a_velocity_loads_nothing_at_rest() {
         assert!((tip - 1e-3).abs() < 1e-9, "{key}: {tip}");
     }
     let wall = |damping: f64| {
-        let wall = json!([{"point_m": [-0.003, 0], "normal": [1, 0], "stiffness_pa": 1e4, "smoothing_m": 5e-4, "damping_s_m": damping}]);
+        let wall = json!([{"name": "wall", "point_m": [-0.003, 0], "normal": [1, 0], "stiffness_pa": 1e4, "smoothing_m": 5e-4, "damping_s_m": damping}]);
         held(-4e-3, "contacts", wall)
     };
     let (damped, plain) = (wall(100.0), wall(0.0));

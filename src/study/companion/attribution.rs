@@ -27,8 +27,8 @@ const LARGEST_WORK: u64 = 5_000_000;
 /// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
 const TRUSTED: f64 = 4.0;
 const TRUSTED_OF_ACCURACY: f64 = 2.0;
-/// Expected error over an accuracy, up to which its causes are measured again.
-const CLOSE: f64 = 3.0;
+/// Expected errors over an accuracy between which their causes are measured again.
+const CLOSE: [f64; 2] = [0.3, 3.0];
 /// Part of an accuracy below which a companion alone shows that it is reached.
 const SURE: f64 = 0.5;
 /// Most steps of a companion over those of the run where the tolerance decides on them.
@@ -163,7 +163,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap
     // orders of refinements are expected to be low
     expected.retain(|_, errors| {
         let own = error::relative(summary, errors, floors);
-        let close = |name: &String| asked < sum(name) && sum(name) <= CLOSE * asked;
+        let close = |name: &String| (CLOSE[0] * asked..=CLOSE[1] * asked).contains(&sum(name));
         own.iter().all(|(name, error)| *error <= NAMED * asked || !close(name))
     });
     expected
