@@ -269,8 +269,11 @@ fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f6
     Ok(first?.into_iter().chain(second?).collect())
 }
 
-/// Frequencies and values of all outputs: a grid, the neighbourhood of poles, and more where a response changes.
-fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<(Vec<f64>, Vec<Vec<Complex<f64>>>)> {
+/// Frequencies [Hz], and values of all outputs at each.
+type Samples = (Vec<f64>, Vec<Vec<Complex<f64>>>);
+
+/// Samples: a grid, the neighbourhood of poles, and more where a response changes.
+fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<Samples> {
     let [from, to] = request.band;
     let points = if from < to { request.points } else { 1 };
     let steps = (points.max(2) - 1) as f64;

@@ -198,10 +198,12 @@ fn with_memory(case: Case) -> Result<Case> {
 /// Everything that has a response of first order: motion of the tip, pressures, flows, forces, probes.
 pub fn columns(system: &System) -> Vec<Column> {
     let motion = motion(system).into_iter().map(Column::from);
-    let at_rest = stations::columns(system, true).into_iter().map(Column::from);
-    let moving = stations::columns(system, false).into_iter().map(Column::from);
-    let probes = probes::columns(system).map(Column::from);
-    motion.chain(at_rest).chain(probes).chain(moving).collect()
+    let [at_rest, moving] = [true, false].map(|at_rest| stations::columns(system, at_rest));
+    motion
+        .chain(at_rest)
+        .chain(probes::columns(system))
+        .chain(moving)
+        .collect()
 }
 
 fn motion(system: &System) -> Vec<Observable> {

@@ -52,13 +52,10 @@ impl StateSpace {
             .map(|column| pencil.pattern.column(column).any(|e| pencil.b[e] != 0.0))
             .collect();
         let mut values = vec![0.0; pencil.a.len()];
-        for column in 0..n {
+        for (column, dynamic) in dynamic.iter().enumerate() {
+            let from = if *dynamic { &pencil.b } else { &pencil.a };
             for entry in pencil.pattern.column(column) {
-                values[entry] = if dynamic[column] {
-                    pencil.b[entry]
-                } else {
-                    pencil.a[entry]
-                };
+                values[entry] = from[entry];
             }
         }
         let fault = |what: &str| {
