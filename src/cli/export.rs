@@ -159,13 +159,13 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         &model,
     )?;
     let states = model.b.len();
-    let found = match growing(&case, asked.at) {
+    let found = match growing(&case, asked.at, &response) {
         Ok(growing) => cautions(growing, response.about.moving()),
         Err(why) => vec![Code::ErrorEstimate.warning(format!("not known: poles: {why}"))],
     };
     if asked.json {
-        let told = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
-        super::print(&format!("{told:#}\n"))?;
+        let answer = json!({"path": file, "states": states, "outputs": outputs, "input": response.input, "input_rate": model.input_rate, "warnings": found});
+        super::print(&format!("{answer:#}\n"))?;
     } else {
         let of = ["", "rate of ", "second rate of "][model.input_rate.min(2)];
         super::print(&format!(

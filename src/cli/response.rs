@@ -39,7 +39,7 @@ pub struct ResponseArguments {
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::line::instant)]
     pub at: Option<f64>,
-    /// What becomes of the result.
+    /// Folder, time limit and output.
     #[command(flatten)]
     pub result: ResultArguments,
     /// Print response.json instead of the table
@@ -64,15 +64,15 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
         terminal::tell(&format!("response of {}", case.name));
     }
     let found = respond(&case, &request, linear)?;
-    let told = told(&case.name, &request, &found)?;
-    let written = files::write(&mut folder, &told).map(|_| ());
+    let answer = answer(&case.name, &request, &found)?;
+    let written = files::write(&mut folder, &answer).map(|_| ());
     let written = written.and(report::complete(&folder, &case));
     super::tell(
         asked.json,
         folder.dir(),
         written,
-        || results::text(&told),
-        || files::words(&told),
+        || results::text(&answer),
+        || files::words(&answer),
     )?;
     Ok(ExitCode::SUCCESS)
 }
@@ -106,7 +106,7 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
     })
 }
 
-fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
+fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
     let mut curves = found.curves.iter().map(curve);
     let Some(first) = curves.next() else {
         return Err(Error::Usage("--output: at least one is wanted".into()));
@@ -119,7 +119,7 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
             .iter()
             .map(|why| Code::ErrorEstimate.warning(format!("not known: {why}"))),
     );
-    let mut told = Response {
+    let mut answer = Response {
         case: case.into(),
         input: found.response.input.clone(),
         state: match request.at {
@@ -142,9 +142,9 @@ fn told(case: &str, request: &Request, found: &Found) -> Result<Response> {
             error_percent(median)
         )))
     };
-    let coarse: Vec<String> = told.curves().filter_map(coarse).collect();
-    told.warnings.extend(coarse);
-    Ok(told)
+    let coarse: Vec<String> = answer.curves().filter_map(coarse).collect();
+    answer.warnings.extend(coarse);
+    Ok(answer)
 }
 
 /// Warnings of a state about which motions are not small for long.

@@ -9,7 +9,7 @@ use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::run::modes;
 use crate::run::record::Column;
-use crate::run::response::Response;
+use crate::run::response::{Frequencies, Response};
 use crate::spectral::{self, Options};
 
 /// Poles looked for in the band.
@@ -126,16 +126,18 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
         ));
     }
     let (frequencies, values) = sample(&response, request, &poles)?;
+    let mut solver = response.solver()?;
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
         let values: Vec<_> = values.iter().map(|all| all[place]).collect();
         curves.push(Curve {
             output: output.clone(),
-            peaks: peaks(&response, place, &frequencies, &values, &poles)?,
+            peaks: peaks(&mut solver, place, &frequencies, &values, &poles)?,
             values,
             errors: vec![],
         });
     }
+    drop(solver);
     for (other, factor) in meshes(case)? {
         match request.of(&other).and_then(|response| all_at(&response, &frequencies)) {
             Ok(others) => {
@@ -186,7 +188,8 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
 /// the search, and corrected one by one.
 fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
-    let plain = plain(case, at)?;
+    let apart = response.remembers.then(|| plain(case, at)).transpose()?;
+    let plain = apart.as_ref().unwrap_or(&response.about);
     let tau = std::f64::consts::TAU;
     let [from, to] = band.map(|hz| tau * hz);
     let middle = Complex::new(0.0, (from.max(1e-3 * to) * to).sqrt());
@@ -200,7 +203,7 @@ fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> s
     let mut poles = vec![];
     for pair in pairs.iter().filter(|pair| pair.s.im > 0.0) {
         let (mut s, mut bound) = (pair.s, pair.error);
-        if plain.y.len() != response.about.y.len() && (0.5 * from..=2.0 * to).contains(&s.im) {
+        if response.remembers && (0.5 * from..=2.0 * to).contains(&s.im) {
             let near = spectral::nearest(&response.about.pencil(), s, 4, &options)
                 .map_err(words)?
                 .pairs;
@@ -247,8 +250,9 @@ fn growing_among(pairs: &[spectral::Pair]) -> usize {
 ///
 /// # Errors
 /// None are found.
-pub fn growing(case: &Case, at: Option<f64>) -> std::result::Result<usize, String> {
-    let plain = plain(case, at)?;
+pub fn growing(case: &Case, at: Option<f64>, response: &Response) -> std::result::Result<usize, String> {
+    let apart = response.remembers.then(|| plain(case, at)).transpose()?;
+    let plain = apart.as_ref().unwrap_or(&response.about);
     let middle = Complex::new(0.0, plain.frequency());
     let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &Options::default());
     Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs))
@@ -314,14 +318,13 @@ fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<Samp
 
 /// Local maxima of an amplitude, each found between its neighbours by golden sections.
 fn peaks(
-    response: &Response,
+    solver: &mut Frequencies,
     place: usize,
     frequencies: &[f64],
     values: &[Complex<f64>],
     poles: &[Pole],
 ) -> Result<Vec<Peak>> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
-    let mut solver = response.solver()?;
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut all = vec![];
     for k in 1..frequencies.len().saturating_sub(1) {

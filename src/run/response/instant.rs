@@ -42,10 +42,12 @@ fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     (0..quotients[0].len()).map(of).collect()
 }
 
+/// Time at which everything is evaluated: all signals are held, and at 0 a polynomial of the input has its value without rounding [s].
+const NOW: f64 = 0.0;
+
 /// The state and the signals about it.
 pub struct Instant<'a> {
     dae: &'a mut BeamDae,
-    at: f64,
     y: Vec<f64>,
     yp: Vec<f64>,
     places: Vec<usize>,
@@ -59,8 +61,7 @@ pub struct Instant<'a> {
 impl<'a> Instant<'a> {
     pub fn new(about: &'a mut Linearised, places: Vec<usize>, value: f64, opens: bool) -> Self {
         let dae = &mut about.dae;
-        // all signals are held: at 0 a polynomial of the input has its value without rounding
-        dae.enter_smooth_interval(0.0);
+        dae.enter_smooth_interval(NOW);
         let system = dae.system();
         let probed = probes::columns(system).count();
         let rows = [
@@ -68,7 +69,6 @@ impl<'a> Instant<'a> {
             Row::new(vec![], [stations::columns(system, false).len(), 0]),
         ];
         Self {
-            at: 0.0,
             yp: vec![0.0; about.y.len()],
             y: about.y.clone(),
             integrals: vec![0.0; dae.integrals()],
@@ -95,14 +95,14 @@ impl<'a> Instant<'a> {
     fn residual(&mut self) -> Vec<f64> {
         let mut values = vec![0.0; self.y.len()];
         // what cannot be evaluated has no derivative, and the solution is not finite
-        if self.dae.residual(self.at, &self.y, &self.yp, &mut values).is_err() {
+        if self.dae.residual(NOW, &self.y, &self.yp, &mut values).is_err() {
             values.fill(f64::NAN);
         }
         values
     }
 
     pub fn outputs(&mut self) -> Vec<f64> {
-        let (system, now, state) = self.dae.evaluate(self.at, &self.y, &self.yp);
+        let (system, now, state) = self.dae.evaluate(NOW, &self.y, &self.yp);
         let look = Look {
             system,
             now,
@@ -111,8 +111,8 @@ impl<'a> Instant<'a> {
             at: Extremes::of(system, now, &state),
         };
         let [first, second] = &mut self.rows;
-        first.take(self.at, &look, &[], 0.0);
-        second.take(self.at, &look, &self.integrals, 0.0);
+        first.take(NOW, &look, &[], 0.0);
+        second.take(NOW, &look, &self.integrals, 0.0);
         first.values().iter().chain(second.values()).copied().collect()
     }
 

@@ -36,6 +36,8 @@ use crate::spectral::{Factors, SpectralError};
 pub struct Response {
     /// The linearisation.
     pub about: Linearised,
+    /// True if unsteady friction of tubes is there for the response alone.
+    pub remembers: bool,
     /// JSON pointer of the input.
     pub input: String,
     /// Outputs, in the order of their columns.
@@ -60,6 +62,7 @@ impl Response {
     pub fn new(case: &Case, input: &str, outputs: &[String], at: Option<f64>) -> Result<Self> {
         System::new(case)?;
         let (case, input) = marked(case, input)?;
+        let (case, remembers) = with_memory(case)?;
         let mut system = System::with(&case, Model::of_modes(&case)?)?;
         let marks = case::controls(&case);
         let nothing = || Error::Usage(format!("--input {input}: nothing in the scene depends on it"));
@@ -89,6 +92,7 @@ impl Response {
         let z0 = chosen.iter().map(|&place| all[place]).collect();
         Ok(Self {
             about,
+            remembers,
             input,
             u0: value,
             z0,
@@ -176,23 +180,21 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
     let path = &case.source.path;
     let base = path.parent().unwrap_or(path);
     let marked = case::parse(&resolved.to_string(), path, base, &[set])?;
-    Ok((with_memory(marked)?, pointer.clone()))
+    Ok((marked, pointer.clone()))
 }
 
-/// The case with unsteady friction of tubes, which a search for modes leaves out unless it is named: a response needs no search among the
-/// decays of its memory.
-fn with_memory(case: Case) -> Result<Case> {
+/// The case with unsteady friction of tubes, and whether that is new. A search for modes leaves it out unless it is named; a response needs no
+/// search among the decays of its memory.
+fn with_memory(case: Case) -> Result<(Case, bool)> {
     let memory = Effect::UnsteadyFriction;
     let mut choices = case.effects.choices();
     let there = EffectSet::whole(&case, Network::of(&case)?.as_ref()).has(memory);
     if choices.of(memory) != Choice::Auto || !there {
-        return Ok(case);
+        return Ok((case, false));
     }
     choices.set(memory, Choice::On);
-    Ok(Case {
-        effects: Effects::Chosen(choices),
-        ..case
-    })
+    let effects = Effects::Chosen(choices);
+    Ok((Case { effects, ..case }, true))
 }
 
 /// Everything that has a response of first order: motion of the tip, pressures, flows, forces, probes.

@@ -6,14 +6,14 @@ use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::Result;
-use crate::run::record::{Control, Progress};
+use crate::run::record::Control;
 use crate::run::summary::{Status, Summary};
 
 /// Derivatives by figure, each by the numbers in their order.
 pub type Slopes = BTreeMap<String, Vec<f64>>;
 
-/// Stops a run once `stop` is true; asked after every step.
-pub fn until(stop: &dyn Fn() -> bool) -> impl FnMut(&Progress) -> Control + '_ {
+/// Stops a run, or a path of equilibria, once `stop` is true; asked after every step.
+pub fn until<T>(stop: &dyn Fn() -> bool) -> impl FnMut(&T) -> Control + '_ {
     |_| match stop() {
         true => Control::Stop("interrupted".into()),
         false => Control::Continue,

@@ -1,13 +1,13 @@
 //! Equilibria under the loads at the end of a case.
 
-use super::derivatives::{Gathered, Slopes};
+use super::derivatives::{Gathered, Slopes, until};
 use super::{Analysis, Ask, Found, RunCase, accurate, errors};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Error, Result};
 use crate::run::equilibrium::{self, Options, Path};
-use crate::run::record::{Column, Control};
+use crate::run::record::Column;
 use crate::run::summary::Status;
 use crate::run::{known, slow};
 use crate::study::refine::{self, meshes, numbers};
@@ -41,10 +41,7 @@ impl Analysis for Equilibrium {
         stop: &dyn Fn() -> bool,
     ) -> Result<(Found, Slopes)> {
         let options = at_the_end(case);
-        let path = equilibrium::follow(case, &options, &mut |_| match stop() {
-            true => Control::Stop("interrupted".into()),
-            false => Control::Continue,
-        })?;
+        let path = equilibrium::follow(case, &options, &mut until(stop))?;
         if let Some(fault) = path.fault {
             return Err(Error::Solver(Box::new(fault)));
         }
@@ -85,10 +82,7 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
         .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
         .transpose()?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let path = equilibrium::follow(case, &options, &mut |_| match stop() {
-        true => Control::Stop("interrupted".into()),
-        false => Control::Continue,
-    })?;
+    let path = equilibrium::follow(case, &options, &mut until(stop))?;
     let system = equilibrium::system(case, options.at_s)?;
     let columns = equilibrium::columns(&system);
     let mut found = of_path(&columns, &path);
