@@ -113,8 +113,8 @@ pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>
     folder.fill(files)
 }
 
-/// Least amplitude that is drawn, below the largest one [dB].
-const DEEPEST: f64 = 160.0;
+/// Amplitudes that are drawn, around their median: poles without damping, and zeros, have no end [dB].
+const AROUND: f64 = 100.0;
 
 /// Amplitude and phase over frequency.
 fn picture(found: &Response) -> Option<Picture> {
@@ -129,11 +129,19 @@ fn picture(found: &Response) -> Option<Picture> {
         parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
     };
     let (mut amplitudes, mut phases) = (vec![], vec![]);
-    let (_, highest) = extent(found.curves().flat_map(decibel))?;
+    extent(found.curves().flat_map(decibel))?;
     for (curve, colour) in found.curves().zip(PALETTE.iter().cycle()) {
         let stroke = Stroke::solid(*colour, 1.6);
-        let points = found.frequency_hz.iter().copied().zip(decibel(curve));
-        let points = points.filter(|(_, amplitude)| *amplitude > highest - DEEPEST);
+        let all = decibel(curve);
+        let mut sorted: Vec<f64> = all.iter().copied().filter(|amplitude| amplitude.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let Some(&middle) = sorted.get(sorted.len() / 2) else {
+            continue;
+        };
+        let drawn = all
+            .into_iter()
+            .map(|amplitude| amplitude.clamp(middle - AROUND, middle + AROUND));
+        let points = found.frequency_hz.iter().copied().zip(drawn);
         amplitudes.push(PictureSeries::line(points, stroke).named(&curve.output));
         let mut phase: Vec<(f64, f64)> = vec![];
         for (f, (re, im)) in found.frequency_hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
