@@ -80,6 +80,16 @@ pub fn run_at(
     run.go(dae, None, recorder)
 }
 
+/// Runs the system of a case for its figures alone: states are not examined for growing waves, which takes longer than a short run.
+///
+/// # Errors
+/// As [`run_with`].
+pub fn figures(case: &Case, system: System, recorder: &mut dyn Recorder) -> Result<Outcome> {
+    let (mut run, dae) = Run::of(case, system, By::pointers(&[]))?;
+    run.waves = None;
+    run.go(dae, None, recorder)
+}
+
 /// Goes on with the system of a case from a checkpoint of it; the recorder holds what was recorded before.
 pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case, &system)?;

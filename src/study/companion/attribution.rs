@@ -24,9 +24,8 @@ pub const LIMIT: f64 = 0.05;
 const NAMED_FROM: f64 = 0.5 * LIMIT;
 /// Largest work (steps times unknowns) of a run whose errors are attributed.
 const LARGEST_WORK: u64 = 5_000_000;
-/// Largest error of a companion beside the sum over all causes; the same where an accuracy is asked for, so that runs end where they may.
-const TRUSTED: f64 = 4.0;
-const TRUSTED_OF_ACCURACY: f64 = 2.0;
+/// Largest error of a companion beside the sum over all causes.
+const TRUSTED: f64 = 2.0;
 /// Expected errors over an accuracy between which their causes are measured again.
 const CLOSE: [f64; 2] = [0.3, 3.0];
 /// Part of an accuracy below which a companion alone shows that it is reached.
@@ -79,7 +78,7 @@ pub(super) fn attribute(
     });
     if accuracy.is_some() {
         let mut errors = std::mem::take(&mut summary.errors);
-        error::raise_to_balance(summary, &mut errors);
+        error::raise_to_balance(summary, &mut errors, floors);
         summary.errors = errors;
     }
     let mut found = accuracy.map_or_else(BTreeMap::new, |accuracy| believed(accuracy, summary, floors));
@@ -95,13 +94,8 @@ pub(super) fn attribute(
             false => Causes::TooLarge,
         };
         if let Some(known) = measured.known() {
-            let trusted = if accuracy.is_some() {
-                TRUSTED_OF_ACCURACY
-            } else {
-                TRUSTED
-            };
             let most = if matches!(measured, Causes::Complete(_)) {
-                trusted
+                TRUSTED
             } else {
                 f64::INFINITY
             };
@@ -154,7 +148,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap
     };
     let sums = with(0.0);
     let sum = |name: &String| sums.get(name).copied().unwrap_or(0.0);
-    if with(1.0 / TRUSTED_OF_ACCURACY)
+    if with(1.0 / TRUSTED)
         .iter()
         .any(|(name, error)| *error > asked.max(sum(name)))
     {
@@ -236,7 +230,7 @@ fn measure(
     if accuracy.is_some()
         && let Some(errors) = found.get_mut(&Cause::TimeSteps)
     {
-        error::raise_to_balance(summary, errors);
+        error::raise_to_balance(summary, errors, floors);
     }
     Ok(match causes {
         Ended::All => Causes::Complete(found),

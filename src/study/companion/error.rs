@@ -29,9 +29,11 @@ pub fn errors(run: &Summary, companion: &Summary) -> Figures {
     differences(&figures(run), &figures(companion))
 }
 
-/// Raises errors of energies to what the balance leaves open, which is an error of the time steps: the discrete equations conserve energy.
-pub fn raise_to_balance(summary: &Summary, errors: &mut Figures) {
-    for (name, quantity) in &summary.quantities {
+/// Raises errors of energies that count to the residual of the energy balance, which is an error of the time steps: the discrete equations
+/// conserve energy.
+pub fn raise_to_balance(summary: &Summary, errors: &mut Figures, floors: &Floors) {
+    let counted = relative(summary, errors, floors);
+    for (name, quantity) in summary.quantities.iter().filter(|(name, _)| counted.contains_key(*name)) {
         let Some(errors) = errors.get_mut(name) else { continue };
         let open = [
             ("final", quantity.last, quantity.final_error),

@@ -18,6 +18,10 @@ const FILL: f64 = 0.7;
 const SHARE: f64 = 0.25;
 /// Largest refinement at once: doublings of the cells of a segment, of those of a bladder, and decades of the tolerance.
 const FARTHEST: [i32; 3] = [2, 3, 3];
+/// Decades that are added to a tighter tolerance where ten times the tolerance takes at least so many times the steps: loads and outputs
+/// decide on the steps there.
+const IDLE: i32 = 2;
+const STEADY: f64 = 0.95;
 /// Finest meshes, and the tightest tolerance in decades.
 const FINEST: [usize; 2] = [128, 64];
 const TIGHTEST: i32 = 10;
@@ -102,7 +106,9 @@ impl Levers {
         };
         finer.mesh.cells_per_segment <<= beam;
         finer.mesh.cells_per_bladder <<= fluid;
-        finer.solver.rtol = rounded(case.solver.rtol * 10_f64.powi(-decades), 4);
+        let idle = if decades > 0 && is_steady(summary) { IDLE } else { 0 };
+        let tighter = case.solver.rtol * 10_f64.powi(-decades - idle);
+        finer.solver.rtol = rounded(tighter, 4).max(10_f64.powi(-TIGHTEST));
         Ok(Some(Finer { case: finer, added }))
     }
 
@@ -163,6 +169,12 @@ fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> 
         settings.map(|cause| scale * causes.get(cause.pointer().as_str()).map_or(0.0, part))
     };
     errors.iter().map(of).collect()
+}
+
+/// True if a looser tolerance takes as many steps.
+fn is_steady(summary: &Summary) -> bool {
+    let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
+    steps as f64 >= STEADY * summary.solver.steps as f64
 }
 
 fn most<'a>(errors: impl Iterator<Item = &'a f64>) -> f64 {
