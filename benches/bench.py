@@ -1,4 +1,4 @@
-"""What scripts/bench does once everything is built: measures, prints, and fills docs/performance.md."""
+"""Main program of scripts/bench after building: measures, prints, and fills docs/performance.md."""
 
 import json
 import subprocess
@@ -13,7 +13,7 @@ RESULTS = BUILT / "bench.json"
 
 
 def check(python):
-    """Compares equations to round-off; ends the script where they differ."""
+    """Compares the equations of all peers; exits if they differ by more than rounding errors."""
     if not python:
         return
     answer = subprocess.run([PYTHON, "benches/python/worker.py", PEERS, "--check", *SCENES], cwd=ROOT)
@@ -22,7 +22,7 @@ def check(python):
 
 
 def quick(python):
-    """Each peer once, coarsely; what fails ends the script."""
+    """Runs each peer once with a loose tolerance; exits if one fails."""
     check(python)
     all = workers(python)
     failed = []

@@ -1,4 +1,4 @@
-"""What is measured: peers in turns, rods of their own, the program, single operations, large systems."""
+"""Measurements: peers in alternating runs, peers with their own discretization, the program, single operations, large systems."""
 
 import json
 import math
@@ -12,7 +12,7 @@ import time
 from workers import ACCURACIES, BUILT, LONG, PEER_GROUPS, PEERS, ROOT, ROUNDS, SCENES, TOLERANCES, error, peers, run, shown, timed
 
 
-# a run that takes longer is given up, and its method at tighter tolerances, too [s]
+# time limit of a run [s]; beyond it, the method is not run at tighter tolerances either
 STUCK = 8.0
 
 
@@ -21,7 +21,7 @@ def groups(python):
 
 
 def explore(all, scene, reference, python):
-    """Points (method, tolerance, error, seconds, steps) of every group."""
+    """Measures points (method, tolerance, error, seconds, steps) of every group."""
     points = {}
     for name, (worker, methods) in groups(python).items():
         points[name] = []
@@ -49,7 +49,7 @@ def explore(all, scene, reference, python):
 
 
 def between(worker, scene, reference, method, points):
-    """For each accuracy the tolerance halfway to the next looser one: half decades are coarse where a method is of high order."""
+    """Adds, for each accuracy, the tolerance halfway to the next looser one: half decades are coarse for methods of high order."""
     found = []
     for accuracy in ACCURACIES:
         for looser, tighter in zip(points, points[1:]):
@@ -69,7 +69,7 @@ def cheapest(points, accuracy):
 
 
 def compare(all, scene, points, python):
-    """The cheapest setting of each group at each accuracy, measured again in alternating runs: medians and ratios to slcbeam."""
+    """Measures the cheapest setting of each group at each accuracy again, in alternating runs: medians and ratios to slcbeam."""
     chosen = {name: [cheapest(points[name], a) for a in ACCURACIES] for name in points}
     settings = {(name, p["method"], p["rtol"]): [] for name in chosen for p in chosen[name] if p}
     long = {key for key in settings for p in points[key[0]] if (p["method"], p["rtol"]) == key[1:] and p["seconds"] > LONG}
@@ -113,19 +113,19 @@ def measure_runs(all, python):
     return results
 
 
-# Beams on which peers have a discretisation of their own: scene, its peer, elements, steps an output interval, accuracies, times wanted.
+# Beams with the peers' own discretization: scene, peer, elements, steps per output interval, accuracies, required ratio of times.
 RODS = {
     "PyElastica": (
         "dry-cantilever-sheared", "elastica", [10, 14, 20, 28, 40, 56, 80, 113, 160], [4, 8, 16, 32, 64], [1e-2, 3e-3, 1e-3], 100.0,
     ),
     "Exudyn": ("swing", "exudyn", [2, 3, 4, 6, 8, 12, 16], [1, 2, 4, 8, 16], ACCURACIES, None),
 }
-# Cells of slcbeam's meshes, the finest of which tell the limit; of fourth order.
+# Cells of slcbeam's meshes: of second order, of fourth order, and of the pair that gives the reference.
 OWN_CELLS, OWN_FOURTH, LIMIT = [10, 20, 40, 80, 160], [10, 14, 20, 28, 40, 56, 80], [160, 320]
 
 
 def measure_rods(all):
-    """Error in space and time against the limit to which slcbeam's finest meshes point."""
+    """Measures errors in space and time against the extrapolated limit of slcbeam's finest meshes."""
     out = {"points": {}, "ratios": [], "rows": [["beam", "error", "slcbeam", "peer", "peer / slcbeam"]], "limits": []}
     for name, (scene, peer, elements, steps, accuracies, wanted) in RODS.items():
         fine = [run(all["peers"], f"{scene}*{cells}", "esdirk57", 1e-7, 120.0)["histories"][0] for cells in LIMIT]
@@ -148,7 +148,7 @@ def measure_rods(all):
                     e = error(ran["histories"], limit, (0,))
                     theirs.append(dict(scene=scene, method=f"{peer}-{n}", rtol=step, error=e, seconds=ran["seconds"]))
                     more += 1
-                    # explicit steps are short of what stability asks for, more of them change nothing
+                    # stability limits explicit steps anyway; a smaller step does not change the error
                     if ran["seconds"] > LONG or (peer == "elastica" and more > 1):
                         break
         best = min(p["error"] for p in theirs)
@@ -179,7 +179,7 @@ def measure_rods(all):
 
 
 def program(order, cells, fluid, rtol):
-    """Wall time of the whole process, `wall_s`, figures, and rows of the history of one run of the program."""
+    """Runs the program once: wall time of the process, `wall_s`, figures, and number of rows of the history."""
     folder = BUILT / "run"
     binary = os.environ.get("CARGO_TARGET_DIR", str(ROOT / "target")) + "/release/slcbeam"
     sets = {
@@ -200,7 +200,7 @@ def program(order, cells, fluid, rtol):
 
 
 def measure_program():
-    """The program on wiring-2, smooth start: time of the whole process against the error of its figures."""
+    """Measures the program on wiring-2 with a smooth start: time of the whole process against the error of its figures."""
     coarse, fine = (program(2, k, k // 2, 1e-6)["figures"] for k in (16, 32))
     limit = [b + (b - a) / 3.0 for a, b in zip(coarse, fine)]
     rows = [
@@ -231,7 +231,7 @@ def measure_program():
 
 
 def instructions(scene, what):
-    """Instructions of one operation, from callgrind's counts of two runs; nothing where valgrind is missing."""
+    """Instructions of one operation, from callgrind's counts of two runs; None without valgrind."""
     counts = []
     for times in (2, 22):
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", PEERS, "work", scene, what, str(times)]
@@ -262,7 +262,7 @@ def measure_prices():
 
 
 def exponent(pairs):
-    """Slope of a line through logarithms."""
+    """Exponent of a power law: slope of the regression line through the logarithms."""
     logs = [(math.log(n), math.log(t)) for n, t in pairs]
     x, y = (statistics.mean(v) for v in zip(*logs))
     return sum((a - x) * (b - y) for a, b in logs) / sum((a - x) ** 2 for a, _ in logs)
@@ -286,15 +286,15 @@ LARGE = [
 
 
 def without_waiting(p, smallest):
-    """Seconds of an iteration, less what reading its bytes takes longer than where caches hold them."""
+    """Seconds per iteration, minus the extra time of reading its bytes from memory instead of the caches."""
     return p["seconds"] / p["iterations"] - p["bytes"] * (p["reading"] - smallest["reading"])
 
 
 def measure_large():
-    """Chains, and other wirings at 100 and 1000 bladders a row; a process each, so that memory is its own."""
+    """Measures chains, and other wirings at 100 and 1000 bladders per row. Each runs in its own process, so that memory is counted apart."""
     chains = [peers("large", "chain", n) for n in (10, 100, 1000, 10000, 100000)]
     floor = [LARGE] + [large_row(p, f"{p['case']}") for p in chains]
-    # a step's own iterations depend on the motion, so the exponent is that of an iteration
+    # the number of iterations per step depends on the motion, so the exponent is per iteration
     an_iteration = [(p["unknowns"], p["seconds"] / p["iterations"]) for p in chains]
     exponents = {"an iteration": exponent(an_iteration)}
     exponents["an iteration, to 20 000 unknowns"] = exponent(an_iteration[:3])

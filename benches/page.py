@@ -1,4 +1,4 @@
-"""Tables, picture and page of results."""
+"""Tables, diagram and page of the results."""
 
 import math
 import re
@@ -7,7 +7,7 @@ from measures import RODS
 from workers import ACCURACIES, ROOT, aligned, shown
 
 PAGE = ROOT / "docs/performance.md"
-# what must hold: the fastest of some peers over slcbeam's time
+# required ratio of the time of the fastest of some peers to slcbeam's time
 REQUIRED = {"diffsol": 4.0, "Python": 15.0}
 PYTHONS = ["scikit-sundae", "scikit-sundae, default settings", "scipy"]
 
@@ -47,7 +47,7 @@ def best_ratio(table, names, k):
 
 
 def held(results):
-    """Rows of the table of what must hold."""
+    """Rows of the table of requirements."""
     rows = [["what must hold", "measured", "holds"]]
 
     def add(what, value, holds):
@@ -108,7 +108,7 @@ COLOURS = {
 
 
 def front(points):
-    """Points that no other beats in both error and time, by error."""
+    """Pareto front of error and time, sorted by error."""
     out = []
     for p in sorted(points, key=lambda p: (p["error"], p["seconds"])):
         if not out or p["seconds"] < out[-1]["seconds"]:

@@ -1,7 +1,7 @@
-"""Processes that run a setting when they are asked to, and how wrong and how fast it was.
+"""Worker processes that run settings on request, and the errors and times of the runs.
 
-Workers (benches/peers, benches/c, benches/python) take lines `SCENE METHOD RTOL` and answer `seconds steps tip.. pressure..`, so that
-runs of all of them alternate on one machine and errors are measured in one place.
+Workers (benches/peers, benches/c, benches/python) read lines `SCENE METHOD RTOL` and answer `seconds steps tip.. pressure..`. Runs
+of all workers alternate on one machine, and one function measures all errors.
 """
 
 import json
@@ -20,7 +20,7 @@ PYTHON = str(BUILT / "python/bin/python")
 SCENES = ["shaken-sealed", "wiring-2", "dry-cantilever"]
 ACCURACIES = [1e-2, 1e-3, 1e-4]
 TOLERANCES = [10 ** (-k / 2) for k in range(2, 14)]
-# who is compared: worker, methods
+# compared groups: worker, methods
 PEER_GROUPS = {
     "slcbeam": ("peers", ["ida2", "trbdf2", "esdirk34", "esdirk46", "esdirk57"]),
     "diffsol": ("peers", [f"diffsol-{m}-{s}" for m in ("bdf", "trbdf2", "esdirk34") for s in ("klu", "faer")]),
@@ -31,20 +31,20 @@ PEER_GROUPS = {
     "scipy": ("python", ["scipy-radau", "scipy-bdf"]),
 }
 ROUNDS = 5
-# a run longer than this is measured once [s], and no tighter tolerance is asked of that method
+# a longer run [s] is measured once, and the method is not run at tighter tolerances
 LONG = 1.5
 
 
 class Worker:
-    """A process that answers lines."""
+    """A process that answers requests line by line."""
 
     def __init__(self, command):
         self.command, self.process = command, None
 
     def ask(self, line, timeout=60.0):
-        """Words of the answer; nothing when there is none in time."""
+        """Returns the words of the answer; None after the timeout."""
         if self.process is None:
-            # more threads than one wait for each other wherever the machine is shared
+            # on a shared machine, several threads would wait for each other
             own = os.environ | dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
             self.process = subprocess.Popen(
                 self.command, env=own, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
@@ -80,7 +80,7 @@ def workers(python):
 
 
 def run(worker, scene, method, rtol, timeout=60.0):
-    """Seconds, steps, histories of tip and pressure; nothing when it failed."""
+    """Returns seconds, steps, and histories of tip and pressure; None if the run failed."""
     words = worker.ask(f"{scene} {method} {rtol:.3e}", timeout)
     if words is None or words[0] == "failed":
         return None
@@ -92,13 +92,13 @@ def run(worker, scene, method, rtol, timeout=60.0):
 
 
 def timed(worker, scene, method, rtol):
-    """A run whose process is awake: one before it, that is not timed, brings back what was taken from it while it waited; beside a long one that is nothing."""
+    """Runs a setting twice and returns the second, warm run; a run above 0.3 s is not repeated."""
     ran = run(worker, scene, method, rtol)
     return run(worker, scene, method, rtol) if ran and ran["seconds"] < 0.3 else ran
 
 
 def error(histories, reference, what=(0, 1)):
-    """Largest difference over the output times, relative to the largest value; the worst of tip and pressure."""
+    """Largest difference over the output times, relative to the largest value; the larger one of tip and pressure."""
     worst = 0.0
     for k in what:
         size = max(map(abs, reference[k]))

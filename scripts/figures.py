@@ -20,7 +20,7 @@ import paper  # noqa: E402
 
 
 def run(wanted):
-    """Runs one result that a figure needs; (folder, case, changes, command)."""
+    """Computes one result required by a figure: (folder, case, changes, command)."""
     folder, case, sets, command = wanted
     arguments = [paper.common.PROGRAM, *command, ROOT / f"cases/{case}.json", "--quiet"]
     for change in sets:
@@ -54,7 +54,7 @@ def main():
     for name in names:
         figure, found = paper.FIGURES[name].draw()
         file = asked.out / f"figure-{name.lower().replace('.', '')}.svg"
-        # The same numbers give the same file; of a curve a hundredth of a point is enough.
+        # Reproducible file: coordinates are rounded to a hundredth of a point.
         text = io.StringIO()
         figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
         file.write_text(re.sub(r' d="[^"]*"', lambda d: re.sub(r"(\.\d\d)\d+", r"\1", d[0]), text.getvalue()))

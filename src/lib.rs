@@ -6,31 +6,31 @@
 //!
 //! # Rooms
 //!
-//! A file imports from its own room and from rooms above it, never from below; `tests/architecture.rs` holds this.
+//! A file imports from its own room and from rooms above it, never from below; `tests/architecture.rs` verifies this.
 //!
-//! | room | what it knows |
+//! | room | content |
 //! |---|---|
-//! | [`error`] | everything that ends a command without success, and its exit code |
-//! | [`numerics`] | mathematics that knows nothing of beams: dual numbers, kernels, quadrature, Krylov spaces |
-//! | [`functions`] | functions of time and place, with bounds of what they do |
-//! | [`sparse`] | sparse matrices: patterns, LU factors in dense blocks along a line, and SuiteSparse's KLU behind a safe type |
-//! | [`case`] | what the user wrote: schema, check with all faults at once |
-//! | [`model`] | physics of one cross-section, one bladder, one network: pure functions generic over the scalar; effects chosen |
+//! | [`error`] | errors that end a command, with exit codes |
+//! | [`numerics`] | numerical methods independent of beams: dual numbers, kernels, quadrature, Krylov spaces |
+//! | [`functions`] | functions of time and place, with bounds |
+//! | [`sparse`] | sparse matrices: patterns, LU factors in dense blocks along a line, and a safe type for SuiteSparse's KLU |
+//! | [`case`] | cases as written: schema, and a check that reports all faults at once |
+//! | [`model`] | physics of one cross-section, one bladder, one network: pure functions generic over the scalar; choice of effects |
 //! | [`discrete`] | space: mesh, unknowns with their scales, the residual in the paper's order, the exact balances |
-//! | [`dae`] | the trait [`dae::Dae`]; the beam as one; its Jacobian. Knows no solver |
-//! | [`integrate`] | what integrators share: tolerances, consistent starts, counters, failures |
-//! | [`sundials`] | IDA and KINSOL behind safe types; knows only [`dae::Dae`] |
+//! | [`dae`] | the trait [`dae::Dae`], its implementation for the beam, and the Jacobian; independent of solvers |
+//! | [`integrate`] | common parts of integrators: tolerances, consistent starts, counters, failures |
+//! | [`sundials`] | safe types for IDA and KINSOL; depends only on [`dae::Dae`] |
 //! | [`onestep`] | A-stable one-step methods of order 2 to 5, with the interface of [`sundials::Ida`] |
-//! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with bounds of their errors |
-//! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits what happens, prints nothing |
-//! | [`study`] | many runs to answer one question: exact results, accuracy against cost, effects, comparison, many designs |
-//! | [`results`] | results as files hold them: one type a kind, for writers and readers alike |
+//! | [`spectral`] | eigenvalues of sparse pencils nearest a shift, with error bounds |
+//! | [`run`] | a run in time, equilibria, modes, cycles: samples, balances, range checks. Emits events, prints nothing |
+//! | [`study`] | studies of many runs: exact results, accuracy against cost, effects, comparison, many designs |
+//! | [`results`] | result types, one per kind, for writers and readers |
 //! | [`output`] | result folders: history, arrays, summary, pictures, the page |
-//! | [`cli`] | one file a subcommand; the only place that prints |
+//! | [`cli`] | one file per subcommand; the only room that prints |
 //!
-//! Data flow one way: text → schema → checked [`case::Case`] → [`model::Model`] → [`discrete::System`] →
-//! [`dae::BeamDae`] → [`sundials::Ida`] → samples → files. An effect that is absent is an absent unknown and an absent
-//! term, decided once, when the model is built.
+//! Data flow in one direction: text → schema → checked [`case::Case`] → [`model::Model`] → [`discrete::System`] →
+//! [`dae::BeamDae`] → [`sundials::Ida`] → samples → files. An absent effect adds no unknown and no term; this is
+//! decided once, when the model is built.
 //!
 //! ```no_run
 //! use slcbeam::{case, run::{dynamics, record::Memory}};

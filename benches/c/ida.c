@@ -1,7 +1,7 @@
-/* The equations of a scene given to SUNDIALS through its C interface: Debian's serial vector, sparse matrix and KLU, as a C
- * programmer would. Residual and Jacobian are slcbeam's own, from libpeers (benches/peers/src/abi.rs).
+/* Solves a scene with SUNDIALS through its C interface: Debian's serial vector, sparse matrix and KLU. Residual and Jacobian
+ * are slcbeam's own, from libpeers (benches/peers/src/abi.rs).
  *
- * Reads lines `SCENE METHOD RTOL`, METHOD ida2 or ida5 for the highest order, and answers `seconds steps tip.. pressure..`. */
+ * Reads lines `SCENE METHOD RTOL` with METHOD ida2 or ida5 (highest order), and answers `seconds steps tip.. pressure..`. */
 #include <ida/ida.h>
 #include <nvector/nvector_serial.h>
 #include <stdint.h>

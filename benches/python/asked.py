@@ -1,4 +1,4 @@
-"""What the Python peers share: the numbers of a scene, and answers to `SCENE METHOD SETTING`, line by line."""
+"""Common parts of the Python peers: parameters of a scene, and the loop that answers `SCENE METHOD SETTING` line by line."""
 
 import json
 import subprocess
@@ -6,12 +6,12 @@ import sys
 
 
 def exported(peers, name):
-    """The numbers of a scene from the program benches/peers."""
+    """Parameters of a scene, from the program benches/peers."""
     return json.loads(subprocess.run([peers, "export", name], check=True, capture_output=True, text=True).stdout)
 
 
 def serve(solve):
-    """Answers each line of standard input by `seconds steps tip.. pressure..` of solve(scene, method, setting), or by `failed` and why."""
+    """Answers each line of standard input by `seconds steps tip.. pressure..` of solve(scene, method, setting), or by `failed` and the reason."""
     for line in sys.stdin:
         name, method, setting = line.split()
         try:

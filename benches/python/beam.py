@@ -1,7 +1,7 @@
 """The semi-discrete equations of docs/model.md, section 7, for a beam clamped at the root and free at the tip, finite rotations, no
-rotary inertia, in numba. What stands in brackets is the tag of an equation there.
+rotary inertia, in numba. Tags in brackets are those of the equations there.
 
-Unknowns are divided by the sizes that slcbeam gives them, so that one tolerance means the same to all.
+Unknowns are scaled as in slcbeam, so that a tolerance has the same meaning in all programs.
 """
 
 import math
@@ -50,7 +50,7 @@ class Numbers(NamedTuple):
 
 
 def numbers(scene):
-    """From what `peers export` prints."""
+    """Builds the scene from the output of `peers export`."""
     case, section, mesh = scene["case"], scene["section"], scene["mesh"]
     beam, bladders = case["beam"], case.get("bladders")
     segments, k = mesh["segments"], mesh["cells_per_segment"]
@@ -117,7 +117,7 @@ def numbers(scene):
 
 @numba.njit(cache=True)
 def drive(t, p):
-    """Motion of the root along the beam: value, rate, acceleration."""
+    """Axial motion of the root: value, rate, acceleration."""
     s, c = math.sin(p.omega * t), math.cos(p.omega * t)
     r = r1 = r2 = 0.0
     x = t / p.ramp if p.ramp > 0.0 else 1.0
@@ -161,7 +161,7 @@ def shape(u1, u3, p, w):
 
 @numba.njit(cache=True)
 def pressed(area, mm, nn, p, pressure, f):
-    """[E8], [E3] Pressures of cells, stretch and curvature that they make of each segment, into the rows of f."""
+    """[E8], [E3] Pressures of cells, and stretch and curvature of each segment by pressure, into the rows of f."""
     k = p.per_bladder
     for j in range(p.segments):
         common = p.an * nn[j] - p.dn * kink(nn[j], p.width_n) - p.dm * kink(mm[j], p.width_m)
@@ -238,7 +238,7 @@ def inflow(pressure, p, q):
 
 @numba.njit(cache=True)
 def evaluate(t, y, p, mm, nn, work):
-    """Everything up to forces and flows; y scaled, means in SI units."""
+    """All quantities up to forces and flows; y is scaled, means are in SI units."""
     n, s = p.nodes, p.scales
     u, w, fn, cells = work
     f, q, pressure = fn, cells[0], cells[1]
@@ -299,8 +299,8 @@ def residual(t, y, yp, out, p, work):
 
 @numba.njit(cache=True)
 def means(t, y, p, mm, nn, work):
-    """Mbar and Nbar that belong to the other unknowns, [E16]: Mbar from a tridiagonal system, Nbar by Newton's iteration. The
-    published coupling alone: α_p is linear in Mbar then, and λ_p in pressures."""
+    """Mbar and Nbar as functions of the other unknowns, [E16]: Mbar from a tridiagonal system, Nbar by Newton's iteration. Only for the
+    published coupling, where α_p is linear in Mbar, and λ_p in pressures."""
     g, k = p.segments, p.per_segment
     zero = np.zeros(g)
     evaluate(t, y, p, zero, zero, work)
@@ -343,7 +343,7 @@ def means(t, y, p, mm, nn, work):
 
 @numba.njit(cache=True)
 def rates(t, z, out, p, work, y, mm, nn):
-    """z' of the differential unknowns z; y is room for all unknowns, mm and nn the last means."""
+    """z' of the differential unknowns z; y is workspace for all unknowns, mm and nn are the last means."""
     n, s, g = p.nodes, p.scales, p.segments
     y[: 4 * n] = z[: 4 * n]
     if p.wet:
@@ -367,7 +367,7 @@ def rates(t, z, out, p, work, y, mm, nn):
 
 @numba.njit(cache=True)
 def differences(t, y, yp, cj, p, work, groups, count, starts, rows, values):
-    """Entries of ∂F/∂y + cj ∂F/∂y', columns that share no row at once."""
+    """Entries of ∂F/∂y + cj ∂F/∂y'; structurally orthogonal columns are evaluated together."""
     n = y.shape[0]
     at, moved, y2, yp2 = np.zeros(n), np.zeros(n), y.copy(), yp.copy()
     residual(t, y, yp, at, p, work)
@@ -431,7 +431,7 @@ class Beam:
         return groups, int(groups.max()) + 1
 
     def reduced_pattern(self):
-        """Of z': means see their segment, Mbar two segments on both sides beyond which it falls below a hundredth."""
+        """Sparsity pattern of z'. Mbar couples two segments on each side; beyond them its influence is below a hundredth."""
         d, a = self.differential, np.array(self.algebraic, dtype=int)
         full = self.pattern.tocsr()
         own = full[d][:, d]
@@ -446,7 +446,7 @@ class Beam:
         return own
 
     def readings(self, y):
-        """Tip's deflection [m] and pressure at the tip's end of the upper row [Pa], of all unknowns."""
+        """Tip deflection [m] and pressure at the tip end of the upper row [Pa], from all unknowns."""
         p, n, g = self.p, self.p.nodes, self.p.segments
         si = y * p.scales
         if not p.wet:
@@ -456,7 +456,7 @@ class Beam:
         return si[n - 1], (area - imposed) / p.a_p
 
     def complete(self, t, z):
-        """All unknowns of the differential ones."""
+        """All unknowns, from the differential ones."""
         y = self.y0.copy()
         y[self.differential] = z
         if self.p.wet:
@@ -488,7 +488,7 @@ class Beam:
         return scipy.sparse.csc_matrix((values, self.reduced.indices, self.reduced.indptr), shape=self.reduced.shape)
 
     def warm_up(self):
-        """Compiles."""
+        """Compiles all functions by calling them."""
         out, values = np.zeros(self.n), np.zeros(self.pattern.nnz)
         self.residual(0.0, self.y0, self.yp0, out)
         self.jacobian(0.0, self.y0, self.yp0, out, 1.0, values)

@@ -1,5 +1,5 @@
-"""Programs with a discretisation of their own on dry beams, asked for line by line: SCENE METHOD-ELEMENTS STEPS, steps an output
-interval; compiling and assembling are done before time is taken."""
+"""Peers with their own discretization of dry beams. Requests are lines SCENE METHOD-ELEMENTS STEPS, with STEPS per output interval.
+Times exclude compilation and assembly."""
 
 import sys
 import time
@@ -12,7 +12,7 @@ PEERS = sys.argv[1]
 
 
 class Start:
-    """A beam of the case and its start, from a fine mesh."""
+    """A beam of the case, with its initial state from a fine mesh."""
 
     def __init__(self, name):
         scene = exported(PEERS, f"{name}:32")
@@ -36,8 +36,8 @@ class Start:
 
 
 def elastica(start, elements, steps):
-    """PyElastica: explicit, position Verlet. Its clamp holds the director of the first element, so that element reaches half its length
-    beyond the root, and the director stands where the beam is clamped."""
+    """PyElastica: explicit, position Verlet. Its clamp fixes the director of the first element. This element therefore extends half its
+    length beyond the root, so that the director is at the clamp."""
     import elastica as ea
 
     class Simulator(ea.BaseSystemCollection, ea.Constraints, ea.CallBacks):
@@ -86,7 +86,7 @@ def elastica(start, elements, steps):
         if len(tips) and not abs(tips[-1]) < 1.0:
             raise RuntimeError("unstable")
     seconds = time.perf_counter() - begin
-    # the callback counts calls itself where the stepper tells no step
+    # the callback counts its calls, since the stepper passes no step number
     return seconds, count, tips[-len(start.times):]
 
 

@@ -1,4 +1,4 @@
-"""Runs of the Python peers, asked for line by line: SCENE METHOD RTOL; compiling is done before time is taken. `worker.py PEERS --check SCENE..` compares equations instead."""
+"""Runs the Python peers on requests SCENE METHOD RTOL; times exclude compilation. `worker.py PEERS --check SCENE..` compares equations."""
 
 import sys
 import time
@@ -51,7 +51,7 @@ def scipys(beam, method, rtol):
 
 
 def check(names):
-    """Equations at random states, relative to the largest residual of the state; exit code 1 where they differ."""
+    """Compares equations at random states, relative to the largest residual of the state; exit code 1 if they differ."""
     worst = 0.0
     for name in names:
         scene = exported(PEERS, name)
@@ -61,10 +61,10 @@ def check(names):
             y, yp, wanted = (np.array(state[k]) for k in ("y", "yp", "residual"))
             out = np.zeros(n)
             beam.residual(state["t"], y, yp, out)
-            # of each equation, relative to the largest of its block
+            # difference of each equation, relative to the largest of its block
             size = np.maximum(np.abs(wanted), 1e-3 * np.abs(wanted).max())
             worst = max(worst, float(np.max(np.abs(out - wanted) / size)))
-            # z' of the reduced form leaves no residual
+            # z' of the reduced form makes the residual zero
             d = beam.differential
             z = beam.y0[d] + 1e-2 * y[d]
             full, rate = beam.complete(state["t"], z), np.zeros(n)

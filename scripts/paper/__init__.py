@@ -1,4 +1,4 @@
-"""A module a figure; each has NEEDS (folder, case, changes, command) and draw() -> (figure, numbers)."""
+"""One module per figure. Each has NEEDS (folder, case, changes, command) and draw() -> (figure, numbers)."""
 from collections import namedtuple
 
 from . import cell, harvester, maps, steps, valves, wet, wiring

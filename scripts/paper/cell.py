@@ -1,4 +1,4 @@
-"""The published cell: its coefficients over what the paper prints, from `slcbeam verify --paper`."""
+"""The published cell: ratio of its coefficients to the printed values, from `slcbeam verify --paper`."""
 import json
 import subprocess
 

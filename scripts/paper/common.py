@@ -1,4 +1,4 @@
-"""Results read back, and what the figures have in common: colours of time, beams drawn as wired, pressure over X_f."""
+"""Reading of results, and common parts of the figures: time colors, wiring diagrams, pressure over X_f."""
 import csv
 import json
 import os
@@ -24,12 +24,12 @@ BLUE, RED, GREY = "#1f4fd8", "#d8231f", "#9a9a9a"
 
 
 def shipped(*cases):
-    """What a figure needs of cases as they are shipped."""
+    """NEEDS entries of runs of unchanged shipped cases."""
     return [(case, case, [], ["run"]) for case in cases]
 
 
 class Result:
-    """A result folder: arrays by name, history's columns by name and unit, summary, case."""
+    """A result folder: arrays by name, history columns by name with unit, summary, case."""
 
     def __init__(self, folder):
         at = RESULTS / folder
@@ -52,23 +52,23 @@ class Result:
         return self.fields["pressure_pa"] / self.modulus
 
     def instants(self, start, end, count):
-        """Numbers of about so many instants from start to end [s], spread evenly."""
+        """Indices of about `count` evenly spaced instants from start to end [s]."""
         within = np.flatnonzero((self.t >= start - 1e-9) & (self.t <= end + 1e-9))
         return within[np.unique(np.linspace(0, len(within) - 1, count).round().astype(int))]
 
     def last_cycle(self, frequency, count=24):
-        """Instants of the last whole cycle."""
+        """Indices of instants of the last whole cycle."""
         return self.instants(self.t[-1] - 1 / frequency, self.t[-1], count)
 
 
 def over_time(ax, x, rows, instants, **style):
-    """A curve an instant, blue to red."""
+    """Plots one curve per instant, from blue to red."""
     for n, k in enumerate(instants):
         ax.plot(x, rows[k], color=TIME(n / max(1, len(instants) - 1)), **style)
 
 
 def over_network(ax, result, rows, instants):
-    """Pressure over X_f, broken between arrays of bladders, with the ranges of their indices in brackets."""
+    """Plots pressure over X_f, with gaps between arrays of bladders and the ranges of bladder indices in brackets."""
     x, array, bladder = (result.fields[name] for name in ("x_f", "array", "bladder"))
     breaks = np.flatnonzero(np.diff(array)) + 1
     over_time(ax, np.insert(x, breaks, np.nan), np.insert(rows, breaks, np.nan, axis=1), instants)
@@ -81,16 +81,16 @@ def over_network(ax, result, rows, instants):
 
 
 def ranges(bladder):
-    """Runs of one row along X_f: first and last index, cells."""
+    """Yields each contiguous range of bladders of one row along X_f: first index, last index, cells."""
     cuts = [0, *(np.flatnonzero(np.diff(np.sign(bladder))) + 1), len(bladder)]
-    # A new array of the same row starts a new range: its indices do not go on.
+    # A jump of the indices within a row starts a new range.
     cuts = sorted({*cuts, *(k + 1 for k in np.flatnonzero(np.abs(np.diff(bladder)) > 1))})
     for a, b in zip(cuts, cuts[1:]):
         yield int(bladder[a]), int(bladder[b - 1]), np.arange(a, b)
 
 
 def wired(ax, case, turbine=False):
-    """The beam from the side: bladders with their indices, tubes of the first chain blue, of the second red."""
+    """Draws a side view of the beam: bladders with indices, tubes of the first chain blue, of the second red."""
     count, chains = case["bladders"]["per_row"], case["network"]["chains"]
     colour = {b: c for chain, c in zip(chains, (BLUE, RED)) for b in chain["bladders"]}
     ax.add_patch(FancyBboxPatch((0, -1.08), count, 2.16, boxstyle="round,pad=0,rounding_size=0.12", fc="#efece4", ec="k", lw=0.7))
@@ -119,17 +119,17 @@ def wired(ax, case, turbine=False):
 
 
 def power_of_ten(rows, symbol):
-    """Factor that brings small numbers near one, and the label of what is scaled so."""
+    """Power of ten that scales small numbers to about one, and the axis label with it."""
     largest = np.nanmax(abs(rows))
     power = 0 if largest == 0 or largest > 0.1 else int(np.ceil(-np.log10(largest)))
     return 10.0**power, f"$10^{{{power}}}\\ {symbol}$" if power else f"${symbol}$"
 
 
 def panel(ax, label, pad=6):
-    """The panel's letter, as the paper has it; what is not in the paper has a prime."""
+    """Sets the letter of a panel as in the paper; panels that are not in the paper have a prime."""
     ax.set_title(f"({label})", loc="left", fontweight="bold", pad=pad)
 
 
 def rounded(value, digits=4):
-    """A number as the page prints it."""
+    """Rounds a number for the page."""
     return float(f"{value:.{digits - 1}e}")

@@ -6,7 +6,7 @@ from .common import BLUE, RED, Result, over_time, panel, plt, rounded, wired
 WIRINGS = [("parallel", BLUE), ("crossover", RED)]
 LOADS = [("I", "uniform", "λ = 0"), ("II", "wave", "λ = 0.95")]
 RECIPROCAL = '/bladders/coupling="reciprocal"'
-# the work put in is the small difference of what swings to and fro: at the tolerance of the cases, 1e-5, a third of it is wrong under the wave
+# the input work is a small difference of large oscillating terms: at the tolerance 1e-5 of the cases, its error under the wave is a third
 PRECISELY = "/solver/rtol=1e-8"
 NEEDS = [
     (f"figures/harvester-{w}-{l}{name}", f"harvester-{w}-{l}", [*coupling, PRECISELY], ["run"])
@@ -45,7 +45,7 @@ def draw():
 
 
 def force(ax, result, what):
-    """The load over its scale over a period, from the case."""
+    """Draws the load over its scale during a period, from the case."""
     written = result.case["loads"][0]["force_x_n_m"]
     amplitude, theta = written["signal"]["sine"]["amplitude"] / B_STAR, np.linspace(0, 1, 101)
     profile = written["profile"]

@@ -55,13 +55,13 @@ def draw():
 
 
 def cycle(result, number):
-    """Largest deflection of the tip in a cycle, the first is 1."""
+    """Largest deflection of the tip in a cycle; cycles count from 1."""
     within = (result.t >= (number - 1) / FREQUENCY) & (result.t <= number / FREQUENCY)
     return abs(result.u(1)[within, -1]).max()
 
 
 def transition(ax, numbers):
-    """Largest deflection of runs of nine cycles, as the paper has it."""
+    """Plots the largest deflection of runs of nine cycles, as in the paper."""
     most = [abs(Result(f"figures/valves-{f}").u(1)).max() for f in FACTORS]
     ax.axvspan(0.3, 0.7, color="#eeeeee", label="transition as printed")
     ax.plot(FACTORS, 1e3 * np.array(most), "ko-", ms=3.5, label="run from rest, 0.5 s")
@@ -72,7 +72,7 @@ def transition(ax, numbers):
 
 
 def cycles(ax, numbers):
-    """Steady cycles below the tongue: no growth, no start."""
+    """Plots steady cycles below the tongue, without growth or transient."""
     found = {}
     for coupling, colour in (("published", BLUE), ("reciprocal", RED)):
         with open(RESULTS / f"figures/valves-cycles-{coupling}/sweep.csv") as file:

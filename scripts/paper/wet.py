@@ -1,4 +1,4 @@
-"""Fig. A.9: the filled beam with the upper row joined: pulled along, bent, shaken across."""
+"""Fig. A.9: the filled beam with the upper row joined: axial pull, bending, transverse shaking."""
 from .common import Result, over_network, over_time, panel, plt, power_of_ten, rounded, shipped, wired
 from .steps import RISE
 

@@ -1,4 +1,4 @@
-//! Numbers with a unit behind them, where the key has the unit: what they are there.
+//! Numbers given as texts with a unit, and their conversion to the unit of the key.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,14 +7,13 @@ use super::slips::number_of;
 use super::units::{self, Suffix, Unit};
 use super::wording::short;
 
-/// Longer texts are no number with its unit.
+/// Longest text [bytes] that is read as a number with a unit.
 const LONGEST: usize = 60;
 
 /// Standard gravity [m/s^2].
 pub(super) const GRAVITY: f64 = 9.806_65;
 
-/// Units that no heading of a table may have, as some have several meanings there, but of which the factor is known: SI unit, words, how
-/// many of the one the other is.
+/// Units that headings of tables do not accept, because some are ambiguous there: SI unit, spellings, factor to the SI unit.
 const OTHERS: [(&str, &[&str], f64); 37] = [
     ("m", &["in", "inch", "inches", "\""], 0.0254),
     ("m", &["ft", "foot", "feet"], 0.3048),
@@ -55,7 +54,7 @@ const OTHERS: [(&str, &[&str], f64); 37] = [
     ("Pa s", &["poise"], 0.1),
 ];
 
-/// More of them, of volumes and flows.
+/// Further such units, of volume and flow.
 const LIQUIDS: [(&str, &[&str], f64); 6] = [
     ("m^3", &["cc"], 1e-6),
     ("m^3", &["nl"], 1e-12),
@@ -65,7 +64,7 @@ const LIQUIDS: [(&str, &[&str], f64); 6] = [
     ("m^3/s", &["m3/h"], 1.0 / 3600.0),
 ];
 
-/// SI unit and factor of a word that names a unit which the table of units has not.
+/// SI unit and factor of a unit that the table of units lacks, by its spelling.
 pub(super) fn other(word: &str) -> Option<(&'static str, f64)> {
     let word = word.to_lowercase();
     let mut all = OTHERS.iter().chain(&LIQUIDS);
@@ -73,7 +72,7 @@ pub(super) fn other(word: &str) -> Option<(&'static str, f64)> {
     Some((*si, *scale))
 }
 
-/// The number that a text begins with, as what it may be read, and the unit behind it.
+/// Possible values of the number at the beginning of a text, and the unit behind it. Ambiguous commas give several values.
 fn split(text: &str) -> Option<(Vec<f64>, &str)> {
     let text = text.trim();
     if text.len() > LONGEST || !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
@@ -91,18 +90,18 @@ fn split(text: &str) -> Option<(Vec<f64>, &str)> {
         let readings: Vec<f64> = number.parse::<f64>().map_or_else(|_| loose(), |one| vec![one]);
         (!readings.is_empty() && readings.iter().all(|x| x.is_finite())).then_some((readings, unit.trim()))
     })?;
-    // the power of a number with a comma is no unit
+    // the exponent of a number with a comma is not a unit
     let power = unit.len() > 1 && unit.starts_with(['e', 'E']) && unit[1..].parse::<i32>().is_ok();
     (!power && unit.starts_with(|c: char| c.is_alphabetic() || "%°\"".contains(c))).then_some((number, unit))
 }
 
-/// Without what writers of units differ in.
+/// Normalizes the spelling of a unit: micro sign, superscripts, and separators.
 fn squeezed(unit: &str) -> String {
     let plain = unit.replace(['µ', 'μ'], "u").replace('²', "2").replace('³', "3");
     plain.chars().filter(|c| !" ^·*.".contains(*c)).collect()
 }
 
-/// Whether two units are written alike; of `m` and `M` at the beginning the one is a millionth of a thousandth of the other.
+/// True if two spellings name one unit. Case matters only in single letters and in an initial `m` or `M` (milli or mega).
 fn alike(written: &str, name: &str) -> bool {
     if written == name || written.replace('L', "l") == name {
         return true;
@@ -112,7 +111,7 @@ fn alike(written: &str, name: &str) -> bool {
     written.len() > 1 && !prefix && written.eq_ignore_ascii_case(name)
 }
 
-/// How many of an SI unit a written one is; or the SI unit that it belongs to instead.
+/// Factor from a written unit to the SI unit `si`; otherwise the SI unit of its own dimension, if known.
 fn size(written: &str, si: &str) -> Result<f64, Option<&'static str>> {
     let word = match squeezed(written) {
         degree if degree == "°" => "deg".to_owned(),
@@ -136,16 +135,16 @@ fn size(written: &str, si: &str) -> Result<f64, Option<&'static str>> {
     }
 }
 
-/// What a number with a unit behind it is where a pointer leads.
+/// Meaning of a number with a unit at a pointer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Here {
-    /// This number, and the unit it is in there.
+    /// The number, converted to the unit of the key, and that unit.
     Number(String, String),
-    /// Nothing, for this reason.
+    /// No valid number, for this reason.
     Not(String),
 }
 
-/// What a text is at a pointer, if it is a number with a unit behind it.
+/// Interprets a text at a pointer; none if the text is not a number with a unit.
 pub fn at(pointer: &str, text: &str) -> Option<Here> {
     let (readings, unit) = split(text)?;
     let &[number] = &readings[..] else {
@@ -195,7 +194,7 @@ pub fn at(pointer: &str, text: &str) -> Option<Here> {
     })
 }
 
-/// What to do about a text at a pointer, if it is a number with a unit behind it.
+/// Advice about a text at a pointer, if it is a number with a unit.
 pub fn remedy(pointer: &str, text: &str) -> Option<String> {
     Some(match at(pointer, text)? {
         Here::Number(number, _) => format!(
@@ -206,8 +205,8 @@ pub fn remedy(pointer: &str, text: &str) -> Option<String> {
     })
 }
 
-/// What to do about numbers with units in a text with `,` and `:` between them, the values of an option at a pointer: the option with the numbers
-/// alone, or why there is none.
+/// Advice about numbers with units in the value of an option, separated by `,` and `:`: the option with bare numbers, or the reason why
+/// there is none.
 pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
     if spec.len() > 20 * LONGEST {
         return None;
@@ -238,7 +237,7 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
     (!told.is_empty()).then(|| format!("{}: {option} '{pointer}={new}'", told.join(", ")))
 }
 
-/// The number of two parts that a comma between thousands has taken apart, `60,` and `000 Pa`.
+/// Joins two parts that a thousands comma has separated, such as `60,` and `000 Pa`.
 fn thousands(before: &str, part: &str) -> Option<String> {
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     let (first, rest) = (before.strip_suffix(',')?.trim(), part.trim());
@@ -251,7 +250,7 @@ fn thousands(before: &str, part: &str) -> Option<String> {
 mod tests {
     use super::{Here, at, rewritten};
 
-    /// Goal: a comma between thousands makes no number a thousandth, and none out of three digits.
+    /// Goal: an ambiguous thousands comma is reported instead of read as a decimal comma.
     #[test]
     fn commas_between_thousands_are_told() {
         let pointer = "/network/chains/0/ends/0/pressure_pa";
@@ -288,7 +287,7 @@ mod tests {
             ("/attachments/0/damping_x_n_s_m", "5 N s/m", "5"),
             ("/fluid/temperature_c", "20 °C", "20"),
             ("/beam/young_modulus_pa", "0,5 MPa", "500000"),
-            // no megapascal
+            // millipascals, not megapascals
             ("/beam/young_modulus_pa", "2 mPa", "0.002"),
         ] {
             let Some(Here::Number(found, _)) = at(pointer, text) else {

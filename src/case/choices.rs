@@ -1,4 +1,4 @@
-//! How `effects` and `max_order` are written: a word, or something more precise.
+//! Forms of `effects` and `max_order` in a case: a word, or a more precise value.
 
 use std::borrow::Cow;
 
@@ -65,7 +65,7 @@ impl Serialize for MaxOrder {
     }
 }
 
-/// The form that skips the check of stability.
+/// Form of an order that skips the stability check.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Forced {

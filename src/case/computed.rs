@@ -1,4 +1,4 @@
-//! What is computed of sections, once each: cases are read again and again.
+//! Cache of values computed from sections, because cases are read repeatedly.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -10,16 +10,16 @@ use slcbeam_section::input::Section;
 
 use super::schema::StrainEnergy as Written;
 
-/// Sections that are kept.
+/// Largest number of cached sections.
 const KEPT: usize = 16;
 
-/// What was computed of some sections.
+/// Cached values, each with its section.
 type Kept<T> = Mutex<Vec<(Section, T)>>;
 
 static COEFFICIENTS: Kept<Coefficients> = Mutex::new(vec![]);
 static ENERGIES: Kept<Option<StrainEnergy>> = Mutex::new(vec![]);
 
-/// What is kept of a section, computed where nothing is.
+/// Returns the cached value of a section, or computes and caches it.
 fn once<T: Clone>(kept: &Kept<T>, section: &Section, compute: impl FnOnce() -> Computed<T>) -> Computed<T> {
     let known = || kept.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
@@ -34,17 +34,17 @@ fn once<T: Clone>(kept: &Kept<T>, section: &Section, compute: impl FnOnce() -> C
 
 type Computed<T> = std::result::Result<T, Error>;
 
-/// The coefficients of a section, computed once; [`slcbeam_section`] says how, with errors.
+/// Coefficients of a section, computed once. [`slcbeam_section`] documents the method and the errors.
 pub fn coefficients(section: &Section) -> Computed<Coefficients> {
     once(&COEFFICIENTS, section, || section.coefficients(&Options::default()))
 }
 
-/// Its energy at finite strain, computed once.
+/// Energy of a section at finite strain, computed once.
 pub fn strain_energy(section: &Section) -> Computed<Option<StrainEnergy>> {
     once(&ENERGIES, section, || section.strain_energy())
 }
 
-/// An energy as a case has it.
+/// Energy in the form of a case file.
 pub fn written(energy: &StrainEnergy) -> Value {
     let [stretch, curvature_1_m, upper_pressure_pa, lower_pressure_pa] = energy.limits;
     json!(Written {

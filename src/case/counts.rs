@@ -1,18 +1,18 @@
-//! How many loads and terms a case may have: more is no case that a person means, and takes longer than anyone waits.
+//! Limits on the number of loads and terms of a case. Larger numbers are never intended, and would take too long.
 
 use serde_json::Value;
 
 use super::faults::Violations;
 use crate::error::{Code, Violation};
 
-/// Bounds from this on say how much is looked at; smaller ones are rules about meaning.
+/// Array limits from this value on bound the work; smaller ones are rules about the meaning.
 pub(super) const MANY: u64 = 1000;
 
-/// Terms of all sums and products of a case together, those inside each other counted at each level. Finding the extremes of a
-/// sum takes time by the square of its terms.
+/// Largest number of terms of all sums and products of a case; nested terms count at each level. The time to find the extremes of a sum
+/// grows with the square of its terms.
 const MOST_TERMS: usize = 4000;
 
-/// The fault of an array of which nothing is looked at, it has so many entries.
+/// Fault of an array with too many entries to be checked.
 pub(super) fn overfull(pointer: &str, count: u64, most: u64) -> Violation {
     let fault =
         Violation::new(Code::Count, pointer, format!("an array of {count} entries")).allowed(format!("at most {most}"));
@@ -22,7 +22,7 @@ pub(super) fn overfull(pointer: &str, count: u64, most: u64) -> Violation {
     fault
 }
 
-/// Adds a fault where sums and products have more terms together than are looked at.
+/// Reports sums and products that together have more than `MOST_TERMS` terms.
 pub(super) fn check(value: &Value, faults: &mut Violations) {
     let count = terms(value);
     if count > MOST_TERMS {

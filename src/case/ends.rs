@@ -1,4 +1,4 @@
-//! The conditions of one end: how they are written, and what each name stands for.
+//! Conditions of one end: their form in a case, and the meaning of each name.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::schema::{End, EndConditions};
 use crate::functions::Signal;
 
-/// Form of an end, its description, and the keys it takes.
+/// Name of each form of an end, its description, and its permitted keys.
 const FORMS: [(&str, &str, &[&str]); 5] = [
     (
         "free",
@@ -56,7 +56,7 @@ const FORMS: [(&str, &str, &[&str]); 5] = [
 /// Forms that may stand alone as a string: all but `conditions`.
 const ALONE: usize = 4;
 
-/// What holds one end, every pair decided.
+/// Conditions of one end, with every pair decided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResolvedEnd {
     /// u1 or the force in x.
@@ -97,7 +97,7 @@ pub struct Follower {
 }
 
 impl End {
-    /// Name of the form and what is given with it.
+    /// Name of the form, and its given conditions.
     pub fn form(&self) -> (&'static str, &EndConditions) {
         match self {
             Self::Free(given) => ("free", given),
@@ -108,7 +108,7 @@ impl End {
         }
     }
 
-    /// What is given with the form.
+    /// Given conditions of the form.
     pub fn given_mut(&mut self) -> &mut EndConditions {
         match self {
             Self::Free(given)
@@ -130,7 +130,7 @@ impl End {
         })
     }
 
-    /// Decides every pair; what a name leaves open is zero motion or zero load.
+    /// Decides every pair; open conditions are zero motion or zero load.
     pub fn resolve(&self) -> ResolvedEnd {
         let (form, given) = self.form();
         let or_zero = |signal: &Option<Signal>| signal.clone().unwrap_or(Signal::Constant(0.0));
@@ -161,7 +161,7 @@ impl End {
 }
 
 impl EndConditions {
-    /// The conditions given, by key, in the order of the structure.
+    /// Given conditions by key, in the order of the structure.
     pub fn given(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
         [
             ("u1_m", &self.u1_m),

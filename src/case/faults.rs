@@ -1,4 +1,4 @@
-//! Violations as they are collected: by pointer first, placed in the text at the end.
+//! Collection of violations: first located by pointer, at the end placed in the text.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::locate::{Node, Place, tokens};
 use crate::error::{CaseError, Code, Error, Violation};
 
-/// What a fault points at.
+/// Part of a member at which a fault is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mark {
     Value,
@@ -19,15 +19,15 @@ enum Mark {
 #[derive(Debug, Default)]
 pub struct Violations {
     list: Vec<(Violation, Mark)>,
-    /// Those found after so many that nobody reads them: counted, not kept.
+    /// Number of faults beyond the limit; these are counted, not stored.
     more: usize,
     unknown_keys: Vec<String>,
-    /// Objects in which a key is a slip of one that is known: what these lack is no fault of their own.
+    /// Objects with a misspelled key; keys that these objects lack are not faults of their own.
     slipped: HashSet<String>,
     overfull: bool,
-    /// Whether [`Code::Implausible`] is no fault.
+    /// True if [`Code::Implausible`] is not a fault.
     all_plausible: bool,
-    /// Values that are not what was meant, beside those with faults.
+    /// Pointers of doubtful values, in addition to those with faults.
     unsound: Vec<String>,
 }
 
@@ -37,26 +37,26 @@ impl Violations {
         self.keep(violation, Mark::Value);
     }
 
-    /// Adds the fault that a value does not go with others, unless it has one already or one of these has: then that is the cause, and
-    /// limits computed from it are nonsense.
+    /// Adds the fault that a value contradicts other values, unless the value or one of the others already has a fault. That fault is then
+    /// the cause, and limits computed from it are meaningless.
     pub fn push_beside(&mut self, parts: &[&str], violation: Violation) {
         if self.are_sound(parts) && self.are_sound(&[violation.pointer.as_str()]) {
             self.push(violation.beside(parts));
         }
     }
 
-    /// Whether values are what was meant, as far as is known.
+    /// True if no value at or below the pointers has a fault or is doubtful.
     pub fn are_sound(&self, parts: &[&str]) -> bool {
         let below = |found: &str| parts.iter().any(|part| is_below(found, part));
         !self.list.iter().any(|(fault, _)| below(&fault.pointer)) && !self.unsound.iter().any(|at| below(at))
     }
 
-    /// From now on takes no value at a pointer as meant.
+    /// Marks the value at a pointer as doubtful.
     pub fn doubt(&mut self, pointer: impl Into<String>) {
         self.unsound.push(pointer.into());
     }
 
-    /// From now on takes every size as meant.
+    /// From now on, accepts every size as plausible.
     pub fn take_as_meant(&mut self) {
         self.all_plausible = true;
     }
@@ -72,18 +72,18 @@ impl Violations {
         }
     }
 
-    /// Whether what comes now is no longer told in words.
+    /// True if further faults are counted, not stored.
     pub fn is_full(&self) -> bool {
         self.list.len() >= MOST
     }
 
-    /// Adds the fault that an array has more entries than are looked at.
+    /// Adds the fault that the case has more entries than are checked.
     pub fn push_overfull(&mut self, violation: Violation) {
         self.overfull = true;
         self.push(violation);
     }
 
-    /// Whether there is more in the case than is looked at.
+    /// True if the case has more entries than are checked.
     pub fn is_overfull(&self) -> bool {
         self.overfull
     }
@@ -93,24 +93,24 @@ impl Violations {
         self.keep(violation, Mark::Key);
     }
 
-    /// Adds the fault that a key is not known.
+    /// Adds the fault of an unknown key.
     pub fn push_unknown_key(&mut self, violation: Violation) {
         self.unknown_keys.push(violation.pointer.clone());
         self.push_at_key(violation);
     }
 
-    /// From now on takes what the object around a pointer lacks for what follows from the key at this pointer.
+    /// Records a misspelled key: keys that its object lacks are attributed to it.
     pub fn slip(&mut self, pointer: &str) {
         let around = pointer.rsplit_once('/').map_or("", |(around, _)| around);
         self.slipped.insert(around.to_owned());
     }
 
-    /// Whether a key was found not to be known.
+    /// True if a key was found to be unknown.
     pub fn is_unknown_key(&self, pointer: &str) -> bool {
         self.unknown_keys.iter().any(|known| known == pointer)
     }
 
-    /// Takes the members with unknown keys out of the value, so that the rest can be looked at.
+    /// Removes the members with unknown keys from a value, so that the rest can be checked.
     pub fn remove_unknown_keys(&self, value: &mut Value) {
         let mut by_parent: HashMap<&str, HashSet<String>> = HashMap::new();
         for pointer in &self.unknown_keys {
@@ -125,28 +125,28 @@ impl Violations {
         }
     }
 
-    /// How many were found.
+    /// Number of faults found.
     pub fn count(&self) -> usize {
         self.list.len() + self.more
     }
 
-    /// Nothing found.
+    /// True if no fault was found.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Drops faults at or below the given pointers: those already have one.
+    /// Drops faults at or below the given pointers, which already have a fault.
     pub fn drop_below(&mut self, pointers: &[String]) {
         self.list
             .retain(|(fault, _)| !pointers.iter().any(|p| is_below(&fault.pointer, p)));
     }
 
-    /// Whether a fault stands at or below a pointer.
+    /// True if a fault is at or below a pointer.
     pub fn any_below(&self, pointer: &str) -> bool {
         self.list.iter().any(|(fault, _)| is_below(&fault.pointer, pointer))
     }
 
-    /// All faults with their places, in the order of the text; of very many the first, and how many there are besides.
+    /// Returns all faults with their places, in the order of the text. Of very many, returns the first ones and the number of the others.
     pub fn placed(self, source: &Source) -> Vec<Violation> {
         let more = self.more;
         let slipped = self.slipped;
@@ -167,10 +167,10 @@ impl Violations {
     }
 }
 
-/// Violations that are told at once.
+/// Largest number of violations reported at once.
 const MOST: usize = 1000;
 
-/// Orders faults as the text does; those in `--set` arguments behind them, and what has no place last.
+/// Sorts faults in the order of the text, then those in `--set` arguments, then those without a place.
 pub fn sort(faults: &mut [Violation]) {
     faults.sort_by_key(|fault| {
         let start = fault.span.as_ref().map_or(0, |span| span.start);
@@ -178,7 +178,7 @@ pub fn sort(faults: &mut [Violation]) {
     });
 }
 
-/// Whether `pointer` leads to what `ancestor` leads to, or into it.
+/// True if `pointer` equals `ancestor` or is below it.
 pub fn is_below(pointer: &str, ancestor: &str) -> bool {
     pointer
         .strip_prefix(ancestor)
@@ -190,23 +190,23 @@ pub fn is_below(pointer: &str, ancestor: &str) -> bool {
 pub struct SetValue {
     /// The argument, `POINTER=JSON`.
     pub argument: String,
-    /// The pointer; for a value added to the end of an array, with its index.
+    /// The pointer; with its index for a value appended to an array.
     pub pointer: String,
-    /// Bytes of the argument at which the JSON text starts.
+    /// Byte offset of the JSON text in the argument.
     pub json_at: usize,
-    /// The value with places in the JSON text; none when the member is removed.
+    /// The value with places in the JSON text; none if the argument removes the member.
     pub node: Option<Node>,
 }
 
-/// Where the parts of a case were written: in the file or on the command line. No part of what a case is: two cases with the
+/// Places where the parts of a case were written: in the file or on the command line. They are not part of the case: two cases with the
 /// same numbers are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
 pub struct Source {
-    /// Where the text came from.
+    /// Path of the text.
     pub path: PathBuf,
     /// The text.
     pub text: String,
-    /// The text with places.
+    /// The parsed text with places.
     pub file: Option<Node>,
     /// The `--set` arguments in order.
     pub sets: Vec<SetValue>,
@@ -219,7 +219,7 @@ impl PartialEq for Source {
 }
 
 impl Source {
-    /// A text of which nothing is known yet.
+    /// Creates a source from an unparsed text.
     pub fn of(path: &Path, text: &str) -> Self {
         Self {
             path: path.to_owned(),
@@ -228,7 +228,7 @@ impl Source {
         }
     }
 
-    /// The error that reports faults which have their places.
+    /// Creates the error that reports already placed faults.
     pub fn error(&self, violations: Vec<Violation>) -> Error {
         Error::Case(Box::new(CaseError {
             path: self.path.clone(),
@@ -237,7 +237,7 @@ impl Source {
         }))
     }
 
-    /// The error that reports faults found after reading, each placed by its pointer.
+    /// Creates the error that reports faults found after reading, each placed by its pointer.
     pub fn fault(&self, faults: Vec<Violation>) -> Error {
         let mut violations: Vec<_> = faults.into_iter().map(|fault| self.place(fault, Mark::Value)).collect();
         sort(&mut violations);
@@ -248,8 +248,8 @@ impl Source {
         self.file.as_ref().is_some_and(|node| node.place("/preset").is_some())
     }
 
-    /// The argument that made a fault, and what of the case it set: the last that set the value, or something around it; or a value
-    /// that it does not go with; or, of a section, whose shapes are faulty as a whole, something inside it.
+    /// Returns the `--set` argument that caused a fault, and the pointer of the value that it set. Candidates, in this order: the last
+    /// argument at or above the value, one at or above a value that the fault compares with, and, for a section, one inside it.
     fn changed(&self, fault: &Violation) -> Option<(&SetValue, String)> {
         let around = |pointer: &str| self.sets.iter().rev().find(|set| is_below(pointer, &set.pointer));
         let all = std::iter::once(&fault.pointer).chain(&fault.beside);
@@ -312,7 +312,7 @@ impl Source {
                     ..fault
                 };
             }
-            // Not in the file: an object that a `--set` argument made.
+            // Not in the file: an object that a `--set` argument created.
             if let Some(set) = self.sets.iter().rev().find(|set| is_below(&set.pointer, pointer)) {
                 let span = Some(0..set.json_at.saturating_sub(1));
                 return Violation {
@@ -324,7 +324,7 @@ impl Source {
             match pointer.rfind('/') {
                 Some(end) => pointer = &pointer[..end],
                 None => {
-                    // What neither the file nor an argument has comes from the preset.
+                    // A value in neither the file nor an argument is from the preset.
                     let preset = self.file.as_ref().and_then(|node| node.place("/preset"));
                     return Violation {
                         span: Some(preset.map_or(0..0, |p| p.value)),

@@ -20,7 +20,7 @@ use super::faults::Violations;
 use super::schema::{ATMOSPHERE, FluidKind};
 use crate::error::{Code, Violation};
 
-/// Where it stands.
+/// Key of the fluid in a case.
 const KEY: &str = "fluid";
 const TEMPERATURE: &str = "/fluid/temperature_c";
 const ZERO_CELSIUS_K: f64 = 273.15;
@@ -58,7 +58,7 @@ pub struct Properties {
 }
 
 impl NamedFluid {
-    /// The name that a case gives it.
+    /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Water => "water",
@@ -68,7 +68,7 @@ impl NamedFluid {
         }
     }
 
-    /// Where density and viscosity are from.
+    /// Sources of the density and viscosity.
     pub fn sources(self) -> [&'static str; 2] {
         match self {
             Self::Water => ["Kell 1975", "IAPWS SR6-08(2011)"],
@@ -78,7 +78,7 @@ impl NamedFluid {
         }
     }
 
-    /// Temperatures at which both formulas hold [C].
+    /// Range of temperatures in which both formulas are valid [C].
     pub fn range_c(self) -> [f64; 2] {
         match self {
             Self::Water => [0.0, 100.0],
@@ -88,7 +88,7 @@ impl NamedFluid {
         }
     }
 
-    /// What it is.
+    /// State of matter: gas or liquid.
     pub fn kind(self) -> FluidKind {
         match self {
             Self::Air => FluidKind::Gas,
@@ -96,8 +96,8 @@ impl NamedFluid {
         }
     }
 
-    /// Density and viscosity at a temperature [C] in [`Self::range_c`] and at an absolute pressure [Pa]: the density of a gas goes with
-    /// it, its viscosity and what a liquid has do not.
+    /// Density and viscosity at a temperature [C] in [`Self::range_c`] and at an absolute pressure [Pa]. Only the density of a gas depends
+    /// on the pressure.
     pub fn at_pressure(self, t: f64, pressure: f64) -> Properties {
         let standard = self.at(t);
         match self.kind() {
@@ -109,8 +109,8 @@ impl NamedFluid {
         }
     }
 
-    /// Vapor pressure at a temperature [C] in [`Self::range_c`], absolute [Pa], where a formula is known: Buck 1981, J. Appl. Meteorol. 20, 1527,
-    /// of water, 0.5 % or better up to 50 C and 1 % up to 100 C.
+    /// Vapor pressure, absolute [Pa], at a temperature [C] in [`Self::range_c`], if a formula is known. Water: Buck 1981, J. Appl.
+    /// Meteorol. 20, 1527, 0.5 % or better up to 50 C and 1 % up to 100 C.
     pub fn vapor_pressure(self, t: f64) -> Option<f64> {
         matches!(self, Self::Water).then(|| 611.21 * ((18.678 - t / 234.5) * t / (257.14 + t)).exp())
     }
@@ -177,20 +177,21 @@ fn mixture_viscosity(w: f64, t: f64) -> f64 {
     water.powf(part) * glycerol.powf(1.0 - part)
 }
 
-/// Temperature where a case says none [C].
+/// Default temperature [C].
 pub const ROOM_C: f64 = 20.0;
 
-/// What the name of a fluid brings to its case.
+/// Values that the name of a fluid adds to its case.
 #[derive(Debug)]
 pub(super) struct Brought {
-    /// The fluid, if its name is one.
+    /// The fluid, if its name is known.
     pub fluid: Option<NamedFluid>,
-    /// Its numbers, as a case has them; those of water where there are none, so that the rest of the case can be looked at.
+    /// Density, viscosity and kind as in a case file; those of water if the formulas give none, so that the rest of the case can be
+    /// checked.
     pub values: Value,
     temperature_c: f64,
 }
 
-/// What the fluid of a case brings, if it is named.
+/// Returns the values of the fluid of a case, if a preset names it.
 pub(super) fn of(case: &Value) -> Option<Brought> {
     let fluid = case.get(KEY)?;
     let named: Option<NamedFluid> = serde_json::from_value(fluid.get("preset")?.clone()).ok();
@@ -218,7 +219,7 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     })
 }
 
-/// Tells a temperature that nothing takes: of a case `own` whose fluid has no name.
+/// Reports an unused temperature, in a case `own` whose fluid has no name.
 pub(super) fn tell_unnamed(own: &Value, faults: &mut Violations) {
     if own.pointer(TEMPERATURE).is_some_and(|given| !given.is_null()) {
         let what = "a temperature of a fluid without a name";
@@ -228,7 +229,7 @@ pub(super) fn tell_unnamed(own: &Value, faults: &mut Violations) {
 }
 
 impl Brought {
-    /// Tells a temperature at which the formulas do not hold.
+    /// Reports a temperature outside the range of the formulas.
     pub(super) fn tell(&self, faults: &mut Violations) {
         let Some(fluid) = self.fluid.filter(|_| !faults.any_below("/fluid")) else {
             return;

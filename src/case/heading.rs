@@ -4,28 +4,28 @@ use super::separated;
 use super::units::{self, Suffix, Unit};
 use crate::error::visible;
 
-/// What a column is called, and in which unit it is.
+/// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
-    /// As it stands there.
+    /// Original text.
     pub heading: String,
-    /// Without its unit.
+    /// Name without the unit.
     pub name: String,
-    /// The unit that it names, as far as one is known.
+    /// Unit, if known.
     pub unit: Option<Unit>,
-    /// What seems to be a unit and is none that is known.
+    /// Apparent unit that is not known.
     pub unknown: Option<String>,
-    /// Whether the unit stands between brackets.
+    /// True if the unit is between brackets.
     bracketed: bool,
 }
 
 impl Heading {
-    /// Of a text.
+    /// Parses a heading.
     pub fn of(heading: &str) -> Self {
         Self::sought(heading, None)
     }
 
-    /// Of a text, where the dimension is known that is sought: an end of two dimensions (`_n_m`, `_in`) is then of that one.
+    /// Parses a heading; a known dimension `si` selects the meaning of an ambiguous end (`_n_m`, `_in`).
     fn sought(heading: &str, si: Option<&str>) -> Self {
         let brackets = in_brackets(heading);
         let column = |name: &str, unit, unknown: Option<&str>| Self {
@@ -48,15 +48,15 @@ impl Heading {
         }
     }
 
-    /// True if a line of cells has numbers alone, which are no headings.
+    /// True if all cells of a line are numbers; such a line is not a heading.
     pub fn are_numbers<'c>(mut cells: impl Iterator<Item = &'c str> + Clone) -> bool {
         cells.clone().next().is_some() && cells.all(|cell| cell.trim().parse::<f64>().is_ok())
     }
 
-    /// How many SI units of a dimension its numbers are; those without a unit are taken for SI units. `what` is what they are.
+    /// Factor from the unit of the column to the SI unit `si`; 1 without a unit. `what` names the quantity in messages.
     ///
     /// # Errors
-    /// It names another dimension, or a unit that is not known.
+    /// The heading names another dimension or an unknown unit.
     pub fn scale(&self, si: &str, what: &str) -> Result<f64, String> {
         let Self { unit, unknown, .. } = Self::sought(&self.heading, Some(si));
         let heading = visible(&self.heading);
@@ -94,7 +94,7 @@ impl Heading {
     }
 }
 
-/// Name and unit of a heading with a unit between brackets: at its end whatever stands there, before it a unit that is known.
+/// Name and unit of a heading with a bracketed unit: any text in brackets at its end, or a known unit in brackets before the end.
 fn in_brackets(heading: &str) -> Option<(String, String)> {
     let pairs = [('[', ']'), ('(', ')'), ('{', '}'), ('<', '>')];
     let whole = heading.trim_end();

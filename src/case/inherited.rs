@@ -1,5 +1,5 @@
-//! Coefficients that follow modulus and sizes to another shape of section, where their scaling laws are not exact, and those of a plane cell
-//! where bladders are short.
+//! Warnings about estimated coefficients: those scaled to another shape of section, where the scaling laws are not exact, and those of a
+//! plane cell with short bladders.
 
 use serde_json::Value;
 
@@ -11,15 +11,15 @@ use super::scaling::{LAWS, Law, Sizes};
 use super::schema::Case;
 use crate::error::Code;
 
-/// A coefficient: its pointer, and its value where it is a number.
+/// Pointer of a coefficient, and its value if it is a number.
 type Coefficient = (&'static str, Option<f64>);
 
-/// The pointer of the permeability of bladders, which belongs to their cross-section alone.
+/// Pointer of the permeability of bladders, which depends on their cross-section only.
 const DUCT: &str = "/bladders/permeability_m4";
 
 const EXACT: &str = "They follow by scaling laws, which are exact for similar sections of one material only.";
 
-/// Warnings about coefficients that follow the case's sizes to another shape of section, and about those of a plane cell.
+/// Warnings about coefficients that were scaled to another shape of section, and about those of a plane cell.
 pub fn warnings(case: &Case) -> Vec<String> {
     let given = &case.origins.given;
     let moved = |law: &&Law| given.pair(law).is_some_and(|(now, then)| !law.is_exact(now, then));
@@ -29,7 +29,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
         false => serde_json::to_value(case).unwrap_or_default(),
     };
     moved.retain(|law| belongs(&resolved, law));
-    // what is told together has one advice and one origin
+    // laws in one group share their advice and their origin
     let key = |law: &Law| (law.pointer == DUCT, case.origins.get(law.pointer));
     let mut groups: Vec<Vec<&Law>> = vec![];
     for law in moved {
@@ -42,7 +42,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
     told.chain(plane_cell(case)).chain(cross_term(case)).collect()
 }
 
-/// Warning about numbers that are varied, or by which results are differentiated, and which change the shape of the section by themselves.
+/// Warning about varied or differentiated numbers that change the shape of the section on their own.
 pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
     let resolved = serde_json::to_value(case).unwrap_or_default();
     let now = Sizes::of(&resolved)?;
@@ -75,17 +75,17 @@ pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) 
     })
 }
 
-/// A number that is varied over what it is.
+/// Factor by which a number is varied to detect a change of shape.
 const ASIDE: f64 = 1.01;
 
-/// True if a case has the coefficient of a law, and it is none of a full section, which has the same in every shape.
+/// True if a case has the coefficient of a law. False for the value 1 of a beam without bladders, which is the same in every shape.
 fn belongs(resolved: &Value, law: &Law) -> bool {
     let value = resolved.pointer(law.pointer);
     let full = resolved.get("bladders").is_none() && value.and_then(Value::as_f64) == Some(1.0);
     value.is_some() && !full
 }
 
-/// Area of a row per pressure in the other row, over that per its own pressure, above which the model leaves out too much.
+/// Ratio of a row's area per pressure in the other row to that per its own pressure, above which the model omits too much.
 const CROSS: f64 = 0.02;
 
 fn cross_term(case: &Case) -> Option<String> {
@@ -109,9 +109,10 @@ fn cross_term(case: &Case) -> Option<String> {
     })
 }
 
-/// What the ends of bladders take off areas per moment, over their size over their length: measured with sections of the paper's and others.
+/// Relative reduction of areas per moment by the ends of bladders, divided by size over length of a bladder. Measured with sections of the
+/// paper and others.
 const ENDS: f64 = 0.5;
-/// Part above which that is told.
+/// Relative reduction above which a warning is issued.
 const TOLD: f64 = 0.05;
 
 fn plane_cell(case: &Case) -> Option<String> {
@@ -135,7 +136,7 @@ fn plane_cell(case: &Case) -> Option<String> {
     })
 }
 
-/// Warning about the coefficients of laws that are not exact here.
+/// Warning about the coefficients of laws that are not exact for this case.
 fn warning(case: &Case, resolved: &Value, laws: &[&Law]) -> Option<String> {
     let first = laws.first()?;
     let (mine, theirs) = case.origins.given.pair(first)?;
@@ -158,7 +159,7 @@ fn warning(case: &Case, resolved: &Value, laws: &[&Law]) -> Option<String> {
     let by = origin
         .filter(|_| of_preset)
         .map_or_else(String::new, |origin| format!(" of {origin}"));
-    // the cell has the shape of the preset's
+    // the assumed cell has the shape of the preset's cell
     let own = of_preset.then(|| of_cell(case, &all)).flatten();
     let own = own.map_or_else(String::new, |own| format!(": {own}"));
     Some(Code::Inherited.warning(format!(
@@ -174,7 +175,7 @@ fn bladder(sizes: &Sizes) -> String {
     format!("a bladder of {} mm", millimetres(&sides))
 }
 
-/// What the cell of the case's own sizes would give in place of what is inherited; nothing for a beam without bladders.
+/// Coefficients that a cell of the case's own dimensions would give instead of the inherited ones; none for a beam without bladders.
 fn of_cell(case: &Case, inherited: &[Coefficient]) -> Option<String> {
     let cell = OwnCell::of(case)?;
     let beside = |&(pointer, value): &Coefficient| {
@@ -191,7 +192,7 @@ fn of_cell(case: &Case, inherited: &[Coefficient]) -> Option<String> {
     })
 }
 
-/// A coefficient beside the one that is inherited, and how many times as large it is.
+/// Text of a coefficient next to the inherited one, with their ratio.
 fn instead(pointer: &str, own: f64, inherited: f64) -> String {
     let name = pointer.split_once('/').and_then(|(_, rest)| rest.split_once('/'));
     let (name, times) = (name.map_or(pointer, |(_, name)| name), digits(own / inherited));
@@ -202,7 +203,7 @@ fn instead(pointer: &str, own: f64, inherited: f64) -> String {
     )
 }
 
-/// The beam with its bladders in words.
+/// Description of the beam with its bladders.
 fn section(sizes: &Sizes) -> String {
     let (modulus, section) = (short(sizes.modulus * 1e-6), millimetres(&sizes.section));
     let beam = format!("a beam of {modulus} MPa, {section} mm");
@@ -220,7 +221,7 @@ fn millimetres(lengths: &[f64]) -> String {
     all.join(" x ")
 }
 
-/// Four digits, without the zeros behind.
+/// Formats four significant digits without trailing zeros.
 fn short(x: f64) -> String {
     let digits = (3 - x.abs().log10().floor().clamp(-9.0, 9.0) as i32).max(0) as usize;
     let text = format!("{x:.digits$}");

@@ -1,4 +1,4 @@
-//! From a file to a checked case.
+//! Loading of a case: from a file to a checked case.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use super::wording::nearest;
 use super::{check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, tables, validate};
 use crate::error::{Code, Error, Result, Violation};
 
-/// Largest case file that is read.
+/// Largest case file [bytes].
 const LARGEST: u64 = 64 << 20;
 
-/// The name of standard input.
+/// Path that stands for standard input.
 const STANDARD_INPUT: &str = "-";
 
-/// All bytes, or one more than a case may have.
+/// Reads all bytes, but at most one more than a case may have.
 fn bounded(from: impl Read) -> std::io::Result<Vec<u8>> {
     let mut bytes = vec![];
     from.take(LARGEST + 1).read_to_end(&mut bytes)?;
@@ -31,15 +31,15 @@ fn bounded(from: impl Read) -> std::io::Result<Vec<u8>> {
 /// Reads and checks a case file; `sets` are `POINTER=JSON` arguments.
 ///
 /// # Errors
-/// [`Error::Usage`] when the file cannot be read or an argument makes no sense, [`Error::Case`] with all faults.
+/// [`Error::Usage`] if the file cannot be read or an argument is invalid, [`Error::Case`] with all faults.
 pub fn load(path: &Path, sets: &[String]) -> Result<Case> {
     parse(&text(path)?, path, path.parent().unwrap_or(Path::new("")), sets)
 }
 
-/// The text of a file, or of standard input under the name `-`.
+/// Text of a file, or of standard input for the path `-`.
 ///
 /// # Errors
-/// [`Error::Usage`] when it cannot be read, [`Error::Case`] when it is too large or no UTF-8.
+/// [`Error::Usage`] if it cannot be read, [`Error::Case`] if it is too large or not UTF-8.
 pub fn text(path: &Path) -> Result<String> {
     let unreadable = |e| {
         let meant =
@@ -69,7 +69,7 @@ pub fn text(path: &Path) -> Result<String> {
     String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
 
-/// The file in the same folder with this ending that is named most alike.
+/// File with this ending in the same folder, whose name is the most similar.
 pub(super) fn nearest_file(path: &Path, ending: &str) -> Option<PathBuf> {
     let folder = path
         .parent()
@@ -84,8 +84,8 @@ pub(super) fn nearest_file(path: &Path, ending: &str) -> Option<PathBuf> {
     Some(path.with_file_name(meant))
 }
 
-/// Reads and checks a case from text; files that it names are looked for in `base`. A coefficient belongs to the modulus and the sizes of the
-/// file, or where an argument gives it to those of all arguments.
+/// Reads and checks a case from text. `base` is the folder of the files that it names. A coefficient of the file belongs to the modulus and
+/// dimensions of the file. A coefficient given by an argument belongs to those after all arguments.
 ///
 /// # Errors
 /// As [`load`].
@@ -93,7 +93,8 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
     parse_varied(text, path, base, sets, &[])
 }
 
-/// The same with further arguments `varied` after these, which the coefficients that these give follow too.
+/// Reads and checks a case from text, with further arguments `varied` after `sets`. The coefficients given by `sets` are scaled to the
+/// dimensions after `varied`.
 ///
 /// # Errors
 /// As [`load`].
@@ -133,7 +134,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     } = Filled::new(value, &source.sets);
     let mut given = given(&own, &value, section.as_ref(), &steps);
     given.scale(&mut value);
-    // Numbers that are none have their fault already; `null` stands for them.
+    // Invalid numbers have their fault already; `null` replaces them.
     let told = violations.iter().map(|v| v.pointer.clone());
     let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
 
@@ -142,7 +143,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     section.iter().for_each(|section| section.doubt(&own, &mut faults));
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
     faults.drop_below(&told);
-    // `null` from the command line leaves out what could stand there.
+    // `null` from the command line removes an optional value.
     let cleared = source.sets.iter().map(|set| set.pointer.clone());
     let cleared: Vec<String> = cleared
         .filter(|p| value.pointer(p).is_some_and(Value::is_null) && !faults.is_unknown_key(p))
@@ -178,7 +179,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     }
 }
 
-/// A case with what its section, its fluid and its preset bring.
+/// A case with the values of its section, its fluid and its preset.
 struct Filled {
     whole: Value,
     section: Option<section::Brought>,
@@ -195,13 +196,13 @@ impl Filled {
     }
 }
 
-/// Arguments that were put into a case together, and the sizes that it has with them; nothing where these are the last ones.
+/// Pointers of arguments applied together, and the dimensions of the case after them; none if these are the final dimensions.
 struct Step {
     pointers: Vec<String>,
     sizes: Option<Option<Sizes>>,
 }
 
-/// Puts groups of arguments into a case, one after the other; returns them all, and the steps with the file as it is as the first.
+/// Applies groups of arguments to a case, one after the other. Returns all arguments, and the steps, of which the first is the plain file.
 fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec<SetValue>, Vec<Step>)> {
     let mut all: Vec<SetValue> = vec![];
     let mut steps = vec![Step {
@@ -228,7 +229,7 @@ fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec
         });
         all.extend(sets);
     }
-    // a step without sizes of its own has those of the next
+    // a step without dimensions of its own has those of the next
     for k in (1..steps.len()).rev() {
         let next = steps[k].sizes;
         let before = &mut steps[k - 1].sizes;
@@ -237,7 +238,7 @@ fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec
     Ok((all, steps))
 }
 
-/// The sizes that the coefficients of a case `own` are given with, `whole` with what its section and its preset bring.
+/// Dimensions to which the coefficients of a case `own` belong; `whole` includes the values of its section and its preset.
 fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: &[Step]) -> Given {
     let mut given = Given::default();
     let now = Sizes::of(whole);
@@ -267,7 +268,7 @@ fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: 
     given
 }
 
-/// The fault that a file is one of a result, which says by what program it was made.
+/// Fault of a file that is a result: it names the program that wrote it.
 fn result(value: &Value, path: &Path) -> Option<Violation> {
     if value.get("provenance")?.get("program").is_none() || value.get("ends").is_some() {
         return None;
@@ -282,8 +283,8 @@ fn result(value: &Value, path: &Path) -> Option<Violation> {
     })
 }
 
-/// The case, with the rules checked as far as its structure allows: unknown keys are left out, and a section that
-/// cannot be read stands aside while the others are looked at, so that one run tells all faults.
+/// Returns the case, with its rules checked as far as its structure allows. Unknown keys are removed. If a section is unreadable, the rules
+/// of the other sections are still checked, so that one run reports all faults.
 fn build(mut value: Value, base: &Path, faults: &mut Violations, sound: bool) -> Option<Case> {
     faults.remove_unknown_keys(&mut value);
     if !faults.is_overfull() {
@@ -309,7 +310,7 @@ fn build(mut value: Value, base: &Path, faults: &mut Violations, sound: bool) ->
     }
 }
 
-/// The sections that can be read, others as in an empty case, and the names of those others.
+/// The case with its readable sections and the others from an empty case, and the names of the others.
 fn readable_part(value: &Value) -> Option<(Case, Vec<String>)> {
     let empty = serde_json::json!({
         "name": "empty",

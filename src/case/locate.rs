@@ -1,23 +1,23 @@
-//! JSON with places: every value and key remembers its bytes in the text, so that a fault found later, by its
-//! JSON pointer, can still be shown where it was written.
+//! JSON with places: every value and key stores its byte range in the text. A fault that is found later, by its JSON pointer, can thus be
+//! shown at its place.
 
 use std::ops::Range;
 
 use serde_json::{Map, Number, Value};
 
-/// A JSON value and where it stands.
+/// A JSON value and its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Bytes of the value.
+    /// Byte range of the value.
     pub span: Range<usize>,
-    /// What it is.
+    /// Kind and content of the value.
     pub kind: Kind,
 }
 
 /// The kinds of JSON value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// `null`, and what stands in for a number that is none.
+    /// `null`, and the replacement of an invalid number.
     Null,
     /// `true` or `false`.
     Bool(bool),
@@ -36,18 +36,18 @@ pub enum Kind {
 pub struct Member {
     /// The key.
     pub key: String,
-    /// Its bytes, quotes included.
+    /// Byte range of the key, with its quotes.
     pub key_span: Range<usize>,
     /// The value.
     pub value: Node,
 }
 
-/// Where a pointer leads.
+/// Place of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The key, when the value is a member of an object.
+    /// Byte range of the key, if the value is a member of an object.
     pub key: Option<Range<usize>>,
-    /// The value.
+    /// Byte range of the value.
     pub value: Range<usize>,
 }
 
@@ -67,7 +67,7 @@ impl Node {
         }
     }
 
-    /// Where the value at a JSON pointer stands.
+    /// Place of the value at a JSON pointer.
     pub fn place(&self, pointer: &str) -> Option<Place> {
         let mut place = Place {
             key: None,
@@ -101,7 +101,7 @@ pub fn tokens(pointer: &str) -> impl Iterator<Item = String> {
         .map(|token| token.replace("~1", "/").replace("~0", "~"))
 }
 
-/// The pointer of a member or item of what `pointer` leads to.
+/// Pointer of a member or item of the value at `pointer`.
 pub fn child(pointer: &str, token: impl std::fmt::Display) -> String {
     format!("{pointer}/{}", token.to_string().replace('~', "~0").replace('/', "~1"))
 }

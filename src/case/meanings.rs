@@ -1,19 +1,19 @@
-//! What every key means, as the schema says it.
+//! Descriptions of all keys, from the schema.
 
 use serde_json::Value;
 
 use super::schema_json;
 
-/// One key of a case, or one word that stands for a value.
+/// One key of a case, or one word that is a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Meaning {
     /// The key.
     pub name: String,
-    /// Where it stands: the object it belongs to and the key, such as `Bladders/length_m`; keys of the case itself `/name`.
+    /// Object and key, such as `Bladders/length_m`; `/name` for keys of the case itself.
     pub place: String,
-    /// What it means, with unit, symbol and default.
+    /// Description with unit, symbol and default.
     pub meaning: String,
-    /// Objects that stand there, by the names that begin the places of their keys.
+    /// Objects that the value may be, by the names that begin the places of their keys.
     pub objects: Vec<String>,
 }
 

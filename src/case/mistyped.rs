@@ -1,17 +1,17 @@
-//! Values of another kind than is wanted: what to write instead.
+//! Remedies for values of the wrong kind.
 
 use serde_json::{Value, json};
 
 use super::wording::{nearest, quoted};
 use super::{schema_words, unknown};
 
-/// Longest example that is told.
+/// Longest example in a remedy [bytes].
 const LONGEST: usize = 160;
 
-/// Most bladders of a range that are written out.
+/// Largest number of bladders in a written-out range.
 const MOST: i64 = 40;
 
-/// Parts of a case that have one value along the whole beam.
+/// Parts of a case whose values are uniform along the beam.
 const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
 
 /// Remedy for a value in place of one number.
@@ -112,7 +112,7 @@ pub fn hint(pointer: &str, value: &Value, schema: &Value, branches: &[&Value]) -
     (text.len() <= LONGEST).then(|| format!("such as {}", spaced(&text)))
 }
 
-/// An object that may stand there.
+/// Example of an allowed object.
 fn example(key: &str, schema: &Value) -> Option<Value> {
     if key == "gravity" {
         return Some(json!({"x_m_s2": -9.81}));
@@ -125,7 +125,7 @@ fn example(key: &str, schema: &Value) -> Option<Value> {
 fn listed(text: &str) -> Option<String> {
     let number = |part: &str| part.trim().parse::<i64>().ok();
     let range = ["..", ":", " to ", "-"].iter().find_map(|sign| {
-        // a minus sign may be one of a number
+        // a minus sign may belong to a number
         let at = 1 + text.get(1..)?.find(sign)?;
         Some((number(&text[..at])?, number(&text[at + sign.len()..])?))
     });
@@ -143,7 +143,7 @@ fn listed(text: &str) -> Option<String> {
     (!all.is_empty()).then(|| format!("[{}]", all.join(", ")))
 }
 
-/// JSON with blanks behind colons and commas; texts of examples have neither.
+/// JSON with spaces after colons and commas; the texts in examples contain neither.
 fn spaced(text: &str) -> String {
     text.replace(':', ": ").replace(',', ", ")
 }

@@ -1,7 +1,7 @@
-//! What the user wrote: read, checked as a whole, every fault with its place.
+//! Reading and checking of cases: the user's text is checked as a whole, and every fault has its place.
 //!
 //! text -> [`parse`](mod@parse) -> JSON with places -> `--set` -> [`presets`] -> [`validate`] against the schema -> CSV tables ->
-//! [`schema::Case`] -> [`check`], which finds what the network names: [`wiring`]
+//! [`schema::Case`] -> [`check`], which resolves the network: [`wiring`]
 
 pub mod amounts;
 mod check;

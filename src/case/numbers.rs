@@ -1,10 +1,10 @@
-//! Bounds of numbers.
+//! Bounds and text forms of numbers.
 
 use serde_json::{Number, Value};
 
 use crate::error::{Code, Violation, numbers};
 
-/// What is wrong with a number where `schema` describes it.
+/// Fault of a number that violates its `schema`.
 pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation> {
     let whole = schema.get("type").and_then(Value::as_str) == Some("integer");
     if whole && !(number.is_i64() || number.is_u64()) {
@@ -26,13 +26,13 @@ pub fn fault(number: &Number, schema: &Value, pointer: &str) -> Option<Violation
     (!inside).then(|| Violation::new(Code::Range, pointer, format!("{number} is out of range")).allowed(range(schema)))
 }
 
-/// The numbers that there are, where these are few.
+/// Allowed numbers, if the schema lists them.
 fn one_of(schema: &Value) -> Option<Vec<f64>> {
     let all = schema.get("enum")?.as_array()?;
     Some(all.iter().filter_map(Value::as_f64).collect())
 }
 
-/// The range of a number, in words.
+/// Range of a number, as text.
 fn range(schema: &Value) -> String {
     if let Some(all) = one_of(schema) {
         return all.into_iter().map(plain).collect::<Vec<_>>().join(" or ");
@@ -51,7 +51,7 @@ fn range(schema: &Value) -> String {
     }
 }
 
-/// A number as one would write it: `0` for `0.0`, `1e-13` for a very small one.
+/// Formats a number in its usual form: `0` for `0.0`, `1e-13` for a very small one.
 pub fn plain(number: f64) -> String {
     let size = number.abs();
     if size == 0.0 || (1e-3..1e6).contains(&size) {
@@ -61,12 +61,12 @@ pub fn plain(number: f64) -> String {
     }
 }
 
-/// A number that was computed from others, without what binary fractions add to it.
+/// Formats a computed number without the rounding errors of binary fractions.
 pub fn rounded(number: f64) -> String {
     plain(numbers::rounded(number, 9))
 }
 
-/// Three digits of a number, which are enough to be told by.
+/// Formats a number with three significant digits.
 pub fn digits(number: f64) -> String {
     plain(numbers::rounded(number, 3))
 }

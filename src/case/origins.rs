@@ -1,4 +1,4 @@
-//! Where each coefficient of a case comes from.
+//! Origins of the coefficients of a case.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -14,27 +14,27 @@ use super::presets::Preset;
 use super::scaling::Given;
 use super::section::Brought;
 
-/// Where a coefficient comes from.
+/// Origin of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// It stands in the file.
+    /// Given in the file.
     Case,
-    /// It stands in the preset alone.
+    /// Given in the preset only.
     Preset(Preset),
-    /// A `--set` argument gives it.
+    /// Given by a `--set` argument.
     Set,
-    /// Nobody gives it, and a default stands.
+    /// Not given: the default.
     Default,
-    /// The section gives it, by its plane cell or that in three dimensions.
+    /// Computed from the section, by its plane cell or its cell in three dimensions.
     Section {
-        /// Whether in three dimensions.
+        /// True for the cell in three dimensions.
         three_d: bool,
     },
-    /// It follows from what is named here.
+    /// Computed from the named values.
     Computed(&'static str),
-    /// A fluid by name has it, by this source.
+    /// Property of a named fluid: name of the fluid, and source.
     Fluid(&'static str, &'static str),
-    /// An elastomer by name has it.
+    /// Property of a named elastomer.
     Elastomer(Elastomer),
 }
 
@@ -54,12 +54,12 @@ impl fmt::Display for Origin {
     }
 }
 
-/// Origins of coefficients by their JSON pointers. They are no part of what a case is: two cases with the same numbers are
-/// equal wherever the numbers come from.
+/// Origins of coefficients by their JSON pointers. They are not part of the case: two cases with the same numbers are equal whatever the
+/// origins of the numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Origins {
     known: BTreeMap<String, Origin>,
-    /// The sizes that coefficients are given with.
+    /// Dimensions to which the coefficients belong.
     pub(super) given: Given,
 }
 
@@ -69,7 +69,7 @@ impl PartialEq for Origins {
     }
 }
 
-/// Coefficients of the section: those that follow from its sizes and material and that the program takes as given.
+/// Coefficients of the section that the program takes as given, although they follow from dimensions and material.
 const COEFFICIENTS: [&str; 13] = [
     "/beam/axial_stiffness_factor",
     "/beam/bending_stiffness_factor",
@@ -87,7 +87,8 @@ const COEFFICIENTS: [&str; 13] = [
 ];
 
 impl Origins {
-    /// Origins in a case that read `own` with the arguments `sets` in it, and `whole` with what its section and its preset bring filled in.
+    /// Origins in a case read from `own`, which includes the arguments `sets`; `whole` also includes the values of its section and its
+    /// preset.
     pub(super) fn of(
         own: &Value,
         whole: &Value,
@@ -121,17 +122,17 @@ impl Origins {
         }
     }
 
-    /// That the coefficient at a pointer has another value now.
+    /// Drops the origin of a coefficient whose value has changed.
     pub(super) fn forget(&mut self, pointer: &str) {
         self.known.remove(pointer);
     }
 
-    /// The origin of the coefficient at a pointer; none where there is no such coefficient.
+    /// Origin of the coefficient at a pointer; none if there is no such coefficient.
     pub fn get(&self, pointer: &str) -> Option<Origin> {
         self.known.get(pointer).copied()
     }
 
-    /// All of them in words.
+    /// Texts of all origins, by pointer.
     pub fn words(&self) -> BTreeMap<String, String> {
         let words = |(pointer, origin): (&String, &Origin)| {
             let factor = self.given.factor(pointer);
@@ -145,7 +146,7 @@ impl Origins {
     }
 }
 
-/// Numbers of fluids and elastomers that the case names.
+/// Origins of the numbers of named fluids and elastomers.
 fn named(own: &Value) -> Vec<(String, Origin)> {
     let mut found = vec![];
     if let Some(fluid) = fluids::of(own).and_then(|brought| brought.fluid) {
@@ -169,7 +170,7 @@ fn named(own: &Value) -> Vec<(String, Origin)> {
     found
 }
 
-/// Where a coefficient that is not given comes from.
+/// Origin of a coefficient that is not given.
 fn absent(whole: &Value, pointer: &str) -> Option<Origin> {
     let beside = |key: &str| {
         let object = pointer.rsplit_once('/').and_then(|(object, _)| whole.pointer(object));

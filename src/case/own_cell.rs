@@ -1,8 +1,8 @@
-//! What a case's own sizes would give in place of coefficients that it inherits: by the plane cell with the published shape, scaled.
+//! Coefficients for a case's own dimensions, to compare with inherited ones: from the plane cell with the published shape, scaled.
 //!
-//! A case knows size and material of its bladders, not their outline, height above the mid-plane and Poisson's ratio. They are taken as those of
-//! the published cell that fit its coefficients best: fillets of 2.5 mm in a square of 7.8 mm, a third of the free height towards the
-//! mid-plane, ν 0.49.
+//! A case gives the size and material of its bladders, but not their outline, their height above the mid-plane or Poisson's ratio. These
+//! are taken from the published cell that fits its coefficients best: fillets of 2.5 mm in a square of 7.8 mm, a third of the free height
+//! towards the mid-plane, ν 0.49.
 
 use slcbeam_section::coefficients::Numbers;
 use slcbeam_section::input::{Bladder, Bladders, Material, Row, Section, Shape};
@@ -14,24 +14,24 @@ use super::schema::Case;
 const RATIO: f64 = 0.49;
 /// Fillet over the shorter side of a bladder.
 const FILLET: f64 = 2.5 / 7.8;
-/// Part of the free height of a half that lies between bladder and mid-plane.
+/// Fraction of the free height of a half that is between bladder and mid-plane.
 const INNER: f64 = 1.0 / 3.0;
 
-/// Modulus [Pa] and density [kg/m³] of the cell that is solved: cases that differ in these alone share it, as areas go with `1/E` and nothing
-/// else does.
+/// Modulus [Pa] and density [kg/m³] of the solved cell. Cases that differ only in these values share one solution, because areas scale with
+/// `1/E` and nothing else depends on them.
 const SOLVED: [f64; 2] = [1e6, 1e3];
 
-/// The cell of a case's sizes.
+/// The cell with a case's dimensions.
 pub(super) struct OwnCell {
     numbers: Result<Numbers, String>,
-    /// Areas of the case's material over those of the cell.
+    /// Ratio of areas with the case's material to those of the solved cell.
     softer: f64,
-    /// What was assumed, in words.
+    /// Assumptions, as text.
     pub(super) assumed: String,
 }
 
 impl OwnCell {
-    /// Solves it; none for a beam without bladders, which may be full or have empty ones.
+    /// Solves the cell; none for a beam without bladders, which may be solid or have empty ones.
     pub(super) fn of(case: &Case) -> Option<Self> {
         let (section, assumed) = section(case, SOLVED)?;
         let numbers = computed::coefficients(&section).map(|found| found.numbers);
@@ -42,7 +42,7 @@ impl OwnCell {
         })
     }
 
-    /// The coefficient that stands at a pointer of a case, where it is one of the cell's.
+    /// The coefficient at a pointer of a case, if the cell has it.
     pub(super) fn coefficient(&self, pointer: &str) -> Result<Option<f64>, &str> {
         let numbers = self.numbers.as_ref().map_err(String::as_str)?;
         let key = pointer.split('/').nth(2).unwrap_or_default();
@@ -58,7 +58,7 @@ impl OwnCell {
     }
 }
 
-/// The cell of a case's sizes, of a material of this modulus and density, and what was assumed of it in words.
+/// Section with a case's dimensions and a material of this modulus and density, and its assumptions as text.
 fn section(case: &Case, [young_modulus_pa, density_kg_m3]: [f64; 2]) -> Option<(Section, String)> {
     let (beam, of) = (&case.beam, case.bladders.as_ref()?);
     let fillet_m = FILLET * of.height_m.min(of.width_m);
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
     use crate::case;
 
-    /// Goal: a cell of another modulus and density is the same cell; its areas go with `1/E`, factors stay.
+    /// Goal: cells that differ only in modulus and density share one solution; areas scale with `1/E`, factors do not change.
     #[test]
     fn cells_of_other_moduli_are_one() {
         let load = |modulus: &str| {
@@ -121,7 +121,7 @@ mod tests {
             let at = |cell: &OwnCell| cell.coefficient(pointer).expect("solved").expect("one of the cell's");
             assert_eq!(at(&soft) / at(&stiff), ratio, "{pointer}");
         }
-        // as the cell of the modulus itself has it
+        // compared with a cell that is solved with this modulus
         let (section, _) = section(&load("8e6"), [8e6, 900.0]).expect("a cell");
         let own = computed::coefficients(&section)
             .expect("solved")

@@ -1,4 +1,4 @@
-//! A number of a case by which results are differentiated.
+//! Numbers of a case with respect to which results are differentiated.
 
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::wording::nearest;
 use super::{parse, section};
 use crate::error::{Error, Result};
 
-/// Parts of a case that describe what is simulated, not how.
+/// Parts of a case that describe the physical model, not the computation.
 const PARTS: [&str; 11] = [
     "beam",
     "fluid",
@@ -26,16 +26,16 @@ const PARTS: [&str; 11] = [
     "start",
 ];
 
-/// A number of a case, found by its JSON pointer; defaults that are not written count too.
+/// A number of a case, given by its JSON pointer; unwritten defaults are included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// Where it stands.
+    /// JSON pointer.
     pub pointer: String,
     /// Its value.
     pub value: f64,
 }
 
-/// What asks for derivatives.
+/// Option that requests derivatives.
 const OPTION: &str = "--sensitivity";
 
 impl Parameter {
@@ -56,12 +56,12 @@ impl Parameter {
     /// Finds the number at a pointer.
     ///
     /// # Errors
-    /// [`Error::Usage`] when there is no number, or one that nothing can be differentiated by.
+    /// [`Error::Usage`] if there is no number, or one with respect to which results cannot be differentiated.
     pub fn find(case: &Case, pointer: &str) -> Result<Self> {
         Self::find_as(OPTION, case, pointer)
     }
 
-    /// The same, asked for by another option.
+    /// Finds the number at a pointer, which the option `option` requests.
     ///
     /// # Errors
     /// As [`Parameter::find`].
@@ -74,10 +74,10 @@ impl Parameter {
         Ok(found)
     }
 
-    /// The number at a pointer, which may be 0.
+    /// Finds the number at a pointer; it may be 0.
     ///
     /// # Errors
-    /// [`Error::Usage`] when there is none that is a parameter of the model.
+    /// [`Error::Usage`] if the model has no such parameter.
     pub fn number(option: &str, case: &Case, pointer: &str) -> Result<Self> {
         let usage = |what: String| Err(Error::Usage(format!("{option} {pointer}: {what}")));
         let resolved = written_out(case);
@@ -121,21 +121,21 @@ impl Parameter {
         }
     }
 
-    /// The numbers at pointers, each as [`Parameter::find`].
+    /// Finds the numbers at some pointers, each as [`Parameter::find`].
     pub fn all(case: &Case, pointers: &[String]) -> Result<Vec<Self>> {
         pointers.iter().map(|pointer| Self::find(case, pointer)).collect()
     }
 
-    /// The case with another value of the parameter.
+    /// Returns the case with another value of the parameter.
     ///
     /// # Errors
-    /// The case is not valid with it.
+    /// The case is invalid with this value.
     pub fn changed(&self, case: &Case, value: f64) -> Result<Case> {
         with(case, &[(&self.pointer, value)])
     }
 }
 
-/// A case as JSON with every default filled in, openings of valves that are wide open too: files leave these out.
+/// Returns a case as JSON with every default filled in, including openings of fully open valves, which files omit.
 fn written_out(case: &Case) -> Value {
     let mut resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
     for part in ["/network/tubes", "/network/chains"] {
@@ -147,11 +147,11 @@ fn written_out(case: &Case) -> Value {
     resolved
 }
 
-/// A case with other values at JSON pointers, each of something that is there. Coefficients follow modulus and sizes by their scaling laws,
-/// but those that are among the pointers.
+/// Returns a case with other values at existing JSON pointers. Coefficients are scaled to the new modulus and dimensions, except those at
+/// the pointers.
 ///
 /// # Errors
-/// The case is not valid with them.
+/// The case is invalid with these values.
 pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
     let mut resolved = written_out(case);
     section::remove(&mut resolved);
@@ -162,15 +162,15 @@ pub fn with(case: &Case, values: &[(&str, f64)]) -> Result<Case> {
         .map(|(pointer, value)| format!("{pointer} = {value}"))
         .collect();
     let name = format!("{} with {}", case.name, changes.join(", "));
-    // in lines, of which a fault quotes one
+    // written in lines, because a fault quotes one line
     let mut changed = parse(&format!("{resolved:#}"), Path::new(&name), Path::new(""), &[])?;
-    // what the case has from elsewhere is still from there, though all of it is written out here
+    // origins remain valid, although all values are written out here
     values.iter().for_each(|(pointer, _)| origins.forget(pointer));
     changed.origins = origins;
     Ok(changed)
 }
 
-/// Pointers of all numbers that are not counts.
+/// Collects the pointers of all numbers that are not counts.
 pub(super) fn numbers(value: &Value, at: String, all: &mut Vec<String>) {
     match value {
         Value::Object(members) => members
@@ -185,7 +185,7 @@ pub(super) fn numbers(value: &Value, at: String, all: &mut Vec<String>) {
     }
 }
 
-/// Steps of a difference over the relative change of the parameter, and their weights: fourth order.
+/// Steps of a fourth-order difference, in units of the relative change of the parameter, and their weights.
 pub const STEPS: [(f64, f64); 4] = [
     (1.0, 8.0 / 12.0),
     (-1.0, -8.0 / 12.0),
@@ -193,6 +193,6 @@ pub const STEPS: [(f64, f64); 4] = [
     (-2.0, 1.0 / 12.0),
 ];
 
-/// Relative change of a parameter in a difference: what is differentiated so is a smooth function of it, written out in closed
-/// form, and the fourth order leaves 1e-12 of it.
+/// Relative change of a parameter in a difference. The differentiated function is smooth and in closed form, so that the fourth order
+/// leaves a relative error of 1e-12.
 pub const CHANGE: f64 = 1e-3;

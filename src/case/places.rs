@@ -1,6 +1,6 @@
 //! Lines and columns of bytes.
 
-/// Tells lines and columns of a text; bytes in ascending order take one walk through it, however many they are.
+/// Computes lines and columns of byte offsets in a text; offsets in ascending order need a single pass.
 #[derive(Clone, Debug)]
 pub struct Places<'t> {
     text: &'t str,
@@ -10,7 +10,7 @@ pub struct Places<'t> {
 }
 
 impl<'t> Places<'t> {
-    /// At the begin of a text.
+    /// Starts at the beginning of a text.
     pub fn new(text: &'t str) -> Self {
         Self {
             text,

@@ -1,4 +1,4 @@
-//! Values that a case need not repeat: those of a preset stand wherever the case has none of its own.
+//! Values from presets: they apply wherever the case gives none of its own.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::faults::{SetValue, is_below};
 use super::sets;
 
-/// Sections that a preset brings.
+/// Sections that a preset contains.
 pub const SECTIONS: [&str; 4] = ["beam", "fluid", "bladders", "tubes"];
 
 const MATIA_GAT_BEAM: &str = include_str!("presets/matia-gat-beam.json");
@@ -22,14 +22,14 @@ pub enum Preset {
 }
 
 impl Preset {
-    /// The name that a case gives it.
+    /// Name in a case file.
     pub fn name(self) -> &'static str {
         match self {
             Self::MatiaGatBeam => "matia-gat-beam",
         }
     }
 
-    /// What it brings, as a case has it.
+    /// Values of the preset, in the form of a case.
     pub fn values(self) -> Value {
         let text = match self {
             Self::MatiaGatBeam => MATIA_GAT_BEAM,
@@ -38,11 +38,11 @@ impl Preset {
     }
 }
 
-/// Fills in what the case leaves to its section and its fluid, which bring `nearer`, and to its preset, those first: objects are merged,
-/// everything else that the case has stands, and what it gives as `null` is left out. A cross-section from which a permeability is to follow takes
-/// theirs away; [`super::scaling`] scales the coefficients afterwards to the case's modulus and sizes.
+/// Adds missing values to a case: those of its section and its fluid (`nearer`) first, then those of its preset. Objects are merged, other
+/// values of the case are kept, and `null` removes a value. A cross-section in the case removes the permeability of section and preset.
+/// [`super::scaling`] then scales the coefficients to the case's modulus and dimensions.
 pub fn apply(case: &mut Value, sets: &[SetValue], nearer: impl IntoIterator<Item = Value>) {
-    // A misspelt name is told when the case is checked; the rest is looked at as if it were right.
+    // A misspelled name is reported when the case is checked; here it counts as valid.
     let preset = case.get("preset").map(|_| Preset::MatiaGatBeam.values());
     let Some(mut brought) = nearer.into_iter().chain(preset).reduce(|mut nearer, further| {
         fill(&mut nearer, further);
@@ -64,7 +64,7 @@ pub fn apply(case: &mut Value, sets: &[SetValue], nearer: impl IntoIterator<Item
     without_nulls(case);
 }
 
-/// Takes out permeabilities that are `null`: they are to be computed from the cross-section.
+/// Removes permeabilities that are `null`: these are computed from the cross-section.
 fn without_nulls(case: &mut Value) {
     let single = case
         .pointer("/network/tubes")
@@ -79,7 +79,7 @@ fn without_nulls(case: &mut Value) {
     }
 }
 
-/// Puts into `value` what only `other` has; members that are `null` go.
+/// Adds to `value` the members that only `other` has; removes members that are `null`.
 fn fill(value: &mut Value, other: Value) {
     let (Value::Object(own), Value::Object(given)) = (value, other) else {
         return;

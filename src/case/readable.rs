@@ -1,14 +1,14 @@
-//! Names of figures and of numbers of a case as people read them.
+//! Readable names of figures and of numbers of a case.
 
 use super::units::suffixed;
 
-/// The name of a figure as people read it, without units: `harvested energy, final` for `harvested_energy_j.final`.
+/// Readable name of a figure, without units: `harvested energy, final` for `harvested_energy_j.final`.
 pub fn figure_name(figure: &str) -> String {
     let part = |part: &str| suffixed(part).map_or(part, |(name, _)| name).replace('_', " ");
     figure.split('.').map(part).collect::<Vec<_>>().join(", ")
 }
 
-/// Ends of keys and the units that they are, the longer ones first.
+/// Endings of keys and their units, the longer ones first.
 const ENDS: [(&str, &str); 37] = [
     ("m2_per_n_m", "m^2/(N m)"),
     ("m2_per_pa", "m^2/Pa"),
@@ -49,7 +49,7 @@ const ENDS: [(&str, &str); 37] = [
     ("w", "W"),
 ];
 
-/// Keys below that of a quantity whose numbers are in its unit.
+/// Keys inside a quantity, whose numbers have the unit of the quantity.
 const ALIKE: [&str; 11] = [
     "amplitude",
     "from",
@@ -64,7 +64,7 @@ const ALIKE: [&str; 11] = [
     "sum",
 ];
 
-/// A key without its unit, and the unit as columns of results have it; none where it has none.
+/// Key without its unit, and the unit in the form of result columns; none without a unit.
 pub fn key_unit(key: &str) -> Option<(&str, &'static str)> {
     let (end, unit) = ENDS.iter().find_map(|(end, unit)| {
         let before = key.strip_suffix(end)?;
@@ -83,7 +83,7 @@ fn is_index(key: &str) -> bool {
     !key.is_empty() && key.bytes().all(|b| b.is_ascii_digit())
 }
 
-/// The unit of a number of a case, as columns of results have it, by the key of its quantity: `m^3/(s Pa)`; `1` where it has none.
+/// Unit of a number of a case, in the form of result columns, by the key of its quantity: `m^3/(s Pa)`; `1` without a unit.
 pub fn pointer_unit(pointer: &str) -> &'static str {
     let mut keys = pointer.rsplit('/').filter(|key| !is_index(key));
     let last = keys.next().unwrap_or_default();
@@ -93,12 +93,12 @@ pub fn pointer_unit(pointer: &str) -> &'static str {
     if !(ALIKE.contains(&last) || pointer.ends_with(|sign: char| sign.is_ascii_digit())) {
         return "1";
     }
-    // factors, a profile among them, are shares of what another one brings
+    // factors, such as those of profiles, are fractions of another quantity
     let above = keys.take_while(|key| !["profile", "chains", "links"].contains(key));
     above.filter_map(key_unit).next().map_or("1", |(_, unit)| unit)
 }
 
-/// The name of a number of a case as people read it, without units: `fluid: viscosity` for `/fluid/viscosity_pa_s`.
+/// Readable name of a number of a case, without units: `fluid: viscosity` for `/fluid/viscosity_pa_s`.
 pub fn pointer_name(pointer: &str) -> String {
     let keys: Vec<&str> = pointer.split('/').skip(1).collect();
     let Some((last, before)) = keys.split_last() else {
@@ -188,14 +188,14 @@ mod tests {
         }
     }
 
-    /// Goal: the unit that a key ends with is that of its description, for all keys of the schema.
+    /// Goal: every key of the schema ends with the unit of its description.
     #[test]
     fn units_of_keys_are_those_of_the_schema() {
         let mut all = vec![];
         numbers(schema_of_resolved(), &mut all);
         assert!(all.len() > 80, "{}", all.len());
         for (key, unit) in all {
-            // keys below one with a unit, and a name of a file
+            // keys inside one with a unit, and the name of a file
             if ["tension", "compression", "opening", "closing", "csv"].contains(&key.as_str()) {
                 continue;
             }

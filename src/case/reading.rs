@@ -1,4 +1,4 @@
-//! Files of others, read within limits: neither a device nor a file of the system that claims a size of 0 is read for ever.
+//! Limited reading of foreign files: devices, and system files that claim a size of 0, are not read forever.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read as _, Seek as _};
@@ -7,7 +7,7 @@ use std::path::Path;
 
 use rustix::fs::OFlags;
 
-/// Opens a file to read it. A read that would wait for others, as of the messages of the kernel, is an error.
+/// Opens a file to read it. A read that would wait for data, such as of kernel messages, is an error.
 ///
 /// # Errors
 /// It cannot be opened, or is a folder, a pipe or a device.
@@ -24,7 +24,7 @@ fn open_regular(path: &Path) -> io::Result<File> {
 /// Opens a file to read it piece by piece.
 ///
 /// # Errors
-/// It cannot be opened, or has no end that is known: a pipe, a device, a file of the system that claims to be empty and is not.
+/// It cannot be opened, or has no known end: a pipe, a device, or a system file that claims to be empty and is not.
 pub fn open(path: &Path) -> io::Result<File> {
     let mut file = open_regular(path)?;
     if file.metadata()?.len() == 0 && file.read(&mut [0])? > 0 {
@@ -34,7 +34,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     Ok(file)
 }
 
-/// The bytes of a file, whatever size it claims; nothing where they are more than `largest`.
+/// Bytes of a file, whatever size it claims; none if there are more than `largest`.
 ///
 /// # Errors
 /// It cannot be read, or is a folder, a pipe or a device.

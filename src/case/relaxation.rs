@@ -1,4 +1,4 @@
-//! Branches of a solid that relaxes, from what a case gives.
+//! Branches of a viscoelastic solid, from the values of a case.
 
 use std::f64::consts::TAU;
 
@@ -6,16 +6,16 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::schema::{Branch, LossFactor, Viscoelasticity};
 
-/// Branches a decade of a loss factor's band, and decades beyond each of its ends that they reach.
+/// Branches per decade of a loss factor's band, and decades by which the branches extend beyond each of its ends.
 const PER_DECADE: f64 = 2.0;
 const BEYOND: f64 = 0.5;
-/// Frequencies a branch at which the loss factor is fitted.
+/// Number of fitted frequencies per branch.
 const FITTED: usize = 20;
-/// Relative error of a loss factor up to which it is taken.
+/// Largest accepted relative error of a loss factor.
 const GOOD: f64 = 0.02;
 
 impl Viscoelasticity {
-    /// Its branches; none where no series has this loss factor.
+    /// Branches of the solid; none if no series has this loss factor.
     pub fn branches(&self) -> Option<Vec<Branch>> {
         match &self.loss_factor {
             None => Some(self.prony.clone()),
@@ -31,7 +31,7 @@ impl LossFactor {
     /// Σ g_k (x_k - η x_k²)/(1 + x_k²) = η        x_k = ω τ_k
     /// ```
     ///
-    /// in the least squares over log ω. None where that takes a spring of negative stiffness, from about 0.5 on.
+    /// is solved by least squares over log ω. None if a spring would have negative stiffness, from a loss factor of about 0.5 on.
     fn branches(&self) -> Option<Vec<Branch>> {
         let decades = (self.to_hz / self.from_hz).log10();
         let count = ((decades + 2.0 * BEYOND) * PER_DECADE).ceil() as usize + 1;
@@ -66,7 +66,8 @@ impl LossFactor {
     }
 }
 
-/// Storage and loss modulus over the modulus in the long term at an angular frequency [1/s]: `1 + Σ g x²/(1 + x²)`, `Σ g x/(1 + x²)`, x = ω τ.
+/// Storage and loss modulus at an angular frequency [1/s], relative to the long-term modulus: `1 + Σ g x²/(1 + x²)`, `Σ g x/(1 + x²)`, x =
+/// ω τ.
 pub fn dynamic_modulus(branches: &[Branch], omega: f64) -> [f64; 2] {
     branches.iter().fold([1.0, 0.0], |[storage, loss], branch| {
         let x = omega * branch.time_s;
@@ -76,18 +77,18 @@ pub fn dynamic_modulus(branches: &[Branch], omega: f64) -> [f64; 2] {
     })
 }
 
-/// Angular frequency and rate of decay [1/s] with which a vibration swings whose frequency is ω in the long term: the root of
+/// Angular frequency and decay rate [1/s] of a vibration whose long-term frequency is ω: the root of
 ///
 /// ```text
 /// s² + ω² (1 + Σ g s τ/(1 + s τ)) = 0
 /// ```
 ///
-/// Where none is found near the frequency that storage alone gives, that with no decay, which is on the safe side.
+/// If no root is found near the frequency from the storage modulus alone, returns that frequency without decay, which is on the safe side.
 pub fn vibration(branches: &[Branch], omega: f64) -> [f64; 2] {
     if branches.is_empty() {
         return [omega, 0.0];
     }
-    // storage grows with frequency: from below it comes to its own
+    // storage grows with frequency: the iteration converges from below
     let stored = (0..SETTLED).fold(omega, |at, _| omega * dynamic_modulus(branches, at)[0].sqrt());
     let one = Complex::new(1.0, 0.0);
     let mut s = Complex::new(0.0, stored);
@@ -104,5 +105,5 @@ pub fn vibration(branches: &[Branch], omega: f64) -> [f64; 2] {
     if near { [s.im, -s.re] } else { [stored, 0.0] }
 }
 
-/// Steps of iterations that converge in a few.
+/// Number of steps of iterations that converge in a few.
 const SETTLED: usize = 20;

@@ -1,4 +1,4 @@
-//! Violations as text: what, where with the line and a caret, what is allowed, what was probably meant, what to do.
+//! Violations as text: description, line with a caret, allowed values, nearest name, and hint.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -8,10 +8,10 @@ use textwrap::{Options, WordSplitter};
 use super::places::{Places, floor};
 use crate::error::{CaseError, Violation, is_hidden, visible};
 
-/// Violations that are shown in full.
+/// Largest number of violations shown in full.
 const SHOWN: usize = 50;
 
-/// Escape sequences, or none.
+/// Applies escape sequences, if enabled.
 struct Paint(bool);
 
 impl Paint {
@@ -33,7 +33,7 @@ impl Paint {
     }
 }
 
-/// All faults of a case, for a terminal of `width` columns.
+/// Formats all faults of a case for a terminal of `width` columns.
 pub fn render(fault: &CaseError, colour: bool, width: usize) -> String {
     let paint = Paint(colour);
     let width = width.clamp(40, 400);
@@ -58,7 +58,7 @@ pub fn render(fault: &CaseError, colour: bool, width: usize) -> String {
     out
 }
 
-/// Where the text came from, for people.
+/// Readable name of the source of the text.
 fn named(fault: &CaseError) -> String {
     match fault.path.to_str() {
         Some("-") => "standard input".into(),
@@ -137,7 +137,7 @@ fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Pa
     out.push('\n');
 }
 
-/// A pointer that may be absurdly long.
+/// Shortens a pointer that is longer than `width`.
 fn clipped(pointer: &str, width: usize) -> String {
     let count = pointer.chars().count();
     if count <= width {
@@ -157,14 +157,14 @@ struct Excerpt {
 }
 
 impl Excerpt {
-    /// The line around `span`, cut to the width with `...` where it goes on.
+    /// The line around `span`, cut to the width, with `...` at the cuts.
     fn cut(places: &mut Places, span: Range<usize>, width: usize) -> Self {
         let text = places.text();
         let start = floor(text, span.start);
         let (line, column) = places.of(start);
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let room = width.saturating_sub(line.to_string().len() + 3);
-        // Never look further than the eye can see: a line may have megabytes.
+        // Only the surroundings of the fault are read: a line may have megabytes.
         let reach = 4 * room;
         let from = floor(text, line_start.max(start.saturating_sub(reach)));
         let to = floor(text, text.len().min(start + reach));
@@ -213,7 +213,7 @@ impl Excerpt {
     }
 }
 
-/// Tabs, control characters and marks that turn the direction of writing take one column.
+/// Replaces tabs, control characters and direction marks, so that each has one column.
 fn plain(c: char) -> char {
     if c == '\t' {
         ' '

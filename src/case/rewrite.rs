@@ -1,4 +1,4 @@
-//! One value of a case file changed, every other byte as it was.
+//! Change of one value of a case file; all other bytes stay unchanged.
 
 use std::ops::Range;
 
@@ -7,18 +7,18 @@ use serde_json::Value;
 use super::locate::Kind;
 use super::parse::parse;
 
-/// The text with another value of a top-level key, added behind the last one where it is missing. `None` where the text is no
-/// JSON object.
+/// Returns the text with another value of a top-level key; a missing key is added after the last one. None if the text is not a JSON
+/// object.
 pub fn rewrite(text: &str, key: &str, value: &Value) -> Option<String> {
     let root = parse(text).0?;
     let Kind::Object(members) = &root.kind else { return None };
     let value = spaced(value);
-    // What the reader takes for a value may have space behind it.
+    // The span of a value may end with spaces.
     let bare = |span: &Range<usize>| span.start..span.start + text[span.clone()].trim_end().len();
     let (at, new) = if let Some(member) = members.iter().find(|m| m.key == key) {
         (bare(&member.value.span), value)
     } else if let Some(last) = members.last() {
-        // On a line of its own, indented as the last one, where that begins its line.
+        // On its own line with the indentation of the last key, if that key begins its line.
         let before = &text[..last.key_span.start];
         let line = &before[before.rfind('\n').map_or(0, |at| at + 1)..];
         let own_line = line.trim().is_empty() && before.contains('\n');

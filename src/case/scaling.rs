@@ -1,8 +1,8 @@
-//! Scaling laws: how the coefficients of a section follow Young's modulus and the sizes of beam, bladders and tubes.
+//! Scaling laws of the coefficients of a section with Young's modulus and the dimensions of beam, bladders and tubes.
 //!
-//! A coefficient belongs to the modulus and the sizes that it is given with. Sections of one shape and one material have coefficients
-//! that are powers of modulus and size, so that a coefficient given for one of them is known for all. A change of shape follows the same
-//! powers, to which no such proof belongs: [`super::inherited`] warns of it.
+//! A coefficient belongs to the modulus and the dimensions that it is given with. For sections of one shape and one material, coefficients
+//! are powers of modulus and size, so that one value gives all others. After a change of shape the same powers are used, but they are not
+//! exact: [`super::inherited`] warns of it.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use serde_json::Value;
 
 use super::faults::is_below;
 
-/// Relative difference of a ratio of sizes beyond which two sections have different shapes.
+/// Relative difference of a ratio of dimensions above which two sections have different shapes.
 const SAME: f64 = 1e-3;
 
-/// Modulus and sizes that coefficients belong to.
+/// Modulus and dimensions to which coefficients belong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sizes {
     /// Young's modulus [Pa].
@@ -30,7 +30,7 @@ pub(super) struct Sizes {
 /// Bladders in the beam [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct InBeam {
-    /// Length of beam to each bladder of a row.
+    /// Length of the beam per bladder of a row.
     pub pitch: f64,
     pub length: f64,
     pub height: f64,
@@ -38,7 +38,7 @@ pub(super) struct InBeam {
 }
 
 impl Sizes {
-    /// Those of a case as JSON with all its numbers; none where one is missing or not positive.
+    /// Dimensions of a case in JSON that has all its numbers; none if a number is missing or not positive.
     pub fn of(case: &Value) -> Option<Self> {
         let number = |pointer: &str| case.pointer(pointer).and_then(Value::as_f64).filter(|x| *x > 0.0);
         let bladders = match case.get("bladders") {
@@ -92,7 +92,7 @@ impl Sizes {
         Some(vec![b.height / h, b.width / b.pitch, b.pitch / h])
     }
 
-    /// Proportions of the section and its cell; of a beam without bladders those of its section.
+    /// Proportions of the section and its cell; without bladders, those of the section.
     fn whole(&self) -> Option<Vec<f64>> {
         let [h, w] = self.section;
         let Some(b) = self.bladders else {
@@ -101,7 +101,7 @@ impl Sizes {
         Some([self.cell()?, vec![b.length / w]].concat())
     }
 
-    /// Those, and the density of the fluid as far as it counts.
+    /// Proportions as in `whole`, and 1 plus the density ratio of fluid to solid; without bladders, the fluid counts as 0.
     fn massive(&self) -> Option<Vec<f64>> {
         let [solid, fluid] = self.densities;
         let fluid = self.bladders.and(fluid).unwrap_or(0.0);
@@ -111,11 +111,11 @@ impl Sizes {
 
 /// Scaling law of a coefficient, or of an array of them.
 pub(super) struct Law {
-    /// Where it stands.
+    /// JSON pointer.
     pub pointer: &'static str,
-    /// What it is proportional to.
+    /// Quantity to which the coefficient is proportional.
     scale: fn(&Sizes) -> Option<f64>,
-    /// The ratios of sizes that must stay for it to be exact.
+    /// Ratios of dimensions that must not change for the law to be exact.
     shape: fn(&Sizes) -> Option<Vec<f64>>,
 }
 
@@ -210,13 +210,13 @@ pub(super) const LAWS: [Law; 17] = [
 ];
 
 impl Law {
-    /// The coefficient with these sizes over that with those.
+    /// Ratio of the coefficient with the dimensions `now` to that with `then`.
     fn factor(&self, now: &Sizes, then: &Sizes) -> f64 {
         let pair = (self.scale)(now).zip((self.scale)(then));
         pair.map_or(1.0, |(now, then)| now / then)
     }
 
-    /// True if it is exact between these sizes and those; a beam without bladders is compared by its section.
+    /// True if the law is exact between `now` and `then`. If `now` has no bladders, only the sections are compared.
     pub fn is_exact(&self, now: &Sizes, then: &Sizes) -> bool {
         let bladders = then.bladders.filter(|_| now.bladders.is_some());
         match ((self.shape)(now), (self.shape)(&Sizes { bladders, ..*then })) {
@@ -228,14 +228,14 @@ impl Law {
     }
 }
 
-/// True if a `POINTER=JSON` argument may change sizes that coefficients belong to.
+/// True if a `POINTER=JSON` argument may change the dimensions to which coefficients belong.
 pub(super) fn may_change_sizes(argument: &str) -> bool {
     let pointer = argument.split('=').next().unwrap_or_default();
     let parts = ["/beam", "/bladders", "/fluid", "/tubes", "/section", "/preset"];
     parts.iter().any(|part| is_below(pointer, part))
 }
 
-/// Sizes that coefficients are given with, by their pointers, and those of the case.
+/// Dimensions to which coefficients belong, by pointer, and those of the case.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Given {
     then: BTreeMap<&'static str, Sizes>,
@@ -243,7 +243,7 @@ pub(super) struct Given {
 }
 
 impl Given {
-    /// Notes that the coefficients at pointers, or at and below, are given with these sizes.
+    /// Records that the coefficients at, above or below the pointers belong to these dimensions.
     pub fn note<'a>(&mut self, pointers: impl Iterator<Item = &'a str> + Clone, sizes: Option<Sizes>) {
         let touches = |law: &&Law| {
             let mut pointers = pointers.clone();
@@ -257,19 +257,19 @@ impl Given {
         }
     }
 
-    /// The sizes of the case, and those that the coefficient of a law is given with.
+    /// Dimensions of the case, and those to which the coefficient of a law belongs.
     pub fn pair(&self, law: &Law) -> Option<(&Sizes, &Sizes)> {
         self.now.as_ref().zip(self.then.get(law.pointer))
     }
 
-    /// What the coefficient at a pointer was multiplied by.
+    /// Factor by which the coefficient at a pointer was multiplied.
     pub fn factor(&self, pointer: &str) -> f64 {
         let law = LAWS.iter().find(|law| law.pointer == pointer);
         let factor = |law: &Law| self.pair(law).map(|(now, then)| law.factor(now, then));
         law.and_then(factor).unwrap_or(1.0)
     }
 
-    /// Scales the coefficients of a case as JSON from the sizes that they are given with to its own.
+    /// Scales the coefficients of a case in JSON from the dimensions to which they belong to those of the case.
     pub fn scale(&mut self, case: &mut Value) {
         self.now = Sizes::of(case);
         for pointer in self.then.keys() {
@@ -279,7 +279,7 @@ impl Given {
         }
     }
 
-    /// Puts numbers at pointers into a case as JSON that has the sizes of this, and scales its other coefficients.
+    /// Sets numbers at pointers of a case in JSON that has the dimensions of `self`, and scales its other coefficients.
     pub fn change(&mut self, case: &mut Value, numbers: &[(&str, f64)]) {
         let mut step = Self::default();
         step.note(LAWS.iter().map(|law| law.pointer), Sizes::of(case));

@@ -10,8 +10,8 @@ use super::presets::SECTIONS;
 use super::schema::Case;
 use super::schema_words;
 
-/// JSON Schema (draft 2020-12) of a case as it is written, with descriptions and defaults: with a preset, what that brings may
-/// be left out; and everywhere a member whose key begins with `//` may stand as a remark.
+/// JSON Schema (draft 2020-12) of a case file, with descriptions and defaults. With a preset, the keys that it supplies are optional. Every
+/// object may have members whose key begins with `//`, as remarks.
 pub fn schema_json() -> Value {
     let mut schema = CASE.clone();
     let nothing = Map::new();
@@ -43,7 +43,7 @@ pub fn schema_json() -> Value {
     for (name, part) in parts {
         schema["$defs"][name] = part;
     }
-    // a fluid by name brings its numbers
+    // a named fluid supplies its numbers
     if let Some(fluid) = schema["$defs"]["Fluid"].as_object_mut()
         && let Some(required) = fluid.shift_remove("required")
     {
@@ -51,7 +51,7 @@ pub fn schema_json() -> Value {
         fluid.insert("else".into(), json!({"required": required}));
     }
     for (_, definition) in schema["$defs"].as_object_mut().into_iter().flatten() {
-        // null: to be computed from the cross-section
+        // null: computed from the cross-section
         if let Some(kind) = definition.pointer_mut("/properties/permeability_m4/type") {
             *kind = json!(["number", "null"]);
         }
@@ -61,10 +61,10 @@ pub fn schema_json() -> Value {
     schema
 }
 
-/// Ending of the names of objects of which a preset brings the rest.
+/// Ending of the names of definitions whose missing keys a preset supplies.
 const PARTLY: &str = "OverPreset";
 
-/// The definition without keys that must be there, and those of the objects in it.
+/// Adds the definition without required keys, and those of the objects in it.
 fn relaxed(name: &str, definitions: &Map<String, Value>, parts: &mut Vec<(String, Value)>) {
     let Some(definition) = definitions.get(name) else {
         return;
@@ -86,7 +86,7 @@ fn relaxed(name: &str, definitions: &Map<String, Value>, parts: &mut Vec<(String
     parts.push((format!("{name}{PARTLY}"), part));
 }
 
-/// Lets remarks stand in every object.
+/// Permits remarks in every object.
 fn remarks(schema: &mut Value) {
     match schema {
         Value::Object(members) => {
@@ -100,7 +100,7 @@ fn remarks(schema: &mut Value) {
     }
 }
 
-/// The schema of a section that stands alone, or of the one in a case, and where it stands.
+/// Schema of a section in a file of its own or in a case, and the pointer of the section.
 pub(super) fn section(of_case: bool) -> (Value, &'static str) {
     let section = json!({"$ref": "#/$defs/Section"});
     let mut schema = match of_case {
@@ -111,12 +111,12 @@ pub(super) fn section(of_case: bool) -> (Value, &'static str) {
     (schema, if of_case { "/section" } else { "" })
 }
 
-/// The schema of a case whose preset is filled in and whose remarks are gone.
+/// Schema of a case whose preset is filled in and whose remarks are removed.
 pub fn schema_of_resolved() -> &'static Value {
     &CASE
 }
 
-/// The same, made once.
+/// Schema of a case whose preset is filled in, generated once.
 pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     let settings = SchemaSettings::draft2020_12();
     let mut schema = settings.into_generator().into_root_schema_for::<Case>();
@@ -131,7 +131,7 @@ pub(super) static CASE: LazyLock<Value> = LazyLock::new(|| {
     Value::Object(ordered)
 });
 
-/// What serde would take but a case does not: `null` for an absent key. And formats, which only repeat Rust's types.
+/// Removes `null` for absent keys, which serde would accept but a case does not, and formats, which only repeat Rust's types.
 fn tidy(schema: &mut schemars::Schema) {
     let Some(object) = schema.as_object_mut() else {
         return;

@@ -1,4 +1,4 @@
-//! What the schema says to people, and to editors: a title for every alternative, a description for every key, an example for every object.
+//! Texts of the schema for readers and editors: a title for every alternative, a description for every key, an example for every object.
 
 use std::sync::LazyLock;
 
@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 static EXAMPLES: LazyLock<Map<String, Value>> =
     LazyLock::new(|| serde_json::from_str(include_str!("examples.json")).unwrap_or_default());
 
-/// Completes a schema; `ending` is what names of definitions end with of which a preset brings the rest.
+/// Completes a schema. `ending` is the ending of the names of definitions whose missing keys a preset supplies.
 pub fn complete(schema: &mut Value, ending: &str) {
     for choice in ["then", "else"] {
         let texts = schema["properties"].clone();
@@ -26,7 +26,7 @@ pub fn complete(schema: &mut Value, ending: &str) {
     {
         alternatives(definition);
         branches(definition, name);
-        // what needs nothing else is an example of what a preset brings the rest of
+        // a complete example also serves the definition that a preset completes
         example(definition, name.trim_end_matches(ending));
     }
     example(schema, "Case");
@@ -43,7 +43,7 @@ fn example(schema: &mut Value, name: &str) {
     }
 }
 
-/// An example for every alternative that is an object of one key: its own, `Signal/sum`, or that of what stands at the key.
+/// Adds an example to every alternative that is an object of one key: its own, such as `Signal/sum`, or that of the definition at the key.
 fn branches(schema: &mut Value, name: &str) {
     let forms = schema.get_mut("oneOf").and_then(Value::as_array_mut);
     for branch in forms.into_iter().flatten() {
@@ -65,8 +65,8 @@ fn describe(schema: &mut Value, text: Option<&str>) {
     }
 }
 
-/// Alternatives exclude each other: they are of different kinds, words, or objects with different keys. So they can be told apart, the one that was
-/// meant is known by its title, and an editor says what is wrong with that one.
+/// Marks alternatives as exclusive and gives them titles. They are of different types, words, or objects with different keys. An editor can
+/// thus identify the intended alternative by its title, and report the faults of that one.
 fn alternatives(schema: &mut Value) {
     if let Some(Value::Array(branches)) = schema.as_object_mut().and_then(|own| own.shift_remove("anyOf")) {
         let inner = |branch: Value| match &branch["oneOf"] {
@@ -100,7 +100,7 @@ fn members(schema: &mut Value) -> impl Iterator<Item = (&String, &mut Value)> {
     properties.into_iter().flatten()
 }
 
-/// What an alternative is called: its word, its key, or its kind.
+/// Title of an alternative: its word, its key, or its type.
 fn title(branch: &Value) -> Option<String> {
     if let Some(word) = branch["const"].as_str() {
         return Some(format!("\"{word}\""));

@@ -1,12 +1,12 @@
-//! Units at the end of headings behind a blank or another sign: `t in ms`, `p / kPa`, `flow, ml/min`.
+//! Units at the end of headings, after a space or another sign: `t in ms`, `p / kPa`, `flow, ml/min`.
 
 use super::units::{self, Suffix};
 
-/// Name before a unit; any name serves.
+/// Placeholder for the name before a unit.
 const ANY: &str = "x_";
 
-/// The unit that a heading ends with, behind an underscore, a blank or another sign. Where an end may be of two dimensions it is that of the
-/// quantity, if its SI unit `si` determines that.
+/// Unit at the end of a heading, after an underscore, a space or another sign. An end with two possible dimensions has that of the
+/// quantity, if its SI unit `si` determines it.
 pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
     let whole = heading.trim();
     match units::suffix(whole, si) {
@@ -38,13 +38,13 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
             return Suffix::Known(bare(name), unit);
         }
     }
-    // a heading that is a unit and nothing else; two letters may be a name as well where they are SI units
+    // a heading that is only a unit; SI units of two letters may also be names
     if let Some(unit) =
         units::bracketed(whole).filter(|unit| whole.len() > 1 && unit.scale != 1.0 && unit.name != "min")
     {
         return Suffix::Known(whole, unit);
     }
-    // powers belong to a unit, which was not found
+    // powers belong to a unit that is unknown
     let power = |sign: char| "^²³⁻".contains(sign);
     let last = signs.rfind(|(at, _)| whole[*at..].contains(power));
     match last {
@@ -53,7 +53,7 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
     }
 }
 
-/// The unit that an end of a heading is as a whole.
+/// Unit that the whole end of a heading names.
 fn of_end<'e>(end: &'e str, si: Option<&str>) -> Suffix<'e> {
     if let Some(unit) = units::bracketed(&end.replace(['·', '⋅', '*'], " ")) {
         return match unit.name {
@@ -70,7 +70,7 @@ fn of_end<'e>(end: &'e str, si: Option<&str>) -> Suffix<'e> {
     }
 }
 
-/// A sign of a heading as keys have it.
+/// Converts a sign of a heading to the form of keys.
 fn plain(sign: char) -> char {
     match sign {
         'µ' | 'μ' => 'u',
@@ -81,7 +81,7 @@ fn plain(sign: char) -> char {
     }
 }
 
-/// True if the capitals of a text allow this unit: all letters are small, or all are capitals and no M stands for m.
+/// True if the capitals of a text permit this unit: all letters are small, or all are capitals and no M means m.
 fn is_cased_as(text: &str, name: &str) -> bool {
     let small = !text.chars().any(char::is_uppercase);
     let milli_or_mega = text.starts_with('M') && name.starts_with('m');
@@ -89,7 +89,7 @@ fn is_cased_as(text: &str, name: &str) -> bool {
     small || capital
 }
 
-/// A name without the signs, and the word `in`, between it and its unit.
+/// Removes the signs and the word `in` between a name and its unit.
 fn bare(name: &str) -> &str {
     let trimmed = name.trim_end_matches(|sign: char| !sign.is_alphanumeric() && !"])}%°".contains(sign));
     let before = trimmed.strip_suffix("in").filter(|before| before.ends_with([' ', '_']));

@@ -1,4 +1,4 @@
-//! `--set POINTER=JSON`: values from the command line put into a case before it is checked.
+//! `--set POINTER=JSON`: values from the command line, inserted into a case before it is checked.
 
 use serde_json::{Map, Value};
 
@@ -10,7 +10,7 @@ use super::unknown;
 use super::wording::short;
 use crate::error::{Error, Result, Violation};
 
-/// Puts the arguments into `value`, in order; `null` removes a member.
+/// Inserts the arguments into `value`, in order; `null` removes a member.
 pub fn apply(value: &mut Value, arguments: &[String]) -> Result<Vec<SetValue>> {
     arguments.iter().map(|argument| apply_one(value, argument)).collect()
 }
@@ -38,7 +38,7 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     };
     let new = node.to_value();
     let json_at = pointer.len() + 1;
-    // what is not there is put there as null, so that a name that is none is told as such
+    // an absent value is inserted as null, so that an invalid name is reported
     let (pointer, node) = if new.is_null() && value.pointer(pointer).is_some() {
         remove(value, pointer);
         (pointer.to_owned(), None)
@@ -53,7 +53,7 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
     })
 }
 
-/// What is wrong with a value that is no JSON, and what to write.
+/// Description of a value that is not JSON, and its remedy.
 fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
     let why = fault.map_or("not JSON", |f| f.what.as_str());
     match amounts::at(pointer, json) {
@@ -83,7 +83,7 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
     if let Some((_, joined)) = misread::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
         return format!("{why}; nothing stands between digits: --set '{pointer}={joined}'");
     }
-    // a word without quotes is a text; what is more has its own remedy
+    // a word without quotes is a text; other faults have their own remedy
     let text = "text needs double quotes";
     match fault
         .and_then(|fault| fault.hint.as_deref())
@@ -97,7 +97,7 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
     }
 }
 
-/// Takes out the member or item at a pointer.
+/// Removes the member or item at a pointer.
 pub fn remove(value: &mut Value, pointer: &str) {
     let Some((parent, _)) = pointer.rsplit_once('/') else {
         return;
@@ -116,7 +116,7 @@ pub fn remove(value: &mut Value, pointer: &str) {
     }
 }
 
-/// Makes the objects that are missing on the way, and an array where `-` follows; returns the pointer with `-` replaced by an index.
+/// Inserts a value. Creates missing objects on the way, and an array if `-` follows. Returns the pointer with `-` replaced by an index.
 fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result<String, String> {
     let mut place = value;
     let mut here = String::new();

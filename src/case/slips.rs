@@ -1,4 +1,4 @@
-//! Keys with the unit of another key: what was meant, and the number in the unit of the case.
+//! Keys with a unit that the case does not use: the intended key, and the number in its unit.
 
 use std::f64::consts::TAU;
 
@@ -9,10 +9,10 @@ use super::units::{self, Suffix, Unit};
 use super::wording::nearest;
 use crate::error::numbers;
 
-/// Units of which an object rarely has more than one key, so that this one is meant whatever it is called.
+/// Units of which an object rarely has more than one key; that key is intended whatever the name.
 const RARE: [&str; 4] = ["rad", "pa_s", "hz", "kg_m3"];
 
-/// The key that one with another unit means, and what to write there.
+/// The key that is intended by one with another unit, and the text to write there.
 pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> + Clone) -> Option<(String, String)> {
     let key = key.to_lowercase();
     if !key.contains('_') && key != "omega" {
@@ -22,7 +22,7 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         let end = format!("_{unit}");
         known.clone().filter(move |name| name.ends_with(&end))
     };
-    // times gravity, over a turn, by the density
+    // multiples of gravity, angular frequencies, viscosities over density
     if let Some(meant) = key
         .strip_suffix("_g")
         .and_then(|stem| nearest(&format!("{stem}_m_s2"), of("m_s2")))
@@ -54,7 +54,7 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
                 .filter(|_| all.next().is_none() && RARE.contains(&end.as_str()));
             only.map(str::to_owned)
         })?;
-        // the same unit is no slip
+        // the same unit is no mistake
         (unit.scale != 1.0).then(|| {
             let hint = told(&meant, value, unit.scale, unit.name);
             (meant, hint)
@@ -75,7 +75,7 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
     })
 }
 
-/// What to write under a key: the number in its unit, or by what numbers grow.
+/// Text for a key: the number in its unit, or the factor of its numbers.
 fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
     match value.as_f64() {
         Some(number) => format!(
@@ -86,7 +86,7 @@ fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
     }
 }
 
-/// A number without the round-off of the product that gave it.
+/// Formats a number without the rounding error of the product that gave it.
 pub(super) fn number_of(number: f64) -> String {
     let number = numbers::rounded(number, 13);
     match number.abs() {

@@ -1,6 +1,6 @@
-//! Words that people look for, and the keys that they mean.
+//! Words that users search for, and the keys that they mean.
 
-/// A word or its beginning, and keys that have to do with it.
+/// A word, and the keys related to it.
 const MEANT: &[(&str, &[&str])] = &[
     (
         "resistance",
@@ -115,7 +115,7 @@ const MEANT: &[(&str, &[&str])] = &[
     ("moment", &["moment_x_n", "moment_z_n", "ends"]),
 ];
 
-/// Words that are no keys, and where what they mean is found.
+/// Words that are not keys, and the places of their subjects.
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "frequency",
@@ -157,14 +157,14 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ),
 ];
 
-/// Where what a word means is found, if it is no key.
+/// Places of the subject of a word that is not a key.
 pub fn elsewhere(word: &str) -> Vec<&'static str> {
     let pieces = pieces(word);
     let own = |one: &&(&str, &str)| pieces.iter().any(|piece| piece == one.0);
     ELSEWHERE.iter().filter(own).map(|one| one.1).collect()
 }
 
-/// A word as the tables have it, and where it is of several, each of these.
+/// Forms of a word as in the tables: the whole text, and each of its words.
 fn pieces(word: &str) -> Vec<String> {
     let whole = word.to_lowercase().replace([' ', '-'], "_");
     let plain = |text: &str| {
@@ -180,7 +180,7 @@ fn pieces(word: &str) -> Vec<String> {
     all
 }
 
-/// Symbols that people take for names of keys; of a result they may mean more.
+/// Symbols that users write for keys; in a result they may mean more.
 const SYMBOLS: &[(&str, &[&str])] = &[
     ("e", &["young_modulus_pa"]),
     ("ei", &["bending_stiffness_factor"]),
@@ -198,7 +198,7 @@ const SYMBOLS: &[(&str, &[&str])] = &[
     ("q", &["flow_m3_s"]),
 ];
 
-/// Words of other programs and textbooks for which a case has no key, and what there is instead.
+/// Words of other programs and textbooks for which a case has no key, and the alternative.
 const INSTEAD: &[(&[&str], &str)] = &[
     (
         &["poisson_ratio", "poissons_ratio", "poisson", "nu"],
@@ -260,21 +260,21 @@ const INSTEAD: &[(&[&str], &str)] = &[
     ),
 ];
 
-/// What to use instead of what a key of this name would be, where a case has none.
+/// Alternative to a key of this name, if a case has no such key.
 pub fn instead(word: &str) -> Option<&'static str> {
     let word = word.to_lowercase();
     let (_, said) = INSTEAD.iter().find(|(words, _)| words.contains(&word.as_str()))?;
     Some(said)
 }
 
-/// Keys that a symbol means where it stands for one.
+/// Keys that a symbol may mean.
 pub fn of_symbol(symbol: &str) -> Vec<&'static str> {
     let symbol = symbol.to_lowercase();
     let own = SYMBOLS.iter().filter(|one| one.0 == symbol);
     own.flat_map(|one| one.1.iter().copied()).collect()
 }
 
-/// Keys that a word means; of several words the whole, or else what each means.
+/// Keys that a text means; if it means none as a whole, those of each of its words.
 pub fn of(word: &str) -> Vec<&'static str> {
     let own = of_whole(word);
     if !own.is_empty() {
@@ -283,7 +283,7 @@ pub fn of(word: &str) -> Vec<&'static str> {
     pieces(word).iter().flat_map(keys).collect()
 }
 
-/// Keys that a word means as a whole; blanks and `_` are the same.
+/// Keys that a text means as a whole; spaces and `_` are equivalent.
 pub fn of_whole(word: &str) -> Vec<&'static str> {
     let mut own: Vec<&'static str> = pieces(word).iter().take(2).flat_map(keys).collect();
     own.dedup();
@@ -300,7 +300,7 @@ mod tests {
     use super::*;
     use crate::case::meanings;
 
-    /// Goal: what a word leads to is a key of a case, and no word is one.
+    /// Goal: every word leads to existing keys of a case.
     #[test]
     fn words_lead_to_keys() {
         let all = meanings();

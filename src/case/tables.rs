@@ -1,4 +1,4 @@
-//! Tables from CSV files, read when the case is read.
+//! Tables from CSV files, which are read together with the case.
 
 use std::path::Path;
 
@@ -14,10 +14,10 @@ use super::{reading, units};
 use crate::error::numbers::counted;
 use crate::error::{Code, Violation, listed, shown};
 
-/// Largest file of a table that is read.
+/// Largest file of a table [bytes].
 const LARGEST: u64 = 64 << 20;
 
-/// The same of a file that the program wrote: the same numbers may be longer there.
+/// Largest file of a table that the program wrote [bytes]: the same numbers may be longer there.
 const LARGEST_WRITTEN: u64 = 4 * LARGEST;
 
 /// Replaces `csv` and its columns by `times_s` and `values` in every table below `value`.
@@ -51,7 +51,7 @@ fn has_csv_keys(table: &Map<String, Value>) -> bool {
         .any(|key| table.contains_key(*key))
 }
 
-/// Boxed: a fault is large beside the nothing of success.
+/// Boxed, because a fault is large compared with an empty success.
 type Read<T> = Result<T, Box<Violation>>;
 
 fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> {
@@ -179,7 +179,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     Ok(())
 }
 
-/// What a table stands under: the key, and the dimensions that its values may have, by their SI units; none where the key has no unit.
+/// Quantity of a table: its key, and the possible dimensions of its values, as SI units; none if the key has no unit.
 struct Of {
     key: String,
     dimensions: Vec<&'static str>,
@@ -195,7 +195,7 @@ impl Of {
             "opening" => Some("1"),
             _ => units::of_pointer(pointer).map(|unit| unit.si),
         };
-        // factors, the profile of a load among them, are shares of what another one brings
+        // factors, such as the profile of a load, are fractions of another quantity
         let factor = keys().any(|key| ["product", "signal"].contains(&key));
         let share = own.and(factor.then_some("1")).filter(|share| own != Some(share));
         Self {
@@ -205,8 +205,8 @@ impl Of {
     }
 }
 
-/// The last line with a quotation mark of a text that has an odd number of them outside comments: a reader of CSV accepts it, and takes what
-/// follows for one cell.
+/// Last line with a quotation mark, if a text has an odd number of them outside comments. A CSV reader accepts such a text and reads the
+/// rest as one cell.
 pub fn unclosed_quote(text: &[u8]) -> Option<usize> {
     let lines = text.split(|b| *b == b'\n').enumerate();
     let written = lines.filter(|(_, line)| !line.trim_ascii_start().starts_with(b"#"));
@@ -216,7 +216,7 @@ pub fn unclosed_quote(text: &[u8]) -> Option<usize> {
     quoted.last().filter(|_| all % 2 == 1).map(|(line, _)| *line)
 }
 
-/// What stands between cells: semicolons or tabs where the first line that counts has any, else commas.
+/// Separator of cells: a semicolon or tab if the first relevant line has one, otherwise a comma.
 fn separator(text: &[u8]) -> u8 {
     let line = text.split(|b| *b == b'\n').find(|line| {
         let line = line.trim_ascii_start();

@@ -1,4 +1,4 @@
-//! Units of a laboratory and what each is in SI units; how names tell theirs: `angle_deg`, `flow_ml_min`.
+//! Laboratory units and their factors to SI units; units at the end of names: `angle_deg`, `flow_ml_min`.
 
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -6,28 +6,28 @@ use std::sync::LazyLock;
 /// A unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// The SI unit of the same dimension, as columns of results have it; `1` where there is none.
+    /// The SI unit of the same dimension, in the form of result columns; `1` without a dimension.
     pub si: &'static str,
-    /// As a laboratory writes it.
+    /// Usual form in a laboratory.
     pub name: &'static str,
-    /// How many of the SI unit it is.
+    /// Factor to the SI unit.
     pub scale: f64,
 }
 
 impl Unit {
-    /// As the keys of a case end with its SI unit: `m3_s`.
+    /// Ending of keys of a case with its SI unit: `m3_s`.
     pub fn key(&self) -> String {
         let key = self.si.to_lowercase().replace('^', "").replace([' ', '/'], "_");
         key.trim_start_matches('_').to_owned()
     }
 
-    /// Whether a text names it, with or without the signs of powers.
+    /// True if a text names the unit, with or without the signs of powers.
     pub fn is_written(&self, text: &str) -> bool {
         self.name == text || self.name.replace('^', "") == text
     }
 }
 
-/// SI unit, unit, how many of the one the other is.
+/// SI unit, unit, factor to the SI unit.
 const TABLE: [(&str, &str, f64); 79] = [
     ("m", "m", 1.0),
     ("m", "cm", 1e-2),
@@ -110,7 +110,7 @@ const TABLE: [(&str, &str, f64); 79] = [
     ("1/s", "1/s", 1.0),
 ];
 
-/// Words that are plainly units, of which the table has none: a name that ends with one is no name without a unit.
+/// Words that are clearly units, but not in the table: a name that ends with one has an unknown unit.
 #[rustfmt::skip]
 const FOREIGN: [&str; 76] = [
     "inch", "inches", "ft", "yd", "mils", "thou", "nm", "km", "dm", "meter", "meters", "metre", "metres",
@@ -121,7 +121,7 @@ const FOREIGN: [&str; 76] = [
     "litre", "litres", "cc", "nl", "dl", "lpm", "slpm", "sccm", "gpm", "cst", "poise", "mg", "kj",
 ];
 
-/// Words that are units of one dimension and else may be names: an inlet, a foot, the second of two.
+/// Words that are units of one dimension, and otherwise may be names: an inlet, a foot, the second of two.
 const ELSE_NAMES: [(&str, &str); 6] = [
     ("in", "m"),
     ("foot", "m"),
@@ -131,44 +131,44 @@ const ELSE_NAMES: [(&str, &str); 6] = [
     ("seconds", "s"),
 ];
 
-/// What may stand before the whole word of a unit.
+/// Prefixes of spelled-out units.
 const PREFIXES: [&str; 6] = ["nano", "micro", "milli", "centi", "kilo", "mega"];
 
-/// What stands before a unit that is only the end of a longer one, such as N s/m, Pa s/m^3 and m^2/Pa.
+/// Beginnings of longer units, such as N s/m, Pa s/m^3 and m^2/Pa, of which the table has only the end.
 const BEGUN: [&str; 14] = [
     "kg", "pa", "kpa", "mpa", "gpa", "m2", "m3", "mm2", "mm3", "n_s", "n_m", "pa_s", "mpa_s", "per",
 ];
 
-/// All of them.
+/// All units of the table.
 pub(super) fn all() -> impl Iterator<Item = Unit> {
     TABLE.into_iter().map(|(si, name, scale)| Unit { si, name, scale })
 }
 
-/// Those of one dimension, by its SI unit.
+/// Units of one dimension, by its SI unit.
 pub fn of_dimension(si: &str) -> impl Iterator<Item = Unit> {
     all().filter(move |unit| unit.si == si)
 }
 
-/// The unit of a text between brackets.
+/// Unit of a text between brackets.
 pub fn bracketed(text: &str) -> Option<Unit> {
     let plain = text
         .trim()
         .replace(['µ', 'μ'], "u")
         .replace('²', "^2")
         .replace('³', "^3");
-    // a litre by its capital letter, which no other unit has
+    // a liter may have a capital letter, which no other unit has
     let plain = plain.replace('L', "l");
     let plain = match plain.as_str() {
         "°" => "deg",
         "" | "-" | "–" => "1",
         "Torr" => "torr",
-        // "in ms" is ms, an inch alone is none
+        // "in ms" is ms; "in" alone is not an inch
         other => other.strip_prefix("in ").unwrap_or(other).trim_start(),
     };
     all().find(|unit| unit.is_written(plain))
 }
 
-/// The ends of names by which a unit is told, behind an underscore.
+/// Endings of names, after an underscore, that denote a unit.
 fn ends(unit: Unit) -> impl Iterator<Item = String> {
     let word = unit
         .name
@@ -183,32 +183,32 @@ fn ends(unit: Unit) -> impl Iterator<Item = String> {
     [per, short].into_iter()
 }
 
-/// All ends: a case may have very many keys that are none.
+/// All endings, computed once: a case may have very many keys without a unit.
 static ENDS: LazyLock<Vec<(Unit, String)>> = LazyLock::new(|| {
     let told = all().filter(|unit| !["1", "l", "g", "h"].contains(&unit.name));
     told.flat_map(|unit| ends(unit).map(move |end| (unit, end))).collect()
 });
 
-/// What the end of a name tells of its unit.
+/// Unit at the end of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Suffix<'n> {
-    /// The name without it, and the unit.
+    /// The name without the unit, and the unit.
     Known(&'n str, Unit),
-    /// The name without it, and what seems to be a unit and is none of the table's.
+    /// The name without its end, and the end, which seems to be a unit but is not in the table.
     Unknown(&'n str, &'n str),
-    /// There is none.
+    /// No unit.
     None,
 }
 
-/// The unit that a name ends with, as keys have it: `angle`, degrees of `angle_deg`. Where an end may be of two dimensions (`_n_m`, `_in`)
-/// it is that of the quantity, as far as this is told by its SI unit.
+/// Unit at the end of a name, in the form of keys: `angle`, degrees of `angle_deg`. An end with two possible dimensions (`_n_m`, `_in`) has
+/// that of the quantity, if its SI unit `si` determines it.
 pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
     let lower = name.to_ascii_lowercase();
     let cut = |end: &str| {
         let rest = lower.strip_suffix(end)?.strip_suffix('_')?;
         (!rest.is_empty()).then_some(rest.len())
     };
-    // a curvature of `_1_m` is none in metres, and `_n_m` is a moment where nothing else is known
+    // `_1_m` of a curvature is not in meters, and `_n_m` is a moment if the dimension is unknown
     let curvature = cut("1_m").filter(|at| lower[..*at].ends_with("curvature"));
     let found = ENDS
         .iter()
@@ -250,7 +250,7 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
     }
 }
 
-/// A name as keys have it without the unit that it ends with, and that unit.
+/// Name without the unit at its end, and that unit, in the form of keys.
 pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
     match suffix(name, None) {
         Suffix::Known(rest, unit) => Some((rest, unit)),
@@ -258,7 +258,7 @@ pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
     }
 }
 
-/// What the keys of a JSON pointer tell of the unit of the numbers below it.
+/// Unit of the numbers below a JSON pointer, from its keys.
 pub fn told_by(pointer: &str) -> Suffix<'_> {
     let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
     let mut ends = pointer.rsplit('/').map(|key| {
@@ -268,7 +268,7 @@ pub fn told_by(pointer: &str) -> Suffix<'_> {
     ends.find(|end| *end != Suffix::None).unwrap_or(Suffix::None)
 }
 
-/// The unit in which the numbers below a JSON pointer are, as far as its keys tell.
+/// Unit of the numbers below a JSON pointer, if its keys give a known one.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
     match told_by(pointer) {
         Suffix::Known(_, unit) => Some(unit),
@@ -356,7 +356,7 @@ mod tests {
         ] {
             assert_eq!(suffix(name, Some("Pa")), Suffix::None, "{name}");
         }
-        // a force per length, where one is sought
+        // a force per length, if that is expected
         let of = |name, si| match suffix(name, si) {
             Suffix::Known(_, unit) => (unit.name, unit.scale),
             other => panic!("{name}: {other:?}"),

@@ -1,4 +1,4 @@
-//! What is meant by a key that its object has not.
+//! Meaning of a key that its object does not have.
 
 use std::collections::{HashMap, VecDeque};
 use std::sync::LazyLock;
@@ -10,33 +10,33 @@ use super::units::{self, Suffix};
 use super::wording::all_nearest;
 use super::{schema_json, slips, synonyms};
 
-/// Places of a key that are told at most.
+/// Largest number of places of a key in a message.
 const MOST: usize = 3;
 
-/// Similarity from which on one name is a slip of the pen of another, whatever else has a name like it.
+/// Similarity from which on one name counts as a misspelling of another, even if other objects have a similar key.
 const CLOSE: f64 = 0.93;
 
-/// Deepest place of a key that is looked for.
+/// Deepest place of a key that is searched.
 const DEEPEST: usize = 9;
 
-/// What an object may have and has.
+/// Possible and written keys of an object.
 pub struct Known<'a> {
-    /// Its keys, with their schemas.
+    /// Possible keys, with their schemas.
     pub properties: &'a Map<String, Value>,
-    /// What the user wrote of it: a key that only a preset brings may be what a wrong one meant.
+    /// The object as the user wrote it; a wrong key may mean one that only a preset supplies.
     pub written: Option<&'a Value>,
-    /// Where it stands.
+    /// Pointer of the object.
     pub pointer: &'a str,
 }
 
-/// What a key means.
+/// Meaning of an unknown key.
 #[derive(Default)]
 pub struct Meant {
-    /// Keys of the same object, one of which it is.
+    /// Candidates among the keys of the same object.
     pub keys: Vec<String>,
-    /// The one, if there is one alone.
+    /// The candidate, if there is only one.
     pub nearest: Option<String>,
-    /// What to do.
+    /// Remedy.
     pub hint: Option<String>,
 }
 
@@ -58,10 +58,10 @@ impl Meant {
 }
 
 impl<'a> Known<'a> {
-    /// What a key that is none of these is meant to be: one with another unit, a slip of the pen, a key of another object, a word of others.
+    /// Finds the meaning of an unknown key: a key with another unit, a misspelling, a key of another object, or a synonym.
     pub fn meant(&self, key: &str, value: &Value) -> Meant {
         let absent = self.absent();
-        // one that is there already may be meant by what is set besides
+        // a further argument may also mean a key that is already present
         if let Some((meant, hint)) =
             slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, self.names()))
         {
@@ -137,7 +137,7 @@ impl<'a> Known<'a> {
             .filter(move |name| written.is_none_or(|members| members.get(*name).is_none()))
     }
 
-    /// Whether a value may be meant for a key: a number is for none that takes objects alone.
+    /// True if a value may be meant for a key: a number is never meant for a key that accepts only objects.
     fn takes(&self, name: &str, value: &Value) -> bool {
         let object = |schema: &Value| match schema["$ref"].as_str() {
             Some(name) => !takes_numbers(name),
@@ -146,7 +146,7 @@ impl<'a> Known<'a> {
         !value.is_number() || !self.properties.get(name).is_some_and(object)
     }
 
-    /// The one that is nearest; of several all, with what they are.
+    /// The nearest key; of several, all with their descriptions.
     fn of_near(&self, near: &[(f64, &str)]) -> Meant {
         let keys: Vec<String> = near.iter().map(|(_, key)| (*key).to_owned()).collect();
         if let [key] = &keys[..] {
@@ -178,7 +178,7 @@ impl<'a> Known<'a> {
     }
 }
 
-/// Where a component points, by the name of its key.
+/// Direction of a component, by the name of its key.
 fn direction(key: &str) -> Option<&'static str> {
     key.split('_').find_map(|part| match part {
         "x" | "u1" => Some("x, across the beam at rest"),
@@ -187,7 +187,7 @@ fn direction(key: &str) -> Option<&'static str> {
     })
 }
 
-/// A JSON pointer for a name without the `/` that begins one: what is written with points between, or the places of a key.
+/// JSON pointer for a name without the initial `/`: a name with points as separators, or the places of a key.
 pub fn whole(name: &str) -> String {
     let guess = name.trim_matches('/').replace('.', "/");
     let homes = HOMES.get(&guess).map(Vec::as_slice).unwrap_or_default();
@@ -229,7 +229,7 @@ where
     }
 }
 
-/// Whether something by its name in the schema may be a number.
+/// True if a definition of the schema may be a number.
 fn takes_numbers(name: &str) -> bool {
     let Some(schema) = schema_json::CASE.pointer(name.trim_start_matches('#')) else {
         return true;
@@ -242,14 +242,14 @@ fn takes_numbers(name: &str) -> bool {
     all.any(|one| ["number", "integer"].contains(&kind(resolved(one))))
 }
 
-/// Pointers of all keys, the shortest first; arrays by their first place.
+/// Pointers of all keys, the shortest first; arrays by their first item.
 static HOMES: LazyLock<HashMap<String, Vec<String>>> = LazyLock::new(|| {
     let mut homes: HashMap<String, Vec<String>> = HashMap::new();
     let mut queue = VecDeque::from([(&*schema_json::CASE, String::new(), vec![])]);
     while let Some((part, pointer, above)) = queue.pop_front() {
         let mut above: Vec<&str> = above;
         if let Some(name) = part["$ref"].as_str() {
-            // a signal may stand in a signal
+            // a signal may contain a signal
             if above.contains(&name) {
                 continue;
             }

@@ -1,8 +1,8 @@
-//! Structure: the JSON value against the generated JSON Schema, all faults at once.
+//! Validation of the structure: the JSON value against the generated JSON Schema, with all faults at once.
 //!
-//! Knows only the keywords the generator writes (`$ref`, `type`, `properties`, `required`, `additionalProperties: false`,
-//! `oneOf`/`anyOf`, `if`/`else` about `required`, `const`, `enum`, `items`, `minItems`, `maxItems`, bounds of numbers). Of several branches the
-//! one the user meant is chosen by the type of the value and by its single key, so that a message is about that branch.
+//! Supports only the keywords that the generator writes (`$ref`, `type`, `properties`, `required`, `additionalProperties: false`,
+//! `oneOf`/`anyOf`, `if`/`else` about `required`, `const`, `enum`, `items`, `minItems`, `maxItems`, bounds of numbers). Of several
+//! branches, the type of the value and its single key select the one that the user meant, so that a message is about that branch.
 
 use serde_json::{Map, Value};
 
@@ -18,7 +18,7 @@ use super::unknown::{self, Meant};
 use super::wording::{found, found_text, nearest, quoted, short};
 use crate::error::{Code, Violation};
 
-/// Compares a value with a schema. `own` is what the user wrote of it: a key that only a preset brings may be what a wrong one meant.
+/// Compares a value with a schema. `own` is the part that the user wrote: a wrong key may mean one that only a preset supplies.
 pub fn validate(value: &Value, own: &Value, schema: &Value, faults: &mut Violations) {
     let root = schema;
     Walk { root, own, faults }.check(value, schema, "");
@@ -53,7 +53,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The alternatives of a schema, references and nested choices resolved.
+    /// Collects the alternatives of a schema, with references and nested choices resolved.
     fn branches(&self, schema: &'a Value, out: &mut Vec<&'a Value>) {
         if let Some(name) = schema.get("$ref").and_then(Value::as_str) {
             if let Some(target) = self.root.pointer(name.trim_start_matches('#')) {
@@ -71,7 +71,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The alternative the user meant; none, with a fault, when there is no such.
+    /// Returns the alternative that the user meant; none, with a fault, if there is no such alternative.
     fn choose(&mut self, value: &Value, schema: &Value, branches: &[&'a Value], pointer: &str) -> Option<&'a Value> {
         let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
@@ -79,7 +79,7 @@ impl<'a> Walk<'a> {
                 let other = || mistyped::hint(pointer, value, schema, branches);
                 self.choose_word(text, &fitting, branches, pointer, other)
             }
-            // what has no alternative has no form to be named by, however few its keys are
+            // without alternatives, an object is not named by its form, however few keys it has
             Value::Object(members) if branches.len() > 1 && fitting.iter().any(|b| tag(b).is_some()) => {
                 self.choose_tag(members, &fitting, branches, pointer)
             }
@@ -156,7 +156,7 @@ impl<'a> Walk<'a> {
             };
             self.faults
                 .push_at_key(Violation::new(Code::Kind, pointer, what).allowed(allowed));
-            // What stands under known names is looked at all the same.
+            // Values under known names are checked nevertheless.
             for (key, value) in members {
                 if let Some(inner) = known(key).and_then(|b| b.pointer("/properties")?.get(key)) {
                     self.check(value, inner, &child(pointer, key));
@@ -212,7 +212,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Returns the keys of which one was probably meant.
+    /// Reports an unknown key, and returns the keys of which one was probably meant.
     fn unknown_key(&mut self, key: &str, value: &Value, properties: &Map<String, Value>, pointer: &str) -> Vec<String> {
         let full = self.faults.is_full();
         let known = unknown::Known {
@@ -275,7 +275,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What other programs call otherwise.
+/// Remedies for names that other programs use.
 fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String> {
     match text {
         "open" | "vent" | "vented" if tags.contains(&"pressure_pa") => {
@@ -307,7 +307,7 @@ fn words(branch: &Value) -> impl Iterator<Item = &str> {
     several.chain(branch.get("const")).filter_map(Value::as_str)
 }
 
-/// Whether one of the alternatives is a number.
+/// True if one of the alternatives is a number.
 fn numeric(branches: &[&Value]) -> bool {
     let kinds = branches.iter().filter_map(|branch| branch.get("type")?.as_str());
     kinds.into_iter().any(|kind| kind == "number" || kind == "integer")
@@ -329,7 +329,7 @@ fn type_fits(value: &Value, branch: &Value) -> bool {
     }
 }
 
-/// What may stand somewhere, in words.
+/// Description of the allowed values.
 fn kinds(branches: &[&Value]) -> String {
     let words: Vec<&str> = branches.iter().flat_map(|b| self::words(b)).collect();
     let form = |branch| if branches.len() > 1 { tag(branch) } else { None };

@@ -1,4 +1,4 @@
-//! The network of a case, resolved: every number, end and name is a point, every tube has a size, every port gives one thing.
+//! Resolved network of a case: every number, end and name is a point, every tube has its dimensions, every port prescribes one quantity.
 
 use super::check;
 use super::faults::Violations;
@@ -18,15 +18,15 @@ pub enum Point {
 /// A tube.
 #[derive(Clone, Debug)]
 pub struct Tube<'a> {
-    /// Where it starts and where it ends.
+    /// Start and end.
     pub points: [Point; 2],
     /// Length `l_c` [m].
     pub length_m: f64,
-    /// What it is inside.
+    /// Source of its permeability.
     pub bore: Bore<'a>,
-    /// Radius of its circle, where one is given [m].
+    /// Radius of its circle, if given [m].
     pub radius_m: Option<f64>,
-    /// Losses at its ends and on the way, in dynamic pressures of its mean velocity.
+    /// Losses at its ends and along it, in dynamic pressures of its mean velocity.
     pub loss_coefficient: f64,
     /// Roughness of its wall [m].
     pub roughness_m: f64,
@@ -38,10 +38,10 @@ pub struct Tube<'a> {
     pub pump: Option<&'a Pump>,
 }
 
-/// What the permeability of a tube follows from.
+/// Source of the permeability of a tube.
 #[derive(Clone, Copy, Debug)]
 pub enum Bore<'a> {
-    /// Itself, `q1c` [m^4].
+    /// The permeability itself, `q1c` [m^4].
     Permeability(f64),
     /// A cross-section.
     CrossSection(&'a CrossSection),
@@ -50,7 +50,7 @@ pub enum Bore<'a> {
 }
 
 impl Bore<'_> {
-    /// That of a tube that says nothing else.
+    /// Bore of a tube without values of its own.
     pub(super) fn usual(tubes: &TubeDefaults) -> Self {
         tubes
             .permeability_m4
@@ -58,29 +58,29 @@ impl Bore<'_> {
     }
 }
 
-/// What a port prescribes.
+/// Quantity that a port prescribes.
 #[derive(Clone, Copy, Debug)]
 pub enum Given<'a> {
     /// A pressure [Pa].
     Pressure(&'a Signal),
     /// A flow into the network [m^3/s].
     Flow(&'a Signal),
-    /// A volume let into the network [m^3].
+    /// A volume injected into the network [m^3].
     Volume(&'a Signal),
 }
 
-/// A port, or what prescribes something at the end of a chain.
+/// A port, or a prescribed condition at the end of a chain.
 #[derive(Clone, Debug)]
 pub struct Port<'a> {
-    /// Where it is.
+    /// Point of the port.
     pub at: Point,
-    /// Its name, where it has one.
+    /// Name, if given.
     pub name: Option<&'a str>,
-    /// What it prescribes.
+    /// Prescribed quantity.
     pub given: Given<'a>,
 }
 
-/// A network, resolved; empty where there is none, and every bladder is sealed singly.
+/// A resolved network; empty for a case without one, whose bladders are sealed singly.
 #[derive(Clone, Debug, Default)]
 pub struct Wiring<'a> {
     /// Bladders in a row.
@@ -104,10 +104,10 @@ pub struct Wiring<'a> {
 }
 
 impl<'a> Wiring<'a> {
-    /// That of a case.
+    /// Resolves the network of a case.
     ///
     /// # Errors
-    /// [`Error::Case`](crate::error::Error::Case) with everything that leads nowhere, as the check of the case tells it.
+    /// [`Error::Case`](crate::error::Error::Case) with every invalid reference, in the words of the check of the case.
     pub fn of(case: &'a Case) -> Result<Self> {
         let mut faults = Violations::default();
         let wiring = check::network::resolve(case, &mut faults).0;
@@ -126,7 +126,7 @@ impl<'a> Wiring<'a> {
     }
 }
 
-/// Index of a bladder `R j` in `0..n`, upper row first; none where there is no such bladder.
+/// Index of a bladder `R j` in `0..n`, upper row first; none if there is no such bladder.
 pub fn bladder_index(signed: i64, per_row: usize) -> Option<usize> {
     let j = usize::try_from(signed.unsigned_abs())
         .ok()
@@ -135,7 +135,7 @@ pub fn bladder_index(signed: i64, per_row: usize) -> Option<usize> {
     Some(if signed > 0 { j } else { per_row + j })
 }
 
-/// `R j` of a bladder index.
+/// Number `R j` of a bladder index.
 pub fn bladder_label(index: usize, per_row: usize) -> i64 {
     if index < per_row {
         index as i64 + 1

@@ -1,4 +1,4 @@
-//! Words of the messages.
+//! Building blocks of messages.
 
 use serde_json::Value;
 
@@ -7,7 +7,7 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<S
     all_nearest(name, names).pop().map(|(_, known)| known.to_owned())
 }
 
-/// The most similar names, several where they are equally similar, each with how similar it is, up to 1.
+/// The most similar names, each with its similarity, up to 1; several if they are equally similar.
 pub fn all_nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Vec<(f64, &'n str)> {
     let mut best = vec![];
     if name.len() > 100 {
@@ -26,14 +26,14 @@ pub fn all_nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Vec<
     best
 }
 
-/// At most 40 characters of what the user wrote.
+/// Shortens a user's text to at most 40 characters.
 pub fn short(text: &str) -> String {
     let mut chars = text.chars();
     let start: String = chars.by_ref().take(40).collect();
     if chars.next().is_some() { start + "..." } else { start }
 }
 
-/// What was found where something else should stand.
+/// Describes a value found in place of another.
 pub fn found(value: &Value) -> String {
     match value {
         Value::Null => "null".to_owned(),
@@ -45,7 +45,7 @@ pub fn found(value: &Value) -> String {
     }
 }
 
-/// The same for a text.
+/// Describes a text found in place of another value.
 pub fn found_text(text: &str) -> String {
     format!("the text \"{}\"", short(text))
 }

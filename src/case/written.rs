@@ -1,4 +1,4 @@
-//! The case as a result folder has it: every default filled in, long tables in files of their own.
+//! The case in a result folder: every default filled in, long tables in separate files.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use serde_json::{Map, Value};
 
 use super::schema::Case;
 
-/// Points up to which a table stands in the case itself.
+/// Largest number of points of a table that is written into the case itself.
 const INLINE: usize = 1000;
 
 /// Text of `case.json`, and the tables it refers to.
@@ -22,13 +22,13 @@ pub struct Written {
 type Points = (Vec<f64>, Vec<f64>);
 
 impl Case {
-    /// The case as JSON text with every default filled in. A table of more than a thousand points is named by file and checksum;
-    /// with the files of [`Case::written`] beside it, it reads back as the same case.
+    /// The case as JSON text with every default filled in. A table of more than a thousand points is replaced by its file name and
+    /// checksum. With the files of [`Case::written`] beside it, the text reads back as the same case.
     pub fn resolved_json(&self) -> String {
         self.set_apart().0
     }
 
-    /// The same with the files of its tables.
+    /// The case as JSON text, with the files of its tables.
     pub fn written(&self) -> Written {
         let (json, tables) = self.set_apart();
         Written {
@@ -45,7 +45,7 @@ impl Case {
     }
 }
 
-/// Whether a file beside a case is the table of one, by its name.
+/// True if a file beside a case is one of its tables, by its name.
 pub fn is_table(name: &str) -> bool {
     let sum = name.strip_prefix("table-").and_then(|rest| rest.strip_suffix(".csv"));
     sum.is_some_and(|sum| sum.len() == 8 && sum.bytes().all(|b| b.is_ascii_hexdigit()))
@@ -76,7 +76,7 @@ fn set_apart(value: &mut Value, tables: &mut BTreeMap<String, Points>) {
     }
 }
 
-/// Puts the name of a file in place of many points.
+/// Replaces many points by the name of a file.
 fn name_file(table: &mut Map<String, Value>, tables: &mut BTreeMap<String, Points>) {
     let numbers = |key: &str| -> Option<Vec<f64>> { table.get(key)?.as_array()?.iter().map(Value::as_f64).collect() };
     let Some((times, values)) = numbers("times_s").zip(numbers("values")) else {
@@ -94,10 +94,10 @@ fn name_file(table: &mut Map<String, Value>, tables: &mut BTreeMap<String, Point
     tables.insert(name, (times, values));
 }
 
-/// Every number in its shortest form that reads back as the same.
+/// CSV text with every number in its shortest form that reads back as the same value.
 fn csv((times, values): &Points) -> String {
     let mut out = csv::Writer::from_writer(vec![]);
-    // memory takes everything
+    // writing to memory does not fail
     let _ = out.write_record(["t [s]", "value"]);
     for (time, value) in times.iter().zip(values) {
         let _ = out.write_record([format!("{time:?}"), format!("{value:?}")]);

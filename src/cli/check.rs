@@ -1,4 +1,4 @@
-//! `slcbeam check`: what a case is, before anything is run.
+//! `slcbeam check`: properties of a case, before anything is run.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -22,7 +22,7 @@ use crate::run::drive::comes_to_rest;
 use crate::run::needs::Needs;
 use crate::run::{known, method, slow};
 
-/// Characteristic numbers that `--verbose` adds: scales that others are made of.
+/// Characteristic numbers that only `--verbose` prints: scales from which others are formed.
 const DETAILS: [&str; 21] = [
     "area_change_estimate",
     "base_acceleration_m_s2",
@@ -47,7 +47,7 @@ const DETAILS: [&str; 21] = [
     "tube_resistance_pa_s_m3",
 ];
 
-/// Lines for networks of unlike times without `--verbose`.
+/// Largest number of lines about networks with different times, without `--verbose`.
 const NETWORKS: usize = 3;
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
@@ -57,7 +57,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
     let mut warnings = known::warnings(case, &system);
-    // what goes on for ever has no state of rest that the fluid could be late for
+    // a motion that never ends has no state of rest that the fluid could lag behind
     if comes_to_rest(&system.model) {
         warnings.extend(slow::warning(case, &system, case.time.end_s));
     }
@@ -181,7 +181,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Effects as name, state and cause; neighbours with the same state and cause share a line, unless all are asked for.
+/// Effects as name, state and cause. Neighbors with the same state and cause share a line, unless `all` is set.
 fn decisions(decided: &[&Decision], all: bool) -> Vec<[String; 3]> {
     let mut lines: Vec<[String; 3]> = vec![];
     for one in decided {
@@ -198,14 +198,14 @@ fn decisions(decided: &[&Decision], all: bool) -> Vec<[String; 3]> {
     lines
 }
 
-/// Lines under a heading, indented.
+/// Indented lines under a heading.
 fn listed<const N: usize>(lines: impl Iterator<Item = [String; N]>) -> String {
     let lines: Vec<_> = lines.map(|line| [&[String::new()], &line[..]].concat()).collect();
     aligned(&lines, &[1, 2, 3, 4])
 }
 
-/// Characteristic numbers as label, name and value. Networks with the same slowest time share a line, and only the slowest
-/// are listed, unless all are asked for.
+/// Characteristic numbers as label, name and value. Unless `all` is set, networks with the same slowest time share a line, and only the
+/// slowest are listed.
 fn grouped<'n>(numbers: &[(&'n String, &f64)], all: bool) -> Vec<(String, &'n str, f64)> {
     const OF_NETWORK: &str = "slowest_time_of_network_";
     let number = |name: &str| name.strip_prefix(OF_NETWORK)?.strip_suffix("_s")?.parse::<usize>().ok();

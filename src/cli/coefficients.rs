@@ -33,7 +33,7 @@ pub struct CoefficientsArguments {
     pub json: bool,
 }
 
-/// A number of the table with its error, and the place of its compliance, by a negative power where it is a stiffness.
+/// A number of the table with its error. `entry` is the place of its compliance, and the power, which is negative for a stiffness.
 struct Row {
     key: &'static str,
     unit: &'static str,
@@ -42,13 +42,13 @@ struct Row {
     entry: Option<(usize, usize, f64)>,
 }
 
-/// Computes and prints.
+/// Computes and prints the coefficients.
 pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
     let text = case::text(&asked.case.case)?;
-    // standard input is read until it ends or Ctrl-C ends the program
+    // while standard input is read, Ctrl-C still ends the program
     asked.wall.flag();
     let mut written = section::parse(&text, &asked.case.case, &asked.case.sets)?;
-    // where the other stands beside it the table is that of the plane cell
+    // beside the cell in three dimensions, the table shows the plane cell
     written.section.three_d &= !asked.three_d;
     let found = written.coefficients()?;
     let energy = written.strain_energy()?;
@@ -90,14 +90,14 @@ fn rows(found: &Coefficients) -> Vec<Row> {
     }
 }
 
-/// By how much the plane cell is off, relative, and the value in three dimensions, of a number that the plane cell has.
+/// Relative error of the plane cell, and the value in three dimensions, of a number that the plane cell has.
 fn in_space(row: &Row, plane: &Numbers, spatial: &Spatial) -> Option<(f64, f64)> {
     let (i, j, sense) = row.entry?;
     let ratio = (spatial.compliance[i][j] / plane.compliance[i][j]).powf(sense);
     Some((ratio.recip() - 1.0, row.value * ratio)).filter(|_| ratio.is_finite() && ratio != 0.0)
 }
 
-/// What is known of the energy at finite strain.
+/// Text about the energy at finite strain.
 fn of_energy(energy: StrainEnergy) -> String {
     let names = [
         "stretch [1]",

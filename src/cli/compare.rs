@@ -22,13 +22,13 @@ use crate::study::compare::{Beside, Comparison, Recording};
 use crate::study::data::{Match, Table};
 use crate::study::fit::beside;
 
-/// Changes shown of each kind; the rest is counted.
+/// Largest number of changes shown of each kind; the rest is counted.
 const CHANGES: usize = 8;
 
-/// Most folders at once: beyond, columns say nothing.
+/// Largest number of folders; more columns would be unreadable.
 const MOST: usize = 40;
 
-/// Reads the folders, compares, draws when asked, prints.
+/// Reads and compares the folders, draws on request, prints.
 pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     let usage = |what: String| Err(Error::Usage(what));
     if let Some(page) = asked.out.as_deref().filter(|path| ends(path, "html") && !path.is_dir()) {
@@ -97,19 +97,19 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
     written.map(|()| ExitCode::SUCCESS)
 }
 
-/// The result of a run, or of a cycle, which is one of a period.
+/// Reads the result of a run, or of a cycle, which is a run over one period.
 fn recording(dir: &Path) -> Result<Recording> {
     Kind::wanted("compare", dir, &[Kind::Run, Kind::Cycle])?;
     Ok(reading::read(dir)?.without_gaps())
 }
 
-/// Whether two paths name one folder.
+/// True if two paths name one folder.
 fn same(a: &Path, b: &Path) -> bool {
     let whole = |path: &Path| std::fs::canonicalize(path).ok();
     a == b || whole(a).is_some_and(|a| whole(b) == Some(a))
 }
 
-/// Whether a path is that of a picture.
+/// True if a path is that of a picture.
 fn picture(path: &Path) -> bool {
     ends(path, "svg")
 }
@@ -118,7 +118,7 @@ fn ends(path: &Path, with: &str) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(with))
 }
 
-/// A column a result.
+/// Table with a column per result.
 fn several(found: &Beside) -> String {
     let letter = |k: usize| match u8::try_from(k) {
         Ok(k) if k < 26 => char::from(b'A' + k).to_string(),
@@ -177,7 +177,7 @@ fn several(found: &Beside) -> String {
     text
 }
 
-/// A run over measured data.
+/// Compares a run with measured data.
 fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
     let matches = asked
         .matches
@@ -221,7 +221,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
     written.map(|()| ExitCode::SUCCESS)
 }
 
-/// Separates faults of writing, after which the answer is still printed, from others.
+/// Separates errors of writing, after which the answer is still printed, from others.
 fn answerable(written: Result<()>) -> Result<Result<()>> {
     match written {
         Err(error) if !matches!(error, Error::Output { .. }) => Err(error),
@@ -294,13 +294,13 @@ fn number(x: f64) -> String {
     }
 }
 
-/// A change as percent, with its sign.
+/// Formats a change in percent, with its sign.
 fn signed_percent(share: f64) -> String {
     let sign = if share > 0.0 { "+" } else { "" };
     format!("{sign}{}", percent(share))
 }
 
-/// Numbers of both, a name a line.
+/// Table of the numbers of both results, with a name per line.
 fn beside<'a, const M: usize>(
     headings: &str,
     names: impl Iterator<Item = &'a String>,

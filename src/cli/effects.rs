@@ -1,4 +1,4 @@
-//! `slcbeam effects`: what each effect does to a case, and which of them it should leave out.
+//! `slcbeam effects`: influence of each effect on a case, and the effects that the case should omit.
 
 use std::process::ExitCode;
 
@@ -18,7 +18,7 @@ use crate::study::effects::choices::with;
 use crate::study::effects::{Ablation, Event, Plan, ablate};
 use crate::study::evaluations::Evaluations;
 
-/// Runs the models, writes the folder, prints the table and the recommendation, writes that into the case when asked.
+/// Runs the models, writes the folder, prints the table and the recommendation, and writes it into the case on request.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let case = size::load(&asked.case)?;
     System::new(&case)?;
@@ -43,7 +43,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let written = written.and(report::complete(&folder, &case));
     let mut written = journal::end(&evaluations, &folder, stopped, written);
     let mut said = String::new();
-    // of effects that were not tried nothing is recommended
+    // effects that were not tried have no recommendation
     if asked.write && !stopped {
         match write(&case, &found) {
             Ok(words) => said = format!("\n{words}"),
@@ -58,7 +58,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     Ok(ExitCode::from(if found.full.summary.is_none() { 4 } else { 0 }))
 }
 
-/// Writes what is recommended into the case file, which must still be read as a case with just that choice; says what was done.
+/// Writes the recommendation into the case file, whose new text must be a valid case; returns a message.
 fn write(case: &Case, found: &Ablation) -> Result<String> {
     let path = &case.source.path;
     let Some(recommended) = &found.recommendation else {
@@ -81,7 +81,7 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
     Ok(format!("written into {}", path.display()))
 }
 
-/// Shows a line on a terminal, one a model elsewhere.
+/// Shows a moving line on a terminal, and a line per model elsewhere.
 fn show(shown: &Shown, event: &Event) {
     let spent = format!("{} of {} used", duration(event.spent_s), duration(event.budget_s));
     if let Some(bar) = &shown.bar {

@@ -1,4 +1,4 @@
-//! The commands inside another program: what they print is handed back, and who asks is who stops them, not a signal.
+//! The commands inside another program: output is returned, and the calling program stops a command by a flag, not by a signal.
 
 use std::cell::RefCell;
 use std::ffi::OsString;
@@ -14,7 +14,7 @@ use crate::error::{Error, Result, SolverError};
 use crate::integrate::halt::{self, Halt};
 
 thread_local! {
-    /// The command that this thread does for another program.
+    /// The command that this thread executes for another program.
     static ASKED: RefCell<Option<Asked>> = const { RefCell::new(None) };
 }
 
@@ -23,23 +23,23 @@ struct Asked {
     answer: Answer,
 }
 
-/// What a command gave.
+/// Answer of a command.
 #[derive(Debug, Default)]
 pub struct Answer {
-    /// What it would have printed to standard output.
+    /// Text that it would have printed to standard output.
     pub printed: String,
-    /// Why it could not go on, where it has told what it had until then.
+    /// Reason why it ended early, if it has reported its results until then.
     pub fault: Option<Box<SolverError>>,
-    /// Whether raising the flag made something of it end early.
+    /// True if raising the flag ended a part of it early.
     pub interrupted: bool,
 }
 
-/// Does what the words behind the program's name ask for, such as `["modes", "case.json", "--json", "--quiet"]`, on this thread; raising
-/// `stop` is what Ctrl-C is on the command line.
+/// Executes the command of the words after the program's name, such as `["modes", "case.json", "--json", "--quiet"]`, on this thread.
+/// Raising `stop` has the effect of Ctrl-C on the command line.
 ///
 /// # Errors
 ///
-/// Those of the command; [`Error::Usage`] where there is none like it.
+/// Those of the command; [`Error::Usage`] if there is no such command.
 pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>) -> Result<Answer> {
     let all: Vec<OsString> = std::iter::once("slcbeam".into()).chain(words).collect();
     let arguments = Arguments::try_parse_from(&all).map_err(|error| {
@@ -63,17 +63,17 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
     })
 }
 
-/// The flag of who asks; nothing on the command line.
+/// Flag of the calling program; none on the command line.
 pub(super) fn stop() -> Option<Arc<AtomicBool>> {
     ASKED.with_borrow(|asked| asked.as_ref().map(|asked| Arc::clone(&asked.stop)))
 }
 
-/// Keeps what is printed; false on the command line.
+/// Stores printed text for the calling program; false on the command line.
 pub(super) fn kept(text: &str) -> bool {
     with(|answer| answer.printed.push_str(text))
 }
 
-/// Keeps what an error is that a command reports and goes on from; false on the command line.
+/// Stores an error that a command reports before it continues; false on the command line.
 pub(super) fn kept_fault(error: &Error) -> bool {
     with(|answer| {
         if let Error::Solver(fault) = error {

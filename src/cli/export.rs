@@ -76,7 +76,7 @@ pub enum Format {
     Vtk,
 }
 
-/// Reads the folder, writes each format asked for, prints where.
+/// Reads the folder, writes each requested format, prints the paths.
 pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     if let (Some(file), Some(input)) = (&asked.state_space, &asked.input) {
         return state_space(asked, file, input);
@@ -130,7 +130,7 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Most states of a model: its matrices are full.
+/// Largest number of states of a model, whose matrices are full.
 const MOST_STATES: usize = 4000;
 
 fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<ExitCode> {

@@ -1,4 +1,4 @@
-//! `slcbeam floquet`: the steady cycle's multipliers, or a map of where shaking is stable.
+//! `slcbeam floquet`: multipliers of the steady cycle, or a stability map over frequency and amplitude of shaking.
 
 use std::process::ExitCode;
 
@@ -24,10 +24,10 @@ use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::tongue::{self, Plan};
 
-/// Points of a map at most.
+/// Largest number of points of a map.
 const MOST_POINTS: usize = 100_000;
 
-/// Finds cycle and multipliers, or the map; writes the folder, prints the words.
+/// Finds cycle and multipliers, or the map; writes the folder, prints the text.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     let case = &size::load(&asked.case)?;
     scene::system(case)?;
@@ -137,7 +137,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is asked for, around the case's own frequency [Hz] and amplitude [m].
+/// Plan of the map, around the case's own frequency [Hz] and amplitude [m].
 fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
     let both = |text: &str| {
         text.split_once(',')

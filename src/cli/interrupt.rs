@@ -1,4 +1,4 @@
-//! Ctrl-C, a request to terminate, a terminal that is closed or the clock asks a command to stop soon; everything so far is written.
+//! Stop requests to a command: Ctrl-C, a request to terminate, a closed terminal, or the clock. All results so far are written.
 
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -18,26 +18,27 @@ use crate::integrate::halt::Halt;
 pub use crate::integrate::halt::raised;
 use crate::run::stop::{INTERRUPTED, Stop};
 
-/// Exit codes of shells for a program that a signal ended begin here.
+/// Offset of the exit codes of shells for a program that a signal ended.
 const SIGNAL: i32 = 128;
 
-/// Signals that follow the first within this are the same request: `timeout` signals a program and then the group that it is in, schedulers each of its processes.
+/// Signals within this time after the first belong to the same request: `timeout` signals a program and then its group, schedulers signal
+/// each of its processes.
 const ONE_REQUEST: Duration = Duration::from_millis(300);
 
-/// CPU time of the program after a first signal within which the command has to look at it: computations do so far more often, and files
-/// that are not whole do not have their names yet.
+/// CPU time of the program after a first signal within which the command must check for it. Computations check far more often, and
+/// incomplete files do not have their names yet.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What the clock says.
+/// Message of the clock.
 const LATE_WORDS: &str = "the wall time allowed (--max-wall) is used up";
 
-/// Exit code where the clock ends a command before it has anything: that of a computation without the result that was asked for.
+/// Exit code if the clock ends a command before it has a result: that of a computation without the requested result.
 const NOTHING: u8 = 4;
 
-/// How often the program is looked at after a first signal.
+/// Interval between two checks of a waiting thread.
 const OFTEN: Duration = Duration::from_millis(20);
 
-/// What the first signal leaves.
+/// State that the first signal sets.
 #[derive(Default)]
 struct Asked {
     raised: Arc<AtomicBool>,
@@ -47,7 +48,7 @@ struct Asked {
 
 static ASKED: OnceLock<Asked> = OnceLock::new();
 
-/// True if the wall time allowed is used up.
+/// True if the allowed wall time is used up.
 static LATE: AtomicBool = AtomicBool::new(false);
 
 /// The wall time that a command is allowed.
@@ -59,7 +60,8 @@ pub struct WallArguments {
 }
 
 impl WallArguments {
-    /// The flag of [`flag`], which the clock raises too. On the command line the program ends within [`PATIENCE`] where nobody looks at it.
+    /// The flag of [`flag`], which the clock also raises. On the command line the program ends if no code checks the flag within
+    /// [`PATIENCE`].
     pub fn flag(&self) -> Arc<AtomicBool> {
         let flag = flag();
         if let Some(seconds) = self.max_wall {
@@ -68,14 +70,14 @@ impl WallArguments {
             let wait = move || wait_until(deadline, &theirs, program);
             match seconds > 0.0 {
                 true => drop(thread::Builder::new().spawn(wait)),
-                // the thread would begin too late
+                // a thread would begin too late
                 false => raise_late(&flag, program),
             }
         }
         flag
     }
 
-    /// The same for work that listens on its way.
+    /// The flag as a stop request, for computations that check it as they proceed.
     pub fn stop(&self) -> Stop {
         Stop::by(self.flag())
     }
@@ -101,13 +103,13 @@ fn raise_late(flag: &AtomicBool, program: bool) {
     flag.store(true, Ordering::Relaxed);
 }
 
-/// Signals that ask the program to stop. `nohup` starts it with a closed terminal ignored, and it stays ignored.
+/// Signals that ask the program to stop. `nohup` starts the program with SIGHUP ignored, and it stays ignored.
 fn requests() -> Vec<i32> {
     let hangup = (!ignores(SIGHUP)).then_some(SIGHUP);
     [SIGINT, SIGTERM].into_iter().chain(hangup).collect()
 }
 
-/// True if the program ignores a signal. Where the system does not report it as Linux does, the signal counts as ignored.
+/// True if the program ignores a signal. If the system does not report it as Linux does, the signal counts as ignored.
 fn ignores(signal: i32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -115,8 +117,8 @@ fn ignores(signal: i32) -> bool {
     mask.is_none_or(|mask| mask & (1 << (signal - 1)) != 0)
 }
 
-/// A flag that the first interrupt (or request to terminate, or hangup) raises. A second one ends the program at once, and so does the first where the
-/// command does not look at it within [`PATIENCE`].
+/// A flag that the first interrupt, request to terminate, or hangup raises. A second one ends the program at once. So does the first if the
+/// command does not check the flag within [`PATIENCE`].
 pub fn flag() -> Arc<AtomicBool> {
     if let Some(theirs) = embedded::stop() {
         return theirs;
@@ -128,7 +130,7 @@ pub fn flag() -> Arc<AtomicBool> {
             raised,
             ..Asked::default()
         };
-        // When a handler cannot be installed, the signal ends the program as it would without one.
+        // If a handler cannot be installed, the signal ends the program as it would without one.
         let requests = requests();
         for &signal in &requests {
             let _ = raise::register_usize(signal, Arc::clone(&asked.signal), signal as usize);
@@ -153,7 +155,7 @@ fn end_in_time(mut signals: Signals, halt: &Halt) {
     end_unless_answered(halt, again, ("interrupted", SIGNAL + first));
 }
 
-/// Ends the program with a code where nobody answers a request within [`PATIENCE`], or where it comes `again`.
+/// Ends the program with a code if no code answers a request within [`PATIENCE`], or if the request is repeated (`again`).
 fn end_unless_answered(halt: &Halt, mut again: impl FnMut() -> Option<i32>, (why, code): (&str, i32)) {
     let mut spent = cpu_time();
     loop {
@@ -176,7 +178,7 @@ fn cpu_time() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 
-/// What there is to say in place of how the search for a cycle failed, where that was because somebody asked for the end.
+/// Replaces the error of a search for a cycle by that of an interruption, if a stop was requested.
 pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
     match found {
         Err(_) if stop.raised() => Err(Error::Interrupted(format!(
@@ -186,7 +188,7 @@ pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
     }
 }
 
-/// The exit code of a command that was asked to stop, as shells have it: 130 after Ctrl-C, 143 after a request to terminate, 129 after a hangup.
+/// Exit code of a command that was asked to stop, as in shells: 130 after Ctrl-C, 143 after a request to terminate, 129 after a hangup.
 fn code() -> Option<ExitCode> {
     let signal = ASKED.get()?.signal.load(Ordering::Relaxed);
     (signal > 0).then(|| ExitCode::from((SIGNAL as usize + signal) as u8))
@@ -197,7 +199,7 @@ pub fn late() -> bool {
     LATE.load(Ordering::Relaxed) && ASKED.get().is_some_and(|asked| asked.halt.was_seen())
 }
 
-/// The exit code of a command that ended with one, or with an error, in view of what has stopped it, which is told.
+/// Final exit code of a command, from its own code or error and from the request that has stopped it. Prints a message if the clock has.
 pub fn ended(with: std::result::Result<ExitCode, &Error>) -> ExitCode {
     if late() {
         terminal::tell(&format!("slcbeam: {LATE_WORDS}"));
@@ -209,7 +211,8 @@ pub fn ended(with: std::result::Result<ExitCode, &Error>) -> ExitCode {
     })
 }
 
-/// A limit on the size of files is told as a fault of writing, by the name of the file, and does not end the program.
+/// Catches the signal of a file size limit. The limit is then reported as an error of writing, with the name of the file, and does not end
+/// the program.
 pub fn outlive_limits() {
     let told = Arc::new(AtomicBool::new(false));
     let _ = raise::register(signal_hook::consts::SIGXFSZ, told);

@@ -1,4 +1,4 @@
-//! The journal of a search: what it is begun with, what is told of it, and when it goes.
+//! Journal of a search: its beginning, its messages, and its removal.
 
 use super::{embedded, terminal};
 use crate::case::Case;
@@ -7,10 +7,10 @@ use crate::output::ResultFolder;
 use crate::output::evaluations as files;
 use crate::study::evaluations::Evaluations;
 
-/// Begins the journal of a command, a case and its settings in words in a folder.
+/// Begins the journal of a command in a folder, for a case and its settings as text.
 ///
 /// # Errors
-/// It cannot be read.
+/// The journal cannot be read.
 pub fn begin(evaluations: &Evaluations, folder: &ResultFolder, of: (&str, &Case, &str)) -> Result<()> {
     if let Some(damage) = files::begin(evaluations, folder, of)? {
         terminal::tell(&format!("slcbeam: {damage}. They are computed again."));
@@ -18,7 +18,7 @@ pub fn begin(evaluations: &Evaluations, folder: &ResultFolder, of: (&str, &Case,
     Ok(())
 }
 
-/// What a search found. The journal of one that failed goes, that of one that was stopped stays.
+/// Returns the outcome of a search. Removes the journal of a failed search, and keeps that of a stopped one.
 ///
 /// # Errors
 /// Those of the search.
@@ -29,7 +29,7 @@ pub fn outcome<T>(found: Result<T>, folder: &ResultFolder, stopped: bool) -> Res
     found
 }
 
-/// Says how many evaluations were read. The journal of a search that was stopped stays, as does that of a result that could not be
+/// Reports the number of evaluations read, and removes the journal. Keeps the journal if the search was stopped or its result could not be
 /// written.
 pub fn end(evaluations: &Evaluations, folder: &ResultFolder, stopped: bool, written: Result<()>) -> Result<()> {
     let (counts, path) = (evaluations.counts(), files::path(folder));
@@ -45,7 +45,7 @@ pub fn end(evaluations: &Evaluations, folder: &ResultFolder, stopped: bool, writ
         terminal::tell(&format!("slcbeam: {fault}. Evaluations after it are not kept."));
     }
     match (stopped, &written) {
-        // inside another program the answer says so
+        // inside another program, the answer reports it
         (true, _) if all == 0 || embedded::stop().is_some() => {}
         (true, _) => terminal::tell(&format!(
             "slcbeam: stopped; the same command goes on after {all} evaluations, which {} holds",

@@ -1,4 +1,4 @@
-//! A line on a terminal that says how far something is; numbers of the command line.
+//! A progress line on a terminal; numbers of the command line.
 
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -10,15 +10,15 @@ use crate::case::amounts::{self, Here};
 use crate::error::{Error, Result};
 use crate::study::refine;
 
-/// A line that moves.
+/// Template of a moving line.
 pub const PLAIN: &str = "{spinner} {wide_msg}";
 
-/// The line; nothing is shown where it was asked to be quiet, or where there is no terminal.
+/// The progress line; hidden if `quiet` is set or there is no terminal.
 pub fn line(quiet: bool) -> ProgressBar {
     if quiet { ProgressBar::hidden() } else { styled(PLAIN) }
 }
 
-/// A bar that looks like a template, on a terminal; it is gone when nobody holds it any more.
+/// A progress bar with this template, on a terminal; it is cleared when its last owner drops it.
 pub fn styled(template: &str) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_finish(ProgressFinish::AndClear);
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -27,16 +27,16 @@ pub fn styled(template: &str) -> ProgressBar {
     bar
 }
 
-/// How far something long is: a bar on a terminal, lines elsewhere, nothing where it was asked to be quiet.
+/// Progress of a long computation: a bar on a terminal, lines elsewhere, nothing if quiet.
 pub struct Shown {
     /// The bar.
     pub bar: Option<ProgressBar>,
-    /// Whether to tell lines.
+    /// True if lines are printed.
     pub lines: bool,
 }
 
 impl Shown {
-    /// With a bar that looks like a template.
+    /// Creates a display whose bar has this template.
     pub fn new(quiet: bool, template: &str) -> Self {
         let terminal = std::io::stderr().is_terminal();
         Self {
@@ -54,7 +54,7 @@ impl Drop for Shown {
     }
 }
 
-/// The name of a file or folder to write, which messages, pages and scripts show as it is.
+/// Parser of the name of a file or folder to write, which messages, pages and scripts show as it is.
 pub fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.to_string_lossy().contains(char::is_control) {
         true => Err("a name of output holds no control characters, such as ends of lines and tabs"),
@@ -62,7 +62,7 @@ pub fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     })
 }
 
-/// A time span [s] that a clock can wait for; its unit may stand behind it.
+/// Time span [s], limited to one that a clock can wait for, optionally with a unit.
 pub fn duration(text: &str) -> std::result::Result<f64, String> {
     let seconds = instant(text)?;
     if seconds >= 0.0 {
@@ -72,7 +72,7 @@ pub fn duration(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-/// A number where a key of a case would have its unit, with or without a unit behind it.
+/// A number in the unit of a key of a case, optionally with a unit.
 fn number(key: &str, text: &str, wanted: &str) -> std::result::Result<f64, String> {
     let plain = match amounts::at(key, text) {
         Some(Here::Number(number, _)) => number,
@@ -83,22 +83,22 @@ fn number(key: &str, text: &str, wanted: &str) -> std::result::Result<f64, Strin
     number.ok_or_else(|| wanted.to_owned())
 }
 
-/// An instant [s]; a unit may stand behind it.
+/// An instant [s], optionally with a unit.
 pub fn instant(text: &str) -> std::result::Result<f64, String> {
     number("/time/end_s", text, "a number of seconds is wanted")
 }
 
-/// A frequency [Hz]; a unit may stand behind it.
+/// A frequency [Hz], optionally with a unit.
 pub fn frequency(text: &str) -> std::result::Result<f64, String> {
     number("/frequency_hz", text, "a number of Hz is wanted")
 }
 
-/// A share, as a number or in per cent.
+/// A fraction, as a number or in percent.
 pub fn ratio(text: &str) -> std::result::Result<f64, String> {
     number("/solver/rtol", text, "a number such as 0.01, or 1%, is wanted")
 }
 
-/// How many.
+/// A whole number, 0 or more.
 pub fn count(text: &str) -> std::result::Result<usize, String> {
     let read = |_| match text.trim().parse::<f64>() {
         Ok(number) if number.fract() == 0.0 && (0.0..1e15).contains(&number) => {
@@ -121,7 +121,7 @@ pub fn either_way(text: &str) -> Option<(f64, f64)> {
     (from.is_finite() && to.is_finite() && from != to).then_some((from, to))
 }
 
-/// `count` numbers from `from` to `to`, evenly spread, or by their logarithms.
+/// `count` numbers from `from` to `to`, evenly spaced, linearly or logarithmically.
 pub fn spread(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
     let last = (count - 1).max(1) as f64;
     (0..count)
@@ -137,7 +137,7 @@ pub fn spread(from: f64, to: f64, count: usize, logarithmic: bool) -> Vec<f64> {
         .collect()
 }
 
-/// An accuracy that makes sense.
+/// Checks a requested accuracy.
 pub fn accuracy(asked: f64) -> Result<f64> {
     if refine::sensible(asked) {
         return Ok(asked);

@@ -53,7 +53,7 @@ pub struct MeasureArguments {
     pub json: bool,
 }
 
-/// Fits and prints.
+/// Fits and prints the coefficients.
 pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
     let experiment = Experiment::ALL.into_iter().find(|e| e.name() == asked.experiment);
     let experiment = experiment.ok_or_else(|| Error::Usage(format!("no experiment {}", asked.experiment)))?;
@@ -79,7 +79,7 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The coefficients as a case has them.
+/// The coefficients in the form of a case.
 fn keys(found: &Measured) -> Value {
     let mut all = json!({});
     for one in found
@@ -117,7 +117,7 @@ fn in_json(found: &Measured) -> Value {
     })
 }
 
-/// One unit over another.
+/// Quotient of two units.
 fn per(unit: &str, under: &str) -> String {
     let whole = |unit: &str| {
         if unit.contains([' ', '/']) {

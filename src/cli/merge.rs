@@ -1,4 +1,4 @@
-//! `slcbeam merge`: shards of a sweep joined to one table.
+//! `slcbeam merge`: shards of a sweep joined into one table.
 
 use std::fs;
 use std::path::Path;
@@ -15,10 +15,10 @@ use crate::output::sweep::{self as files, parts, words};
 use crate::results;
 use crate::results::sweep::Plan;
 
-/// Exit code where designs are missing.
+/// Exit code if designs are missing.
 const INCOMPLETE: u8 = 5;
 
-/// Joins shards, writes the table of what is there, names what is not.
+/// Joins shards, writes the table of the designs found, and names the missing ones.
 pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     let all = parts::read(&asked.parts)?;
     let Some(first) = all.first() else {
@@ -80,7 +80,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     Ok(ExitCode::from(if lost.is_empty() { 0 } else { INCOMPLETE }))
 }
 
-/// Whether two paths lead to one folder.
+/// True if two paths lead to one folder.
 fn same(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
@@ -89,7 +89,7 @@ fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &Plan) -> Resu
     let case = asked.parts.iter().map(|dir| dir.join(CASE)).find(|path| path.exists());
     let written = match case {
         None => Written::default(),
-        // one of another version of the program may no longer be a case
+        // a case of another version of the program may no longer be valid
         Some(path) => match case::load(&path, &[]) {
             Ok(case) => case.written(),
             Err(_) => Written {

@@ -1,4 +1,4 @@
-//! The command line: one file a subcommand, the only room that prints.
+//! The command line: one file per subcommand, and the only module that prints.
 
 mod arguments;
 mod check;
@@ -51,17 +51,17 @@ use crate::error::{Error, Result, visible};
 use crate::output::machine;
 use arguments::{Arguments, Command};
 
-/// True if standard output has an answer.
+/// True once standard output has an answer.
 static ANSWERED: AtomicBool = AtomicBool::new(false);
 
-/// Reads the arguments, does what they ask, reports what went wrong, and gives the exit code.
+/// Reads the arguments, executes the command, reports errors, and returns the exit code.
 pub fn main() -> ExitCode {
     #[cfg(target_os = "linux")]
     begin_with_one_heap();
     main_of(std::env::args_os())
 }
 
-/// Executes the program anew with one heap where its address space is limited: the allocator reserves 64 MB of it for the heap of each thread.
+/// Restarts the program with one heap if its address space is limited: the allocator reserves 64 MB of it for the heap of each thread.
 #[cfg(target_os = "linux")]
 fn begin_with_one_heap() {
     use std::os::unix::process::CommandExt as _;
@@ -75,7 +75,7 @@ fn begin_with_one_heap() {
     {
         let mut words = std::env::args_os();
         let name = words.next().unwrap_or_default();
-        // it returns only where it fails: then the program goes on as it is
+        // returns only on failure; the program then continues as it is
         let _ = std::process::Command::new(program)
             .arg0(name)
             .args(words)
@@ -84,7 +84,7 @@ fn begin_with_one_heap() {
     }
 }
 
-/// [`main`] of words, the first of them the program's name.
+/// [`main`] with given words, the first of them the program's name.
 pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let began = Instant::now();
     if let Err(error) = room() {
@@ -120,7 +120,7 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(code) => interrupt::ended(Ok(code)),
         Err(error) => {
             terminal::report(&error);
-            // after an answer another document would make the output unreadable
+            // a second document after an answer would make the output unreadable
             if arguments.command.json() && !ANSWERED.load(Ordering::Relaxed) {
                 let _ = print(&format!("{:#}\n", terminal::json(&error)));
             }
@@ -129,10 +129,10 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// Memory without which not even a message can be made of a case [byte].
+/// Least memory with which a case can be rejected by a message [byte].
 const LEAST: f64 = 32e6;
 
-/// Refuses to begin where the process may have hardly any memory: an allocation that fails later ends it without a message.
+/// Rejects a start with hardly any memory: an allocation that fails later ends the process without a message.
 fn room() -> Result<()> {
     match machine::address_space() {
         Some(left) if left < LEAST => Err(Error::Output {
@@ -181,12 +181,12 @@ fn act(command: &Command, began: Instant) -> Result<ExitCode> {
     }
 }
 
-/// Writes to standard output, with what a terminal would obey written out; a closed pipe ends the output, not the program.
+/// Writes to standard output, with terminal control sequences made visible; a closed pipe ends the output, not the program.
 fn print(text: &str) -> Result<()> {
     print_painted(&visible(text))
 }
 
-/// Prints a result as JSON, or in words and where its files are. A result whose files could not be `written` is printed all the same.
+/// Prints a result as JSON, or as text with the folder of its files. Prints it even if its files could not be `written`.
 ///
 /// # Errors
 /// The fault of writing, or that of printing.
@@ -205,7 +205,7 @@ fn tell(
     written.and(printed)
 }
 
-/// [`print`] for text with the program's own colours, in which all that is not the program's is visible already.
+/// [`print`] for text with the program's own colors, in which foreign control sequences are already visible.
 fn print_painted(text: &str) -> Result<()> {
     use std::io::Write as _;
     if embedded::kept(text) {

@@ -20,7 +20,7 @@ use crate::run::modes::{self, Plan, Sort, sort};
 use crate::study::analysis::AnalysisKind;
 use crate::study::refine;
 
-/// Finds the modes, writes the folder, prints the table and what follows from it.
+/// Finds the modes, writes the folder, prints the table and the conclusions.
 pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if asked.map.map.is_some() {
         if !asked.uncertain.uncertain.is_empty() {
@@ -111,7 +111,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Modes that can be asked for: beyond, a spectrum is no answer to anything, and shapes fill the memory.
+/// Largest number of modes: a longer spectrum answers no question, and its shapes fill the memory.
 const MOST: usize = 1000;
 
 fn plan(asked: &ModesArguments) -> Result<Plan> {

@@ -10,7 +10,7 @@ use crate::case::{rewrite, schema_json};
 use crate::error::{Error, Result};
 use crate::output::folder::replace;
 
-/// Name of the schema that is put beside a case.
+/// Name of the schema file beside a case.
 const SCHEMA: &str = "slcbeam.schema.json";
 
 /// `new`.
@@ -86,7 +86,8 @@ impl Kind {
     }
 }
 
-/// Writes the case, named as its file, and the schema beside it, or a section alone; nothing is written over without `--force`.
+/// Writes the case, named after its file, and the schema beside it, or a section alone. Overwrites an existing case file only with
+/// `--force`.
 pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     let named = asked
         .kind
@@ -97,7 +98,7 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .clone()
         .unwrap_or_else(|| PathBuf::from(format!("{named}.json")));
     let stem = path.file_stem().and_then(|s| s.to_str()).unwrap_or(&named);
-    // the name of a case is that of a folder
+    // the name of a case is also that of a folder
     let name: String = stem
         .chars()
         .map(|c| {

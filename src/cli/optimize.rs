@@ -1,4 +1,4 @@
-//! `slcbeam optimize`: the numbers of a case with which a figure is largest or least.
+//! `slcbeam optimize`: the numbers of a case that maximize or minimize a figure.
 
 use std::process::ExitCode;
 
@@ -19,7 +19,7 @@ use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
 use crate::study::optimize::wiring::{Alternative, choices, combinations, crossings};
 use crate::study::span::Span;
 
-/// Exit code where no design holds the limits: that of a computation without the result that was asked for.
+/// Exit code if no design satisfies the limits: that of a computation without the requested result.
 const NOTHING_HOLDS: u8 = 4;
 
 /// Searches, writes the folder, prints.
@@ -73,7 +73,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     })
 }
 
-/// All that is to be chosen from; the case itself where there is nothing.
+/// All alternatives to choose from; the case itself if there are none.
 fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Vec<Alternative>> {
     let lists = asked.choose.iter().map(|text| choices(text));
     let wirings = asked.crossovers.map(|most| crossings(case, most));
@@ -90,7 +90,7 @@ fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Resul
     Ok(all)
 }
 
-/// What is sought in the case with an alternative.
+/// Search problem of the case with an alternative.
 fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: &Alternative) -> Result<Problem> {
     if alternative.sets.is_empty() {
         return Problem::new(case, wanted);
@@ -103,7 +103,7 @@ fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: 
     Problem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
 }
 
-/// What is chosen and what is sought are different parts of the case.
+/// Checks that chosen and varied values are in different parts of the case.
 fn apart(one: &Alternative, wanted: &Asked) -> Result<()> {
     let chosen: Vec<&str> = one
         .sets

@@ -9,14 +9,15 @@ use crate::error::{Error, Result};
 use crate::output::columns::table as table_of;
 use crate::output::numbers::significant;
 
-/// What the paper leaves open: Poisson's ratio, fillets of the square of 7.8 mm [m], height of its centre [m]; its walls allow 3.9 to 6.9 mm.
+/// Values that the paper leaves open: Poisson's ratio, fillets of the square of 7.8 mm [m], height of its center [m]; its walls allow 3.9
+/// to 6.9 mm.
 const RATIOS: [f64; 3] = [0.45, 0.47, 0.49];
 const FILLETS_M: [f64; 4] = [0.0, 0.001, 0.0025, 0.0039];
 const CENTERS_M: [f64; 3] = [0.0044, 0.0049, 0.0054];
 
 const HEADINGS: &str = "nu | fillet [mm] | centre [mm] | f_e | f_i | a_p [m^2/Pa] | a_M [m^2/(N m)] | a_N [m^2/N] | psi' [rad] | zeta' [m] | q1 [m^4] | misfit";
 
-/// Computes and prints.
+/// Computes and prints the coefficients.
 pub fn paper(in_json: bool) -> Result<ExitCode> {
     let table = paper_table(&RATIOS, &FILLETS_M, &CENTERS_M).map_err(|error| Error::Usage(error.to_string()))?;
     super::print(&match in_json {

@@ -29,12 +29,12 @@ use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
 use crate::study::stability::along;
 
-/// Multipliers told.
+/// Number of reported multipliers.
 const COUNT: usize = 6;
-/// Values of a sweep at most.
+/// Largest number of values of a sweep.
 const MOST_VALUES: usize = 10_000;
 
-/// Finds the cycle or the cycles, writes the folder, prints the words.
+/// Finds the cycle or the cycles, writes the folder, prints the text.
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     match &asked.sweep {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
@@ -193,7 +193,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }
 
-/// Pointer, values, and whether they are spread by their logarithms.
+/// Pointer and values of a sweep, and true if they are spaced logarithmically.
 fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     let wrong = || {
         Error::Usage(format!(

@@ -1,4 +1,4 @@
-//! Where a command's result goes.
+//! Result folder of a command.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -23,7 +23,7 @@ pub struct PlaceArguments {
 }
 
 impl PlaceArguments {
-    /// The folder, as asked or the usual one.
+    /// The requested folder, or the default one.
     pub fn folder(&self, name: &str, kind: Kind) -> PathBuf {
         let usual = || {
             PathBuf::from("out").join(match kind {
@@ -36,11 +36,11 @@ impl PlaceArguments {
         self.out.clone().unwrap_or_else(usual)
     }
 
-    /// Takes it, before anything is computed.
+    /// Claims the folder, before anything is computed.
     ///
     /// # Errors
     ///
-    /// [`ResultFolder::claim`]; or the case itself would be written over.
+    /// Those of [`ResultFolder::claim`]; or the case itself would be overwritten.
     pub fn claim(&self, case: &Case, kind: Kind) -> Result<ResultFolder> {
         let dir = self.folder(&case.name, kind);
         if overwritten(&dir, case, kind) {
@@ -50,7 +50,8 @@ impl PlaceArguments {
                 case.source.path.display()
             )));
         }
-        // who names a folder knows what is in it; the usual one goes by the name in the case, which copies of a file share
+        // the user knows the content of a folder that the user names; the default one has the name in the case, which copies of a file
+        // share
         if let Some(other) = other_origin(&dir, case).filter(|_| !self.force && Kind::within(&dir) == Some(kind)) {
             if self.out.is_none() {
                 let why = format!(
@@ -66,8 +67,8 @@ impl PlaceArguments {
     }
 }
 
-/// Whether a command would write over its case, or take it away with what an older result left. A result's own case, as resolved, is
-/// written as it is.
+/// True if a command would overwrite its case, or remove it with the files of an older result. A result's own case, as resolved, is written
+/// unchanged.
 fn overwritten(dir: &Path, case: &Case, kind: Kind) -> bool {
     let (Ok(dir), Ok(path)) = (fs::canonicalize(dir), fs::canonicalize(&case.source.path)) else {
         return false;

@@ -1,4 +1,4 @@
-//! Progress of a run on stderr: a bar on a terminal, a line now and then elsewhere.
+//! Progress of a run on stderr: a bar on a terminal, occasional lines elsewhere.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -9,21 +9,21 @@ use super::terminal;
 use crate::output::numbers::{counted, duration, percent, quantity, significant};
 use crate::run::record::Progress;
 
-/// Between two looks of the bar.
+/// Interval between two updates of the bar.
 const BAR_EVERY: Duration = Duration::from_millis(100);
-/// Between two lines where there is no terminal.
+/// Interval between two lines without a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(30);
-/// Steps between two looks at the clock, at most: a look costs more than all else here.
+/// Largest number of steps between two readings of the clock, which cost more than all else here.
 const MOST_STEPS: u32 = 64;
-/// Positions of the bar.
+/// Number of positions of the bar.
 const FULL: u64 = 1000;
 
-/// Shows how far a run has come. Cleared away when dropped.
+/// Shows the progress of a run. Cleared when dropped.
 #[derive(Debug)]
 pub struct Watcher {
     place: Place,
     every: Duration,
-    /// Steps until the next look at the clock.
+    /// Steps until the next reading of the clock.
     wait: u32,
     steps_a_look: u32,
     looked: Instant,
@@ -40,7 +40,7 @@ enum Place {
 }
 
 impl Watcher {
-    /// Silent when `quiet`; otherwise on stderr.
+    /// Creates a display on stderr, or a silent one if `quiet` is set.
     pub fn new(quiet: bool) -> Self {
         let place = match (quiet, std::io::stderr().is_terminal()) {
             (true, _) => Place::Nowhere,
@@ -65,7 +65,7 @@ impl Watcher {
         }
     }
 
-    /// After every step. Costs a comparison unless the clock is due.
+    /// Updates the display after a step. Costs a comparison unless the clock is due.
     #[inline]
     pub fn step(&mut self, progress: &Progress) {
         self.wait -= 1;
@@ -81,7 +81,7 @@ impl Watcher {
             return;
         }
         let now = Instant::now();
-        // Slow steps deserve a look each, fast ones not.
+        // The clock is read after each slow step, but less often after fast ones.
         let fast = now - self.looked < BAR_EVERY / 20;
         self.steps_a_look = if fast {
             (2 * self.steps_a_look).min(MOST_STEPS)
@@ -135,7 +135,7 @@ fn bar() -> ProgressBar {
     bar
 }
 
-/// `0.210 / 0.500 s · 12 345 steps of 12.3 µs, order 4 · 1 min 20 s left`
+/// `0.210 / 1.00 s · 12 345 steps, now 12 µs, order 4 · 1 min 20 s left`
 fn line(progress: &Progress, left: Option<f64>) -> String {
     let left = left.map_or(String::new(), |s| format!(" · {} left", duration(s)));
     format!(
@@ -148,7 +148,7 @@ fn line(progress: &Progress, left: Option<f64>) -> String {
     )
 }
 
-/// Simulated time a wall second, over the recent past.
+/// Simulated time per second of wall time, over the recent past.
 #[derive(Clone, Copy, Debug, Default)]
 struct TimeLeft {
     wall: f64,
@@ -157,14 +157,13 @@ struct TimeLeft {
 }
 
 impl TimeLeft {
-    /// At a wall time since the start [s], simulated time stands at `t` [s].
+    /// Updates the rate: at the wall time `wall` [s] since the start, the simulated time is `t` [s].
     fn update(&mut self, wall: f64, t: f64) {
         let (passed, gained) = (wall - self.wall, t - self.t);
         if passed <= 0.0 {
             return;
         }
-        // A memory of a third of the time run so far forgets slow starts, and no more than half a minute follows
-        // changes of stiffness.
+        // A memory of a third of the elapsed time forgets slow starts, and a memory of at most half a minute follows changes of stiffness.
         let memory = (wall / 3.0).clamp(0.5, 30.0);
         let weight = 1.0 - (-passed / memory).exp();
         let now = gained / passed;
@@ -172,7 +171,7 @@ impl TimeLeft {
         (self.wall, self.t) = (wall, t);
     }
 
-    /// Wall time left [s], once it can be told.
+    /// Wall time left [s], once it can be estimated.
     fn left(&self, progress: &Progress) -> Option<f64> {
         let rate = self.rate.filter(|r| *r > 0.0)?;
         Some((progress.end - progress.t).max(0.0) / rate)
@@ -226,7 +225,7 @@ mod tests {
             watcher.step(std::hint::black_box(&progress(f64::from(k))));
         }
         let nanoseconds = start.elapsed().as_nanos() as f64 / f64::from(STEPS);
-        // 50 ns promised; ten times that leaves room for builds without optimisation and for busy machines.
+        // The goal is 50 ns; ten times that allows for builds without optimization and for busy machines.
         assert!(nanoseconds < 500.0, "{nanoseconds} ns a step");
     }
 }

@@ -23,7 +23,7 @@ pub struct ReportArguments {
     pub json: bool,
 }
 
-/// Writes the page and says where it is.
+/// Writes the page and prints its path.
 pub fn report(asked: &ReportArguments) -> Result<ExitCode> {
     let page = report::write(&asked.dir, asked.out.as_deref())?;
     let path = page.path.display().to_string();

@@ -47,16 +47,16 @@ pub struct ResponseArguments {
     pub json: bool,
 }
 
-/// Median error of a response that is warned of.
+/// Median error of a response above which a warning is issued.
 const LARGE: f64 = 0.05;
-/// Frequencies at most.
+/// Largest number of frequencies.
 const MOST: usize = 100_000;
 
 /// Computes the response, writes the folder, prints the peaks.
 pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let request = request(asked)?;
     let case = size::load(&asked.case)?;
-    // an input or output that does not exist is reported before there is a folder
+    // an input or output that does not exist is reported before a folder is created
     let linear = request.of(&case)?;
     let mut folder = asked.result.place.claim(&case, Kind::Response)?;
     asked.result.wall.flag();
@@ -147,7 +147,7 @@ fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
     Ok(answer)
 }
 
-/// Warnings of a state about which motions are not small for long.
+/// Warnings of a state about which motions do not stay small.
 pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
     let mut warnings = vec![];
     if growing > 0 {

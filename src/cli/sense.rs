@@ -1,4 +1,4 @@
-//! `slcbeam sense`: loads from measured pressures, with bands; what pressures tell; which to measure.
+//! `slcbeam sense`: loads from measured pressures, with bands; observability of loads; choice of the pressures to measure.
 
 use std::process::ExitCode;
 
@@ -17,7 +17,7 @@ use crate::study::sense::pressures::Measured;
 use crate::study::sense::rest::probed;
 use crate::study::sweep::plan::quoted;
 
-/// Reads the measurements, looks for the loads, writes the folder, prints the table.
+/// Reads the measurements, estimates the loads, writes the folder, prints the table.
 pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let case = &size::load(&asked.case)?;
     let question = question(asked, case.time.end_s)?;
@@ -55,7 +55,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What does the same within the folder of the result.
+/// Command that repeats the search inside the folder of the result.
 fn again(asked: &SenseArguments) -> String {
     let data = asked.pressures.as_ref().map(|path| {
         let whole = std::fs::canonicalize(path).unwrap_or_else(|_| path.clone());
@@ -101,7 +101,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
             }
         },
     };
-    // without measurements there is nothing else to tell
+    // without measurements, the pressures to measure are chosen
     let by = asked
         .choose
         .as_deref()

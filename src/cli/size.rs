@@ -1,4 +1,4 @@
-//! Whether the machine can hold what a case asks for.
+//! Checks that the machine can hold a case and its results.
 
 use std::io::IsTerminal as _;
 use std::path::Path;
@@ -14,23 +14,23 @@ use crate::output::numbers::{duration, significant};
 use crate::run::needs::Needs;
 use crate::run::observe::Observer;
 
-/// Set-up beyond which a run says what is ahead [s].
+/// Set-up time beyond which a run prints a notice [s].
 const LONG_S: f64 = 10.0;
 
-/// Reads and checks a case of a size that the machine can hold; nothing of that size is made yet.
+/// Reads and checks a case whose size the machine can hold; allocates nothing of that size yet.
 ///
 /// # Errors
-/// As [`case::load`]; E006 with the numbers where the memory is not there.
+/// As [`case::load`]; E006 with the numbers if the memory is insufficient.
 pub fn load(asked: &CaseArguments) -> Result<Case> {
     load_with(&asked.case, &asked.sets, 0)
 }
 
-/// The same with derivatives by so many numbers.
+/// Reads and checks a case as `load`, for derivatives by `parameters` numbers.
 pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case> {
     load_varied(path, [sets, &[]], parameters)
 }
 
-/// The same with arguments that are varied after those of the case, as [`case::parse_varied`] reads them.
+/// Reads and checks a case as `load_with`, with arguments that are varied after those of the case, as [`case::parse_varied`] reads them.
 pub fn load_varied(path: &Path, [sets, varied]: [&[String]; 2], parameters: usize) -> Result<Case> {
     if path == Path::new("-") && std::io::stdin().is_terminal() {
         terminal::tell("slcbeam: reading a case from standard input; Ctrl-D ends it");
@@ -41,7 +41,7 @@ pub fn load_varied(path: &Path, [sets, varied]: [&[String]; 2], parameters: usiz
     Ok(case)
 }
 
-/// Refuses a case, so many of which at once the memory does not hold.
+/// Rejects a case if `at_once` copies exceed the available memory.
 ///
 /// # Errors
 /// E006 with the numbers.
@@ -65,7 +65,7 @@ pub fn fits(case: &Case, parameters: usize, at_once: usize) -> Result<()> {
     Ok(())
 }
 
-/// True if the memory holds a case and its companion, which has up to twice the cells. Prints why not.
+/// True if the memory holds a case and its companion, which has up to twice the cells. Prints the reason if it does not.
 pub fn holds_companion(case: &Case, parameters: usize) -> bool {
     let needed = Needs::of(case, parameters).memory + 2.0 * Needs::of(case, 0).memory;
     let held = machine::memory().is_none_or(|there| needed <= there);
@@ -78,12 +78,12 @@ pub fn holds_companion(case: &Case, parameters: usize) -> bool {
     held
 }
 
-/// What a run's files will take.
+/// Disk space for the files of a run.
 pub fn disk(case: &Case, system: &System, parameters: usize) -> Disk {
     Disk::of(case, &Observer::header(case, system), system.layout.len, parameters)
 }
 
-/// Refuses a run whose files do not fit where they go, and says what is ahead where it takes long to begin.
+/// Rejects a run whose files exceed the free disk space, and prints a notice if the set-up takes long.
 ///
 /// # Errors
 /// E006 with the numbers.
@@ -112,7 +112,7 @@ pub fn run_fits(case: &Case, system: &System, parameters: usize, out: &Path) -> 
     Ok(())
 }
 
-/// As people read it.
+/// Formats a number of bytes.
 pub fn bytes(count: f64) -> String {
     let (scale, unit) = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB")]
         .into_iter()

@@ -1,4 +1,4 @@
-//! `slcbeam study`: what accuracy costs.
+//! `slcbeam study`: cost of accuracy.
 
 use std::process::ExitCode;
 use std::sync::Mutex;
@@ -37,7 +37,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     journal::begin(&evaluations, &folder, ("study", case, &format!("{plan:?}")))?;
     let flag = asked.result.wall.flag();
     let progress = Progress::new(asked.result.quiet);
-    // a run that has begun answers late: the program ends in time without it, and goes on from its journal
+    // a started run reacts late to a stop request: the program ends in time without it, and resumes from its journal
     let found = halt::heard().during(|| {
         run_study(case, plan, asked.measure.as_deref(), &evaluations, &|event| {
             progress.show(event);
@@ -57,7 +57,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     Ok(ExitCode::from(if found.references.is_empty() { 4 } else { 0 }))
 }
 
-/// `120`, `120s`, `2m`, `1h` in seconds.
+/// Converts `120`, `120s`, `2m` or `1h` to seconds.
 pub fn seconds(text: &str) -> Result<f64> {
     let (number, unit) = match text.trim().strip_suffix(['s', 'm', 'h']) {
         Some(number) => (number, text.trim().chars().last()),
@@ -77,7 +77,7 @@ pub fn seconds(text: &str) -> Result<f64> {
     value.ok_or_else(|| Error::Usage(format!("--budget {text}: a time above zero, such as 120s or 2m")))
 }
 
-/// A bar on a terminal, a line a mesh and method elsewhere.
+/// A bar on a terminal, a line per mesh and method elsewhere.
 struct Progress {
     shown: Shown,
     last: Mutex<Option<(usize, Scheme, Role)>>,

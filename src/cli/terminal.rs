@@ -1,4 +1,4 @@
-//! What the terminal can do, and how errors look on it.
+//! Capabilities of the terminal, and printing of errors on it.
 
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
@@ -8,7 +8,7 @@ use crate::case;
 use crate::error::{Error, SolverError, visible};
 pub use crate::output::errors::{diagnosis, json};
 
-/// Whether standard output wants colour: a terminal, and `NO_COLOR` not set.
+/// True if standard output is colored: a terminal, and `NO_COLOR` not set.
 pub fn colour_out() -> bool {
     std::io::stdout().is_terminal() && wants_colour()
 }
@@ -17,19 +17,19 @@ fn wants_colour() -> bool {
     std::env::var_os("NO_COLOR").is_none_or(|v| v.is_empty()) && std::env::var_os("TERM").is_none_or(|t| t != "dumb")
 }
 
-/// Columns: those of `COLUMNS`, or of the terminal, or where there is none 100.
+/// Width in columns: that of `COLUMNS`, that of the terminal, or 100.
 pub fn width() -> usize {
     let set = std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok());
     let own = || terminal_size::terminal_size().map(|(width, _)| width.0.into());
     set.or_else(own).unwrap_or(100)
 }
 
-/// Writes a line to standard error, with what a terminal would obey written out; where nobody takes it, the work goes on.
+/// Writes a line to standard error, with terminal control sequences made visible; ignores failures of writing.
 pub fn tell(line: &str) {
     tell_painted(&visible(line));
 }
 
-/// The same for text with the program's own colours, in which all that is not the program's is visible already.
+/// Writes text with the program's own colors, in which foreign control sequences are already visible.
 fn tell_painted(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
@@ -47,7 +47,7 @@ pub fn report(error: &Error) {
     }
 }
 
-/// Exit code of a result that is written all the same; tells why a computation ended early.
+/// Exit code of a result that is written in any case; prints the reason if the computation ended early.
 pub fn exit_code(fault: Option<&SolverError>) -> ExitCode {
     fault.map_or(ExitCode::SUCCESS, |fault| {
         tell(&diagnosis(fault));
@@ -55,7 +55,7 @@ pub fn exit_code(fault: Option<&SolverError>) -> ExitCode {
     })
 }
 
-/// Prints what the command line's reader has to say: help as it is, the user's own words made visible.
+/// Prints help and errors of the argument parser, with control sequences in the user's words made visible.
 pub fn answer(answer: &clap::Error) {
     let text = answer.render().to_string();
     if *visible(&text) == text {

@@ -1,4 +1,4 @@
-//! `--uncertain`: what uncertain numbers leave open of the figures of a command.
+//! `--uncertain`: spread of the figures of a command due to uncertain numbers.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,10 +24,10 @@ use crate::study::sweep::designs::pairs;
 use crate::study::sweep::{Vary, pool};
 use crate::study::uncertain::{self, Plan, Slopes};
 
-/// Step of a difference over the standard deviation.
+/// Step of a difference, relative to the standard deviation.
 const STEP: f64 = 0.1;
 
-/// What was asked, its samples looked at.
+/// A request for uncertainty, with checked samples.
 pub struct Uncertain {
     plan: Plan,
     path: PathBuf,
@@ -43,10 +43,10 @@ pub struct Uncertain {
 }
 
 impl Uncertain {
-    /// Looks at every sample of a case before anything is computed; nothing where no number is uncertain.
+    /// Checks every sample of a case before anything is computed; none if no number is uncertain.
     ///
     /// # Errors
-    /// What does not go together; a sample that is no case.
+    /// Contradictory arguments, or a sample that is not a valid case.
     pub fn new(
         asked: &UncertainArguments,
         CaseArguments { case: path, sets }: &CaseArguments,
@@ -79,7 +79,7 @@ impl Uncertain {
         Ok(Some(one))
     }
 
-    /// Gives samples the effects that a run was repeated with.
+    /// Adds the effects with which a run was repeated to the samples.
     pub fn with_effects(&mut self, companion: &CompanionRun) {
         let added = companion.earlier_runs.iter().flat_map(|run| &run.added_effects);
         self.sets
@@ -117,7 +117,7 @@ impl Uncertain {
         interrupt::raised(&self.flag)
     }
 
-    /// The figures of a case under its key, with the errors that meshes make on request; nothing where it was interrupted.
+    /// Figures of a case under its key, on request with the errors due to meshes; none if interrupted.
     fn found(&self, key: &impl Serialize, case: &Case, meshes: bool) -> Option<Found> {
         let ask = Ask {
             what: self.what,
@@ -130,7 +130,7 @@ impl Uncertain {
         analysis::stored(&self.evaluations, key, &stop, found)
     }
 
-    /// Computes all samples; nothing where it was interrupted.
+    /// Computes all samples; none if interrupted.
     ///
     /// # Errors
     /// The case itself cannot be computed.
@@ -181,7 +181,7 @@ impl Uncertain {
         Ok(Some(judged))
     }
 
-    /// Derivatives about the means; of cycles, which have none of their own, by differences over two of them.
+    /// Derivatives at the means; for cycles, which have no derivatives of their own, by differences of two cycles.
     fn slopes(&self) -> Slopes {
         let means = match self.case(self.plan.sets_at(|one| one[0])) {
             Ok(means) => means,
@@ -209,7 +209,7 @@ impl Uncertain {
     }
 }
 
-/// Computes what was asked, where something was, with its journal in the folder of the result, where there is one.
+/// Computes the requested uncertainty, if any, with its journal in the folder of the result, if there is one.
 ///
 /// # Errors
 /// The case itself cannot be computed; the journal cannot be read.
@@ -232,7 +232,7 @@ pub fn compute(asked: Option<&Uncertain>, folder: Option<&ResultFolder>) -> Resu
     Ok(found)
 }
 
-/// Writes an uncertainty, where there is one, and the files that contain its bands.
+/// Writes an uncertainty, if there is one, and the files that contain its bands.
 ///
 /// # Errors
 /// A file cannot be written.
@@ -247,12 +247,12 @@ pub fn write(
     all.try_for_each(|(name, text)| folder.write(name, text().as_bytes()).map(|_| ()))
 }
 
-/// What of it stands in the result of the command itself.
+/// Bands for the result of the command itself.
 pub fn bands(found: Option<&Uncertainty>) -> Bands {
     found.map_or_else(Bands::new, Uncertainty::bands)
 }
 
-/// What is told of it below the words of a command.
+/// Text about the uncertainty, below that of a command.
 pub fn below(found: Option<&Uncertainty>) -> String {
     found.map_or(String::new(), |found| format!("\n{}", files::words(found)))
 }

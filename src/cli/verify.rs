@@ -1,4 +1,4 @@
-//! `slcbeam verify`: exact results against computed ones.
+//! `slcbeam verify`: comparison of computed with exact results.
 
 use std::fmt::Write as _;
 use std::process::ExitCode;
@@ -16,7 +16,7 @@ use crate::results;
 use crate::results::verify::{Figure, Row};
 use crate::study::verify::{self, Measure};
 
-/// Computes all rows, or those whose name contains the name asked for, and prints them as a table.
+/// Computes all rows, or those whose name contains the requested one, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
     let flag = asked.wall.flag();
     if asked.paper {
@@ -38,7 +38,7 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
             bar.set_message(row.name.clone());
             let found = Row::of(row, &row.figures());
             bar.inc(1);
-            // a row that was cut short has no answer
+            // an interrupted row has no answer
             (!interrupt::raised(&flag)).then_some(found)
         })
         .collect();
@@ -123,7 +123,7 @@ mod tests {
         Row::of(&row, &figures)
     }
 
-    /// Goal: rows that miss, fail to run or compute nothing end the command with 4, and the table says which.
+    /// Goal: rows that miss their tolerance, fail to run or compute nothing end the command with 4, and the table names them.
     #[test]
     fn what_fails_is_told() {
         let good = || row(Ok(vec![Figure::relative("x", 1.0, 1.0, 1e-9)]));

@@ -1,4 +1,4 @@
-//! The beam with its bladders as a [`Dae`]: scaled unknowns outside, SI units inside.
+//! The beam with its bladders as a [`Dae`]: scaled unknowns for the integrator, SI units inside.
 
 use std::ops::Range;
 
@@ -12,22 +12,22 @@ use crate::functions::signals::{Clock, Signal};
 use crate::model::Kinematics;
 use crate::numerics::{Dual, Planar, kernels, wide};
 
-/// `F(t, y, y') = 0` of a [`System`], each unknown and each equation divided by its characteristic size.
+/// Equations `F(t, y, y') = 0` of a [`System`]; each unknown and each equation is divided by its characteristic size.
 #[derive(Clone, Debug)]
 pub struct BeamDae {
     pub(super) system: System,
     pub(super) within: f64,
     pub(super) now: TimeData,
-    /// The side before the last switch.
+    /// Time data from before the last switch.
     pub(super) before: TimeData,
     pattern: Pattern,
     chain: Chain,
-    /// One over the size of each equation.
+    /// Inverse of the characteristic size of each equation.
     per_row: Vec<f64>,
     pub(super) plain: Buffers<f64>,
     dual: Buffers<Dual<LANES>>,
     pub(super) perturbed: Vec<PerturbedSystems>,
-    /// Time at which the workspace holds everything about a state, its integrands included.
+    /// Time for which the workspace contains a complete state, including its integrands.
     pub(super) held: Option<f64>,
 }
 
@@ -52,7 +52,7 @@ impl<T: crate::numerics::Scalar> Buffers<T> {
 }
 
 impl Buffers<f64> {
-    /// Evaluates a scaled state whose rates do not matter: its place and its velocities.
+    /// Evaluates a scaled state of positions and velocities, with zero rates.
     pub(super) fn take_up(&mut self, system: &System, now: &TimeData, state: &[f64]) {
         kernels::products(state, &system.layout.scales, &mut self.y);
         self.yp.fill(0.0);
@@ -61,7 +61,7 @@ impl Buffers<f64> {
 }
 
 impl Buffers<Dual<LANES>> {
-    /// The same unknowns and rates, with no derivatives.
+    /// Copies unknowns and rates, with zero derivatives.
     fn take(&mut self, plain: &Buffers<f64>) {
         let pairs = [(&mut self.y, &plain.y), (&mut self.yp, &plain.yp)];
         for (dual, plain) in pairs {
@@ -76,7 +76,7 @@ impl Buffers<Dual<LANES>> {
 }
 
 impl BeamDae {
-    /// The system as a DAE; finds the Jacobian's pattern and colours it.
+    /// Creates the DAE of a system; determines the Jacobian's pattern and its coloring.
     pub fn new(system: System) -> Self {
         let (mut now, before) = (TimeData::new(&system), TimeData::new(&system));
         now.update(&system, Clock { t: 0.0, within: 0.0 });
@@ -98,7 +98,7 @@ impl BeamDae {
         }
     }
 
-    /// The same equations of a system with the same unknowns.
+    /// Equations of another system with the same unknowns.
     pub(super) fn of(&self, system: System) -> Self {
         Self {
             plain: Buffers::new(&system, 0),
@@ -111,22 +111,22 @@ impl BeamDae {
         }
     }
 
-    /// Carries along the systems of changed parameters: the sensitivities to these can be computed then.
+    /// Adds the systems with perturbed parameters, which sensitivities to these parameters need.
     pub fn with_perturbed(self, perturbed: Vec<PerturbedSystems>) -> Self {
         Self { perturbed, ..self }
     }
 
-    /// The systems of changed parameters.
+    /// Systems with perturbed parameters.
     pub fn perturbed_mut(&mut self) -> &mut [PerturbedSystems] {
         &mut self.perturbed
     }
 
-    /// The system that is solved.
+    /// The system being solved.
     pub fn system(&self) -> &System {
         &self.system
     }
 
-    /// Puts a signal at places of [`System::places_of`].
+    /// Replaces the signal at the places of [`System::places_of`].
     pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
         self.system.put_signal(places, given);
         self.now.forget();
@@ -134,29 +134,29 @@ impl BeamDae {
         self.held = None;
     }
 
-    /// Chooses the smooth interval in which signals are looked at, by an instant inside it [s].
+    /// Selects the smooth interval in which signals are evaluated, by an instant inside it [s].
     pub fn enter_smooth_interval(&mut self, t: f64) {
         self.within = t;
     }
 
-    /// The instant by which the smooth interval is chosen in which signals are looked at [s].
+    /// Instant that selects the smooth interval in which signals are evaluated [s].
     pub fn within(&self) -> f64 {
         self.within
     }
 
-    /// The values of time alone, of the last evaluation.
+    /// Time data of the last evaluation.
     pub(super) fn now(&self) -> &TimeData {
         &self.now
     }
 
-    /// The system, and the values of time alone at an instant.
+    /// The system, and its time data at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &TimeData) {
         self.held = None;
         self.now.update(&self.system, Clock { t, within: self.within });
         (&self.system, &self.now)
     }
 
-    /// Puts what ports of prescribed volume have let in until `t` [s] in the place of integrals of its rate.
+    /// Replaces integrals of the flow rate of ports with prescribed volume by the volume injected until `t` [s].
     pub fn settle(&mut self, t: f64, integrals: &mut [f64]) {
         if self.held != Some(t) {
             self.held = None;
@@ -165,7 +165,7 @@ impl BeamDae {
         ledger::ports::settle(&self.system, &self.now, integrals);
     }
 
-    /// Evaluates the model at a scaled state and hands out time's values and the workspace, for balances and samples.
+    /// Evaluates the model at a scaled state; returns time data and workspace, for balances and samples.
     pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
@@ -174,8 +174,8 @@ impl BeamDae {
         (&self.system, &self.now, state)
     }
 
-    /// As [`BeamDae::evaluate`], of a state that the integrator has just accepted at `t` [s]: its integrands were the last thing
-    /// that was evaluated, if it was not another time, and the workspace holds them still.
+    /// Like [`BeamDae::evaluate`], for a state that the integrator has just accepted at `t` [s]. If its integrands were the last
+    /// evaluation, the workspace still contains them.
     pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
         if self.held != Some(t) {
             return self.evaluate(t, y, yp);
@@ -184,7 +184,7 @@ impl BeamDae {
         (&self.system, &self.now, state)
     }
 
-    /// Evaluates the model at a scaled state and lets `read` look at time's values, rates in SI units and the workspace.
+    /// Evaluates the model at a scaled state and passes time data, rates in SI units and workspace to `read`.
     pub(super) fn visit<R>(
         &mut self,
         t: f64,
@@ -233,7 +233,7 @@ impl Dae for BeamDae {
         self.now.cj = cj;
     }
 
-    /// Of displacements and, where both are unknowns, velocities.
+    /// Vectors of displacements and, if both are unknowns, of velocities.
     fn vectors(&self) -> Vec<Vectors> {
         let l = &self.system.layout;
         if self.system.model.kinematics != Kinematics::FiniteRotation {
@@ -269,7 +269,7 @@ impl Dae for BeamDae {
         vectors.collect()
     }
 
-    /// In the middle between those of the cells beside a node.
+    /// Mean direction of the cells adjacent to a node.
     fn directions(&self, out: &mut [Planar<f64>]) {
         let cells = &self.plain.workspace.shape.tangent;
         let last = cells.len();
@@ -310,7 +310,7 @@ impl Dae for BeamDae {
         Ok(())
     }
 
-    /// [`LANES`] directions a sweep; allocates nothing.
+    /// Computes [`LANES`] directions per sweep; does not allocate.
     fn tangent(
         &mut self,
         t: f64,

@@ -1,15 +1,16 @@
-//! States as they are read, where Newton's iteration and the polynomial between two steps leave more than round-off of what is no straight line.
+//! Projection of interpolated states onto the volumes of lumped networks.
 
 use super::BeamDae;
 use crate::discrete::{ledger, residual};
 use crate::model::Wet;
 
-/// Newton steps that bring a pressure from between two steps to round-off.
+/// Newton steps that reduce the error of an interpolated pressure to rounding error.
 const CORRECTIONS: usize = 3;
 
 impl BeamDae {
-    /// Gives lumped networks in a scaled state at `t` [s] the pressures of the volumes that they hold, [E25]: where fluid is compressed or walls
-    /// meet, a polynomial through pressures does not pass through those volumes, and steps end within the tolerance of Newton's iteration.
+    /// Sets the pressures of lumped networks in a scaled state at `t` [s] to those of their volumes, [E25]. If fluid is compressible or
+    /// walls touch, interpolated pressures do not belong to those volumes. At the end of a step, their error is within the tolerance of
+    /// Newton's iteration.
     pub fn keep_volumes(&mut self, t: f64, y: &mut [f64]) {
         let bent = |wet: &Wet| !wet.lumped.is_empty() && (wet.compression.is_some() || wet.closing.is_some());
         if !self.system().model.wet.as_ref().is_some_and(bent) {

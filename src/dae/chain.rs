@@ -1,4 +1,4 @@
-//! The Jacobian from derivatives on both sides of a cut: what pressure does to the beam.
+//! Sparse Jacobian by the chain rule: the strains by pressure are intermediate variables.
 
 use super::beam::Buffers;
 use super::trace::Dependence;
@@ -6,14 +6,14 @@ use crate::discrete::{System, TimeData, residual};
 use crate::numerics::Dual;
 use crate::sparse::{Pattern, colour};
 
-/// Directions differentiated in one sweep.
+/// Number of directions differentiated in one sweep.
 pub(super) const LANES: usize = 8;
 
-/// How the Jacobian is put together.
+/// Assembly of the Jacobian.
 ///
-/// Every node of a segment feels every cell of its bladders, but only by the two strains `s` due to pressure, [E3]; and the means of a segment,
-/// [E16], know its nodes and cells only by the sums of M and N. With these strains as unknowns of their own beside y, and M and N among what
-/// is differentiated, few columns share a row, and few sweeps do:
+/// Every node of a segment depends on every cell of its bladders, but only via the two strains `s` by pressure, [E3]. The means of a
+/// segment, [E16], depend on its nodes and cells only via the sums of M and N. The strains are therefore additional unknowns beside y,
+/// and M and N additional outputs. Then few columns share a row, and few sweeps suffice:
 ///
 /// ```text
 /// dF/dy = ∂F/∂y + ∂F/∂s ds/dy        d(mean)/dy = Σ weight dM/dy
@@ -21,32 +21,32 @@ pub(super) const LANES: usize = 8;
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
     sweeps: Vec<Sweep>,
-    /// Entries with the products that are added to them, each of two of [`Chain::parts`].
+    /// Entries and the products added to them, each of two of [`Chain::parts`].
     products: Vec<(u32, [u32; 2])>,
-    /// `∂F/∂s` and `ds/dy`.
+    /// Entries of `∂F/∂s` and `ds/dy`.
     parts: Vec<f64>,
-    /// Entries of means by themselves, with these.
+    /// Diagonal entries of means, with their unknowns.
     means: Vec<(usize, usize)>,
 }
 
-/// What is differentiated together.
+/// Unknowns and strains differentiated in one sweep.
 #[derive(Clone, Debug, Default)]
 struct Sweep {
     /// Unknowns, each with its lane.
     unknowns: Vec<(usize, usize)>,
-    /// Strains, likewise.
+    /// Strains, each with its lane.
     strains: Vec<(usize, usize)>,
-    /// What goes into entries.
+    /// Derivatives added to entries of the Jacobian.
     entries: Vec<Reading>,
-    /// What goes into [`Chain::parts`].
+    /// Derivatives added to [`Chain::parts`].
     parts: Vec<Reading>,
 }
 
-/// A derivative with the factor by which it goes to its place.
+/// A derivative, its destination and its factor.
 #[derive(Clone, Copy, Debug)]
 struct Reading {
     into: u32,
-    /// Row and lane in one number.
+    /// Row and lane as one index.
     from: u32,
     factor: f64,
 }
@@ -59,7 +59,7 @@ impl Reading {
     }
 }
 
-/// Where what is differentiated stands: equations, moments of nodes, normal forces of cells, strains.
+/// Index ranges of the differentiated outputs: equations, moments of nodes, normal forces of cells, strains.
 #[derive(Clone, Copy, Debug)]
 struct Places {
     moments: usize,
@@ -82,13 +82,13 @@ impl Places {
     }
 }
 
-/// Numbers of what is differentiated.
+/// Number of differentiated outputs.
 pub(super) fn width(system: &System) -> usize {
     Places::new(system).len
 }
 
 impl Chain {
-    /// The pattern of the Jacobian, and the way to its entries; one over the size of each equation.
+    /// Returns the pattern of the Jacobian and its assembly; `per_row` is the inverse size of each equation.
     pub(super) fn new(system: &System, on: &Dependence, per_row: &[f64]) -> (Pattern, Self) {
         let (n, places) = (system.layout.len, Places::new(system));
         let own = &system.layout.coupling;
@@ -122,7 +122,7 @@ impl Chain {
             parts: vec![],
             means: vec![],
         };
-        // rows and places of ∂F/∂s, columns and places of ds/dy, strain by strain
+        // for each strain: rows and indices of ∂F/∂s, columns and indices of ds/dy
         let mut by_strain: Vec<Vec<(usize, usize)>> = vec![vec![]; on.strains.len()];
         let mut of_strain = by_strain.clone();
         let k = system.mesh.cells_per_segment;
@@ -190,8 +190,8 @@ impl Chain {
         (pattern, chain)
     }
 
-    /// Writes the Jacobian at what stands in the buffers, which have no derivatives and get none; `seeds` are those of an unknown and of its
-    /// rate, `per_row` as in [`Chain::new`].
+    /// Computes the Jacobian at the state in the buffers, whose derivatives are zero before and after. `seeds` are those of an unknown
+    /// and of its rate, `per_row` as in [`Chain::new`].
     pub(super) fn differentiate(
         &mut self,
         (system, now): (&System, &TimeData),
@@ -236,7 +236,7 @@ impl Chain {
     }
 }
 
-/// Place of a stored entry.
+/// Index of a stored entry.
 fn entry(pattern: &Pattern, row: usize, column: usize) -> usize {
     let entries = pattern.column(column);
     entries.start + pattern.rows[entries].partition_point(|&at| (at as usize) < row)

@@ -1,57 +1,59 @@
-//! Newton's matrix, carried along by a beam that turns.
+//! Corotation: reuse of Newton's matrix for a rotating beam.
 
 use std::ops::Range;
 
 use super::Dae;
 use crate::numerics::{Planar, wide};
 
-/// Sines of angles from which on a matrix is turned: scenes in which nothing turns as far are spared the work, and turn no fewer matrices for it.
+/// Sine of the angle above which a matrix is rotated. Cases with smaller rotations avoid the work without needing more matrices.
 const LITTLE: f64 = 1e-2;
 
-/// Unknowns that are vectors in the plane, one a node; their equations are vectors likewise.
+/// Unknowns that are vectors in the plane, one per node; their equations are vectors as well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vectors {
-    /// Where their components across stand, in the order of the nodes.
+    /// Indices of their transverse components, in the order of the nodes.
     pub across: Range<usize>,
-    /// Where those along stand: as many, further behind.
+    /// Indices of their axial components: equally many, higher than those of `across`.
     pub along: Range<usize>,
-    /// Node of the first.
+    /// Node of the first vector.
     pub node: usize,
-    /// Whether no node is held: momentum is kept then, and by iterations to round-off only where all nodes turn alike.
+    /// True if no node is held. Momentum is then conserved, by incomplete iterations to rounding error only if all
+    /// nodes rotate equally.
     pub free: bool,
-    /// Size of an unknown along, over that of one across.
+    /// Size of an axial unknown relative to a transverse one.
     pub size: f64,
-    /// Size of an equation along, over that of one across.
+    /// Size of an axial equation relative to a transverse one.
     pub row_size: f64,
 }
 
-/// How far each node has turned since a matrix was made, and what that makes of its solutions.
+/// Rotation of each node since a matrix was computed, and its effect on solutions.
 ///
-/// `[E80]` A beam that is turned as a whole has the same forces, turned: `F(Q y, Q y') = Q F(y, y')`, and so
+/// `[E80]` The forces of a beam rotated as a whole rotate with it: `F(Q y, Q y') = Q F(y, y')`, and therefore
 ///
 /// ```text
 /// J(Q y) = Q J(y) Qᵀ      J(y) ≈ Q J₀ Qᵀ      J⁻¹ r ≈ Q J₀⁻¹ Qᵀ r      Q: each node's vectors turned by φ_i - φ_i0
 /// ```
 ///
-/// of the matrix `J₀` of another state, exactly where all nodes have turned alike and nothing but the beam itself acts. Without it a matrix is too old when
-/// axial stiffness points elsewhere: after an angle of `(ω_b/ω_a)²`, the square of frequencies of bending over those of stretch.
+/// for the matrix `J₀` of another state. This is exact if all nodes have rotated equally and only the beam itself acts. Without it a
+/// matrix is too old once the axial stiffness has a different direction: after an angle of `(ω_b/ω_a)²`, the squared ratio of bending to
+/// stretch frequencies.
 #[derive(Clone, Debug)]
 pub struct Corotation {
     vectors: Vec<Vectors>,
-    /// Directions of nodes where the matrix was made.
+    /// Directions of nodes at which the matrix was computed.
     made: Vec<Planar<f64>>,
-    /// And where it is used.
+    /// Present directions of nodes.
     now: Vec<Planar<f64>>,
-    /// Cosines and sines of the angles in between.
+    /// Cosines and sines of the angles between them.
     turn: [Vec<f64>; 2],
-    /// Whether any of these is anything.
+    /// True if any of these angles is large enough for a rotation.
     turned: bool,
-    /// Whether the next state is that of the matrix.
+    /// True if the next state is that of the matrix.
     renewed: bool,
 }
 
 impl Corotation {
-    /// Of equations without a matrix.
+    /// Creates the corotation of equations that have no matrix yet.
     pub fn new<D: Dae>(dae: &D) -> Self {
         let vectors = dae.vectors();
         let nodes = vectors.iter().map(|v| v.node + v.across.len()).max().unwrap_or(0);
@@ -66,12 +68,12 @@ impl Corotation {
         }
     }
 
-    /// A new matrix is made: its state is that of the next [`Corotation::look`].
+    /// Records that a new matrix is computed; its state is that of the next [`Corotation::look`].
     pub fn renew(&mut self) {
         self.renewed = true;
     }
 
-    /// Takes up how the beam stands where the residual was evaluated last.
+    /// Reads the directions of the beam at the last residual evaluation.
     pub fn look<D: Dae>(&mut self, dae: &D) {
         if self.vectors.is_empty() {
             return;
@@ -91,17 +93,17 @@ impl Corotation {
         self.turned = sin.iter().zip(cos).any(|(sin, cos)| sin.abs() > LITTLE || *cos < 0.0);
     }
 
-    /// Whether the matrix is turned.
+    /// True if the matrix is rotated.
     pub fn turned(&self) -> bool {
         self.turned
     }
 
-    /// `r ← Qᵀ r`, of a residual.
+    /// `r ← Qᵀ r`, for a residual.
     pub fn back(&self, r: &mut [f64]) {
         self.apply(r, |vectors| vectors.row_size, -1.0);
     }
 
-    /// `x ← Q x`, of unknowns.
+    /// `x ← Q x`, for unknowns.
     pub fn forth(&self, x: &mut [f64]) {
         self.apply(x, |vectors| vectors.size, 1.0);
     }
@@ -121,7 +123,7 @@ impl Corotation {
     }
 }
 
-/// Cosines and sines of the angles from unit vectors to others.
+/// Cosines and sines of the angles from the unit vectors `from` to `to`.
 #[inline(always)]
 fn angles(from: &[Planar<f64>], to: &[Planar<f64>], cos: &mut [f64], sin: &mut [f64]) {
     for (((from, to), cos), sin) in from.iter().zip(to).zip(cos).zip(sin) {
@@ -130,7 +132,7 @@ fn angles(from: &[Planar<f64>], to: &[Planar<f64>], cos: &mut [f64], sin: &mut [
     }
 }
 
-/// Turns vectors `(x, z)` of which z counts in units of its own.
+/// Rotates vectors `(x, z)` whose z has a unit of its own.
 #[inline(always)]
 fn turn(x: &mut [f64], z: &mut [f64], [cos, sin]: [&[f64]; 2], [along, across]: [f64; 2]) {
     for (((x, z), cos), sin) in x.iter_mut().zip(z).zip(cos).zip(sin) {

@@ -1,13 +1,13 @@
-//! Over a switch: the state on its other side, and what is done in no time.
+//! Switches: the state after a switch, and the work done in zero time.
 
 use super::BeamDae;
 use crate::discrete::{kick, ledger, residual, start};
 use crate::functions::signals::Clock;
 
 impl BeamDae {
-    /// At a switching time `t` [s]: looks at signals in the smooth interval around `within` from now on, and restates the
-    /// scaled unknowns so that the beam stays where it is and as fast as it is, but for what a driven end whose velocity jumps hands on
-    /// to sections that turn, [`kick`].
+    /// Switches at time `t` [s] to signals in the smooth interval around `within`, and converts the scaled unknowns: position and
+    /// velocity of the beam remain unchanged. The exception is the velocity jump of a driven end, which is transmitted to sections that
+    /// rotate, [`kick`].
     pub fn switch(&mut self, t: f64, within: f64, y: &mut [f64]) {
         self.look_back(t, self.within);
         self.enter_smooth_interval(within);
@@ -24,15 +24,15 @@ impl BeamDae {
         }
     }
 
-    /// Keeps the values of time at an instant, as the smooth interval around another has them [s].
+    /// Stores the time data at an instant, as given by the smooth interval around another instant [s].
     fn look_back(&mut self, t: f64, within: f64) {
         self.held = None;
         self.before.update(&self.system, Clock { t, within });
         self.before.cj = self.now.cj;
     }
 
-    /// Adds to integrals what is done in no time at `t` [s]: from a scaled state of which signals were looked at around another
-    /// instant [s], to one in the present smooth interval. See [`ledger::side`] and [`ledger::strokes`].
+    /// Adds to integrals the work done in zero time at `t` [s], between two scaled states. The signals of the first state belong to the
+    /// smooth interval around another instant [s], those of the second to the present one. See [`ledger::side`] and [`ledger::strokes`].
     pub fn jump(&mut self, t: f64, (before, within): (&[f64], f64), after: &[f64], integrals: &mut [f64]) {
         self.look_back(t, within);
         self.instant(t);
@@ -51,7 +51,7 @@ impl BeamDae {
                 b.y[k] = state[k] * scale;
                 b.yp[k] = (after[k] - before[k]) * scale;
             }
-            // Velocities become what displacements jump by, and nothing is accelerated.
+            // Velocities become the jumps of displacements; accelerations are zero.
             for (u, v) in l.moved() {
                 if let Some(v) = v {
                     b.y[v] = b.yp[u];

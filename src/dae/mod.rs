@@ -1,4 +1,4 @@
-//! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Knows no solver.
+//! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Independent of solvers.
 
 pub mod beam;
 mod between;
@@ -20,17 +20,17 @@ use std::ops::Range;
 use crate::numerics::Planar;
 use crate::sparse::Pattern;
 
-/// Why an evaluation could not be done.
+/// Reason why an evaluation failed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EvaluationError {
-    /// A shorter step may succeed: the solver may try again.
+    /// Recoverable: a shorter step may succeed.
     Recoverable(String),
     /// No step can succeed.
     Fatal(String),
 }
 
 impl EvaluationError {
-    /// The reason in words.
+    /// Reason as text.
     pub fn reason(self) -> String {
         match self {
             Self::Recoverable(what) | Self::Fatal(what) => what,
@@ -38,7 +38,7 @@ impl EvaluationError {
     }
 }
 
-/// Which combination of partial derivatives a Jacobian holds: column j is `y[j] ∂F/∂y_j + yp[j] ∂F/∂y'_j`.
+/// Combination of partial derivatives in a Jacobian: column j is `y[j] ∂F/∂y_j + yp[j] ∂F/∂y'_j`.
 #[derive(Clone, Copy, Debug)]
 pub enum Seeds<'a> {
     /// `∂F/∂y + c_j ∂F/∂y'`, the matrix of an implicit step.
@@ -46,7 +46,7 @@ pub enum Seeds<'a> {
         /// IDA's `c_j`, proportional to 1/step.
         cj: f64,
     },
-    /// Any factors, one pair a column.
+    /// Arbitrary factors, one pair per column.
     Columns {
         /// Factor of `∂F/∂y_j`.
         y: &'a [f64],
@@ -60,16 +60,16 @@ pub trait Dae {
     /// Number of unknowns.
     fn len(&self) -> usize;
 
-    /// True where the unknown's derivative appears (differential), false where it does not (algebraic). Length `len`.
+    /// True if the unknown's derivative appears (differential), false if it does not (algebraic). Length `len`.
     fn differential(&self) -> &[bool];
 
-    /// Positions of the Jacobian's stored entries, the same for all times and states.
+    /// Pattern of the Jacobian, equal for all times and states.
     fn pattern(&self) -> &Pattern;
 
-    /// Writes `F(t, y, y')` into `residual`. All slices have length `len`. Allocates nothing.
+    /// Writes `F(t, y, y')` to `residual`. All slices have length `len`. Does not allocate.
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), EvaluationError>;
 
-    /// Writes the entries of the Jacobian in the order of [`Dae::pattern`] into `values`. Allocates nothing.
+    /// Writes the entries of the Jacobian to `values`, in the order of [`Dae::pattern`]. Does not allocate.
     fn jacobian(
         &mut self,
         t: f64,
@@ -79,35 +79,35 @@ pub trait Dae {
         values: &mut [f64],
     ) -> Result<(), EvaluationError>;
 
-    /// Tells `c_j` of the implicit step for which residuals and Jacobians are asked for from now on: the rate of an unknown moves by so
-    /// much with it. Equations may be written so that they are nearly linear along such a step; their roots are the same.
+    /// Sets `c_j` of the implicit step for subsequent residuals and Jacobians: the derivative of a rate by its unknown. Equations may be
+    /// formulated such that they are nearly linear along such a step; their roots are unchanged.
     fn approach(&mut self, _cj: f64) {}
 
-    /// Unknowns that turn with the beam; none where nothing turns, or not so that its forces would turn with it.
+    /// Unknowns that rotate with the beam; none if there is no rotation, or if forces would not rotate with it.
     fn vectors(&self) -> Vec<Vectors> {
         vec![]
     }
 
-    /// Unit vectors along the beam at the first nodes, in the state in which [`Dae::residual`] was evaluated last.
+    /// Unit vectors along the beam at the first nodes, for the state of the last [`Dae::residual`].
     fn directions(&self, _out: &mut [Planar<f64>]) {}
 
-    /// Number of integrals that the solver carries along without feedback, `I' = g(t, y, y')`.
+    /// Number of integrals that the solver computes along with the solution, `I' = g(t, y, y')`, without feedback.
     fn integrals(&self) -> usize {
         0
     }
 
-    /// The integrals of powers: their integrands are quadratic in the state, those of the others linear.
+    /// Range of the integrals of powers: their integrands are quadratic in the state, all others linear.
     fn integrals_of_powers(&self) -> Range<usize> {
         0..0
     }
 
-    /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Allocates nothing.
+    /// Writes the integrands `g(t, y, y')`; `out` has length [`Dae::integrals`]. Does not allocate.
     fn integrands(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _out: &mut [f64]) -> Result<(), EvaluationError> {
         Ok(())
     }
 
-    /// Writes `F_y dyₖ + F_y' dy'ₖ` into `out[k]` for every direction k: `dy`, `dyp` and `out` are equally many slices of length
-    /// `len`. This one goes through the Jacobian, whose columns add up to it; it allocates.
+    /// Writes `F_y dyₖ + F_y' dy'ₖ` to `out[k]` for every direction k; `dy`, `dyp` and `out` contain equally many slices of length `len`.
+    /// The default sums the columns of the Jacobian; it allocates.
     fn tangent(
         &mut self,
         t: f64,
@@ -127,12 +127,12 @@ pub trait Dae {
         Ok(())
     }
 
-    /// Number of parameters whose sensitivities `∂y/∂σₖ` the solver may carry along.
+    /// Number of parameters whose sensitivities `∂y/∂σₖ` the solver may compute along with the solution.
     fn parameters(&self) -> usize {
         0
     }
 
-    /// Writes `∂F/∂σₖ` at fixed unknowns and rates into `out`, of length `len`; k is below [`Dae::parameters`].
+    /// Writes `∂F/∂σₖ` at fixed unknowns and rates to `out`, of length `len`; k is below [`Dae::parameters`].
     fn parameter_derivative(
         &mut self,
         _k: usize,
@@ -159,10 +159,10 @@ pub trait Dae {
         Ok(())
     }
 
-    /// Name of an unknown, for people: `"u1 [m] of node 3"`.
+    /// Name of an unknown, for messages: `"u1 [m] of node 3"`.
     fn name(&self, unknown: usize) -> String;
 
-    /// True when there is nothing to solve.
+    /// True if there is nothing to solve.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -1,14 +1,14 @@
-//! The equations with one parameter changed a little, and derivatives by that parameter from them.
+//! Equations with a slightly changed parameter, and derivatives by that parameter.
 
 use super::BeamDae;
 use crate::case::parameter::{CHANGE, STEPS};
 use crate::discrete::{System, TimeData, Workspace};
 
-/// Change of an unknown, relative to 1 + |unknown|, over which what is read off a state is differenced: small beside the width
-/// of the smoothed kinks, large beside round-off.
+/// Change of an unknown, relative to 1 + |unknown|, for differences of quantities of a state: small compared with the width of smoothed
+/// kinks, large compared with rounding errors.
 const NUDGE: f64 = 1e-5;
 
-/// The equations at p (1 ± ε) and p (1 ± 2ε), in the order of [`STEPS`]; unknowns and equations are scaled as those at p.
+/// Equations at p (1 ± ε) and p (1 ± 2ε), in the order of [`STEPS`]; unknowns and equations are scaled as those at p.
 #[derive(Clone, Debug)]
 pub struct PerturbedSystems {
     beams: Box<[BeamDae; 4]>,
@@ -16,7 +16,7 @@ pub struct PerturbedSystems {
 }
 
 impl PerturbedSystems {
-    /// Of these equations, with the systems of the changed parameter, which have the same unknowns in the same scales.
+    /// Creates the perturbed equations of `of`. The systems have a changed parameter, but the same unknowns and scales.
     pub fn new(of: &BeamDae, systems: [System; 4]) -> Self {
         Self {
             beams: Box::new(systems.map(|system| of.of(system))),
@@ -29,15 +29,15 @@ impl PerturbedSystems {
         &mut self.beams
     }
 
-    /// `[E40]` Writes the derivative by the relative change σ of a parameter p of what `value` writes for each of the equations,
-    /// given its place in [`STEPS`]:
+    /// `[E40]` Writes the derivative by the relative change σ of a parameter p. `value` evaluates the function for each of the equations;
+    /// its first argument is the index in [`STEPS`]:
     ///
     /// ```text
     /// ∂f/∂σ = (8 (f(p(1+ε)) - f(p(1-ε))) - (f(p(1+2ε)) - f(p(1-2ε)))) / 12ε        ε = 1e-3
     /// ```
     ///
-    /// In error by `ε⁴ f⁽⁵⁾/30`: 4e-12 of f where it is proportional to 1/p, nothing but round-off (3e-13 of the largest term)
-    /// where it is a polynomial of p of up to the fourth degree.
+    /// The error is `ε⁴ f⁽⁵⁾/30`: 4e-12 of f if f is proportional to 1/p, only rounding errors (3e-13 of the largest term) if f is a
+    /// polynomial of p of degree four or less.
     pub fn derivative<E>(
         &mut self,
         out: &mut [f64],
@@ -45,7 +45,7 @@ impl PerturbedSystems {
     ) -> Result<(), E> {
         self.out.resize(out.len(), 0.0);
         let mut first = self.out.clone();
-        // differences of pairs first: what the parameter leaves alone is then zero to the last digit
+        // differences of pairs first: they are exactly zero for quantities independent of the parameter
         for pair in [2, 0] {
             value(pair, &mut self.beams[pair], &mut first)?;
             value(pair + 1, &mut self.beams[pair + 1], &mut self.out)?;
@@ -59,10 +59,11 @@ impl PerturbedSystems {
 }
 
 impl BeamDae {
-    /// Writes the derivative of what `read` reads off an evaluated state, along the sensitivity `along = [s, s']` to parameter k:
-    /// by the state with differences of fourth order over a small change, by the parameter as [`PerturbedSystems::slope`].
+    /// Writes the derivative of the quantities that `read` computes from an evaluated state, along the sensitivity `along = [s, s']` to
+    /// parameter k. Derivatives by the state are fourth-order differences over a small change, those by the parameter are from
+    /// [`PerturbedSystems::derivative`].
     ///
-    /// `read` is given rates in SI units and a workspace after [`crate::discrete::residual::evaluate`].
+    /// `read` receives rates in SI units and a workspace after [`crate::discrete::residual::evaluate`].
     pub fn read_slope(
         &mut self,
         k: usize,

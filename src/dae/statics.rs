@@ -1,91 +1,92 @@
-//! Equilibrium as a system without derivatives: what a beam at rest obeys, with the share of its loads as "time".
+//! Equilibrium as a system without derivatives; the load factor replaces time.
 
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
 use crate::discrete::fluid_mesh::{FluidMesh, Place};
 use crate::discrete::{System, ValveTangents};
 use crate::numerics::sets::Sets;
 
-/// `[E29]` The equations of a [`System`] without inertia and without rates, where `t` is the load factor that acts:
+/// `[E29]` Equations of a [`System`] without inertia and without rates, where `t` is the load factor:
 ///
 /// ```text
 /// F(t, y, 0) = 0,        and for each set of joined cells that no prescribed pressure reaches
 /// Σ Δs (a1 - t a1(0)) + Σ (V - t V(0)) = Σ V_port  in place of the storage of one of its cells
 /// ```
 ///
-/// with V the volumes of accumulators and `V_port` what ports that prescribe a volume or a flow have let in; for these storage
-/// equations are dependent: flows inside a closed network sum to zero whatever the pressures are. A network through which ports or turbines drive a steady flow is at rest too.
-/// Loads that go on from a state at rest ([`StaticBeam::from_state`]) keep the volumes of that state, whatever t. Forces on
-/// unknowns, constant in time, may be added (an imperfection), and a resistance to motion from a state ([`StaticBeam::resist`]).
+/// V are the volumes of accumulators, `V_port` the volumes injected by ports that prescribe a volume or a flow. In such sets the storage
+/// equations are dependent: flows inside a closed network sum to zero for all pressures. A network with a steady flow driven by ports or
+/// turbines is in equilibrium as well. Load paths that start at an equilibrium ([`StaticBeam::from_state`]) keep the volumes of that
+/// state for all t. Optional additions are constant forces on unknowns (an imperfection), and a resistance to motion from a state
+/// ([`StaticBeam::resist`]).
 #[derive(Clone, Debug)]
 pub struct StaticBeam {
     beam: BeamDae,
     closed: Vec<Closed>,
     pattern: Pattern,
-    /// What stands behind each entry: one of the beam's own pattern, or that of a volume.
+    /// Source of each entry: the beam's own pattern, or a volume.
     from: Vec<Entry>,
     zeros: Vec<f64>,
     beam_values: Vec<f64>,
     none: Vec<bool>,
-    /// Whether volumes are there at t = 0 and do not grow with t.
+    /// True if volumes exist at t = 0 and do not grow with t.
     kept: bool,
-    /// What each source that prescribes a flow has let in, at t = 0 and at t = 1 [m^3].
+    /// Volume injected by each source that prescribes a flow, at t = 0 and at t = 1 [m^3].
     pumped: Vec<[f64; 2]>,
-    /// What the state at t = 0 leaves of the equations: it goes in proportion while t grows to 1. Empty where nothing is left.
+    /// Residual of the state at t = 0; it is reduced in proportion as t grows to 1. Empty if there is none.
     left: Vec<f64>,
-    /// Added to the residual.
+    /// Force added to the residual.
     pub imperfection: Vec<f64>,
-    /// Resistance to motion; absent: none.
+    /// Resistance to motion, if any.
     resistance: Option<Resistance>,
 }
 
-/// Resistance `ρ D (y - y_0)` to motion away from a state, D the mass of each node at its momentum.
+/// Resistance `ρ D (y - y_0)` to motion away from a state; D is the mass of each node, in its momentum equation.
 #[derive(Clone, Debug)]
 struct Resistance {
     /// `ρ D` by unknown.
     weights: Vec<f64>,
     /// `y_0`.
     state: Vec<f64>,
-    /// Entry of the diagonal in each column with mass.
+    /// Column and diagonal entry of each unknown with mass.
     diagonal: Vec<(usize, usize)>,
 }
 
 /// An entry of the static Jacobian.
 #[derive(Clone, Copy, Debug)]
 enum Entry {
-    /// That of the beam, by its place.
+    /// Entry of the beam, by its index.
     Own(usize),
-    /// Volume by the unknown, over the scale of volumes.
+    /// Derivative of a volume by the unknown, over the scale of volumes.
     Volume(f64),
-    /// Diagonal that only a resistance to motion fills.
+    /// Diagonal entry used only by a resistance to motion.
     Empty,
 }
 
-/// Cells and accumulators that share a volume which ports of volume alone can change.
+/// Cells and accumulators that share a volume, which only ports of volume or flow can change.
 #[derive(Clone, Debug)]
 struct Closed {
-    /// Equation that the volume replaces, that of its first unknown.
+    /// Equation replaced by the volume: that of its first unknown.
     row: usize,
-    /// Unknowns of its cells and accumulators, ascending, each with its volume over that of a cell.
+    /// Unknowns of its cells and accumulators, ascending, each with its volume relative to that of a cell.
     parts: Vec<(usize, f64)>,
-    /// Sum of their volumes at the start, over that of a cell.
+    /// Sum of their volumes at the start, relative to the volume of a cell.
     sum: f64,
     /// Sources that prescribe volumes or flows.
     sources: Vec<usize>,
-    /// The volume of a cell that the others are over [m^3].
+    /// Reference volume of a cell [m^3].
     unit: f64,
-    /// What ports of prescribed flow feed into them at t = 1, all together [m^3/s].
+    /// Total flow of ports with prescribed flow into them at t = 1 [m^3/s].
     inflow: f64,
 }
 
 impl StaticBeam {
-    /// Equilibria of loads that go on from a state at rest, scaled unknowns of the same system: closed networks keep what they
-    /// hold in it and take what ports of prescribed volume let in from there on, and ports of prescribed flow: `pumped`
-    /// [m^3], of every source at t = 0 and at t = 1.
+    /// Equilibria of loads applied to an equilibrium `state`, in scaled unknowns of the same system. Closed networks keep their volumes
+    /// of that state. Ports of prescribed volume add the volume injected from there on, ports of prescribed flow add `pumped` [m^3], for
+    /// every source at t = 0 and at t = 1.
     pub fn from_state(system: System, state: &[f64], pumped: &[[f64; 2]]) -> Self {
         Self::of(system, state, pumped, true)
     }
 
-    /// The same where nothing is there yet at t = 0: volumes grow with t to those of `start`, and what was pumped is there at t = 1.
+    /// Equilibria of loads applied from zero: volumes grow with t to those of `start`; the pumped volume is complete at t = 1.
     pub fn from_nothing(system: System, start: &[f64], pumped: &[[f64; 2]]) -> Self {
         Self::of(system, start, pumped, false)
     }
@@ -145,8 +146,8 @@ impl StaticBeam {
         }
     }
 
-    /// Adds the resistance `ρ D (y - y_0)` to motion away from a state, `ρ` in 1/s^2 and D the mass of each node: one step of a motion
-    /// without inertia. A resistance of 0 removes it. Only systems with walls have room for it.
+    /// Adds the resistance `ρ D (y - y_0)` to motion away from a state, with `ρ` in 1/s^2 and the mass D of each node: one step of a
+    /// motion without inertia. A resistance of 0 removes it. Only systems with walls have entries for it.
     pub fn resist(&mut self, rho: f64, state: &[f64]) {
         if rho == 0.0 {
             self.resistance = None;
@@ -166,8 +167,8 @@ impl StaticBeam {
         });
     }
 
-    /// Lets what a state leaves of the equations at t = 0 go in proportion: the state is the first one of a path that ends in
-    /// equilibrium at t = 1. False where the equations cannot be evaluated.
+    /// Reduces the residual of a state at t = 0 in proportion to 1 - t: the state is the first one of a path that ends in equilibrium at
+    /// t = 1. Returns false if the equations cannot be evaluated.
     pub fn relax_from(&mut self, state: &[f64]) -> bool {
         let mut left = vec![0.0; self.len()];
         self.left.clear();
@@ -181,7 +182,7 @@ impl StaticBeam {
         &mut self.beam
     }
 
-    /// Replaces valves by their tangents at the state that was evaluated last, or has them follow their characteristics again.
+    /// Replaces valves by their tangents at the last evaluated state, or restores their characteristics.
     pub fn linearize_valves(&mut self, linear: bool) {
         let beam = &mut self.beam;
         beam.now.tangents = match linear {
@@ -190,7 +191,7 @@ impl StaticBeam {
         };
     }
 
-    /// Flow that ports feed into a closed network which nothing lets out [m^3/s]: then there is no equilibrium.
+    /// Flow of ports into a closed network without outflow [m^3/s]; no equilibrium exists then.
     pub fn fed(&self) -> Option<f64> {
         self.closed.iter().map(|c| c.inflow).find(|inflow| *inflow != 0.0)
     }
@@ -211,13 +212,13 @@ impl StaticBeam {
     }
 }
 
-/// The sets of joined cells that no prescribed pressure reaches, with what is open at t = 1.
+/// Sets of connected cells without a prescribed pressure, for the connections open at t = 1.
 fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     let (system, now) = beam.instant(1.0);
     let (Some(fluid), layout) = (&system.fluid, &system.layout) else {
         return vec![];
     };
-    // Cells, then junctions, then whatever prescribes a pressure.
+    // Indices: cells, then junctions, then a common one for all prescribed pressures.
     let given = fluid.cells + fluid.junctions.len();
     let mut sets = Sets::new(given + 1);
     let index = |place: Place| match place {
@@ -268,7 +269,7 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
         own.parts.push((unknown, weight));
         own.sum += weight * start[unknown];
     }
-    // Flows that cancel but for round-off do cancel.
+    // A sum of flows that is zero up to rounding errors is set to zero.
     let mut passed = vec![0.0; closed.len()];
     for source in &fluid.sources {
         let root = sets.root(index(source.into));
@@ -286,7 +287,8 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     closed.into_iter().map(|(_, c)| c).collect()
 }
 
-/// What ports have let into closed cells [m^3]: `volumes` of those that prescribe one, and what the others have pumped.
+/// Volume injected by ports into closed cells [m^3]: `volumes` of ports that prescribe one, and the volumes pumped by
+/// the others.
 fn let_in(closed: &Closed, volumes: &[f64], pumped: &[[f64; 2]], t: f64) -> f64 {
     let by_flow = |source: usize| pumped.get(source).map_or(0.0, |[from, to]| from + t * (to - from));
     closed

@@ -1,4 +1,4 @@
-//! The pattern of the Jacobian, found by running the residual on numbers that remember what they depend on.
+//! Sparsity tracer: evaluates the residual with numbers that record their dependence on unknowns.
 
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -6,7 +6,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use crate::discrete::{System, TimeData, Workspace, residual};
 use crate::numerics::Scalar;
 
-/// A number known only by the unknowns it depends on: an index into the thread's table of sorted sets.
+/// A number represented only by the unknowns it depends on: an index into the thread's table of sorted sets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trace(u32);
 
@@ -48,7 +48,7 @@ impl Trace {
     }
 }
 
-/// On which unknowns, and on which strains due to pressure, numbered behind them, each of what an evaluation gives depends; ascending.
+/// Dependence of each output of an evaluation on unknowns, and on strains by pressure, which are numbered after the unknowns; ascending.
 #[derive(Clone, Debug)]
 pub struct Dependence {
     /// Equations.
@@ -57,12 +57,12 @@ pub struct Dependence {
     pub moments: Vec<Vec<u32>>,
     /// Normal forces of cells.
     pub forces: Vec<Vec<u32>>,
-    /// The strains themselves, in the order of [`crate::discrete::workspace::Coupling::strains_mut`].
+    /// The strains by pressure, in the order of [`crate::discrete::workspace::Coupling::strains_mut`].
     pub strains: Vec<Vec<u32>>,
 }
 
 impl Dependence {
-    /// Of a system's residual, on unknowns and their rates.
+    /// Traces a system's residual as a function of unknowns and rates.
     pub fn new(system: &System, now: &TimeData) -> Self {
         let n = system.layout.len;
         SETS.with_borrow_mut(|sets| {
@@ -100,7 +100,7 @@ impl Dependence {
     }
 }
 
-/// What depends on both, on one, or on what is added to it.
+/// Operators whose result depends on both operands, or on one operand and a constant.
 macro_rules! operators {
     ($($Op:ident $op:ident),*; $($Onto:ident $onto:ident),*) => {
         $(impl $Op for Trace {

@@ -1,16 +1,16 @@
-//! Full turns, which are counted on from one state to the next.
+//! Unwrapping of angles from one state to the next.
 
 use super::{BeamDae, PerturbedSystems};
 use crate::discrete::turns::Turns;
 
 impl BeamDae {
-    /// Counts full turns on from the state that was evaluated last.
+    /// Continues the unwrapping from the last evaluated state.
     pub fn keep_turns(&mut self) -> &Turns {
         self.hold_turns(&Turns::of(&self.system, &self.now, &self.plain.workspace));
         &self.now.turns
     }
 
-    /// Counts full turns on from these angles.
+    /// Continues the unwrapping from these angles.
     pub fn hold_turns(&mut self, turns: &Turns) {
         for beam in self.perturbed.iter_mut().flat_map(PerturbedSystems::beams_mut) {
             beam.hold_turns(turns);
@@ -19,7 +19,7 @@ impl BeamDae {
         self.now.turns.clone_from(turns);
     }
 
-    /// Counts full turns along the beam, and at its root on from where they stand, at a scaled state.
+    /// Unwraps angles along the beam at a scaled state; at its root the present number of turns is kept.
     pub fn find_turns(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.visit(t, y, yp, |_, _, _, _| ());
         self.keep_turns();

@@ -1,4 +1,4 @@
-//! What is attached to the beam, on a mesh.
+//! Attachments of the beam, on a mesh.
 
 use super::residual::momentum;
 use super::turns::nearest;
@@ -6,24 +6,25 @@ use super::{Mesh, System, TimeData, Workspace};
 use crate::model::{Attachment, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
 
-/// An attachment between the nodes, and between the midpoints of cells, on its two sides.
+/// An attachment, at a place between nodes and between midpoints of cells.
 ///
-/// `[E49]` Its place moves as the nodes do between which it is, and what it does is shared among them by the same weights, the hat functions of
-/// [E46], so that its work is exact; masses are shared likewise:
+/// `[E49]` Its motion is interpolated between the adjacent nodes. Its force and mass are distributed to them with the same weights, the
+/// hat functions of [E46], so that its work is exact:
 ///
 /// ```text
 /// ū = Σ hat_i u_i      F = f - k ū - c ū_t      f_i = hat_i F      m h_i gains hat_i M      E gains k ū²/2
 /// ```
 ///
-/// `[E68]` A follower turns with the beam, or with its section where that shears, at the angle of its place, and is shared likewise:
+/// `[E68]` A follower force rotates with the beam, or with the section if sections shear, at the angle of its place. It is distributed
+/// with the same weights:
 ///
 /// ```text
 /// F gains T e_t(φ) + S e_n(φ)      φ = φ_c - (θ - θ_c) κ_i, c its cell and i the node beside it; at ends the angle of [E11]
 /// small rotations   F gains (g T φ - S, T)
 /// ```
 ///
-/// `[E50]` A rotational spring takes the angle between the midpoints of its two cells, and its couple is shared among them; the beam between
-/// is in series with it, in the half cell at an end too, where one cell alone takes the couple:
+/// `[E50]` A rotational spring acts on the angle interpolated between the midpoints of its two cells, and its couple is distributed to
+/// them. The beam in between is in series with it, also in the half cell at an end, where only one cell receives the couple:
 ///
 /// ```text
 /// φ̄ = (1 - s) φ_c + s φ_{c+1}      h r_c λ_c² gains (1 - s) K φ̄, c + 1 gains s K φ̄      E gains K φ̄²/2
@@ -33,15 +34,15 @@ use crate::numerics::{Planar, Scalar};
 pub struct Attached {
     /// Number of the attachment in the model.
     pub number: usize,
-    /// The node before it.
+    /// Node before the attachment.
     pub node: usize,
-    /// Weights of that node and the next.
+    /// Weights of that node and of the next.
     pub weights: [f64; 2],
-    /// Springs across and along [N/m].
+    /// Transverse and axial springs [N/m].
     pub stiffness: Planar<f64>,
-    /// Dashpots across and along [N s/m].
+    /// Transverse and axial dashpots [N s/m].
     pub damping: Planar<f64>,
-    /// A cell, a node at one of its ends, and how far beyond the cell's midpoint it is [m].
+    /// Cell, a node at one of its ends, and the distance of the place beyond the cell's midpoint [m].
     beyond: (usize, usize, f64),
     /// Two cells with their weights.
     cells: [(usize, f64); 2],
@@ -50,7 +51,8 @@ pub struct Attached {
 }
 
 impl Attached {
-    /// All of a model in the order of their places, with the masses of the nodes [kg], of which the beam has those of these lengths [m].
+    /// Attachments of a model, ordered by place, and the masses of the nodes [kg], from the beam lengths [m] of the nodes and from the
+    /// attachments.
     pub fn all(attachments: &[Attachment], section: &Section, mesh: &Mesh, lengths: &[f64]) -> (Vec<Self>, Vec<f64>) {
         let mut all: Vec<_> = (0..attachments.len())
             .map(|number| Self::new(number, &attachments[number], section, mesh))
@@ -93,13 +95,13 @@ impl Attached {
         }
     }
 
-    /// What its two nodes have at its place.
+    /// Interpolates nodal values at the attachment.
     #[inline]
     pub fn between<T: Scalar>(&self, values: &[Planar<T>]) -> Planar<T> {
         values[self.node] * self.weights[0] + values[self.node + 1] * self.weights[1]
     }
 
-    /// Forces that are given, those that turn with the beam at the angle of its place [N].
+    /// Given forces [N], including followers at the angle of the place.
     #[inline]
     pub fn given<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> Planar<T> {
         let given = now.point_force[self.number];
@@ -131,12 +133,12 @@ impl Attached {
         Planar::new(v.x * -self.damping.x, v.z * -self.damping.z)
     }
 
-    /// The cell before its rotational spring, if it has one.
+    /// Cell before the rotational spring, if there is one.
     pub(super) fn turns_at(&self) -> Option<usize> {
         (self.turning_stiffness > 0.0).then_some(self.cells[0].0)
     }
 
-    /// Angle at its rotational spring, full turns counted.
+    /// Unwrapped angle at the rotational spring.
     #[inline]
     fn angle<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> T {
         let sections = &w.shape.sections.angle;
@@ -151,7 +153,7 @@ impl Attached {
         a + b
     }
 
-    /// Energy of its springs [J].
+    /// Energy of the springs [J].
     pub fn energy(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         let (u, angle) = (self.between(&w.motion.u), self.angle(system, now, w));
         let turning = self.turning_stiffness * angle * angle;
@@ -159,14 +161,14 @@ impl Attached {
     }
 }
 
-/// The node before a place in units of cells, and the weights of that node and the next.
+/// Node before a place, given in units of cells, and the weights of that node and of the next.
 pub(super) fn share(place: f64, cells: usize) -> (usize, [f64; 2]) {
     let node = (place as usize).min(cells - 1);
     let share = place - node as f64;
     (node, [1.0 - share, share])
 }
 
-/// What is attached next to a node, with the node's weight.
+/// Attachments next to a node, with the node's weight.
 #[inline]
 pub fn at_node(attached: &[Attached], node: usize) -> impl Iterator<Item = (&Attached, f64)> {
     let first = attached.partition_point(|a| a.node + 1 < node);
@@ -193,7 +195,7 @@ pub fn turning<T: Scalar>(
     }
 }
 
-/// Torque of all rotational springs on the beam, in the sense of growing φ [N m].
+/// Torque of all rotational springs on the beam, positive in the direction of growing φ [N m].
 pub fn torque(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let couples = system
         .attached

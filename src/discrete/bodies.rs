@@ -1,4 +1,4 @@
-//! What is attached to the beam and resists its turning, on a mesh.
+//! Attached bodies with rotary inertia, on a mesh.
 
 use super::attached::share;
 use super::residual::solid;
@@ -7,9 +7,9 @@ use crate::case::{ResolvedEnd, Rotation};
 use crate::model::{Attachment, Kinematics};
 use crate::numerics::{Planar, Scalar};
 
-/// A body on the beam: its rotary inertia, and a mass whose centre lies beside the beam's line.
+/// A body on the beam: rotary inertia, and a mass with its center beside the beam's line.
 ///
-/// `[E69]` Its angle is that of up to four cells around its place, and its couple is shared among them:
+/// `[E69]` Its angle is a weighted mean over up to four cells around its place, and its couple is distributed to them:
 ///
 /// ```text
 /// φ̄ = Σ w_c φ_c      h r_c λ_c² gains w_c J φ̄_tt      E gains J φ̄_t²/2
@@ -18,12 +18,13 @@ use crate::numerics::{Planar, Scalar};
 /// within half a cell of an end that turns   w = (a, 1 - a)   a² = 3/2 - d/h,  d the distance to the end
 /// ```
 ///
-/// A couple bends the beam from its support to its place, so its own angle is `C θ̄/EI`; on the mesh it is `C Σ h_i m_i²/EI`, m_i the share that
-/// a node carries. With weights for which both are the same the beam is neither stiffer nor softer at the place than it is, and
-/// frequencies are of second order. Next to an end that turns the place cannot be kept too: it then is off by less than a third of a cell,
-/// which only what bends the very end can tell.
+/// A couple bends the beam between its support and the place: its angle is `C θ̄/EI`, and on the mesh `C Σ h_i m_i²/EI`, with the share
+/// m_i carried by node i. The weights equate both: the beam has its exact stiffness at the place, and frequencies are of second order.
+/// Next to an end that can rotate, the place itself cannot be exact as well. It is then off by less than a third of a cell, which affects
+/// only bending at the very end.
 ///
-/// `[E70]` The mass centre turns with the beam, or with its section where that shears, b across and a along:
+/// `[E70]` The mass center rotates with the beam, or with the section if sections shear; its offset is b across and a
+/// along:
 ///
 /// ```text
 /// x_G = x̄ + q(φ̄)      q = b (cos φ, -sin φ) + a (sin φ, cos φ)      q' = dq/dφ      f its weight and body force
@@ -31,18 +32,18 @@ use crate::numerics::{Planar, Scalar};
 /// small rotations   q = (b + a φ - g b φ²/2, a - b φ - g a φ²/2)
 /// ```
 ///
-/// Lagrange's equations of these energies, whatever q is: with it the balance of energy is exact in all kinematics.
+/// These are Lagrange's equations of the energies for any q: the energy balance is exact in all kinematics.
 #[derive(Clone, Debug)]
 pub struct Body {
     /// Number of the attachment in the model.
     pub number: usize,
-    /// The node before it.
+    /// Node before the body.
     pub node: usize,
-    /// Weights of that node and the next.
+    /// Weights of that node and of the next.
     hats: [f64; 2],
-    /// First of its cells.
+    /// First of the body's cells.
     first: usize,
-    /// Weights of its cells; 0 where there are fewer.
+    /// Weights of the body's cells; 0 for missing cells.
     weights: [f64; 4],
     /// `J` [kg m²].
     inertia: f64,
@@ -52,13 +53,13 @@ pub struct Body {
     offset: Planar<f64>,
 }
 
-/// Derivatives by the angle of where a mass centre is, `q'` and `q''` [m].
+/// Derivatives of the position of a mass center by the angle, `q'` and `q''` [m].
 struct Arm<T> {
     first: Planar<T>,
     second: Planar<T>,
 }
 
-/// How a body moves.
+/// Motion of a body.
 struct Motion {
     arm: Arm<f64>,
     /// Velocity of the place [m/s].
@@ -68,7 +69,7 @@ struct Motion {
 }
 
 impl Body {
-    /// All of a model that turn.
+    /// Rotating bodies of a model.
     pub fn all(attachments: &[Attachment], ends: &[ResolvedEnd; 2], kinematics: Kinematics, mesh: &Mesh) -> Vec<Self> {
         if kinematics == Kinematics::Bar {
             return vec![];
@@ -93,7 +94,7 @@ impl Body {
         bodies.map(body).collect()
     }
 
-    /// Its cells with their weights.
+    /// Cells of the body with their weights.
     pub fn cells(&self) -> impl Iterator<Item = (usize, f64)> {
         (self.first..).zip(self.weights).filter(|(_, weight)| *weight != 0.0)
     }
@@ -120,7 +121,7 @@ impl Body {
         if !sections.is_empty() {
             return Planar::tangent(self.mean(|cell| sections[cell]));
         }
-        // from the first cell on, by what nodes between cells turn
+        // starts at the first cell and adds the rotations at the nodes between cells
         let mut turn = T::zero();
         let mut beyond = 1.0 - self.weights[0];
         for (node, weight) in (self.first + 1..system.mesh.cells).zip(&self.weights[1..]) {
@@ -159,7 +160,7 @@ impl Body {
         }
     }
 
-    /// `φ_t` of its cells.
+    /// `φ_t` of the body's cells.
     fn turning<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
         self.mean(|c| match system.model.kinematics {
             _ if !w.shape.sections.angle.is_empty() => w.shape.angle_rate[c],
@@ -168,7 +169,7 @@ impl Body {
         })
     }
 
-    /// `φ_tt` of its cells, as [E13] has it.
+    /// `φ_tt` of the body's cells, by [E13].
     fn speeding<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
         let (inverse, v, a) = (1.0 / system.mesh.h, &w.motion.v, &w.motion.a);
         self.mean(|c| match system.model.kinematics {
@@ -183,7 +184,8 @@ impl Body {
         })
     }
 
-    /// Force on its place beside that on its mass as if that were there, `-M (φ_tt q' + φ_t² q'')` [N].
+    /// Additional force of an offset mass at the place, beyond that of a mass without offset, `-M (φ_tt q' + φ_t² q'')`
+    /// [N].
     fn force<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Planar<T> {
         let arm = self.arm(system, w);
         let turning = self.turning(system, w).squared();
@@ -191,7 +193,7 @@ impl Body {
         carried * -self.mass
     }
 
-    /// Couple with which it resists to turn [N m].
+    /// Couple of the body's inertia and weight against rotation [N m].
     fn couple<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> T {
         let mut couple = T::zero();
         let moves = system.layout.inertia;
@@ -209,7 +211,7 @@ impl Body {
         couple
     }
 
-    /// Impulses [kg m/s] of nodes over jumps of their velocities.
+    /// Adds the impulses [kg m/s] of nodes by velocity jumps.
     pub fn add_impulses(&self, system: &System, w: &Workspace<f64>, jumps: &[Planar<f64>], all: &mut [Planar<f64>]) {
         let inverse = 1.0 / system.mesh.h;
         let turned = |c: usize| match system.model.kinematics {
@@ -238,14 +240,14 @@ impl Body {
         }
     }
 
-    /// Kinetic energy of the mass beside what it has as if it were at the place, and of the rotary inertia [J].
+    /// Kinetic energy of the offset mass beyond that of a mass at the place, and energy of the rotary inertia [J].
     pub fn energies(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
         let Motion { arm, v, turning } = self.motion(system, w);
         let own = 0.5 * turning * arm.first.squared() + arm.first.dot(v);
         [self.mass * turning * own, 0.5 * self.inertia * turning * turning]
     }
 
-    /// Momentum beside that of the mass at the place, and angular momentum about the place [kg m/s, kg m²/s].
+    /// Momentum beyond that of a mass at the place, and angular momentum about the place [kg m/s, kg m²/s].
     pub fn momenta(&self, system: &System, w: &Workspace<f64>) -> (Planar<f64>, f64) {
         let Motion { arm, v, turning } = self.motion(system, w);
         let moved = v + arm.first * turning;
@@ -253,14 +255,14 @@ impl Body {
         (arm.first * (self.mass * turning), about)
     }
 
-    /// Power of its weight beside that at the place [W].
+    /// Power of the weight beyond that of a mass at the place [W].
     pub fn weight_power(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         let Motion { arm, turning, .. } = self.motion(system, w);
         arm.first.dot(now.point_force[self.number].weight) * turning
     }
 
-    /// Force that the balance of momentum of nodes takes for one from outside, and torque about the place that the balance of the beam's
-    /// angular momentum does not know: of its weight, and what small rotations make of its own [N, N m].
+    /// External terms of the balances: a force in the balance of momentum of nodes, and a torque about the place in the balance of
+    /// angular momentum. The torque is that of the weight, and of the motion under small rotations [N, N m].
     pub fn outside(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f64>, f64) {
         let Motion { arm, v, turning } = self.motion(system, w);
         let of_weight = arm.first.dot(now.point_force[self.number].weight);
@@ -272,13 +274,13 @@ impl Body {
         (self.force(system, w), of_weight + of_motion)
     }
 
-    /// The mean of what two nodes have.
+    /// Interpolates values of the two adjacent nodes at the place.
     pub fn at_place(&self, of: impl Fn(usize) -> Planar<f64>) -> Planar<f64> {
         of(self.node) * self.hats[0] + of(self.node + 1) * self.hats[1]
     }
 }
 
-/// Force of each body on a node, where its mass moves beside the beam's line.
+/// Passes the force of each eccentric body on a node to `each`.
 #[inline]
 pub fn forces<T: Scalar>(system: &System, w: &Workspace<T>, node: usize, mut each: impl FnMut(Planar<T>)) {
     if !system.layout.inertia {
@@ -312,7 +314,7 @@ pub fn turning<T: Scalar>(
 fn cells(place: f64, cells: usize, turns: [bool; 2]) -> (usize, [f64; 4]) {
     let last = cells as f64;
     if place > 0.5 * last {
-        // as seen from the tip
+        // mirrored at the tip
         let (first, seen) = cells_from_root(last - place, cells, turns[1]);
         let count = seen.iter().rposition(|weight| *weight != 0.0).map_or(1, |k| k + 1);
         let mut weights = [0.0; 4];
@@ -324,7 +326,7 @@ fn cells(place: f64, cells: usize, turns: [bool; 2]) -> (usize, [f64; 4]) {
     cells_from_root(place, cells, turns[0])
 }
 
-/// The same for places in the half next to the root.
+/// First cell and weights for places in the half next to the root.
 fn cells_from_root(place: f64, cells: usize, turns: bool) -> (usize, [f64; 4]) {
     if cells == 1 {
         return (0, [1.0, 0.0, 0.0, 0.0]);

@@ -1,11 +1,12 @@
-//! Where a beam crosses itself.
+//! Self-crossing of the beam.
 
 use super::{System, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
 
-/// Two places along the undeformed beam [m] at which its line crosses itself, the first pair found; none where it does not. A line whose
-/// tangents all lie within a right angle of their mean cannot; of others, only cells near enough to each other are compared. Allocates nothing.
+/// Returns two places along the undeformed beam [m] at which its line crosses itself (the first pair found), or none. A line whose
+/// tangents are all within a right angle of their mean cannot cross itself. For others, only cells that are sufficiently close are
+/// compared. Does not allocate.
 pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
     let cells = system.mesh.cells;
     if system.model.kinematics != Kinematics::FiniteRotation {
@@ -24,7 +25,7 @@ pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
         let (a, b) = (at(first), at(first + 1));
         let mut second = first + 2;
         while second < cells {
-            // cells between two that are apart by some distance are as many as their lengths need at least
+            // the distance between two cells requires a minimum number of cells in between
             let apart = (at(second) - a).squared().sqrt();
             let near = apart <= 2.0 * longest;
             if near && let Some([s, t]) = meet([a, b], [at(second), at(second + 1)]) {
@@ -40,7 +41,8 @@ pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
     None
 }
 
-/// Where two straight pieces meet, as parts of each from 0 to 1; none where they do not, or are parallel.
+/// Intersection of two straight segments, as fractions of each from 0 to 1; none if they do not intersect or are
+/// parallel.
 fn meet([a, b]: [Planar<f64>; 2], [c, d]: [Planar<f64>; 2]) -> Option<[f64; 2]> {
     let (along, other, between) = (b - a, d - c, c - a);
     let cross = |p: Planar<f64>, q: Planar<f64>| p.x * q.z - p.z * q.x;
@@ -53,7 +55,7 @@ fn meet([a, b]: [Planar<f64>; 2], [c, d]: [Planar<f64>; 2]) -> Option<[f64; 2]> 
 mod tests {
     use super::*;
 
-    /// Goal: pieces that meet do so where they do, parallel and distant ones nowhere.
+    /// Goal: the intersection of crossing segments is exact; parallel and distant segments have none.
     #[test]
     fn pieces_meet_where_they_cross() {
         let at = |x: f64, z: f64| Planar { x, z };

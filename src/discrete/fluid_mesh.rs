@@ -8,10 +8,10 @@ use crate::case::schema::BladderEnd;
 use crate::model::network::{AccumulatorLaw, CheckValve, FlowLaw, Link, LinkKind, Node};
 use crate::model::{Storage, Wet};
 
-/// Where a link ends, on the mesh.
+/// End of a link on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
-    /// A cell, with the resistance of half of it in the way.
+    /// A cell; half of its resistance is in series.
     Cell(usize),
     /// An unknown junction pressure.
     Junction(usize),
@@ -22,35 +22,35 @@ pub enum Place {
 /// A link on the mesh.
 #[derive(Clone, Debug)]
 pub struct MeshLink {
-    /// Number among the network's links; none of a face between cells.
+    /// Number among the network's links; none for a face between cells.
     pub number: Option<usize>,
-    /// Where positive flow comes from.
+    /// Source of positive flow.
     pub from: Place,
-    /// Where it goes.
+    /// Destination of positive flow.
     pub to: Place,
-    /// Resistance of the half cells at its ends [Pa s/m^3]; of a face all there is.
+    /// Resistance of the half cells at its ends [Pa s/m^3]; for a face the total resistance.
     pub half_cells: f64,
-    /// Resistance in between, which a valve scales [Pa s/m^3].
+    /// Resistance in between, scaled by the opening of a valve [Pa s/m^3].
     pub resistance: f64,
-    /// Resistance of its pump [Pa s/m^3].
+    /// Resistance of the link's pump [Pa s/m^3].
     pub of_pump: f64,
-    /// Number of its pump among all.
+    /// Number of the link's pump among all pumps.
     pub pump: Option<usize>,
-    /// Its check valve.
+    /// Check valve of the link.
     pub check_valve: Option<CheckValve>,
-    /// What it is; none of a face between cells.
+    /// Kind of the link; none for a face between cells.
     pub kind: Option<LinkKind>,
-    /// Flow that does not follow from pressures alone.
+    /// Law of a flow that is not given by pressures alone.
     pub flow: Option<MeshFlow>,
 }
 
 impl MeshLink {
-    /// Whether it is nothing but a resistance.
+    /// True if the link is only a resistance.
     pub fn is_plain(&self) -> bool {
         self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none()
     }
 
-    /// All resistance along it, valves wide open [Pa s/m^3].
+    /// Total resistance with open valves [Pa s/m^3].
     pub fn in_series(&self) -> f64 {
         self.half_cells + self.of_pump + self.resistance
     }
@@ -61,9 +61,9 @@ impl MeshLink {
 pub struct MeshFlow {
     /// Number among the flows that are unknowns.
     pub number: usize,
-    /// Number of its first branch among all.
+    /// Number of its first friction branch among all.
     pub branch: usize,
-    /// Its law.
+    /// Law of the flow.
     pub law: FlowLaw,
 }
 
@@ -72,22 +72,22 @@ pub struct MeshFlow {
 pub struct MeshSource {
     /// Number among the network's sources.
     pub number: usize,
-    /// Where it enters.
+    /// Cell or junction that it enters.
     pub into: Place,
-    /// Resistance of the half cell behind [Pa s/m^3].
+    /// Resistance of the half cell behind the port [Pa s/m^3].
     pub half_cell: f64,
 }
 
-/// An accumulator on the mesh, or what fluid that is compressed stores where tubes with inertia meet.
+/// An accumulator on the mesh, or the storage of compressible fluid at a junction of tubes with inertia.
 #[derive(Clone, Copy, Debug)]
 pub struct MeshAccumulator {
-    /// Number among the network's accumulators; none of a meeting of tubes.
+    /// Number among the network's accumulators; none for a junction of tubes.
     pub number: Option<usize>,
-    /// Its place among the junctions of the mesh.
+    /// Its index among the junctions of the mesh.
     pub junction: usize,
-    /// The component of the network that it is part of.
+    /// Component of the network to which it belongs.
     pub component: usize,
-    /// Its law.
+    /// Law of the accumulator.
     pub law: AccumulatorLaw,
 }
 
@@ -102,56 +102,56 @@ pub struct MeshBridge {
     pub to: Place,
 }
 
-/// Cells of all bladders: bladder b holds cells `b cells_per_bladder ..`, inlet to outlet; upper row first.
+/// Cells of all bladders: bladder b has the cells from `b cells_per_bladder`, inlet to outlet; upper row first.
 #[derive(Clone, Debug)]
 pub struct FluidMesh {
-    /// Bladders, `n`.
+    /// Number of bladders, `n`.
     pub bladders: usize,
-    /// Finite volumes in each.
+    /// Number of finite volumes in each bladder.
     pub cells_per_bladder: usize,
-    /// All cells.
+    /// Total number of cells.
     pub cells: usize,
     /// Length of a cell `ds` [m].
     pub ds: f64,
-    /// Conductance between neighbouring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)].
+    /// Conductance between neighboring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)].
     pub conductance: f64,
-    /// Whether flow between them creeps: it follows from their pressures then, and is a link where it does not.
+    /// True if flow between cells is creeping and given by their pressures; otherwise the faces are links.
     pub creeping: bool,
     /// Bladders whose cells' areas are unknowns, ascending.
     pub flowing: Vec<usize>,
-    /// Their cells, neighbours taken together: the unknowns follow one another in this order.
+    /// Ranges of their cells, merged for neighboring bladders: the unknowns are in this order.
     pub runs: Vec<Range<usize>>,
     /// Junctions whose pressures are unknowns, by their numbers in the network.
     pub junctions: Vec<usize>,
-    /// Of each of them that is of a group from which only tubes with inertia lead on, the first of the group: it is accelerations that decide the level of
-    /// pressure there.
+    /// For each of these junctions in a group from which only tubes with inertia lead, the first junction of the group. The pressure
+    /// level of such a group is determined by accelerations.
     pub adrift: Vec<Option<usize>>,
-    /// Flows that are unknowns.
+    /// Number of flows that are unknowns.
     pub flows: usize,
-    /// Branches of all of them.
+    /// Number of friction branches of all flows.
     pub branches: usize,
-    /// Links along which fluid flows; behind those of the network faces between cells.
+    /// Links with flow: those of the network, followed by faces between cells.
     pub links: Vec<MeshLink>,
-    /// Which of them are what.
+    /// Links by type.
     pub sorted: SortedLinks,
     /// Prescribed flows.
     pub sources: Vec<MeshSource>,
     /// Bridges of check valves.
     pub bridges: Vec<MeshBridge>,
-    /// Cells and accumulators whose unknowns are counted from what ports of prescribed volume let in.
+    /// Cells and accumulators whose unknowns are relative to the volume from ports of prescribed volume.
     pub shares: Vec<Share>,
-    /// Accumulators: their junctions' unknowns are volumes.
+    /// Accumulators; the unknowns of their junctions are volumes.
     pub accumulators: Vec<MeshAccumulator>,
-    /// Links with a pump, in the order of these.
+    /// Links with a pump, in ascending order.
     pub pumps: Vec<usize>,
     /// Volume change of each lumped network at the start [m^3].
     pub volume_at_start: Vec<f64>,
-    /// Area change of each cell at the start, where it stays that [m^2].
+    /// Area change of each cell at the start, for cells that keep it [m^2].
     pub area_at_start: Vec<f64>,
 }
 
 impl FluidMesh {
-    /// Cells and links of the network, those that take part.
+    /// Creates the cells and links of the network that are simulated.
     pub fn new(wet: &Wet, cells_per_bladder: usize) -> Self {
         let network = &wet.network;
         let bladders = 2 * wet.per_row;
@@ -164,7 +164,7 @@ impl FluidMesh {
         let junctions: Vec<usize> = (0..network.junctions.len())
             .filter(|&j| wet.flows && !pooled(network.component_of_junction[j]))
             .collect();
-        // Where a link ends; nowhere in a bladder that takes no part.
+        // End of a link; none in a bladder without flow.
         let place = |node: Node| match node {
             Node::Cell { bladder, .. } if !flows(bladder) => None,
             Node::Cell { bladder, end } => Some(Place::Cell(match end {
@@ -182,8 +182,9 @@ impl FluidMesh {
             branches += law.branches().count();
             MeshFlow { number, branch, law }
         };
-        // of a tube, or of whatever else joins bladders and ports, and of half cells at its ends; behind a junction what is no tube goes on creeping, so
-        // that its pressure follows from flows
+        // Law of a tube, or of another connection of bladders and ports, including the half cells at its ends. Other links than tubes at
+        // a
+        // junction remain creeping, so that the junction's pressure follows from flows.
         let along = network.along_bladders.as_ref();
         let law = |link: &Link, ends: [Place; 2]| {
             let own = link.tube.map(|tube| tube.law);
@@ -276,7 +277,7 @@ impl FluidMesh {
                 members.into_iter().for_each(|k| adrift[k] = Some(first));
             }
         }
-        // in the order of their unknowns
+        // order of the accumulators' unknowns
         accumulators.sort_by_key(|one| one.junction);
         let mut mesh = Self {
             bladders,
@@ -305,8 +306,8 @@ impl FluidMesh {
         mesh
     }
 
-    /// Keeps the volumes of the start, in bladders and lumped networks that keep theirs. The start may have been made with other cells along
-    /// each bladder than these: what is kept are means.
+    /// Stores the volumes at the start for bladders and lumped networks that keep theirs. `areas` may have another number of cells per
+    /// bladder; their means are used.
     pub fn keep(&mut self, areas: &[f64], wet: &Wet) {
         let given = areas.len() / self.bladders;
         let mean = |bladder: usize| areas[bladder * given..(bladder + 1) * given].iter().sum::<f64>() / given as f64;
@@ -322,7 +323,7 @@ impl FluidMesh {
         }
     }
 
-    /// Mean pressure at the other ends of what meets at a junction, of those of cells and ports [Pa].
+    /// Mean pressure at the other ends of the links at a junction, of cells and ports only [Pa].
     pub fn around(&self, junction: usize, cells: &[f64], ports: &[f64]) -> f64 {
         let here = Place::Junction(junction);
         let known = self.links.iter().filter_map(|link| {
@@ -341,12 +342,12 @@ impl FluidMesh {
         sum / f64::from(count.max(1))
     }
 
-    /// Faces between cells of bladders, by the cells on either side.
+    /// Faces between cells of bladders, as pairs of adjacent cells.
     pub fn faces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         faces(&self.flowing, self.cells_per_bladder)
     }
 
-    /// Faces between cells of a bladder through which flow creeps, by the cells on either side.
+    /// Faces with creeping flow between cells of a bladder, as pairs of adjacent cells.
     #[inline]
     pub fn creeping_faces(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         let bladders = if self.creeping { &self.flowing[..] } else { &[] };
@@ -360,14 +361,14 @@ impl FluidMesh {
     }
 }
 
-/// Faces between cells of bladders, by the cells on either side.
+/// Faces between cells of the given bladders, as pairs of adjacent cells.
 #[inline]
 fn faces(bladders: &[usize], cells_per_bladder: usize) -> impl Iterator<Item = [usize; 2]> + '_ {
     let of = move |&bladder: &usize| bladder * cells_per_bladder + 1..(bladder + 1) * cells_per_bladder;
     bladders.iter().flat_map(of).map(|cell| [cell - 1, cell])
 }
 
-/// Ranges of the cells of bladders, those of neighbours in one.
+/// Ranges of the cells of bladders, merged for neighboring bladders.
 fn runs(bladders: &[usize], cells_per_bladder: usize) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = vec![];
     for &bladder in bladders {

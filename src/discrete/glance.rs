@@ -1,4 +1,4 @@
-//! What a run watches on its way: values that may become extreme between two samples, each with its rate.
+//! Monitored values of a run, which may have extrema between two samples, each with its rate.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::numerics::Planar;
 /// A value and its rate in time.
 pub type Moving = [f64; 2];
 
-/// Values with their rates at an instant, signs kept.
+/// Monitored values with their rates at an instant, signed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Glance {
     /// Time [s].
@@ -27,20 +27,20 @@ pub struct Glance {
     pub tube: usize,
     /// Tube of the largest Mach number.
     pub fast: usize,
-    /// Least pressure in junctions, vessels and where it is pumped [Pa].
+    /// Lowest pressure in junctions, accumulators and at pumped ports [Pa].
     pub thinnest: f64,
-    /// Where that is: a junction, or behind these a port that gives flow or volume.
+    /// Location of this pressure: index of a junction, or, after these, of a port that prescribes flow or volume.
     #[serde(default)]
     pub thinnest_at: usize,
-    /// Bladder of the lowest pressure.
+    /// Bladder with the lowest pressure.
     #[serde(default)]
     pub lowest: usize,
-    /// Where the beam crosses itself: both places along the undeformed beam [m].
+    /// Self-crossing of the beam: both places along the undeformed beam [m].
     #[serde(default)]
     pub crossing: Option<[f64; 2]>,
     /// Largest `|u1 - u1(root)|` [m].
     pub deflection: f64,
-    /// Largest distance by which a node has moved against the root [m].
+    /// Largest displacement of a node relative to the root [m].
     pub moved: f64,
 }
 
@@ -53,36 +53,37 @@ pub enum Watched {
     Tip3,
     /// Slope angle of the tip [rad].
     Angle,
-    /// `u1` in the middle [m].
+    /// `u1` at the middle [m].
     Middle1,
-    /// `u1` where it is largest [m].
+    /// `u1` of largest magnitude [m].
     Largest1,
-    /// `u3` where it is largest [m].
+    /// `u3` of largest magnitude [m].
     Largest3,
     /// Highest pressure of a cell [Pa].
     High,
     /// Lowest pressure of a cell [Pa].
     Low,
-    /// Smallest cross-section of a bladder over that at rest.
+    /// Smallest cross-section of a bladder relative to that at rest.
     Opening,
     /// Largest area change of a bladder [m^2].
     Swelling,
     /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`.
     Strain,
-    /// Largest flow through a tube over its radius [m^2/s]: times `2 ρ_0/(π μ)` its Reynolds number.
+    /// Largest flow through a tube over its radius [m^2/s]; times `2 ρ_0/(π μ)` its Reynolds number.
     Flow,
     /// Largest `p_u + p_d` of a segment [Pa].
     Pressed,
-    /// How far out a section is in what is known of its energy at finite strain; 1 at the border.
+    /// Largest distance of a section from the origin in its strain ellipsoid, relative to the limit of its energy at
+    /// finite strain.
     Outermost,
-    /// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` where it is least: times `√ρ_0` its Mach number [m/(s Pa^(1/2))].
+    /// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` at its minimum [m/(s Pa^(1/2))]. Times `√ρ_0` it is the Mach number.
     Mach,
     /// Largest depth behind the face of a wall [m].
     Depth,
 }
 
 impl Watched {
-    /// How many there are.
+    /// Number of monitored values.
     pub const COUNT: usize = 16;
 }
 
@@ -92,7 +93,7 @@ impl Glance {
         self.moving[which as usize]
     }
 
-    /// Looks at a state.
+    /// Evaluates the monitored values of a state.
     pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: State) -> Self {
         let w = &*w;
         let mut g = Self { t, ..Self::default() };
@@ -170,7 +171,7 @@ impl Glance {
     }
 }
 
-/// Places of the smallest and the largest value.
+/// Indices of the smallest and the largest value.
 fn extremes(values: &[f64]) -> (usize, usize) {
     let (mut low, mut high) = (0, 0);
     for (i, &value) in values.iter().enumerate() {
@@ -184,8 +185,8 @@ fn extremes(values: &[f64]) -> (usize, usize) {
     (low, high)
 }
 
-/// The displacement that is largest in size, with its rate: of the parabola through the largest of a node and its neighbours, since nodes of
-/// meshes within each other agree about what is between them.
+/// Displacement of largest magnitude, with its rate, from the parabola through the largest nodal value and its neighbors. The parabola
+/// reduces differences between meshes of different size.
 fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
     let mut most = 0;
     for (i, u) in motion.u.iter().enumerate() {
@@ -209,7 +210,7 @@ fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
     [u, v].map(|[value, slope, bent]| value + top * (slope + 0.5 * top * bent))
 }
 
-/// Largest deflection across and largest motion of a node against the root [m].
+/// Largest transverse deflection and largest displacement of a node relative to the root [m].
 fn moved(w: &Workspace<f64>) -> (f64, f64) {
     let (mut across, mut squared) = (0.0_f64, 0.0_f64);
     for u in &w.motion.u {
@@ -220,7 +221,7 @@ fn moved(w: &Workspace<f64>) -> (f64, f64) {
     (across, squared.sqrt())
 }
 
-/// Rate of the tip's angle [rad/s]: that of its last cell and half a cell of the end's curvature.
+/// Rate of the tip's angle [rad/s], from its last cell and half a cell of the end's curvature.
 fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     if system.model.kinematics == Kinematics::Bar {

@@ -1,6 +1,6 @@
-//! Driven ends whose velocity jumps, and what sections that turn hand on of it.
+//! Velocity jumps of driven ends, and their transmission along the beam by rotary inertia.
 //!
-//! In no time only impulses count. Masses alone leave every free node as fast as it was; rotary inertia couples neighbours, `[E13]`
+//! At a jump only impulses matter. With point masses alone, free nodes keep their velocities; rotary inertia couples neighbors, `[E13]`
 //! and `[E27]`:
 //!
 //! ```text
@@ -8,11 +8,11 @@
 //! J = m y11/λ² (conservative), m y11 (published), n = (cos φ, -sin φ);  m y11, n = (1, 0) where rotary inertia has no axial part
 //! ```
 //!
-//! Bodies that turn with the beam, `[E69]` and `[E70]`, couple the nodes of their cells: these equations are solved by conjugate gradients,
-//! of which each body takes a few, with those above as the preconditioner.
+//! Bodies that rotate with the beam, `[E69]` and `[E70]`, couple the nodes of their cells. The equations are then solved by conjugate
+//! gradients, a few iterations per body, with the equations above as the preconditioner.
 //!
-//! Along a straight beam it is `Δv = Δv_0 exp(-θ/√y11)` on fine meshes, and the end takes `m √y11` along. The energy gains
-//! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere, the angular momentum what the impulses turn, both exactly.
+//! Along a straight beam this is `Δv = Δv_0 exp(-θ/√y11)` on fine meshes, and the end moves the mass `m √y11` with it. The energy gains
+//! `P·(v⁻ + v⁺)/2` at driven ends and nothing elsewhere; the angular momentum gains the moment of the impulses. Both are exact.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -22,9 +22,9 @@ use crate::case::schema::Effect;
 use crate::model::Kinematics;
 use crate::numerics::Planar;
 
-/// Part of the impulses by which conjugate gradients may be wrong.
+/// Largest error of the conjugate gradients relative to the impulses.
 const CLOSE: f64 = 1e-14;
-/// Their steps, at most, for each body: it brings three directions of its own, round-off some more.
+/// Maximum number of iterations per body: a body adds three search directions, rounding errors add more.
 const TRIES: usize = 8;
 
 /// Velocities or impulses of all nodes.
@@ -35,12 +35,12 @@ pub fn velocities(w: &Workspace<f64>) -> Nodal {
     w.motion.v.clone()
 }
 
-/// Jumps of velocity of all nodes [m/s] that follow from those of driven ends; none where no sections turn. The workspace holds
-/// the place of the beam.
+/// Velocity jumps of all nodes [m/s] caused by those of driven ends; none if nothing couples nodes or directions. The workspace contains
+/// the position of the beam.
 pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f64>) -> Option<Nodal> {
     let l = &system.layout;
     let around = system.model.surroundings.as_ref();
-    // the fluid around couples both directions of a node, sections that turn couple nodes
+    // the surrounding fluid couples both directions of a node, rotating sections couple nodes
     let coupled =
         system.turns_with_its_line() || around.is_some_and(|s| s.added_mass > 0.0) || turned(system).is_some();
     if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
@@ -65,13 +65,13 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     })
 }
 
-/// Bodies that turn with the beam's line, where there are some: those on sections that shear turn with these.
+/// Bodies that rotate with the beam's line, if any; on sections that shear, bodies rotate with these.
 fn turned(system: &System) -> Option<&[Body]> {
     let with_line = !system.model.effects.has(Effect::Shear) && !system.bodies.is_empty();
     with_line.then_some(&system.bodies)
 }
 
-/// Conjugate gradients from jumps that are right without bodies: what free nodes still take of impulses goes to nothing.
+/// Conjugate gradients, starting from the jumps without bodies; reduces the remaining impulses of free nodes to zero.
 fn with_bodies(system: &System, given: &[[Option<f64>; 2]], mut jumps: Nodal, w: &Workspace<f64>) -> Nodal {
     let still: Vec<_> = given.iter().map(|node| node.map(|jump| jump.map(|_| 0.0))).collect();
     let taken = |jumps: &Nodal| {
@@ -109,13 +109,13 @@ fn with_bodies(system: &System, given: &[[Option<f64>; 2]], mut jumps: Nodal, w:
     jumps
 }
 
-/// Impulses [kg m/s] that the fluid around takes from nodes over jumps of their velocities.
+/// Impulses [kg m/s] that nodes transfer to the surrounding fluid by velocity jumps.
 pub fn taken_around(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> Nodal {
     let of = |(node, jump): (usize, &Planar<f64>)| planar(added(system, w, node) * vector(*jump));
     jumps.iter().enumerate().map(of).collect()
 }
 
-/// Impulses of nodes [kg m/s] over jumps of their velocities: what outer forces have given them.
+/// Impulses of nodes [kg m/s] by velocity jumps, caused by external forces.
 pub fn impulses(system: &System, jumps: &[Planar<f64>], w: &Workspace<f64>) -> Nodal {
     let mesh = &system.mesh;
     let mut all: Nodal = jumps
@@ -172,7 +172,8 @@ fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
     inertia * n * n.transpose()
 }
 
-/// Thomas' algorithm, node by node, without bodies: these impulses, or none, where no jump is given.
+/// Thomas' algorithm, node by node, without bodies. The right-hand side consists of the given jumps, and of `impulses`
+/// or zero elsewhere.
 fn solve(system: &System, given: &[[Option<f64>; 2]], impulses: Option<&Nodal>, w: &Workspace<f64>) -> Nodal {
     let mesh = &system.mesh;
     let beside = |cell: Option<usize>| cell.map_or(Matrix2::zeros(), |cell| coupling(system, w, cell));
@@ -194,7 +195,7 @@ fn solve(system: &System, given: &[[Option<f64>; 2]], impulses: Option<&Nodal>, 
                 sum[k] = *jump;
             }
         }
-        // masses make it positive
+        // positive definite because of the masses
         let inverse = pivot.try_inverse().unwrap_or_default();
         (upper, sums) = (inverse * next, inverse * sum);
         eliminated.push((upper, sums));

@@ -1,4 +1,4 @@
-//! What ports of prescribed volume let in, and the places whose contents are counted from it.
+//! Volume injected by ports of prescribed volume, and the unknowns that are relative to it.
 
 use super::fluid_mesh::{FluidMesh, MeshLink, Place};
 use super::{System, TimeData};
@@ -6,7 +6,7 @@ use crate::model::network::{Feed, Network, Source};
 use crate::model::{LumpedKind, LumpedNetwork, Wet};
 use crate::numerics::sets::Sets;
 
-/// What stores fluid.
+/// Storage of fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Store {
     /// A cell; its unknown is an area.
@@ -15,20 +15,20 @@ pub enum Store {
     Vessel(usize),
 }
 
-/// A store whose unknown is counted from a share of what a source has let in, [E22].
+/// A store whose unknown is relative to a share of the volume injected by a source, [E22].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// Number among the network's sources.
     pub source: usize,
-    /// What stores it.
+    /// Store that receives the share.
     pub store: Store,
-    /// Change of the store's unknown with that volume: 1/m of a cell, 1 of an accumulator that takes all.
+    /// Change of the store's unknown with that volume: 1/m for a cell, 1 for an accumulator that receives everything.
     pub share: f64,
 }
 
-/// The shares of all sources that prescribe a volume: it is spread by compliance over what is joined to them by nothing that ever shuts,
-/// and where nothing stores there, over all that is joined to them. So what is unknown of each store is small, and exact where something
-/// shuts. There are none where a port of given pressure lets out what comes in: little of it may be there at any time.
+/// Shares of all sources that prescribe a volume. The volume is distributed by compliance over the stores connected without valves, or,
+/// if there are none, over all connected stores. The unknown of each store is therefore small, and exact if a valve closes. There are no
+/// shares if a port of given pressure releases the volume again, because little of it may remain.
 pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
     let network = &wet.network;
     let mut all = vec![];
@@ -66,13 +66,13 @@ pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
     all
 }
 
-/// Whether a source prescribes a volume, and no port of given pressure lets it out of its network.
+/// True if a source prescribes a volume, and no port of given pressure releases it from its network.
 pub fn is_kept(network: &Network, source: usize) -> bool {
     let Source { into, feed, .. } = &network.sources[source];
     matches!(feed, Feed::Volume(_)) && network.component_of(*into).is_some_and(|own| !network.lets_out(own))
 }
 
-/// Of each cell, then of each junction, whether it is joined to a place by links between others; neighbours in a bladder are.
+/// For each cell, then each junction: true if links connect it to the place `to`; neighboring cells of a bladder are connected.
 fn joined(fluid: &FluidMesh, to: Place, links: impl Iterator<Item = (Place, Place)>) -> Vec<bool> {
     let index = |place: Place| match place {
         Place::Cell(c) => Some(c),
@@ -91,7 +91,7 @@ fn joined(fluid: &FluidMesh, to: Place, links: impl Iterator<Item = (Place, Plac
     places.map(|place| Some(sets.root(place)) == own).collect()
 }
 
-/// What stores in places that are reached, with its compliance [m^3/Pa].
+/// Stores in connected places, with their compliances [m^3/Pa].
 fn stores(fluid: &FluidMesh, wet: &Wet, reached: &[bool]) -> Vec<(Store, f64)> {
     let cells = (0..fluid.cells).filter(|&c| reached[c]);
     let cells = cells.map(|c| (Store::Cell(c), wet.compliance() * fluid.ds));
@@ -101,7 +101,7 @@ fn stores(fluid: &FluidMesh, wet: &Wet, reached: &[bool]) -> Vec<(Store, f64)> {
     cells.chain(vessels).collect()
 }
 
-/// What ports of prescribed volume have let into a lumped network [m^3], and its rate [m^3/s].
+/// Volume injected into a lumped network by ports of prescribed volume [m^3], and its rate [m^3/s].
 pub fn into_lumped(wet: &Wet, lumped: &LumpedNetwork, now: &TimeData) -> [f64; 2] {
     let LumpedKind::Fed(sources) = &lumped.kind else {
         return [0.0; 2];
@@ -113,13 +113,14 @@ pub fn into_lumped(wet: &Wet, lumped: &LumpedNetwork, now: &TimeData) -> [f64; 2
     })
 }
 
-/// The pressure that this would make by the compliance of its bladders [Pa], and its rate [Pa/s]: the unknown pressure is counted from it, [E22].
+/// Pressure of the injected volume by the compliance of the bladders [Pa], and its rate [Pa/s]; the unknown pressure is relative to it,
+/// [E22].
 pub fn pressing(wet: &Wet, lumped: &LumpedNetwork, now: &TimeData) -> [f64; 2] {
     let compliance = wet.compliance() * wet.bladder_length * lumped.bladders.len() as f64;
     into_lumped(wet, lumped, now).map(|volume| volume / compliance)
 }
 
-/// Makes contents unknowns: takes from them what they are counted from. SI units.
+/// Subtracts the injected volumes from contents to obtain unknowns. SI units.
 pub fn count_from(system: &System, now: &TimeData, y: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;

@@ -1,21 +1,21 @@
 //! Staggered mesh of the beam: positions at nodes; stretch, angle, N and V at cell midpoints; curvature and M at nodes.
 
-/// `K` equal cells in each of `segments` equal segments.
+/// Mesh with `K` equal cells in each of `segments` equal segments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// Segments, `n/2` where there are bladders.
+    /// Number of segments, `n/2` if there are bladders.
     pub segments: usize,
-    /// `K`.
+    /// Cells per segment `K`.
     pub cells_per_segment: usize,
-    /// Cells, `segments K`.
+    /// Number of cells, `segments K`.
     pub cells: usize,
-    /// Nodes, `cells + 1`.
+    /// Number of nodes, `cells + 1`.
     pub nodes: usize,
     /// Cell length `h` [m].
     pub h: f64,
     /// Length of a segment `l_seg` [m].
     pub segment_length: f64,
-    /// Whether what it leaves out of the beam is of fourth order, [`super::residual::fourth`].
+    /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth`].
     pub fourth: bool,
 }
 
@@ -34,7 +34,7 @@ impl Mesh {
         }
     }
 
-    /// The same mesh, of fourth order or of second: with fewer than six cells the weights of its two ends would meet, and it is of second.
+    /// Sets the order of the mesh, 2 or 4. With fewer than six cells it remains 2, because the weights of both ends would overlap.
     #[must_use]
     pub fn of_order(self, order: u8) -> Self {
         Self {
@@ -43,12 +43,12 @@ impl Mesh {
         }
     }
 
-    /// Fewest cells of a beam that are of an order.
+    /// Minimum number of cells of a beam for an order.
     pub fn fewest(order: u8) -> usize {
         if order == 4 { 6 } else { 1 }
     }
 
-    /// Length that belongs to a node: `h`, at the ends `h/2`.
+    /// Length of a node: `h`, at the ends `h/2`.
     #[inline]
     pub fn node_length(&self, node: usize) -> f64 {
         if node == 0 || node + 1 == self.nodes {
@@ -58,13 +58,13 @@ impl Mesh {
         }
     }
 
-    /// `[E78]` Has what acts on nodes by their hat functions act so that its work on a smooth motion is of the order of the mesh:
+    /// `[E78]` Redistributes nodal loads of hat functions such that their work on a smooth motion has the order of the mesh:
     ///
     /// ```text
     /// ∫ b u dθ = Σ B_i (u_i - δ²u_i/12) + O(h^4)      B_i = ∫ b hat_i dθ      δ²u_0 = δ²u_1, at the other end alike
     /// ```
     ///
-    /// Total and first moment stay what they are. What is uniform comes to `(3/8, 7/6, 23/24, 1, ..) h b` (Gregory).
+    /// Total and first moment are unchanged. A uniform load becomes `(3/8, 7/6, 23/24, 1, ..) h b` (Gregory).
     pub fn lump(&self, values: &mut [f64]) {
         if !self.fourth {
             return;
@@ -86,7 +86,7 @@ impl Mesh {
         (if edge { 0.5 } else { 1.0 }) / self.cells_per_segment as f64
     }
 
-    /// Segments on the two sides of a node (the same twice inside a segment and at the ends).
+    /// Segments on both sides of a node (equal inside a segment and at the ends).
     #[inline]
     pub fn segments_of_node(&self, node: usize) -> (usize, usize) {
         let right = (node / self.cells_per_segment).min(self.segments - 1);

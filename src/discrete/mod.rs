@@ -1,4 +1,5 @@
-//! Space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact balances.
+//! Discretization in space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact
+//! balances.
 
 pub mod attached;
 pub mod bodies;
@@ -45,7 +46,7 @@ pub use touching::Touching;
 pub use valve_tangents::ValveTangents;
 pub use workspace::{State, Workspace};
 
-/// A model on a mesh: everything the residual needs besides time and state.
+/// A model on a mesh: all data of the residual except time and state.
 #[derive(Clone, Debug)]
 pub struct System {
     /// Physics.
@@ -58,56 +59,56 @@ pub struct System {
     pub layout: Layout,
     /// Distributed loads, sampled.
     pub loads: Vec<SampledLoad>,
-    /// What is attached to the beam, in the order of places.
+    /// Attachments of the beam, ordered by place.
     pub attached: Vec<Attached>,
-    /// Those of them that resist turning.
+    /// Attached bodies with rotary inertia.
     pub bodies: Vec<Body>,
-    /// Where walls are felt, in the order of places.
+    /// Contact points of the beam, ordered by place.
     pub touching: Vec<Touching>,
-    /// Places that are recorded.
+    /// Recorded places.
     pub probes: Vec<Probe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
-    /// Lengths whose mass nodes have, and over which what surrounds the beam acts on them [m].
+    /// Lengths over which mass and surroundings act on the nodes [m].
     pub lengths: Vec<f64>,
-    /// Whether nothing but loads, ends and sections acts on nodes: nothing surrounds the beam, is attached to it or touched by it.
+    /// True if only loads, ends and sections act on nodes: the beam has no surroundings, attachments or contacts.
     pub stands_alone: bool,
-    /// Whether any load is a distributed moment.
+    /// True if any load is a distributed moment.
     pub has_moments: bool,
-    /// Whether material damping acts.
+    /// True if there is material damping.
     pub damped: bool,
 }
 
 impl System {
-    /// Discretises a checked case with the effects that it chooses. Bladders that keep their volume keep what the same system
-    /// with areas as unknowns starts with.
+    /// Discretizes a checked case with its chosen effects. Bladders that keep their volume have that of the same system at the start,
+    /// computed with areas as unknowns.
     ///
     /// # Errors
-    /// [`Error::Case`](crate::error::Error::Case) with every fault that only the model shows: [`System::accepted`].
+    /// [`Error::Case`](crate::error::Error::Case) with every error that only the model reveals, see [`System::accepted`].
     pub fn new(case: &Case) -> Result<Self> {
         Self::chosen(case, Model::new(case)?)
     }
 
-    /// The same with the model that has been chosen for the case already.
+    /// Like [`System::new`], with the model already chosen for the case.
     ///
     /// # Errors
-    /// As of [`System::new`].
+    /// Those of [`System::new`].
     pub fn chosen(case: &Case, model: Model) -> Result<Self> {
         Self::starting(case, model, |model| Ok(model.clone()))?.accepted(case)
     }
 
-    /// Discretises another model of a checked case; bladders keep the volume that they have at the start of the case.
+    /// Discretizes another model of a checked case; bladders keep their volume at the start of the case.
     pub fn with(case: &Case, model: Model) -> Result<Self> {
         Self::starting(case, model, |_| Model::new(case))
     }
 
-    /// Discretises a changed case with the effects of this system and its scales of unknowns and equations; `None` when the
-    /// unknowns are then others.
+    /// Discretizes a changed case with the effects of this system and its scales of unknowns and equations; `None` if the unknowns
+    /// differ.
     pub fn like(&self, case: &Case) -> Result<Option<Self>> {
         self.like_with(case, |_| ())
     }
 
-    /// The same of a model that is changed before.
+    /// Like [`System::like`], for a model modified by `change`.
     pub fn like_with(&self, case: &Case, change: impl FnOnce(&mut Model)) -> Result<Option<Self>> {
         let mut model = self.model.like(case)?;
         change(&mut model);
@@ -118,7 +119,7 @@ impl System {
         Ok(same.then_some(system))
     }
 
-    /// The mass of each node at its displacements, in the scales of unknowns and equations [s^2]; 0 at all other unknowns.
+    /// Mass of each node, at the unknowns of its displacements, in the scales of unknowns and equations [s^2]; 0 at all other unknowns.
     pub fn nodal_masses(&self) -> Vec<f64> {
         let l = &self.layout;
         let mut masses = vec![0.0; l.len];
@@ -128,13 +129,13 @@ impl System {
         masses
     }
 
-    /// Visits every signal that acts, always in the same order.
+    /// Visits every active signal, always in the same order.
     fn each_signal_mut(&mut self, mut visit: impl FnMut(&mut Signal)) {
         self.model.each_signal_mut(|signal, _| visit(signal));
         self.loads.iter_mut().for_each(|load| visit(&mut load.signal));
     }
 
-    /// Where in the order of its signals this system has one like another.
+    /// Indices, in the order of visits, of the signals equal to `like`.
     pub fn places_of(&mut self, like: &Signal) -> Vec<usize> {
         let (mut all, mut place) = (vec![], 0);
         self.each_signal_mut(|signal| {
@@ -146,7 +147,7 @@ impl System {
         all
     }
 
-    /// Puts a signal at places of [`System::places_of`].
+    /// Replaces the signals at the indices from [`System::places_of`].
     pub fn put_signal(&mut self, places: &[usize], given: &Signal) {
         let mut place = 0;
         self.each_signal_mut(|signal| {
@@ -157,11 +158,11 @@ impl System {
         });
     }
 
-    /// The system of a case that can be simulated.
+    /// Returns the system if its case can be simulated.
     ///
     /// # Errors
-    /// [`Error::Case`](crate::error::Error::Case) for an order of the integrator that its waves make unstable, a coupling that
-    /// loses convexity, effects that were to be left out and cannot be; all at once, each with its place.
+    /// [`Error::Case`](crate::error::Error::Case) for an order of the integrator at which waves are unstable, a coupling that loses
+    /// convexity, or effects that cannot be omitted as requested. All errors are reported at once, each with its place.
     pub fn accepted(self, case: &Case) -> Result<Self> {
         let mut faults: Vec<_> = waves::refusal(case, &self).into_iter().collect();
         faults.extend(audit::refusals(case, &self.model));
@@ -175,13 +176,13 @@ impl System {
         }
     }
 
-    /// Whether rotary inertia resists the turning of the beam's line: sections that shear turn by themselves.
+    /// True if rotary inertia acts on the rotation of the beam's line; sections that shear rotate independently.
     #[inline]
     pub fn turns_with_its_line(&self) -> bool {
         self.model.effects.has(Effect::RotaryInertia) && !self.model.effects.has(Effect::Shear)
     }
 
-    /// A start in equilibrium of a beam that nothing holds.
+    /// Error if an unsupported beam should start in equilibrium.
     fn unheld_start(&self, case: &Case) -> Option<Violation> {
         let directions = self.model.unheld();
         case.start.equilibrium.as_ref().filter(|_| !directions.is_empty())?;
@@ -193,7 +194,7 @@ impl System {
         Some(fault.hint("hold an end in /ends or attach a spring to ground; or leave the equilibrium out, and the straight beam is let go"))
     }
 
-    /// A junction of tubes with inertia alone into which a port prescribes the flow: the tubes would have to jump with it.
+    /// Error if a port prescribes the flow into a junction of tubes with inertia alone: the tubes' flow would have to jump with it.
     fn fed_junction(&self) -> Option<Violation> {
         let wet = self
             .model
@@ -206,7 +207,7 @@ impl System {
         Some(fault.hint("put the port at a bladder's end, or leave tube_inertia off"))
     }
 
-    /// `start` gives the model with which the case starts; it is asked only where something of the start is kept.
+    /// `start` returns the model at the start of the case; it is called only if part of the start is kept.
     fn starting(case: &Case, model: Model, start: impl FnOnce(&Model) -> Result<Model>) -> Result<Self> {
         let mut system = Self::of(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)

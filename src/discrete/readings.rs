@@ -1,4 +1,4 @@
-//! Curvature and section forces as they are read off a state: at nodes and in the middle of cells, also where the equations know of means.
+//! Curvature and section forces for output, at nodes and midpoints of cells, also where the equations contain means.
 
 use std::borrow::Cow;
 
@@ -9,7 +9,7 @@ use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
 use crate::model::Kinematics;
 
-/// Values of a beam of fourth order, [E77]; empty otherwise, and where the equations' own are the same.
+/// Output values of a fourth-order beam, [E77]; empty otherwise, and for values that equal those of the equations.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
     curvature: Vec<f64>,
@@ -19,7 +19,7 @@ pub struct Readings {
 }
 
 impl Readings {
-    /// Room for those of a system.
+    /// Allocates the values of a system.
     pub fn new(system: &System) -> Self {
         let mesh = &system.mesh;
         let bends = system.model.kinematics != Kinematics::Bar;
@@ -39,14 +39,14 @@ impl Workspace<f64> {
         own(&self.readings.curvature, &self.shape.kappa)
     }
 
-    /// Moments M at nodes without what damps them [N m].
+    /// Moments M at nodes without damping [N m].
     pub fn moments(&self) -> Cow<'_, [f64]> {
         let forces = &self.forces;
         let moment = own(&self.readings.moment, &forces.moment);
         together(moment, [&forces.nonlinear_moment, &forces.relaxing_moment])
     }
 
-    /// Normal forces N in cells without what damps them [N].
+    /// Normal forces N in cells without damping [N].
     pub fn normals(&self) -> Cow<'_, [f64]> {
         let forces = &self.forces;
         let normal = own(&self.readings.normal, &forces.normal);
@@ -63,7 +63,7 @@ fn own<'a>(read: &'a [f64], known: &'a [f64]) -> &'a [f64] {
     if read.is_empty() { known } else { read }
 }
 
-/// The sum of parts, of which all but the first may be absent.
+/// Sum of parts; all but the first may be empty.
 fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
     let mut sum = Cow::Borrowed(part);
     for other in others.into_iter().filter(|other| !other.is_empty()) {
@@ -72,9 +72,9 @@ fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
     sum
 }
 
-/// Reads off what [`Readings`] holds, of an evaluated state. Loads that are weighed by [E78] leave at a node `M - h² M''/12`, at the one beside an end
-/// `M - h² M''/8`, and M itself at the ends; M'' there is that of the third node, which no end touches. Curvature follows from M, normal forces from
-/// strains, shear forces where sections shear, too.
+/// Computes the [`Readings`] of an evaluated state. With loads weighted by [E78], the value at a node is `M - h² M''/12`, next to an end
+/// `M - h² M''/8`, and M itself at the ends. There, M'' is that of the third node, which no end affects. Curvature follows from M, normal
+/// forces from strains, as do shear forces if sections shear.
 pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if !system.mesh.fourth {
         return;
@@ -121,8 +121,8 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut R
     }
 }
 
-/// By how much of `N'h` by which N turns into V the strains of the first cells are above those of the beam: what is left of 1/8 and -1/24 by the rows of [E77], whose
-/// g beside an end expects N to change by loads alone, which [E78] weighs.
+/// Excess of the strains of the first cells over those of the beam, in units of `N'h`, for N that becomes V by rotation: the remainder of
+/// 1/8 and -1/24 after the rows of [E77]. Their g beside an end assumes that only loads, weighted by [E78], change N.
 const TURNED: [f64; 4] = [0.108_514_123, -0.023_372_891, -0.001_678_098, -0.000_120_482];
 
 fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
@@ -142,7 +142,7 @@ fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
         }
         return;
     }
-    // what statics sums over nodes up to the middle of a cell, less what that lacks beside an end
+    // forces by statics are sums over nodes up to the middle of a cell; adds the missing part beside an end
     normal.copy_from_slice(&w.forces.normal);
     let [near, far] = [normal[3] - normal[2], normal[last - 2] - normal[last - 3]];
     normal[0] += near / 8.0;

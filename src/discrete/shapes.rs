@@ -1,8 +1,8 @@
-//! Functions of place on a mesh, by their exact integrals.
+//! Functions of the place along the beam on a mesh, by exact integrals.
 
 use crate::functions::profile::{Integrals, Profile};
 
-/// `∫ f hat_i / ∫ hat_i` at every node: total and first moment are those of `f`.
+/// `∫ f hat_i / ∫ hat_i` at every node; total and first moment equal those of `f`.
 pub fn at_nodes(profile: &Profile, cells: usize) -> Vec<f64> {
     if let Some(value) = profile.uniform() {
         return vec![value; cells + 1];
@@ -24,16 +24,16 @@ pub fn in_cells(profile: &Profile, cells: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Velocities of nodes: those of the motion, straight within each cell, that is nearest to `f` in the mean square,
+/// Nodal velocities of the motion, linear within each cell, that is nearest to `f` in the mean square,
 ///
 /// ```text
 /// (v_{i-1} + 4 v_i + v_{i+1})/6 = m_i        (2 v_0 + v_1)/3 = m_0, likewise at the other end        m: the means of [`at_nodes`]
 /// h_i v_i = h_i m_i + Σ_j f_ij        f_ij = h (v_i - v_j)/6 with its neighbours
 /// ```
 ///
-/// as far as that stays between the least and the largest value of `f` in the cells beside the node: beyond, as much of the flux
-/// f_ij is left out (Zalesak, J. Comput. Phys. 31, 1979). The total is that of `f` whatever is left out; straight lines, the motions of a
-/// rigid beam, stay what they are; at the ends it is of second order, which the means are not; jumps do not overshoot.
+/// limited to the range of `f` in the cells beside the node. Where the limit is exceeded, part of the flux f_ij is omitted (Zalesak, J.
+/// Comput. Phys. 31, 1979). The total always equals that of `f`. Linear functions, the motions of a rigid beam, are exact. The ends are
+/// second order, unlike those of the means. Jumps do not overshoot.
 pub fn nearest(profile: &Profile, cells: usize) -> Vec<f64> {
     if let Some(value) = profile.uniform() {
         return vec![value; cells + 1];
@@ -49,7 +49,7 @@ pub fn nearest(profile: &Profile, cells: usize) -> Vec<f64> {
         let sum = |sign: f64| beside.iter().flatten().map(|f| (sign * f).max(0.0)).sum::<f64>();
         (sum(1.0), sum(-1.0))
     };
-    // What a node may take and give, as a share of what it is asked to.
+    // Admissible fraction of the fluxes into and out of each node.
     let shares: Vec<(f64, f64)> = (0..=cells)
         .map(|i| {
             let (lowest, highest) = ranges[i];
@@ -107,7 +107,7 @@ fn nearest_lines(means: &[f64]) -> Vec<f64> {
     values
 }
 
-/// Least and largest value in the cells beside each node, at the places where the profile is looked at.
+/// Smallest and largest value in the cells beside each node, at the sampled places.
 fn ranges(profile: &Profile, cells: usize) -> Vec<(f64, f64)> {
     let integrals = Integrals::of(profile);
     let of_cells: Vec<(f64, f64)> = (0..cells)
@@ -128,8 +128,8 @@ fn ranges(profile: &Profile, cells: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Places inside a cell at which a shape is looked at: every knot, and so many others that no wave is missed. Multiples of the
-/// golden ratio fall together with no wave.
+/// Sampling places of a profile inside a cell: every knot, and a number of others sufficient for its shortest waves. Multiples of the
+/// golden ratio are not in phase with any wave.
 pub fn places(integrals: &Integrals, a: f64, b: f64) -> Vec<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let many = (8.0 * (integrals.half_waves(b - a) + 1.0)).min(256.0) as usize;
@@ -137,7 +137,7 @@ pub fn places(integrals: &Integrals, a: f64, b: f64) -> Vec<f64> {
     between.chain(integrals.knots_in(a, b).iter().copied()).collect()
 }
 
-/// Where a cell lies, as a share of the length.
+/// Range of a cell, as fractions of the length.
 pub fn within(cell: usize, cells: usize) -> (f64, f64) {
     (cell as f64 / cells as f64, (cell + 1) as f64 / cells as f64)
 }

@@ -1,23 +1,23 @@
-//! Which links are what: an evaluation looks at plain ones in one go, and at none that does not matter to it.
+//! Links by type, so that an evaluation processes simple ones together and skips irrelevant ones.
 
 use super::fluid_mesh::{MeshLink, Place};
 use crate::model::Network;
 
-/// Numbers of links among all of the mesh.
+/// Indices of links on the mesh, by type.
 #[derive(Clone, Debug)]
 pub struct SortedLinks {
-    /// Nothing but a resistance between two cells: number, cell that positive flow comes from, cell that it goes to.
+    /// Pure resistances between two cells: index, source cell and destination cell of positive flow.
     pub between_cells: Vec<[u32; 3]>,
-    /// All others.
+    /// All other links.
     pub others: Vec<usize>,
-    /// Those of either kind with a valve that opens and shuts.
+    /// Links of either kind with a valve that opens and closes.
     pub valves: Vec<usize>,
-    /// Those of either kind from or to a port: no other leads out of its component of the network.
+    /// Links of either kind at a port; no other link leads out of its component of the network.
     pub at_ports: Vec<usize>,
 }
 
 impl SortedLinks {
-    /// Of the links of a mesh.
+    /// Sorts the links of a mesh.
     pub(super) fn new(links: &[MeshLink], network: &Network) -> Self {
         let opens = |link: &MeshLink| {
             link.number

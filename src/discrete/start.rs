@@ -8,9 +8,9 @@ use crate::functions::signals::Clock;
 use crate::model::ROWS;
 use crate::numerics::Planar;
 
-/// Scaled unknowns at the start: displacements of nodes as given, velocities nearest to those given, areas from the means of the given
-/// pressures over each cell, so that momentum and volume are those of the start on every mesh.
-/// Rates and whatever is algebraic are only guessed; a consistent start follows from these.
+/// Scaled unknowns at the start. Displacements of nodes are as given, velocities are nearest to the given ones, and areas follow from the
+/// means of the given pressures over each cell. Momentum and volume are thus exact on every mesh. Rates and algebraic unknowns are only
+/// estimates for the subsequent consistent start.
 pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     let l = &system.layout;
     let mut y = vec![0.0; l.len];
@@ -53,7 +53,7 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     y
 }
 
-/// Velocities of nodes: nearest to what is given, on a mesh of fourth order as it is where that is smooth.
+/// Velocities of nodes: nearest to the given ones; on a fourth-order mesh nodal values, if the profile is smooth.
 fn velocities(system: &System, given: &Profile) -> Vec<f64> {
     let cells = system.mesh.cells;
     let nearest = shapes::nearest(given, cells);
@@ -71,10 +71,11 @@ fn velocities(system: &System, given: &Profile) -> Vec<f64> {
     }
 }
 
-/// Share of the largest velocity by which those nearest may be off where it is smooth: six cells a wave.
+/// Largest difference of both velocities for a smooth profile, relative to the largest velocity: that of six cells per
+/// wave.
 const SMOOTH: f64 = 0.1;
 
-/// Area change of every cell at the start [m^2], of a system in which all of them are unknowns.
+/// Area change of every cell at the start [m^2], for a system in which all of them are unknowns.
 pub fn areas(system: &System, case: &Case) -> Vec<f64> {
     let mut now = TimeData::new(system);
     now.update(system, Clock { t: 0.0, within: 0.0 });
@@ -82,8 +83,8 @@ pub fn areas(system: &System, case: &Case) -> Vec<f64> {
     l.network.area.clone().map(|k| y[k] * l.scales[k]).collect()
 }
 
-/// Areas that give the prescribed pressures, with the means that follow from them: a fixed point, exact after one
-/// round unless the coupling depends on the means.
+/// Computes areas from the prescribed pressures, and the resulting means: a fixed-point iteration, exact after one
+/// iteration unless the coupling depends on the means.
 fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -131,7 +132,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
         }
         residual::residual(system, now, y, &yp, w, &mut residual);
         residual::relaxation::settle(system, now, w, y);
-        // The residual of a mean is what it lacks.
+        // The residual of a mean is its error.
         let own = &l.coupling;
         let means = own.mean_moment.clone().chain(own.mean_force.clone());
         let means = means.chain(own.nonlinear_area.clone());
@@ -158,7 +159,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
     }
 }
 
-/// Adds jumps [m/s] to the velocities of free nodes.
+/// Adds velocity jumps [m/s] to the velocities of free nodes.
 pub fn speed_up(system: &System, jumps: &[Planar<f64>], y: &mut [f64]) {
     let l = &system.layout;
     for (axis, line) in l.lines.iter().enumerate() {
@@ -170,7 +171,7 @@ pub fn speed_up(system: &System, jumps: &[Planar<f64>], y: &mut [f64]) {
     }
 }
 
-/// Keeps displacements and velocities what they are while the ends' signals pass from one smooth branch to the next.
+/// Keeps displacements and velocities constant while the signals of ends change from one smooth branch to the next.
 pub fn change_frame(system: &System, before: &TimeData, after: &TimeData, y: &mut [f64]) {
     let l = &system.layout;
     let last = (system.mesh.nodes - 1) as f64;

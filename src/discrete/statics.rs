@@ -1,4 +1,4 @@
-//! Normal forces of a beam that does not stretch: statics, from the free end on.
+//! Normal forces of an inextensible beam, by statics from the free end.
 
 use super::System;
 use super::time_data::Frame;
@@ -7,22 +7,22 @@ use crate::case::schema::Effect;
 use crate::functions::signals::{Clock, Jet};
 use crate::model::loads::LoadKind;
 
-/// `[E28]` Without axial stretch (EA → ∞) a beam that one end holds and whose other end is free moves along as
+/// `[E28]` Without axial stretch (EA → ∞) a beam with one held and one free end has the axial motion
 ///
 /// ```text
 /// u3' = λ_p - g u1'²/2      u3 = U at the end that is held
 /// ```
 ///
-/// and needs no unknown for it. Its normal force is what the loads beyond a section and the force that carries the mass
-/// beyond it along make of it, a function of time alone:
+/// without an unknown for it. Its normal force is the sum of the loads beyond a section and of the inertia and drag of
+/// the mass beyond it, a function of time alone:
 ///
 /// ```text
 /// N_c = Σ_{i beyond c} [F_i + h_i (b_z,i - c U' - m U'')]
 /// ```
 ///
-/// It acts on bending, `n_x = g N φ - V`, and on areas, `A_N(Nbar)`. The balance of energy is that of `[E27]` with this u3
-/// and without `Σ h N²/2EA`: for `Σ h N u3'_t` is the work of the same loads, of the end that is held, and of `-m U''` on
-/// u3, the shortening by bending and the stretch by pressure in it.
+/// It acts on bending, `n_x = g N φ - V`, and on areas, `A_N(Nbar)`. The energy balance is that of `[E27]` with this u3 and without
+/// `Σ h N²/2EA`. The reason: `Σ h N u3'_t` is the work of the same loads, of the held end, and of `-m U''` on u3, which consists of the
+/// shortening by bending and the stretch by pressure.
 #[derive(Clone, Debug, Default)]
 pub struct Statics {
     /// `N` of each cell [N].
@@ -33,12 +33,12 @@ pub struct Statics {
     pub mean: Vec<f64>,
     /// `dNbar/dt` of each segment [N/s].
     pub mean_rate: Vec<f64>,
-    /// Force on each node and its rate.
+    /// Force on each node [N], and its rate [N/s].
     nodes: Vec<(f64, f64)>,
 }
 
 impl Statics {
-    /// Room for the forces of a system.
+    /// Allocates the forces of a system.
     pub fn new(system: &System) -> Self {
         if system.model.effects.has(Effect::AxialStretch) {
             return Self::default();
@@ -53,7 +53,7 @@ impl Statics {
         }
     }
 
-    /// Evaluates them at `clock`, with the motion of the end that is held.
+    /// Evaluates the forces at `clock`, with the motion of the held end.
     pub fn update(&mut self, system: &System, frame: Option<Frame>, clock: Clock) {
         if system.model.effects.has(Effect::AxialStretch) {
             return;
@@ -63,7 +63,7 @@ impl Statics {
         let last = system.mesh.cells;
         let mut beyond = (0.0, 0.0);
         for k in 0..last {
-            // The section next to the free end first; its outward side is the tip's or the root's.
+            // Starts with the section next to the free end; the outward direction is that of the tip or of the root.
             let (node, cell, outward) = if root_held {
                 (last - k, last - 1 - k, 1.0)
             } else {
@@ -81,7 +81,7 @@ impl Statics {
         }
     }
 
-    /// Forces on nodes: loads, drag, ends, and what carries the mass along.
+    /// Computes the forces on nodes: loads, drag, ends, and inertia of the prescribed motion.
     fn load(&mut self, system: &System, held: Jet, clock: Clock) {
         let (section, mesh) = (&system.model.section, &system.mesh);
         for (i, node) in self.nodes.iter_mut().enumerate() {

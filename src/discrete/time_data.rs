@@ -1,4 +1,4 @@
-//! Everything that depends on time alone, evaluated once an instant.
+//! Data that depend only on time, evaluated once per instant.
 
 use super::turns::Turns;
 use super::{Statics, System, ValveTangents, shapes};
@@ -11,32 +11,31 @@ use crate::model::loads::LoadKind;
 use crate::model::network::Feed;
 use crate::numerics::Planar;
 
-/// Opening of a closed valve on a tube whose flow is an unknown: shut, but for a thousand-millionth.
+/// Opening of a closed valve on a tube whose flow is an unknown.
 const TIGHT: f64 = 1e-9;
 
-/// A load's shape where it acts: forces at nodes, moments in cells.
+/// A load on a mesh: forces at nodes, moments in cells.
 ///
-/// `[E46]` Forces weigh with the hat functions of the nodes, moments with their cells,
+/// `[E46]` Forces are weighted by the hat functions of the nodes, moments by their cells,
 ///
 /// ```text
 /// h_i b_i = ∫ b hat_i dθ        h (m b1)_c = ∫_c m b1 dθ
 /// ```
 ///
-/// exactly ([`crate::functions::profile::Integrals`]): force, moment about any point and couple are those of the load on every mesh, and so are the moments M
-/// that it causes at nodes and the mean of N in each cell, where the beam is statically determinate. What no mesh sees is how M
-/// goes between two nodes ([`super::resolution`]).
+/// with exact integrals ([`crate::functions::profile::Integrals`]). Force, moment about any point and couple are exact on every mesh. So
+/// are M at nodes and the mean of N in each cell of a statically determinate beam, but not M between nodes ([`super::resolution`]).
 #[derive(Clone, Debug)]
 pub struct SampledLoad {
-    /// What it acts on.
+    /// Kind of the load.
     pub kind: LoadKind,
     /// Time function.
     pub signal: Signal,
-    /// Factor at each node or cell, unit of the load.
+    /// Factor at each node or cell, in the unit of the load.
     pub shape: Vec<f64>,
 }
 
 impl SampledLoad {
-    /// Puts a load on a mesh.
+    /// Discretizes a load on a mesh.
     pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
         let mut shape = match load.kind {
             LoadKind::ForceX | LoadKind::ForceZ => forces_at_nodes(&load.profile, mesh),
@@ -52,7 +51,7 @@ impl SampledLoad {
     }
 }
 
-/// `b_i` of each node.
+/// Force per length `b_i` of each node.
 fn forces_at_nodes(profile: &Profile, mesh: &super::Mesh) -> Vec<f64> {
     let mut values = shapes::at_nodes(profile, mesh.cells);
     if !mesh.fourth {
@@ -71,11 +70,11 @@ fn forces_at_nodes(profile: &Profile, mesh: &super::Mesh) -> Vec<f64> {
 /// Given values at one end of the beam.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EndData {
-    /// Prescribed displacements across and along, where motion is prescribed.
+    /// Prescribed transverse and axial displacements, if the motion is prescribed.
     pub u: [Option<Jet>; 2],
-    /// Prescribed slope, when the slope is prescribed.
+    /// Prescribed slope, if the slope is prescribed.
     pub slope: Option<Jet>,
-    /// Prescribed moment (zero where the slope is prescribed).
+    /// Prescribed moment (zero if the slope is prescribed).
     pub moment: Jet,
     /// Dead force on the end [N].
     pub force: Planar<f64>,
@@ -86,15 +85,15 @@ pub struct EndData {
 /// Forces at an attachment [N].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PointForces {
-    /// In lab axes.
+    /// Components in lab axes.
     pub dead: Planar<f64>,
-    /// Along `e_n` and `e_t` of the place.
+    /// Components along `e_n` and `e_t` of the place.
     pub follower: Planar<f64>,
-    /// What of `dead` acts on the mass.
+    /// Part of `dead` that acts on the mass.
     pub weight: Planar<f64>,
 }
 
-/// Motion of the straight line through the displacements that the ends prescribe.
+/// Motion of the straight line through the prescribed displacements of the ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     root: Jet,
@@ -103,7 +102,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The line through both driven ends, or the motion of the one; `None` when neither is driven.
+    /// Line through both driven ends, or the motion of a single driven end; `None` without driven ends.
     fn through(root: Option<Jet>, tip: Option<Jet>) -> Option<Self> {
         let alone = |root: Jet| Self {
             root,
@@ -124,13 +123,13 @@ impl Frame {
         }
     }
 
-    /// Whether its two ends move apart.
+    /// True if the two ends move differently.
     #[inline]
     pub fn leans(&self) -> bool {
         self.lean != Jet::default()
     }
 
-    /// Displacement, velocity and acceleration at a share of the length, 0 at the root and 1 at the tip.
+    /// Displacement, velocity and acceleration at a fraction of the length, 0 at the root and 1 at the tip.
     #[inline]
     pub fn at(&self, share: f64) -> Jet {
         Jet {
@@ -146,11 +145,11 @@ impl Frame {
 #[derive(Clone, Debug)]
 pub struct TimeData {
     clock: Option<Clock>,
-    /// `c_j` of the implicit step that is tried, [`crate::dae::Dae::approach`]; 0 before there is one [1/s].
+    /// `c_j` of the attempted implicit step, [`crate::dae::Dae::approach`]; 0 before the first [1/s].
     pub cj: f64,
-    /// How far the beam had turned.
+    /// Unwrapped angles of the last state.
     pub turns: Turns,
-    /// Where valves are linear, for derivatives.
+    /// Tangents of valves, for derivatives.
     pub tangents: ValveTangents,
     /// Root and tip.
     pub ends: [EndData; 2],
@@ -158,36 +157,36 @@ pub struct TimeData {
     pub force: Vec<Planar<f64>>,
     /// First moment per length in each cell [N].
     pub moment: Vec<Planar<f64>>,
-    /// Curvature of the beam at rest at each node [1/m], and its rate [1/(m s)]; empty where it is straight.
+    /// Rest curvature of the beam at each node [1/m], and its rate [1/(m s)]; empty if it is straight.
     pub rest_curvature: [Vec<f64>; 2],
     /// Forces at attachments, in the order of the model.
     pub point_force: Vec<PointForces>,
-    /// Velocity of the stream around the beam [m/s].
+    /// Velocity of the surrounding stream [m/s].
     pub stream: Planar<f64>,
-    /// Its rate [m/s^2].
+    /// Rate of the stream velocity [m/s^2].
     pub stream_rate: Planar<f64>,
-    /// Normal forces that follow from loads alone; nothing where the beam can stretch.
+    /// Normal forces from loads alone, by statics; empty if the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
     pub conductance: Vec<f64>,
-    /// Resistance of each link between its half cells, valve included [Pa s/m^3]; infinite when closed.
+    /// Resistance of each link between its half cells, including its valve [Pa s/m^3]; infinite if closed.
     pub resistance: Vec<f64>,
     /// Opening of each link's valve.
     pub opening: Vec<f64>,
     /// Prescribed pressure of each port [Pa].
     pub port_pressure: Vec<f64>,
-    /// Its rate [Pa/s].
+    /// Rate of the prescribed pressures [Pa/s].
     pub port_pressure_rate: Vec<f64>,
     /// Prescribed flow of each source [m^3/s].
     pub source_flow: Vec<f64>,
-    /// Volume that each source has let in, where that is what is prescribed [m^3]; 0 elsewhere.
+    /// Volume injected by each source with prescribed volume [m^3]; 0 for other sources.
     pub source_volume: Vec<f64>,
-    /// Pressure that each pump adds where nothing flows [Pa].
+    /// Pressure of each pump without flow [Pa].
     pub pump_pressure: Vec<f64>,
 }
 
 impl TimeData {
-    /// Room for the values of a system; nothing is evaluated yet.
+    /// Allocates the data of a system, without evaluating them.
     pub fn new(system: &System) -> Self {
         let network = system.model.wet.as_ref().map(|wet| &wet.network);
         let (ports, sources) = network.map_or((0, 0), |network| (network.ports.len(), network.sources.len()));
@@ -217,7 +216,7 @@ impl TimeData {
         }
     }
 
-    /// What is given at a node, where that is an end.
+    /// Given values at a node, if it is an end.
     #[inline]
     pub fn end(&self, node: usize) -> Option<&EndData> {
         match node {
@@ -227,37 +226,38 @@ impl TimeData {
         }
     }
 
-    /// Curvature of the beam at rest at a node [1/m].
+    /// Rest curvature of the beam at a node [1/m].
     #[inline]
     pub fn rest_curvature(&self, node: usize) -> f64 {
         self.rest_curvature[0].get(node).copied().unwrap_or(0.0)
     }
 
-    /// Its rate [1/(m s)].
+    /// Rate of the rest curvature [1/(m s)].
     #[inline]
     pub fn rest_curvature_rate(&self, node: usize) -> f64 {
         self.rest_curvature[1].get(node).copied().unwrap_or(0.0)
     }
 
-    /// Frame of the displacements across (0) or along (1).
+    /// Frame of the transverse (0) or axial (1) displacements.
     #[inline]
     pub fn frame(&self, axis: usize) -> Option<Frame> {
         Frame::through(self.ends[0].u[axis], self.ends[1].u[axis])
     }
 
-    /// How the frame across (0) or along (1) moves at a share of the length, 0 at the root and 1 at the tip; at rest where no end is driven.
+    /// Motion of the transverse (0) or axial (1) frame at a fraction of the length, 0 at the root and 1 at the tip; zero without driven
+    /// ends.
     #[inline]
     pub fn carried(&self, axis: usize, share: f64) -> Jet {
         self.frame(axis).map_or_else(Jet::default, |frame| frame.at(share))
     }
 
-    /// Whether ends are driven as in another, at this instant.
+    /// True if the ends' prescribed motions equal those of another instance.
     pub fn moves_like(&self, other: &Self) -> bool {
         self.ends.iter().zip(&other.ends).all(|(one, two)| one.u == two.u)
     }
 
-    /// Whether nothing that does work in no time is other than in another: ends with their moments, curvature at rest, volumes let in, normal
-    /// forces that follow from loads alone.
+    /// True if all quantities that do work in zero time equal those of another instance: motions and moments of ends, rest curvature,
+    /// injected volumes, and normal forces by statics.
     pub fn works_like(&self, other: &Self) -> bool {
         let ends = self.ends.iter().zip(&other.ends);
         self.moves_like(other)
@@ -269,12 +269,12 @@ impl TimeData {
             && (&self.statics.force, &self.statics.mean) == (&other.statics.force, &other.statics.mean)
     }
 
-    /// Has every signal evaluated anew next time.
+    /// Forces the evaluation of all signals by the next update.
     pub fn forget(&mut self) {
         self.clock = None;
     }
 
-    /// Evaluates every signal at `clock`, unless that is where it stands already.
+    /// Evaluates every signal at `clock`, unless the data already belong to it.
     pub fn update(&mut self, system: &System, clock: Clock) {
         if self.clock == Some(clock) {
             return;

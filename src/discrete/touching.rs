@@ -1,4 +1,4 @@
-//! Walls on a mesh.
+//! Contact points with walls, on a mesh.
 
 use super::ledger::EnergyRate;
 use super::{Mesh, System, Workspace};
@@ -6,29 +6,29 @@ use crate::model::Contact;
 use crate::model::contact::Pressed;
 use crate::numerics::{Planar, Scalar};
 
-/// `[E62]` Where a wall is felt: at every node with its length, or at the place that it touches, between two nodes,
+/// `[E62]` Contact point: every node, with its length, or one place between two nodes,
 ///
 /// ```text
 /// x̄ = Σ hat_i x_i      f_i = hat_i w f(x̄, v̄)      E gains w k S(g)        w = h_i, at a place 1
 /// ```
 ///
-/// x the place of a node, `(u1, θ + u3)`: force, work and energy go together on every mesh.
+/// x is the position of a node, `(u1, θ + u3)`: force, work and energy are consistent on every mesh.
 #[derive(Clone, Debug)]
 pub struct Touching {
     /// Number of the wall in the model.
     pub number: usize,
-    /// The node before it.
+    /// Node before the contact point.
     node: usize,
-    /// Weights of that node and the next.
+    /// Weights of that node and of the next.
     weights: [f64; 2],
-    /// `w`: the length for which it stands [m], 1 at a place.
+    /// `w`: length that the point represents [m], 1 for a single place.
     measure: f64,
-    /// Where it is in the straight beam [m].
+    /// Position in the straight beam [m].
     coordinate: f64,
 }
 
 impl Touching {
-    /// All of a model in the order of their places.
+    /// Contact points of a model, ordered by place.
     pub fn all(contacts: &[Contact], mesh: &Mesh) -> Vec<Self> {
         let mut all = vec![];
         for (number, contact) in contacts.iter().enumerate() {
@@ -61,7 +61,7 @@ impl Touching {
         Planar::new(u.x, u.z + self.coordinate)
     }
 
-    /// Forces there [N].
+    /// Forces at the contact point [N].
     pub fn forces<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> Pressed<T> {
         let law = &system.model.contacts[self.number];
         let Pressed {
@@ -76,14 +76,14 @@ impl Touching {
         }
     }
 
-    /// How deep it is pressed in, and how fast [m, m/s].
+    /// Penetration depth and its rate [m, m/s].
     pub fn depth(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
         let law = &system.model.contacts[self.number];
         [law.depth(self.place(w)), -self.between(&w.motion.v).dot(law.normal)]
     }
 }
 
-/// Forces of walls on a node, each with the account of its work; none where it is stored.
+/// Passes the forces of walls on a node to `each`, with the balance entry of their work; none for stored energy.
 #[inline]
 pub fn forces<T: Scalar>(
     system: &System,
@@ -105,7 +105,7 @@ pub fn forces<T: Scalar>(
     }
 }
 
-/// Energy that walls store [J].
+/// Energy stored in walls [J].
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let each = system.touching.iter().map(|one| {
         let [depth, _] = one.depth(system, w);
@@ -114,7 +114,8 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     each.sum()
 }
 
-/// Of a wall: normal force, force along its face, and largest depth [N, N, m]; the depth below 0 is the distance.
+/// Results for a wall: normal force, friction force along its face, and largest depth [N, N, m]; a negative depth is
+/// the distance.
 pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> [f64; 3] {
     let law = &system.model.contacts[number];
     let mut felt = [0.0, 0.0, f64::NEG_INFINITY];
@@ -127,7 +128,7 @@ pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> [f64; 3] {
     felt
 }
 
-/// Largest depth at any wall, and its rate [m, m/s]; nothing before anything is touched.
+/// Largest depth at any wall, and its rate [m, m/s]; zero without contact.
 pub fn deepest(system: &System, w: &Workspace<f64>) -> [f64; 2] {
     let depths = system.touching.iter().map(|one| one.depth(system, w));
     depths.fold([0.0; 2], |a, b| if b[0] > a[0] { b } else { a })

@@ -1,17 +1,17 @@
-//! How sections that shear stand at the start: their moments balance in the beam's given shape.
+//! Initial angles of sections that shear: their moments balance in the given shape of the beam.
 
 use super::turns::nearest;
 use super::{System, TimeData, Workspace, residual};
 use crate::case::Rotation;
 use crate::model::Kinematics;
 
-/// Corrections of angles, at most; each leaves as much of the one before as normal forces are of kGA.
+/// Maximum number of corrections; the contraction rate is the ratio of normal forces to kGA.
 const CORRECTIONS: usize = 40;
-/// Angles that are none [rad].
+/// Convergence limit of the corrections [rad].
 const NOTHING: f64 = 1e-15;
 
-/// Gives the unknowns `y` (SI) angles of sections that stand across the beam, counted on from the root's slope over full turns, and rates
-/// with which they turn with it.
+/// Sets the unknowns `y` (SI) to sections perpendicular to the beam's line: unwrapped angles, starting at the slope of the root, and
+/// their rates.
 pub fn across(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<f64>) {
     let own = &system.layout.turning;
     if own.angle.is_empty() {
@@ -37,7 +37,7 @@ pub fn across(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<
     }
 }
 
-/// Turns sections until their moments balance at rest: what would set free a vibration of sections alone is not what a start means.
+/// Rotates sections until their moments balance at rest, so that the start does not excite vibrations of sections alone.
 pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<f64>) {
     let own = &system.layout.turning;
     if own.angle.is_empty() {
@@ -64,8 +64,9 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
     }
 }
 
-/// Angles by which moments [N m] turn sections of a beam that keeps its place, as far as strains are small: `h kGA δ_c + EI/h (2 δ_c - δ_{c-1} -
-/// δ_{c+1})`, by Thomas' algorithm; on a mesh of fourth order, whose short waves are up to 5/3 as stiff, between that and this.
+/// Angles by which moments [N m] rotate the sections of a fixed beam line, for small strains: solves
+/// `h kGA δ_c + EI/h (2 δ_c - δ_{c-1} - δ_{c+1})` by Thomas' algorithm. On a fourth-order mesh, whose short waves are up to 5/3 as stiff,
+/// stiffnesses are increased by 4/3.
 fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
     let (section, h) = (&system.model.section, system.mesh.h);
     let stiffer = if system.mesh.fourth { 4.0 / 3.0 } else { 1.0 };
@@ -74,7 +75,7 @@ fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::with_capacity(moments.len());
     for (c, moment) in moments.iter().enumerate() {
         let last = c + 1 == moments.len();
-        // a slope that is given holds the end's half cell, a moment that is given holds nothing
+        // a given slope constrains the end's half cell, a given moment does not
         let beside = |end: usize| match system.model.ends[end].rotation {
             Rotation::Slope(_) => 2.0 * bends,
             Rotation::Moment(_) => 0.0,

@@ -1,4 +1,5 @@
-//! How far a beam has turned: directions tell angles but for full turns, which are counted along the beam, and at its root from step to step.
+//! Angle unwrapping: directions determine angles except for full turns, which are counted along the beam, and at its root from step to
+//! step.
 
 use std::f64::consts::TAU;
 
@@ -8,17 +9,18 @@ use super::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::Scalar;
 
-/// Angles of the last state that was kept [rad], full turns counted: those of a state that follows are within half a turn of them.
+/// Unwrapped angles of the last stored state [rad]; those of the next state are within half a turn of them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Turns {
-    /// Of the first cell.
+    /// Angle of the first cell.
     pub root: f64,
-    /// Of the cell before each rotational spring, by the number of its attachment; empty where there is none, or sections have angles of their own.
+    /// Angle of the cell before each rotational spring, by attachment number; empty without such springs, and if sections have their own
+    /// angles.
     pub attached: Vec<f64>,
 }
 
 impl Turns {
-    /// Of a state that is evaluated.
+    /// Unwrapped angles of an evaluated state.
     pub fn of(system: &System, now: &TimeData, w: &Workspace<f64>) -> Self {
         let root = first_angle(system, now, w);
         let mut attached = vec![];
@@ -32,13 +34,13 @@ impl Turns {
     }
 }
 
-/// That of the angles which differ from one by full turns that is nearest to another [rad].
+/// Returns `angle` plus the number of full turns for which it is nearest to `to` [rad].
 #[inline]
 pub fn nearest<T: Scalar>(angle: T, to: f64) -> T {
     angle.lift(|angle| (angle + TAU * ((to - angle) / TAU).round(), 1.0))
 }
 
-/// `φ` of the first cell, of sections that shear θ: near the slope of the root where that is given, else near what it was.
+/// Angle `φ` of the first cell, or θ if sections shear. Unwrapped near the given slope of the root, otherwise near the last angle.
 pub fn first_angle(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     if let Some(angle) = w.shape.sections.angle.first() {
         return *angle;
@@ -54,7 +56,7 @@ pub fn first_angle(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     }
 }
 
-/// `φ` of the tip, followed along the beam.
+/// Angle `φ` of the tip, unwrapped along the beam.
 pub fn tip_angle(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
     let interior: f64 = w.shape.kappa[1..last].iter().sum();

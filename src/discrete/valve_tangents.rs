@@ -1,4 +1,4 @@
-//! Tangents of the characteristics of valves, for derivatives by what drives them.
+//! Tangents of the characteristics of valves, for derivatives by loads.
 
 use super::residual::fluid::{driving, over_bridge};
 use super::residual::rows::driven;
@@ -6,20 +6,20 @@ use super::{System, TimeData, Workspace};
 use crate::model::network::CheckValve;
 use crate::numerics::Scalar;
 
-/// Pressure drops [Pa] at which valves are replaced by their tangents; empty: valves follow their characteristics.
+/// Pressure drops [Pa] at which valves are replaced by their tangents; if empty, valves follow their characteristics.
 ///
-/// A valve opens over a range of pressure that may be far below the pressures that act. Differences over a change of the loads average its
-/// slope over that change; those of its tangent are its slope.
+/// A valve opens over a pressure range that may be far below the pressures in the network. Differences over a change of the loads average
+/// its slope over that change; differences with its tangent give its slope.
 #[derive(Clone, Debug, Default)]
 pub struct ValveTangents {
-    /// Of each link: resistance before its valve [Pa s/m^3], drop over both.
+    /// For each link: resistance before its valve [Pa s/m^3], and drop over both.
     links: Vec<[f64; 2]>,
-    /// Of each bridge, the drops over its two pairs of valves.
+    /// For each bridge: drops over its two pairs of valves.
     bridges: Vec<[f64; 2]>,
 }
 
 impl ValveTangents {
-    /// At the state that has been evaluated; empty where there are no such valves.
+    /// Tangents at the evaluated state; empty without such valves.
     pub fn new(system: &System, now: &TimeData, w: &Workspace<f64>) -> Self {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return Self::default();
@@ -52,14 +52,14 @@ impl ValveTangents {
         }
     }
 
-    /// True if a system has valves that open by themselves.
+    /// True if a system has check valves.
     pub fn needed(system: &System) -> bool {
         let fluid = system.fluid.as_ref();
         fluid
             .is_some_and(|fluid| !fluid.bridges.is_empty() || fluid.links.iter().any(|link| link.check_valve.is_some()))
     }
 
-    /// Flow through the valve of a link behind a resistance, under the drop over both.
+    /// Flow through the valve of a link in series with a resistance, for the drop over both.
     #[inline]
     pub fn behind<T: Scalar>(&self, link: usize, valve: &CheckValve, resistance: f64, drop: T) -> T {
         match self.links.get(link) {
@@ -68,7 +68,7 @@ impl ValveTangents {
         }
     }
 
-    /// Flows through the two pairs of valves of a bridge, under the drops over them.
+    /// Flows through the two pairs of valves of a bridge, for their drops.
     #[inline]
     pub fn through<T: Scalar>(&self, bridge: usize, valve: &CheckValve, (forward, backward): (T, T)) -> (T, T) {
         match self.bridges.get(bridge) {
@@ -81,7 +81,7 @@ impl ValveTangents {
     }
 }
 
-/// A tangent at a distance from where it touches.
+/// Value and slope of a tangent at a distance from its point of contact.
 fn along((value, slope): (f64, f64), by: f64) -> (f64, f64) {
     (value + slope * by, slope)
 }

@@ -1,4 +1,4 @@
-//! Waves that a mesh carries: how fast, how damped, and which order of BDF they make unstable.
+//! Waves on a mesh: frequencies, damping, and orders of BDF that are unstable for them.
 
 use nalgebra::Complex;
 
@@ -8,10 +8,10 @@ use crate::case::schema::{Case, MaxOrder, Method};
 use crate::error::numbers::significant;
 use crate::error::{Code, Violation};
 
-/// Damping ratio from which on high orders are taken: measured, 5 % nearly removes the trap, 0.5 % does not.
+/// Damping ratio above which high orders are used: in measurements 5 % nearly removes the instability, 0.5 % does not.
 pub const ENOUGH: f64 = 0.05;
 
-/// Why the order asked for is refused, if it is: 3 and 4 on a scene with hardly damped waves.
+/// Error if the requested order is 3 or 4 and the waves are weakly damped.
 pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     let MaxOrder::Order(order @ (3 | 4)) = case.solver.max_order else {
         return None;
@@ -37,13 +37,14 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
     })
 }
 
-/// Whether the mesh carries waves of the solid or of the fluid.
+/// True if the mesh has waves of the solid or of the fluid.
 pub fn carries(system: &System) -> bool {
     system.layout.waves() != [false; 2] || in_fluid(system).next().is_some()
 }
 
-/// Damping ratios and angular frequencies [1/s] of fluid that swings through one link against what its cells take up, all others at rest: the highest that it
-/// has a part in is at most √2 times that, and hardly less damped. `ζ = Re Z/(2 Im Z)` at `Im Z = 1/(ω C)`, Z the link's impedance, found by inertance alone.
+/// Damping ratios and angular frequencies [1/s] of fluid that oscillates through one link against the compliance of its cells, all others
+/// at rest. The highest frequency in which a link participates is at most √2 times this one, with similar damping. `ζ = Re Z/(2 Im Z)` at
+/// `Im Z = 1/(ω C)`, Z the link's impedance, computed from inertance alone.
 fn in_fluid(system: &System) -> impl Iterator<Item = [f64; 2]> + '_ {
     let wet = system.model.wet.as_ref().zip(system.fluid.as_ref());
     wet.into_iter().flat_map(move |(wet, fluid): (_, &FluidMesh)| {
@@ -63,9 +64,9 @@ fn in_fluid(system: &System) -> impl Iterator<Item = [f64; 2]> + '_ {
     })
 }
 
-/// Smallest damping ratio among the waves that the mesh carries: `ζ = c/(2 m ω) + ω τ/2`, bending and axial, and those of the fluid. Masses and
-/// springs that are attached swing with less, by how much is not known: 0. So do sections that shear by themselves: nothing but the damping of
-/// bending damps them.
+/// Smallest damping ratio of the waves on the mesh: `ζ = c/(2 m ω) + ω τ/2` for bending and axial waves, and that of waves of the fluid.
+/// Zero with attached masses and springs, because their smaller damping is unknown. Zero also for sections that shear, unless bending is
+/// damped.
 pub fn least_damping_ratio(system: &System) -> f64 {
     in_fluid(system).fold(of_solid(system), |least, [ratio, _]| least.min(ratio))
 }
@@ -113,7 +114,7 @@ fn of_solid(system: &System) -> f64 {
     least
 }
 
-/// By how much more often the shortest waves of bending and of stretch swing by [E77].
+/// Ratio of the frequencies of the shortest bending and axial waves with [E77] to those without.
 fn stiffer(system: &System) -> [f64; 2] {
     if system.mesh.fourth {
         [(5.0_f64 / 3.0).sqrt(), (4.0_f64 / 3.0).sqrt()]
@@ -122,7 +123,7 @@ fn stiffer(system: &System) -> [f64; 2] {
     }
 }
 
-/// Highest angular frequency that the mesh carries [1/s].
+/// Highest angular frequency on the mesh [1/s].
 pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
     let h = system.mesh.h;
@@ -139,8 +140,8 @@ pub fn highest_frequency(system: &System) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Highest angular frequency of sections that shear [1/s], at most: `ω² ≤ 4 kGA/(h² m) + kGA/(m y11) + 4 EI/(h² m y11)`, from what each of
-/// displacements and angles alone has.
+/// Upper limit of the angular frequency of sections that shear [1/s]: `ω² ≤ 4 kGA/(h² m) + kGA/(m y11) + 4 EI/(h² m y11)`, the sum of the
+/// limits of displacements and angles alone.
 fn shearing(system: &System) -> f64 {
     let (s, h) = (&system.model.section, system.mesh.h);
     let (m, rotary) = (s.mass_per_length, s.mass_per_length * s.gyration_radius_squared);

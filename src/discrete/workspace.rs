@@ -6,26 +6,26 @@ use super::residual::fourth;
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
-/// What an evaluation makes of the unknowns, in the order in which it is computed. Names follow the equations.
+/// Intermediate quantities of an evaluation, in the order of their computation. Names follow the equations.
 #[derive(Clone, Debug)]
 pub struct Workspace<T> {
-    /// What is read off, where that is not what the equations have.
+    /// Output values that differ from those of the equations.
     pub readings: Readings,
-    /// How the nodes move.
+    /// Motion of the nodes.
     pub motion: Motion<T>,
-    /// How the beam is bent and stretched.
+    /// Curvature and stretch of the beam.
     pub shape: Shape<T>,
-    /// To what the solid has relaxed.
+    /// Relaxed strains of the solid.
     pub relaxed: Relaxed<T>,
-    /// What its sections carry.
+    /// Section forces.
     pub forces: Forces<T>,
-    /// What beam and bladders know of each other.
+    /// Coupling variables of beam and bladders.
     pub coupling: Coupling<T>,
     /// Pressures and flows.
     pub fluid: Fluid<T>,
 }
 
-/// Of nodes.
+/// Motion of nodes.
 #[derive(Clone, Debug)]
 pub struct Motion<T> {
     /// Displacements.
@@ -36,14 +36,14 @@ pub struct Motion<T> {
     pub a: Vec<Planar<T>>,
 }
 
-/// Curvatures of nodes, all else of cells.
+/// Shape of the beam: curvatures at nodes, all others in cells.
 #[derive(Clone, Debug)]
 pub struct Shape<T> {
     /// Director `d3 = (x', z')`.
     pub d3: Vec<Planar<T>>,
     /// `lambda`.
     pub stretch: Vec<T>,
-    /// `1/lambda`, of finite rotations.
+    /// Inverse stretch `1/lambda`, for finite rotations.
     pub per_stretch: Vec<T>,
     /// `lambda - 1`, without cancellation.
     pub strain: Vec<T>,
@@ -51,51 +51,51 @@ pub struct Shape<T> {
     pub tangent: Vec<Planar<T>>,
     /// `d lambda/dt`.
     pub stretch_rate: Vec<T>,
-    /// `d phi/dt`, of sections that shear `d theta/dt`.
+    /// `d phi/dt`, or `d theta/dt` if sections shear.
     pub angle_rate: Vec<T>,
     /// Curvature `kappa` [1/m].
     pub kappa: Vec<T>,
     /// `d kappa/dt` [1/(m s)].
     pub kappa_rate: Vec<T>,
-    /// How sections turn that shear.
+    /// Rotation of sections that shear.
     pub sections: Sections<T>,
 }
 
-/// Sections of cells that shear; empty where they stay across the beam.
+/// Sections of cells that shear; empty if sections remain perpendicular to the beam.
 #[derive(Clone, Debug)]
 pub struct Sections<T> {
-    /// Their angles θ [rad].
+    /// Section angles θ [rad].
     pub angle: Vec<T>,
-    /// `d²θ/dt²` [rad/s^2], where that is resisted.
+    /// `d²θ/dt²` [rad/s^2], with rotary inertia.
     pub acceleration: Vec<T>,
-    /// Their normals `(sin θ, cos θ)`.
+    /// Section normals `(sin θ, cos θ)`.
     pub normal: Vec<Planar<T>>,
     /// Shear strain γ.
     pub shear: Vec<T>,
-    /// `d gamma/dt` [1/s], of the ends of cells.
+    /// `d gamma/dt` [1/s], from the ends of cells.
     pub shear_rate: Vec<T>,
-    /// `(d3·e_n, d3·e_t)` where γ and 1 + ε are others, [E79]; empty without.
+    /// `(d3·e_n, d3·e_t)` if it differs from (γ, 1 + ε), [E79]; otherwise empty.
     pub line: Vec<Planar<T>>,
 }
 
-/// Of the branches of a solid that relaxes, one after the other; empty without.
+/// Relaxed strains of all branches, one branch after the other; empty without relaxation.
 #[derive(Clone, Debug)]
 pub struct Relaxed<T> {
     /// Curvatures `κ_k` of nodes [1/m].
     pub curvature: Vec<T>,
-    /// Their rates [1/(m s)].
+    /// Rates of these curvatures [1/(m s)].
     pub curvature_rate: Vec<T>,
     /// Stretches `ε_k` of cells.
     pub stretch: Vec<T>,
-    /// Their rates [1/s].
+    /// Rates of these stretches [1/s].
     pub stretch_rate: Vec<T>,
     /// Shear strains `γ_k` of cells.
     pub shear: Vec<T>,
-    /// Their rates [1/s].
+    /// Rates of these shear strains [1/s].
     pub shear_rate: Vec<T>,
 }
 
-/// Moments at nodes, forces in cells.
+/// Section forces: moments at nodes, forces in cells.
 #[derive(Clone, Debug)]
 pub struct Forces<T> {
     /// Elastic moment M [N m].
@@ -108,65 +108,65 @@ pub struct Forces<T> {
     pub viscous_normal: Vec<T>,
     /// Shear force V [N].
     pub shear: Vec<T>,
-    /// Viscous part of it [N], on a mesh of fourth order; empty without.
+    /// Viscous part of the shear force [N], on a fourth-order mesh; otherwise empty.
     pub viscous_shear: Vec<T>,
-    /// What [E79] adds to (V, N), or for small rotations to the force across [N]; empty without.
+    /// Addition of [E79] to (V, N), or for small rotations to the transverse force [N]; empty without it.
     pub arc_section: Vec<Planar<T>>,
     /// Section force in lab axes [N].
     pub section: Vec<Planar<T>>,
-    /// What the published form adds at nodes, [E15] [N]; empty in the conservative one.
+    /// Additional node force of the published form, [E15] [N]; empty in the conservative form.
     pub formulation: Vec<Planar<T>>,
-    /// Part of the moment that relaxes [N m]; empty without.
+    /// Relaxing part of the moment [N m]; empty without relaxation.
     pub relaxing_moment: Vec<T>,
-    /// And of the normal force [N].
+    /// Relaxing part of the normal force [N].
     pub relaxing_normal: Vec<T>,
-    /// And of the shear force [N].
+    /// Relaxing part of the shear force [N].
     pub relaxing_shear: Vec<T>,
-    /// What turns the section of each cell that shears [N m]; empty without.
+    /// Moment that rotates the section of each cell [N m]; empty without shear.
     pub turning: Vec<T>,
-    /// What the normal force adds to the moment where cells are bent, [E79] [N m]; empty without.
+    /// Addition of the normal force to the moment in bent cells, [E79] [N m]; empty without it.
     pub arc_moment: Vec<T>,
-    /// What the section's energy beyond its quadratic part adds to the moment [N m]; empty without.
+    /// Addition to the moment by the section's energy at finite strain [N m]; empty without it.
     pub nonlinear_moment: Vec<T>,
-    /// And to the normal force [N].
+    /// Addition to the normal force by the section's energy at finite strain [N].
     pub nonlinear_normal: Vec<T>,
 }
 
-/// Of segments.
+/// Coupling variables of segments and bladders.
 #[derive(Clone, Debug)]
 pub struct Coupling<T> {
     /// Mean moment.
     pub mean_moment: Vec<T>,
     /// Mean force.
     pub mean_force: Vec<T>,
-    /// Its rate; for the balances.
+    /// Rate of the mean moment, for the balances.
     pub mean_moment_rate: Vec<T>,
-    /// Rate of the mean force; for the balances.
+    /// Rate of the mean force, for the balances.
     pub mean_force_rate: Vec<T>,
     /// `lambda_p`.
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
     pub pressure_curvature: Vec<T>,
-    /// Area changes of bladders by the section's energy beyond its quadratic part, as they are known [m^2]; empty without.
+    /// Area changes of bladders by the section's energy at finite strain, as unknowns [m^2]; empty without it.
     pub excess_area: Vec<T>,
-    /// Their rates [m^2/s]; for the balances.
+    /// Rates of these area changes [m^2/s], for the balances.
     pub excess_area_rate: Vec<T>,
-    /// As they follow from strains and pressures [m^2].
+    /// These area changes computed from strains and pressures [m^2].
     pub nonlinear_area: Vec<T>,
-    /// Integral of that energy over each segment [J].
+    /// Integral of the section's energy at finite strain over each segment [J].
     pub nonlinear_energy: Vec<T>,
 }
 
-/// Of bladders' cells and of the network.
+/// State of the cells of bladders and of the network.
 #[derive(Clone, Debug)]
 pub struct Fluid<T> {
-    /// What cells store, over their length and the density at ambient pressure [m^2]: their area changes, but where fluid is compressed.
+    /// Content of cells per length at ambient density [m^2]: their area changes, unless the fluid is compressible.
     pub area: Vec<T>,
-    /// Their rates [m^2/s].
+    /// Rates of the contents [m^2/s].
     pub area_rate: Vec<T>,
-    /// Area changes of cells where fluid is compressed [m^2]; empty otherwise.
+    /// Area changes of cells if the fluid is compressible [m^2]; otherwise empty.
     pub swelling: Vec<T>,
-    /// What drives flow from cells there [Pa], [E55]; empty otherwise.
+    /// Potential Ψ of the flow from cells if the fluid is compressible [Pa], [E55]; otherwise empty.
     pub potential: Vec<T>,
     /// Pressures of cells [Pa].
     pub pressure: Vec<T>,
@@ -176,40 +176,40 @@ pub struct Fluid<T> {
     pub junction: Vec<T>,
     /// Volumes in accumulators [m^3].
     pub accumulated: Vec<T>,
-    /// Their rates [m^3/s].
+    /// Rates of these volumes [m^3/s].
     pub accumulated_rate: Vec<T>,
     /// Pressures of lumped networks [Pa].
     pub lumped: Vec<T>,
-    /// Their rates [Pa/s]; for the balances.
+    /// Rates of these pressures [Pa/s], for the balances.
     pub lumped_rate: Vec<T>,
-    /// Turbine drops behind real rectifiers [Pa].
+    /// Pressure drops of turbines behind bridges of check valves [Pa].
     pub bridge: Vec<T>,
-    /// Pressure drop over each link, that of [E64] where fluid is compressed [Pa].
+    /// Pressure drop over each link, that of [E64] if the fluid is compressible [Pa].
     pub drop: Vec<T>,
-    /// Mean density along each link over that at ambient pressure, [E64]; empty where fluid is not compressed.
+    /// Mean density along each link relative to ambient density, [E64]; empty if the fluid is incompressible.
     pub density: Vec<T>,
-    /// Flow of each link, towards its end, counted at ambient density [m^3/s].
+    /// Flow of each link, positive towards its end, at ambient density [m^3/s].
     pub flow: Vec<T>,
-    /// Those flows that are unknowns, over the root of the mean density [m^3/s].
+    /// Flows that are unknowns, divided by the square root of the mean density [m^3/s].
     pub moving: Vec<T>,
-    /// Their rates [m^3/s^2].
+    /// Rates of these flows [m^3/s^2].
     pub moving_rate: Vec<T>,
-    /// Flows of the branches of their friction [m^3/s].
+    /// Flows of their friction branches [m^3/s].
     pub branch: Vec<T>,
-    /// Their rates [m^3/s^2].
+    /// Rates of the branch flows [m^3/s^2].
     pub branch_rate: Vec<T>,
     /// Net inflow of each cell [m^3/s].
     pub inflow: Vec<T>,
     /// Net inflow of each junction [m^3/s].
     pub junction_inflow: Vec<T>,
-    /// Inflow of each component of the network that is not stored: what Newton's iteration leaves over [m^3/s].
+    /// Inflow of each component of the network that is not stored: the remaining error of Newton's iteration [m^3/s].
     pub volume_defect: Vec<T>,
-    /// Conductance of each component's links to pressure ports, together [m^3/(s Pa)].
+    /// Total conductance of each component's links to pressure ports [m^3/(s Pa)].
     pub port_conductance: Vec<T>,
 }
 
-/// A workspace that holds everything about a state, rates that no equation takes included: what balances and samples read.
-/// [`super::ledger::complete`] and [`super::ledger::complete_after_flows`] alone make one.
+/// A workspace with the complete state for balances and samples, including rates that appear in no equation. Only
+/// [`super::ledger::complete`] and [`super::ledger::complete_after_flows`] create one.
 #[derive(Clone, Copy, Debug)]
 pub struct State<'w>(pub(super) &'w Workspace<f64>);
 
@@ -221,7 +221,7 @@ impl std::ops::Deref for State<'_> {
 }
 
 impl<T: Scalar> Fluid<T> {
-    /// The volume that flows along a link at its mean density, of a flow at ambient density [m^3/s].
+    /// Converts a flow along a link from ambient density to the link's mean density [m^3/s].
     #[inline]
     pub fn at_mean_density(&self, link: usize, flow: T) -> T {
         match self.density.get(link) {
@@ -230,7 +230,7 @@ impl<T: Scalar> Fluid<T> {
         }
     }
 
-    /// The flow at ambient density of a volume that flows along a link at its mean density [m^3/s].
+    /// Converts a volume flow along a link from the link's mean density to ambient density [m^3/s].
     #[inline]
     pub fn at_ambient_density(&self, link: usize, volume: T) -> T {
         match self.density.get(link) {
@@ -239,7 +239,7 @@ impl<T: Scalar> Fluid<T> {
         }
     }
 
-    /// Root of the mean density along a link; none where fluid is not compressed.
+    /// Square root of the mean density along a link; none if the fluid is incompressible.
     #[inline]
     pub fn root_of_density(&self, link: usize) -> Option<T> {
         self.density.get(link).map(|density| density.sqrt())
@@ -247,12 +247,12 @@ impl<T: Scalar> Fluid<T> {
 }
 
 impl<T> Coupling<T> {
-    /// Strains due to pressure: stretches of all segments, then curvatures.
+    /// Strains by pressure: stretches of all segments, then curvatures.
     pub fn strains_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.pressure_stretch.iter_mut().chain(&mut self.pressure_curvature)
     }
 
-    /// One of them.
+    /// Strain by pressure of index `k` in the order of `strains_mut`.
     pub fn strain_mut(&mut self, k: usize) -> &mut T {
         match k.checked_sub(self.pressure_stretch.len()) {
             None => &mut self.pressure_stretch[k],
@@ -272,7 +272,7 @@ impl Fluid<f64> {
 }
 
 impl<T: Scalar> Workspace<T> {
-    /// Room for a system.
+    /// Allocates a workspace for a system.
     pub fn new(system: &System) -> Self {
         let zeros = |n: usize| vec![T::zero(); n];
         let vectors = |n: usize| vec![Planar::zero(); n];
@@ -292,7 +292,7 @@ impl<T: Scalar> Workspace<T> {
         let wet = system.model.wet.as_ref();
         let compressed = usize::from(wet.is_some_and(|wet| wet.compression.is_some()));
         let nonlinear = usize::from(system.model.strain_energy().is_some());
-        // What is the same at all times is set here, and stays.
+        // Constant values are set here.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
             readings: Readings::new(system),

@@ -1,21 +1,21 @@
-//! The number of every fault, failure and warning, and what `docs/messages.md` says about it.
+//! Codes of all errors and warnings, with their titles and explanations from `docs/messages.md`.
 
-/// The page that explains each of them, a section a number.
+/// Page that explains the codes, one section each.
 const PAGE: &str = include_str!("../../docs/messages.md");
 
 macro_rules! codes {
     ($($name:ident = $id:literal, $what:literal;)*) => {
-        /// What kind of message it is. Numbers stay: they are looked up in pages and threads.
+        /// Code of an error or warning. Codes are permanent: readers look them up in pages and threads.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Code {
             $(#[doc = $what] $name,)*
         }
 
         impl Code {
-            /// All of them, in the order of the page.
+            /// All codes, in the order of the page.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// The number: `E` for what ends a command, `W` for what to know before trusting a result.
+            /// Number with its letter: `E` for an error that ends a command, `W` for a warning about a result.
             pub fn id(self) -> &'static str {
                 match self {
                     $(Self::$name => $id,)*
@@ -93,12 +93,12 @@ codes! {
 }
 
 impl Code {
-    /// A warning with its number in front.
+    /// Prefixes a warning with its number.
     pub fn warning(self, text: impl std::fmt::Display) -> String {
         format!("{} {text}", self.id())
     }
 
-    /// The one with this number, in capitals or not, with or without its zeros; of a retired number the one that replaces it.
+    /// Finds the code of a number. Case and leading zeros do not matter; a retired number yields its replacement.
     pub fn find(id: &str) -> Option<Self> {
         let number = |id: &str| Some((id.get(..1)?.to_ascii_uppercase(), id.get(1..)?.parse::<u32>().ok()?));
         let wanted = number(id)?;
@@ -114,13 +114,13 @@ impl Code {
             .find(|code| number(code.id()).as_ref() == Some(&wanted))
     }
 
-    /// What it is called: the heading of its section.
+    /// Title: the heading of the section.
     pub fn title(self) -> &'static str {
         let heading = self.section().lines().next().unwrap_or_default();
         heading.split_once(' ').map_or(heading, |(_, title)| title)
     }
 
-    /// What it means, why it is so and what to do: its section, without the heading.
+    /// Explanation with meaning, cause and remedy: the section without its heading.
     pub fn text(self) -> &'static str {
         self.section().split_once('\n').map_or("", |(_, text)| text.trim())
     }
@@ -136,7 +136,7 @@ impl Code {
 mod tests {
     use super::*;
 
-    /// Goal: every number has one section with a heading and something to do, and no section is about nothing.
+    /// Goal: every code has exactly one section, with a heading and a remedy; every section has a code.
     #[test]
     fn the_page_explains_each_number_once() {
         for code in Code::ALL {

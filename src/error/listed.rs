@@ -1,13 +1,13 @@
-//! Names of others in a message: as many as are read.
+//! Lists of names in messages, limited in number and length.
 
 use super::visible;
 
-/// Names that are listed at most.
+/// Largest number of names listed.
 const NAMES: usize = 20;
-/// Characters of a name that are shown.
+/// Largest number of characters shown of a name.
 const CHARACTERS: usize = 60;
 
-/// The first names of a list with commas between, each made visible and cut where it is long, and how many more there are.
+/// Joins the first names with commas and appends the number of those left out. Each name is formatted by [`shown`].
 pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let mut names = names.into_iter();
     let first: Vec<String> = names.by_ref().take(NAMES).map(shown).collect();
@@ -18,7 +18,7 @@ pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     first.join(", ") + &more
 }
 
-/// A name made visible, and cut where it is long.
+/// Escapes the hidden characters of a name and truncates a long name.
 pub fn shown(name: &str) -> String {
     match name.char_indices().nth(CHARACTERS) {
         Some((end, _)) => format!("{}...", visible(&name[..end])),
@@ -30,7 +30,7 @@ pub fn shown(name: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Goal: a message stays short however many names there are, and however long they are.
+    /// Goal: a message stays short, whatever the number and length of names.
     #[test]
     fn lists_and_names_are_bounded() {
         assert_eq!(listed(["a", "b"]), "a, b");

@@ -1,4 +1,4 @@
-//! What can go wrong, as one enum, and the exit code of each.
+//! All errors as one enum, each with its exit code.
 
 use std::path::PathBuf;
 
@@ -11,33 +11,33 @@ pub use code::Code;
 pub use listed::{listed, shown};
 pub use visible::{is_hidden, visible};
 
-/// One fault in a case: what, where, what is allowed, what was probably meant.
+/// A fault in a case: the problem, its place, the allowed values, and the nearest valid name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Violation {
-    /// Its number.
+    /// Code of the fault.
     pub code: Code,
     /// JSON pointer of the offending value (or of its parent when something is missing), `""` for the whole file.
     pub pointer: String,
-    /// What is wrong, one sentence.
+    /// The problem, in one sentence.
     pub what: String,
-    /// What is allowed there.
+    /// Allowed values.
     pub allowed: Option<String>,
-    /// Nearest valid name, when a name was not known.
+    /// Nearest valid name, if a name is unknown.
     pub nearest: Option<String>,
-    /// What to do.
+    /// Suggested remedy.
     pub hint: Option<String>,
-    /// Pointers of other values that it does not go with: one of them may be what was changed.
+    /// Pointers of other values that conflict with this one. The mistake may be in any of them.
     pub beside: Vec<String>,
     /// Bytes of the text to point at; filled in by [`crate::case`] from the pointer when absent.
     pub span: Option<std::ops::Range<usize>>,
-    /// The `--set` argument the value came from; `span` then points into it instead of the file.
+    /// Argument of `--set` that set the value. `span` then refers to this argument instead of the file.
     pub set: Option<String>,
-    /// The option that has this argument.
+    /// Command-line option that gave this argument.
     pub option: &'static str,
 }
 
 impl Violation {
-    /// A fault at a JSON pointer.
+    /// Creates a fault at a JSON pointer.
     pub fn new(code: Code, pointer: impl Into<String>, what: impl Into<String>) -> Self {
         let (pointer, what) = (pointer.into(), what.into());
         Self {
@@ -54,7 +54,7 @@ impl Violation {
         }
     }
 
-    /// Says what is allowed there.
+    /// Sets the allowed values.
     pub fn allowed(self, allowed: impl Into<String>) -> Self {
         Self {
             allowed: Some(allowed.into()),
@@ -62,7 +62,7 @@ impl Violation {
         }
     }
 
-    /// Says with which other values it does not go, by their pointers.
+    /// Sets the pointers of values that conflict with this one.
     pub fn beside(self, parts: &[&str]) -> Self {
         Self {
             beside: parts.iter().map(ToString::to_string).collect(),
@@ -70,7 +70,7 @@ impl Violation {
         }
     }
 
-    /// Says what to do.
+    /// Sets the remedy.
     pub fn hint(self, hint: impl Into<String>) -> Self {
         Self {
             hint: Some(hint.into()),
@@ -79,10 +79,10 @@ impl Violation {
     }
 }
 
-/// A case that cannot be used, with all its faults and the text they point into.
+/// An invalid case: its text and all its faults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseError {
-    /// Where the text came from.
+    /// File of the text.
     pub path: PathBuf,
     /// The text.
     pub text: String,
@@ -90,7 +90,7 @@ pub struct CaseError {
     pub violations: Vec<Violation>,
 }
 
-/// Where something could not go on.
+/// Point at which a computation stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum At {
     /// A simulated time [s].
@@ -100,7 +100,7 @@ pub enum At {
 }
 
 impl At {
-    /// The simulated time [s], if it is one.
+    /// Simulated time [s]; `None` for a load factor.
     pub fn time_s(self) -> Option<f64> {
         match self {
             Self::Time(time) => Some(time),
@@ -109,52 +109,52 @@ impl At {
     }
 }
 
-/// A run that could not go on.
+/// A computation that the solver could not continue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolverError {
-    /// Its number.
+    /// Code of the error.
     pub code: Code,
-    /// Up to where results stand.
+    /// Last point with results.
     pub at: At,
-    /// What happened, in words.
+    /// Description of the failure.
     pub what: String,
-    /// Unknown that is worst, by name and place, when known.
+    /// Name and place of the worst unknown, if known.
     pub unknown: Option<String>,
     /// Likely cause.
     pub cause: Option<String>,
-    /// What to try.
+    /// Suggested remedy.
     pub hint: Option<String>,
 }
 
-/// Everything that ends a command without success.
+/// Errors that end a command.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The command line makes no sense (exit code 2).
+    /// The command line is invalid (exit code 2).
     #[error("{0}")]
     Usage(String),
-    /// The case is not valid (exit code 3).
+    /// The case is invalid (exit code 3).
     #[error("{} fault(s) in {}", .0.violations.len(), .0.path.display())]
     Case(Box<CaseError>),
-    /// The solver could not go on (exit code 4).
+    /// The solver could not continue (exit code 4).
     #[error("{}", .0.what)]
     Solver(Box<SolverError>),
-    /// Somebody ended the command before it had a result (exit code 4; after a signal that of the signal).
+    /// The command was interrupted before it had a result (exit code 4; after a signal, the exit code of the signal).
     #[error("{0}")]
     Interrupted(String),
     /// A file could not be read or written (exit code 5).
     #[error("cannot {action} {}: {source}", .path.display())]
     Output {
-        /// What was tried: "write", "create", "read".
+        /// Attempted action: "write", "create", "read".
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// The system's answer.
+        /// Error of the operating system.
         source: std::io::Error,
     },
 }
 
 impl Error {
-    /// Number of the message; that of the first fault of a case.
+    /// Code of the error; for an invalid case, the code of its first fault.
     pub fn code(&self) -> Code {
         match self {
             Self::Usage(_) => Code::Usage,
@@ -165,7 +165,7 @@ impl Error {
         }
     }
 
-    /// The same where some arguments of `--set` were made of another option: that is the one to point at.
+    /// Attributes the arguments `sets` of `--set` to another option, so that messages refer to that option.
     #[must_use]
     pub fn by(self, option: &'static str, sets: &[String]) -> Self {
         match self {
@@ -196,5 +196,5 @@ impl Error {
     }
 }
 
-/// Result with the house's error.
+/// Result with [`Error`] as its error.
 pub type Result<T> = std::result::Result<T, Error>;

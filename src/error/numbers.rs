@@ -1,11 +1,11 @@
-//! Numbers as people read them: SI prefixes, significant digits, durations; and as machines do, shortest and exact.
+//! Formats numbers for readers (SI prefixes, significant digits, durations) and for programs (shortest exact text).
 
 /// SI prefixes by power of a thousand, from pico to giga.
 const PREFIXES: [&str; 8] = ["p", "n", "µ", "m", "", "k", "M", "G"];
 /// Index of the empty prefix.
 const PLAIN: i32 = 4;
 
-/// Whether a unit takes an SI prefix in front of its first letter.
+/// True if a unit accepts an SI prefix.
 fn takes_prefix(unit: &str) -> bool {
     matches!(
         unit,
@@ -15,18 +15,18 @@ fn takes_prefix(unit: &str) -> bool {
 
 /// Factor and prefixed unit in which a magnitude reads as 1 to 1000: `(1e-3, "mm")` for 0.012 m.
 ///
-/// Units that take no prefix get a power of ten: `(1e-6, "10⁻⁶ m³/s")`; dimensionless ones only that power.
+/// Units without prefix get a power of ten: `(1e-6, "10⁻⁶ m³/s")`. Dimensionless numbers get only the power.
 pub fn scaled_unit(magnitude: f64, unit: &str) -> (f64, String) {
     let thousands = thousands(magnitude);
     if takes_prefix(unit) {
-        // Kiloseconds and megametres are not what people say.
+        // Seconds and radians get no prefix above one: kiloseconds are unusual.
         let top = if matches!(unit, "s" | "rad") { 0 } else { 3 };
         let k = thousands.clamp(-PLAIN, top);
         let prefix = PREFIXES[(k + PLAIN) as usize];
         return (10f64.powi(3 * k), format!("{prefix}{unit}"));
     }
     let unit = pretty_unit(unit);
-    // Up to four digits in front of the point, or one zero behind it, need no power of ten.
+    // Magnitudes from 0.1 to 10⁴ need no power of ten.
     let k = if (0.1..1e4).contains(&magnitude.abs()) || magnitude == 0.0 || !magnitude.is_finite() {
         0
     } else {
@@ -45,7 +45,7 @@ pub fn scaled_unit(magnitude: f64, unit: &str) -> (f64, String) {
     (10f64.powi(3 * k), joined)
 }
 
-/// A unit with raised exponents: `m³/s` for `m^3/s`; nothing for `1`.
+/// A unit with raised exponents: `m³/s` for `m^3/s`; empty for `1`.
 pub fn pretty_unit(unit: &str) -> String {
     if unit == "1" {
         return String::new();
@@ -75,13 +75,13 @@ fn raise(c: char) -> char {
     c.to_digit(10).map_or('⁻', |d| DIGITS[d as usize])
 }
 
-/// Power of a thousand of a magnitude, 0 for zero and for what is not finite.
+/// Power of a thousand of a magnitude; 0 for zero and for numbers that are not finite.
 fn thousands(magnitude: f64) -> i32 {
     let magnitude = magnitude.abs();
     if magnitude == 0.0 || !magnitude.is_finite() {
         return 0;
     }
-    // A hair more, so that 1e-3, whose logarithm may fall short of -3, stays a thousandth.
+    // Allowance for rounding errors: the logarithm of 1e-3 may be slightly below -3.
     (magnitude.log10() / 3.0 + 1e-12).floor() as i32
 }
 
@@ -101,11 +101,11 @@ pub fn quantity(value: f64, unit: &str, digits: usize) -> String {
     }
 }
 
-/// Most significant digits of a value beside its error.
+/// Largest number of significant digits of a value shown with an error.
 const MOST_DIGITS: i32 = 4;
 
-/// A value with its absolute error, rounded to the same place, and their unit: `21.5 ± 0.4 mm`. The error is rounded up to one digit, or
-/// two where the first is 1, and at least to the fourth digit of the value.
+/// A value with its absolute error, rounded to the same place, and their unit: `21.5 ± 0.4 mm`. The error is rounded up to one digit, or to
+/// two if the first is 1, and never finer than the fourth digit of the value.
 pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     if !value.is_finite() || !error.is_finite() {
         return quantity(value, unit, 3);
@@ -127,7 +127,7 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
         }
         false => last,
     };
-    // an error above the value leaves the value two digits
+    // if the error exceeds the value, the value keeps two digits
     let last = match value != 0.0 && error >= value.abs() {
         true => last.min(place(value) - 1).max(place(error) - 2),
         false => last,
@@ -149,7 +149,7 @@ pub fn with_error(value: f64, error: f64, unit: &str) -> String {
     }
 }
 
-/// Without zeros behind the point that say nothing: `450 ms` for `450.0 ms`.
+/// Removes trailing zeros behind the decimal point: `450 ms` for `450.0 ms`.
 pub fn trimmed(quantity: &str) -> String {
     let (number, rest) = quantity.split_once(' ').unwrap_or((quantity, ""));
     let number = match number.contains('.') {
@@ -159,7 +159,7 @@ pub fn trimmed(quantity: &str) -> String {
     format!("{number} {rest}").trim_end().to_string()
 }
 
-/// A number with so many significant digits: `0.0123`, `4070`, `1.2·10⁻⁷`, with a true minus sign.
+/// Formats a number with `digits` significant digits: `0.0123`, `4070`, `1.2·10⁻⁷`, with a true minus sign.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_string();
@@ -180,7 +180,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     text.replacen('-', "−", 1)
 }
 
-/// A number rounded to so many significant digits.
+/// Rounds a number to `digits` significant digits.
 pub fn rounded(value: f64, digits: usize) -> f64 {
     format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
@@ -190,7 +190,7 @@ pub fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 3))
 }
 
-/// A relative error as percent, with digits as far as they say something: `4 %`, `42 %`.
+/// A relative error as percent, with one to three digits depending on its size: `4 %`, `42 %`.
 pub fn error_percent(error: f64) -> String {
     let digits = match error {
         x if x >= 10.0 => return "over 1000 %".into(),
@@ -202,7 +202,7 @@ pub fn error_percent(error: f64) -> String {
     format!("{} %", significant(100.0 * error, digits))
 }
 
-/// A count with its thousands set apart: `1 234 567`.
+/// A count with spaces between thousands: `1 234 567`.
 pub fn count(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::with_capacity(digits.len() + digits.len() / 3);
@@ -225,7 +225,7 @@ pub fn counted(n: u64, noun: &str) -> String {
     format!("{} {noun}{plural}", count(n))
 }
 
-/// A time span by the clock: `850 ms`, `12.3 s`, `3 min 20 s`, `2 h 05 min`.
+/// A duration: `850 ms`, `12.3 s`, `3 min 20 s`, `2 h 05 min`.
 pub fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
         return "–".to_string();
@@ -247,7 +247,7 @@ pub fn shortest(value: f64) -> String {
     shortest_in(&mut zmij::Buffer::new(), value).into()
 }
 
-/// The same, written where there is room for it.
+/// Writes the text of [`shortest`] into a buffer.
 pub fn shortest_in(room: &mut zmij::Buffer, value: f64) -> &str {
     if value.is_nan() {
         return "nan";

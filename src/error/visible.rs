@@ -1,17 +1,17 @@
-//! Text of others, made visible: names, keys, headings and file names may hold what a terminal takes for orders.
+//! Escapes hidden characters in foreign text: names, keys, headings and file names may contain control sequences of a terminal.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Whether a character does something to a terminal or to the order of what stands beside it, instead of being seen: control
-/// characters (C0 and C1, DEL), marks that turn the direction of writing, and tags.
+/// True if a character is not displayed, but controls a terminal or the order of its neighbors. These are control characters (C0 and C1,
+/// DEL), marks of writing direction, and tags.
 pub fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
         || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// The text with hidden characters as `\u001b`, as JSON writes them, so that JSON stays the same JSON. Ends of lines and tabs stay.
+/// Escapes hidden characters as `\u001b`, as in JSON, so that JSON text keeps its value. Line ends and tabs stay.
 pub fn visible(text: &str) -> Cow<'_, str> {
     let hidden = |c: char| is_hidden(c) && c != '\n' && c != '\t';
     if !text.contains(hidden) {
@@ -34,7 +34,7 @@ pub fn visible(text: &str) -> Cow<'_, str> {
 mod tests {
     use super::*;
 
-    /// Goal: nothing hidden is left, what is seen stays, and JSON still says what it said.
+    /// Goal: no hidden character is left, visible text stays, and JSON text keeps its value.
     #[test]
     fn hidden_characters_are_written_out() {
         let text = "a\u{1b}]0;x\u{7}\r\u{85}\u{202e}ä\u{e0041}\tb\n";

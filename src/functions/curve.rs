@@ -1,11 +1,11 @@
-//! A curve through given points: straight lines, monotone cubics or a natural cubic spline; constant beyond its ends.
+//! A curve through given points: linear, monotone cubic, or a natural cubic spline; constant beyond its ends.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::jet::Jet;
 
-/// What happens between the points of a table.
+/// Interpolation between the points of a table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Interpolation {
@@ -18,7 +18,7 @@ pub enum Interpolation {
     Cubic,
 }
 
-/// Points with the second derivatives of the curve through them, at both ends of each piece.
+/// Points with the second derivatives of the curve at both ends of each piece.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
     at: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct Curve {
     jumps: Vec<f64>,
 }
 
-/// Points beyond each end of a period that its curve is computed with: their influence falls at least by half from point to point.
+/// Points beyond each end of a period included in its spline: their influence at least halves from point to point.
 const BEYOND: usize = 64;
 
 impl Curve {
@@ -38,7 +38,7 @@ impl Curve {
         ascending.then(|| Self::with_jumps(at, values, interpolation))?
     }
 
-    /// The same, but two points at one place are a jump between them: a curve of its own ends and begins there.
+    /// [`Self::through`] with jumps: two points at one place end one curve and begin another.
     pub fn with_jumps(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let ascending = at.windows(2).all(|w| w[0] <= w[1]) && at.windows(3).all(|w| w[0] < w[2]);
         let finite = at.iter().chain(values).all(|v| v.is_finite());
@@ -53,8 +53,8 @@ impl Curve {
         })
     }
 
-    /// One period of a curve that repeats itself, which is as long as its points reach. It goes on smoothly from its last point to its first
-    /// where both have the same value, else it jumps there.
+    /// One period of a repeated curve, as long as its points reach. If the first and last value are equal, the curve is
+    /// smooth there; otherwise it jumps.
     pub fn repeated(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let mut curve = Self::with_jumps(at, values, interpolation)?;
         let (Some(&[first, last]), pieces) = (curve.ends().as_ref(), at.len() - 1) else {
@@ -82,7 +82,7 @@ impl Curve {
         Some([*self.at.first()?, *self.at.last()?])
     }
 
-    /// True if it ends at the value at which it begins.
+    /// True if the first and the last value are equal.
     pub fn joins(&self) -> bool {
         self.values.first() == self.values.last()
     }
@@ -92,7 +92,7 @@ impl Curve {
         &self.jumps
     }
 
-    /// Value and derivatives at `x`, on the branch (before, along, after) that holds at `within`.
+    /// Value and derivatives at `x`, on the branch (before, along, after) that contains `within`.
     pub fn jet(&self, x: f64, within: f64, interpolation: Interpolation) -> Jet {
         let (Some(&first), Some(&last)) = (self.at.first(), self.at.last()) else {
             return Jet::default();
@@ -107,9 +107,10 @@ impl Curve {
         self.inside(x, within, interpolation)
     }
 
-    /// The same between its ends.
+    /// [`Self::jet`] between its ends.
     pub fn inside(&self, x: f64, within: f64, interpolation: Interpolation) -> Jet {
-        // Every knot of another table ends a smooth interval; a spline is C2 across its inner knots, but not across a jump.
+        // Knots of linear and monotone tables end a smooth interval. A spline is C2 across inner knots, but not across
+        // a jump.
         if interpolation != Interpolation::Cubic {
             return self.piece(self.piece_of(within), x);
         }
@@ -122,7 +123,7 @@ impl Curve {
         self.piece(self.piece_of(x).clamp(from, to.max(from + 1) - 1), x)
     }
 
-    /// Value and derivatives at `x`; at the ends those of the curve, not of the constant beyond.
+    /// Value and derivatives at `x`; at the ends those of the curve, not of the constant continuation.
     pub fn at(&self, x: f64) -> Jet {
         match (self.at.first(), self.at.last()) {
             (Some(&first), Some(_)) if x < first || self.at.len() == 1 => Jet::constant(self.values[0]),
@@ -152,12 +153,12 @@ impl Curve {
         }
     }
 
-    /// Where the points are.
+    /// Places of the points.
     pub(super) fn knots(&self) -> &[f64] {
         &self.at
     }
 
-    /// The pieces that `[from, to]` has more than an end of.
+    /// Indices of pieces that overlap `[from, to]`.
     pub(super) fn pieces(&self, from: f64, to: f64) -> std::ops::Range<usize> {
         let last = self.at.len().saturating_sub(1);
         let first = self.at.partition_point(|&knot| knot <= from).saturating_sub(1);
@@ -165,18 +166,18 @@ impl Curve {
         first..stop.max(first)
     }
 
-    /// Where value or rate of the cubic of piece `i` may be extreme; some places lie outside, some are no numbers.
+    /// Candidates for extrema of value or rate of the cubic of piece `i`; some are outside or NaN.
     pub(super) fn extremes(&self, i: usize) -> [f64; 3] {
         let (start, h) = (self.at[i], self.at[i + 1] - self.at[i]);
         let [m0, m1] = self.second[i];
         let rate = self.piece(i, start).rate;
-        // rate + m0 x + (m1 - m0) x^2/(2 h) = 0, without cancellation
+        // solve rate + m0 x + (m1 - m0) x^2/(2 h) = 0 without cancellation
         let (a, b) = ((m1 - m0) / (2.0 * h), m0);
         let q = -0.5 * (b + (b * b - 4.0 * a * rate).sqrt().copysign(b));
         [start + q / a, start + rate / q, start - m0 * h / (m1 - m0)]
     }
 
-    /// How far the curve swings beyond all of its points, over the range of their values; 0 where these are all alike.
+    /// Overshoot of the curve beyond its points, relative to the range of their values; 0 if these are equal.
     pub fn overshoot(&self) -> f64 {
         let bounds = |values: &mut dyn Iterator<Item = f64>| {
             values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
@@ -194,19 +195,19 @@ impl Curve {
         if high > low { beyond / (high - low) } else { 0.0 }
     }
 
-    /// Smallest distance between two points that are not at one place.
+    /// Smallest nonzero distance between two points.
     pub fn smallest_spacing(&self) -> Option<f64> {
         let spacings = self.at.windows(2).map(|w| w[1] - w[0]);
         spacings.filter(|spacing| *spacing > 0.0).reduce(f64::min)
     }
 
-    /// All values equal.
+    /// True if all values are equal.
     pub fn is_constant(&self) -> bool {
         self.values.windows(2).all(|w| w[0] == w[1])
     }
 }
 
-/// Second derivatives at both ends of each piece of a curve without jumps.
+/// Second derivatives at both ends of each piece, for a curve without jumps.
 fn second_derivatives(at: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 2]> {
     match interpolation {
         Interpolation::Linear => vec![[0.0; 2]; at.len() - 1],
@@ -218,7 +219,7 @@ fn second_derivatives(at: &[f64], values: &[f64], interpolation: Interpolation) 
     }
 }
 
-/// The same of one with jumps, whose pieces have no length and no derivatives.
+/// Second derivatives at both ends of each piece, for a curve with jumps; zero for the jumps, pieces of zero length.
 fn second_between_jumps(at: &[f64], values: &[f64], interpolation: Interpolation) -> Vec<[f64; 2]> {
     let mut second = Vec::with_capacity(at.len());
     let mut begin = 0;
@@ -254,8 +255,8 @@ fn natural_second_derivatives(x: &[f64], y: &[f64]) -> Vec<f64> {
     second
 }
 
-/// Second derivatives at both ends of each piece of the monotone cubics of Fritsch & Butland (SIAM J. Sci. Stat. Comput. 5, 300, 1984): the
-/// slope at a point is a weighted harmonic mean of those beside it, 0 where they differ in sign.
+/// Second derivatives at both ends of each piece of monotone cubics (Fritsch & Butland, SIAM J. Sci. Stat. Comput. 5,
+/// 300, 1984). The slope at a point is a weighted harmonic mean of its neighbors' slopes, 0 if these differ in sign.
 fn monotone_second_derivatives(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
     let pieces = x.windows(2).zip(y.windows(2));
     let pieces: Vec<[f64; 2]> = pieces
@@ -284,7 +285,7 @@ fn monotone_second_derivatives(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
     pieces.iter().zip(slopes.windows(2)).map(second).collect()
 }
 
-/// Slope at an end from the piece there and the next, by the parabola through their points as far as that keeps the curve monotone.
+/// Slope at an end: that of the parabola through the end piece and the next, limited to keep the curve monotone.
 fn end_slope(own: &[f64; 2], next: Option<&[f64; 2]>) -> f64 {
     let ([h0, s0], Some([h1, s1])) = (*own, next) else {
         return own[1];
@@ -303,7 +304,8 @@ fn end_slope(own: &[f64; 2], next: Option<&[f64; 2]>) -> f64 {
 mod tests {
     use super::*;
 
-    /// Source: scipy.interpolate.PchipInterpolator([0, 1, 3, 4, 6], [0, 1, 1.5, 4, 3]) and its derivative at 0.5, 2, 3.5, 5.
+    /// Source: scipy.interpolate.PchipInterpolator([0, 1, 3, 4, 6], [0, 1, 1.5, 4, 3]) and its derivative at 0.5, 2,
+    /// 3.5, 5.
     #[test]
     fn monotone_cubics_are_those_of_pchip() {
         let (x, y) = ([0.0, 1.0, 3.0, 4.0, 6.0], [0.0, 1.0, 1.5, 4.0, 3.0]);
@@ -326,7 +328,7 @@ mod tests {
         }
     }
 
-    /// Goal: monotone cubics stay within their points, a natural spline through points that jump does not.
+    /// Goal: monotone cubics stay within the values of their points; a natural spline through a jump overshoots.
     #[test]
     fn only_a_spline_swings_beyond_its_points() {
         let (x, y) = ([0.0, 1.0, 1.1, 2.0, 5.0], [0.0, 0.0, 1.0, 1.0, 0.9]);

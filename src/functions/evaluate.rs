@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use super::curve::Interpolation;
 use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
 
-/// Switching times of a table that repeats, at most; checks of a case refuse more.
+/// Largest number of switching times of a repeated table; case checks reject more.
 pub const MOST_KNOTS: usize = 1_000_000;
 
 impl Signal {
-    /// Value with first and second derivative; does not allocate.
+    /// Value with its first three derivatives; does not allocate.
     pub fn jet(&self, clock: Clock) -> Jet {
         match self {
             Self::Constant(value) => Jet::constant(*value),
@@ -30,9 +30,9 @@ impl Signal {
         self.jet(Clock { t, within: t }).value
     }
 
-    /// Appends the times [s] at which the signal or one of its first three derivatives jumps, of what repeats those up to `until`. Left out
-    /// are joins that are twice continuously differentiable and of no harm to an integrator: inner knots of splines,
-    /// the end of a sine's smooth start.
+    /// Appends the times [s] at which the signal or one of its first three derivatives jumps; those of repeated tables
+    /// up to `until`. Omits joins that are twice continuously differentiable and harmless to an integrator: inner knots
+    /// of splines, and the end of a sine's smooth start.
     pub fn breaks(&self, until: f64, out: &mut Vec<f64>) {
         match self {
             Self::Constant(_) | Self::Sine(_) | Self::Sigmoid(_) | Self::Polynomial(_) => {}
@@ -44,7 +44,7 @@ impl Signal {
         }
     }
 
-    /// How far a spline in it swings beyond its points, over the range of their values; 0 without one.
+    /// Largest overshoot of a spline in the signal, relative to the range of its values; 0 without splines.
     pub fn overshoot(&self) -> f64 {
         match self {
             Self::Table(table) => table.curve.overshoot(),
@@ -66,12 +66,12 @@ impl Signal {
         times.windows(2).map(|w| (w[0], w[1])).collect()
     }
 
-    /// When the value first jumps until `end` [s], and what it is on both sides.
+    /// Time of the first jump of the value until `end` [s], and the values before and after.
     pub fn first_jump(&self, end: f64) -> Option<[f64; 3]> {
         self.each_jump(end).next()
     }
 
-    /// When the value jumps until `end` [s], and what it is on both sides, in order of time.
+    /// Times of all jumps of the value until `end` [s], and the values before and after, in order of time.
     pub fn each_jump(&self, end: f64) -> impl Iterator<Item = [f64; 3]> {
         let mut last: Option<f64> = None;
         self.smooth_intervals(end).into_iter().filter_map(move |(start, stop)| {
@@ -85,8 +85,8 @@ impl Signal {
         })
     }
 
-    /// Shortest time scale [s]: period or start of a sine, duration of a ramp, `4/steepness` of a sigmoid, smallest spacing
-    /// of a table. The frequencies of the factors of a product add.
+    /// Shortest time scale [s]: period or smooth start of a sine, duration of a ramp, `4/steepness` of a sigmoid,
+    /// smallest spacing of a table. Frequencies of factors add.
     pub fn fastest_period_s(&self) -> Option<f64> {
         let scale = match self {
             _ if self.is_constant() => None,
@@ -105,8 +105,8 @@ impl Signal {
         scale.filter(|s| s.is_finite() && *s > 0.0)
     }
 
-    /// As [`Self::fastest_period_s`], but only of what no switching time marks: between the stops at both its ends a ramp
-    /// or a piece of a table is as smooth as anything, however short it is.
+    /// [`Self::fastest_period_s`] without changes that switching times mark. Between its switching times a ramp or a
+    /// piece of a table is smooth, however short it is.
     pub fn fastest_unmarked_period_s(&self) -> Option<f64> {
         match self {
             Self::Ramp(_) => None,
@@ -127,12 +127,12 @@ impl Signal {
         }
     }
 
-    /// Nothing at all times.
+    /// True if the signal is zero at all times.
     pub fn is_zero(&self) -> bool {
         self.is_constant() && self.value(0.0) == 0.0
     }
 
-    /// Never changes.
+    /// True if the signal is constant.
     pub fn is_constant(&self) -> bool {
         match self {
             Self::Constant(_) => true,
@@ -169,8 +169,8 @@ impl Sine {
 }
 
 impl Sigmoid {
-    /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)`, `y''' = A k^3 g h (h^2 - 4 g h + g^2)` with `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`;
-    /// only `e^-|z|` is formed, which cannot overflow.
+    /// `y = A g`, `y' = A k g h`, `y'' = A k^2 g h (h - g)`, `y''' = A k^3 g h (h^2 - 4 g h + g^2)` with
+    /// `g = 1/(1 + e^-z)`, `h = 1 - g`, `z = k (t - t0)`. Computes only `e^-|z|`, which cannot overflow.
     pub(super) fn jet(&self, t: f64) -> Jet {
         let (a, k) = (self.amplitude, self.steepness_per_s);
         let z = k * (t - self.midpoint_s);
@@ -208,7 +208,7 @@ impl Ramp {
 }
 
 impl Table {
-    /// That of the period in which it is looked at.
+    /// Value and derivatives in the period that contains the clock's time.
     fn jet(&self, clock: Clock) -> Jet {
         let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
             return self.curve.jet(clock.t, clock.within, self.interpolation);
@@ -220,7 +220,7 @@ impl Table {
         self.curve.inside(x, within, self.interpolation)
     }
 
-    /// True if it repeats itself as a curve that is twice continuously differentiable.
+    /// True for a repeated table that is twice continuously differentiable everywhere.
     pub fn is_smooth(&self) -> bool {
         self.repeat && self.interpolation == Interpolation::Cubic && self.curve.jumps().is_empty() && self.curve.joins()
     }
@@ -238,7 +238,7 @@ impl Table {
         }
     }
 
-    /// Appends times of the table [s], of one that repeats in every period until `until`.
+    /// Appends times of the table [s]; for a repeated table, those of every period until `until`.
     pub(super) fn knots_until(&self, until: f64, times: &[f64], out: &mut Vec<f64>) {
         let (Some(period), Some([first, _])) = (self.period_s(), self.curve.ends()) else {
             return out.extend(times);
@@ -252,7 +252,7 @@ impl Table {
 }
 
 impl Polynomial {
-    /// Horner's rule for value and derivatives at once.
+    /// Evaluates value and derivatives by Horner's rule.
     pub(super) fn jet(&self, x: f64) -> Jet {
         self.coefficients.iter().rev().fold(Jet::default(), |p, &c| Jet {
             value: p.value * x + c,

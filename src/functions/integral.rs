@@ -1,17 +1,17 @@
-//! What a function of time adds up to.
+//! Integral of a function of time.
 
 use super::signals::{Clock, Signal};
 use crate::numerics::gauss::Gauss;
 
-/// Points of a piece.
+/// Gauss points per piece.
 const POINTS: usize = 8;
-/// Pieces of a shortest time scale: an eighth of a period is integrated to round-off by eight points.
+/// Pieces per shortest time scale: eight points integrate an eighth of a period to machine precision.
 const PIECES: f64 = 8.0;
-/// Pieces of a smooth interval at most.
+/// Largest number of pieces in a smooth interval.
 const MOST: f64 = 1e5;
 
 impl Signal {
-    /// `∫ f dt` from 0 to an instant [s], by Gauss' quadrature piece by piece between switching times; 0 for instants before 0.
+    /// `∫ f dt` from 0 to `end` [s], by piecewise Gauss quadrature between switching times; 0 for negative `end`.
     pub fn integral(&self, end: f64) -> f64 {
         if end <= 0.0 {
             return 0.0;

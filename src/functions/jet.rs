@@ -1,4 +1,4 @@
-//! Value and the first three derivatives in time as one quantity, with the rules of calculus.
+//! A value and its first three time derivatives as one quantity, with the rules of calculus.
 
 /// Value of a signal with its first three time derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Jet {
 }
 
 impl Jet {
-    /// A value that does not change.
+    /// Jet of a constant.
     pub fn constant(value: f64) -> Self {
         Self {
             value,
@@ -22,7 +22,7 @@ impl Jet {
         }
     }
 
-    /// `factor` times this.
+    /// This jet times `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self {
             value: factor * self.value,
@@ -56,7 +56,8 @@ impl std::ops::Add for Jet {
     }
 }
 
-/// Leibniz: `(a b)' = a' b + a b'`, `(a b)'' = a'' b + 2 a' b' + a b''`, `(a b)''' = a''' b + 3 a'' b' + 3 a' b'' + a b'''`.
+/// Leibniz rule: `(a b)' = a' b + a b'`, `(a b)'' = a'' b + 2 a' b' + a b''`,
+/// `(a b)''' = a''' b + 3 a'' b' + 3 a' b'' + a b'''`.
 impl std::ops::Mul for Jet {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -73,10 +74,10 @@ impl std::ops::Mul for Jet {
     }
 }
 
-/// Time, and the smooth interval in which it is looked at.
+/// Time, and the smooth interval that contains it.
 ///
-/// Signals with kinks or jumps choose their branch by `within`, an instant inside the interval between two
-/// switching times, and evaluate that branch at `t`: inside one interval the model is smooth up to and at both ends.
+/// Signals with kinks or jumps choose their branch by `within`, an instant between two switching times, and evaluate
+/// this branch at `t`. In one interval, including both ends, the model is thus smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clock {
     /// Time [s].

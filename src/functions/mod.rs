@@ -1,14 +1,14 @@
-//! Functions of time and place as a case writes them, what is known of them everywhere and not at samples alone.
+//! Functions of time and place in a case, with bounds that also cover the points between samples.
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
-//! | [`signals`], `evaluate` | functions of time: forms, values, derivatives, times at which they switch |
-//! | `integral` | what a function of time adds up to |
+//! | [`signals`], `evaluate` | functions of time: types, values, derivatives, switching times |
+//! | `integral` | integrals of functions of time |
 //! | [`profile`] | functions of place: values, integrals, waves |
-//! | `curve` | curves through points: tables of both |
+//! | `curve` | curves through points, for tables of both |
 //! | `jet` | a value with its first three derivatives |
-//! | [`bounds`] | all values, largest rates, variation, what they excite: bounds, by interval arithmetic |
-//! | `number_or_object` | how they are written in JSON |
+//! | [`bounds`] | bounds of values, rates, variation and excitation, by interval arithmetic |
+//! | `number_or_object` | JSON format |
 
 pub mod bounds;
 mod curve;

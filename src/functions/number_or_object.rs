@@ -1,8 +1,8 @@
-//! The way signals and profiles are written: a bare number for a constant, else an object with one named form.
-//! By hand, because derived "untagged" enums lose the place and the reason of an error.
+//! JSON format of signals and profiles: a number for a constant, or an object with one named form. Implemented by hand,
+//! because derived "untagged" enums lose the location and reason of an error.
 
-/// Implements `Serialize`, `Deserialize` and `JsonSchema` for an enum with `Constant(f64)` and newtype variants
-/// that a helper enum of the same variants reads from `{"name": ...}`.
+/// Implements `Serialize`, `Deserialize` and `JsonSchema` for an enum with `Constant(f64)` and newtype variants. A
+/// helper enum of the same variants reads the form `{"name": ...}`.
 macro_rules! number_or_object {
     ($kind:ident, $named:ident, $expecting:literal, { $($variant:ident = $name:literal),+ $(,)? }) => {
         impl serde::Serialize for $kind {
@@ -57,17 +57,17 @@ macro_rules! number_or_object {
         }
 
         impl $kind {
-            /// The same always.
+            /// A constant.
             pub fn constant(value: f64) -> Self {
                 Self::Constant(value)
             }
 
-            /// Always 1.
+            /// The constant 1.
             pub fn one() -> Self {
                 Self::Constant(1.0)
             }
 
-            /// Written as the number 1.
+            /// True if written as the number 1.
             pub fn is_one(&self) -> bool {
                 *self == Self::Constant(1.0)
             }

@@ -1,4 +1,4 @@
-//! Functions of time with exact first and second derivatives: what they are and how they are written.
+//! Functions of time with exact derivatives: types and JSON format.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use super::number_or_object::number_or_object;
 /// A function of time: a number for a constant, else one named form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Signal {
-    /// Does not change.
+    /// A constant.
     Constant(f64),
     /// A sine, with or without a smooth start.
     Sine(Sine),
@@ -90,7 +90,7 @@ pub struct Ramp {
     /// When it starts [s].
     #[serde(default)]
     pub start_s: f64,
-    /// How long it takes [s]; 0: a step.
+    /// Duration [s]; 0: a step.
     #[schemars(range(min = 0.0))]
     pub duration_s: f64,
     /// Form of the transition.
@@ -123,14 +123,14 @@ pub struct Polynomial {
 #[serde(try_from = "TableText", into = "TableText")]
 #[schemars(!try_from, !into, with = "TableText")]
 pub struct Table {
-    /// Times, ascending [s]; a time that stands twice is a jump.
+    /// Times, ascending [s]; two equal times define a jump.
     pub times_s: Vec<f64>,
     /// Values at these times.
     pub values: Vec<f64>,
-    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// Interpolation between the points, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
-    /// True if it repeats itself, for ever and in both directions.
+    /// True if the table repeats periodically in both directions.
     pub repeat: bool,
     pub(super) curve: Curve,
 }
@@ -146,26 +146,27 @@ pub(super) struct TableText {
     /// Values at these times.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     values: Vec<f64>,
-    /// CSV file to take the points from, relative to the case file: a line of headings, then numbers. A heading gives the unit of its column behind
-    /// its name or in brackets (`t_ms`, `p_kpa`, `flow [ml/min]`); without one it is in SI units.
+    /// CSV file to take the points from, relative to the case file: a line of headings, then numbers. A heading gives
+    /// the unit of its column behind its name or in brackets (`t_ms`, `p_kpa`, `flow [ml/min]`); without one it is in
+    /// SI units.
     #[serde(default, skip_serializing)]
     csv: Option<String>,
     /// Heading of the column with the times; absent: the first column. In the unit that it names, else in s.
     #[serde(default, skip_serializing)]
     time_column: Option<String>,
-    /// Heading of the column with the values; absent: the second column. In the unit that it names, which must be one of the quantity's, else in
-    /// the unit of the key under which the table stands.
+    /// Heading of the column with the values; absent: the second column. In the unit that it names, which must be one
+    /// of the quantity's, else in the unit of the key under which the table stands.
     #[serde(default, skip_serializing)]
     value_column: Option<String>,
     /// Checksum of the points that the file holds, as the program writes it; a file with other points is refused.
     #[serde(default, skip_serializing)]
     checksum: Option<String>,
-    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// Interpolation between the points, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
-    /// Repeats the table for ever, with the time from its first point to its last as period. Where the last value is not the first, it jumps
-    /// from one to the other.
+    /// Repeats the table for ever, with the time from its first point to its last as period. Where the last value is
+    /// not the first, it jumps from one to the other.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     repeat: bool,
 }
@@ -173,7 +174,7 @@ pub(super) struct TableText {
 impl TryFrom<TableText> for Table {
     type Error = &'static str;
     fn try_from(text: TableText) -> Result<Self, Self::Error> {
-        // Files are read with the case, see `tables`.
+        // CSV files are read with the case, see `tables`.
         match (text.csv, text.time_column, text.value_column, text.checksum) {
             (None, None, None, None) => Ok(Self::repeated(
                 text.times_s,
@@ -206,8 +207,8 @@ impl From<Table> for TableText {
 }
 
 impl Table {
-    /// Points that do not make a curve (not ascending, not as many values as times) make a signal that is zero;
-    /// [`super::check`] refuses them.
+    /// Table through points. Points that do not define a curve (times not ascending, or numbers of times and values
+    /// differ) give a zero signal; [`super::check`] rejects them.
     pub fn new(times_s: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
         Self::repeated(times_s, values, interpolation, false)
     }
@@ -226,13 +227,13 @@ impl Table {
         }
     }
 
-    /// Its period [s], where it repeats itself.
+    /// Period [s] of a repeated table; none for others.
     pub fn period_s(&self) -> Option<f64> {
         let [first, last] = self.curve.ends().filter(|_| self.repeat)?;
         Some(last - first)
     }
 
-    /// Whether the points make a curve.
+    /// True if the points define a curve.
     pub fn is_sound(&self) -> bool {
         self.curve != Curve::default()
     }

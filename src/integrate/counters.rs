@@ -1,4 +1,4 @@
-//! What an integrator has done, and where the time went.
+//! Work counters and wall times of an integrator.
 
 use std::time::Duration;
 
@@ -11,13 +11,13 @@ use crate::case::schema::Method;
 pub struct Counters {
     /// Accepted steps.
     pub steps: u64,
-    /// Residuals.
+    /// Residual evaluations.
     pub residual_evaluations: u64,
-    /// Jacobians.
+    /// Jacobian evaluations.
     pub jacobian_evaluations: u64,
-    /// Numerical factorisations, refactorisations with old pivots included.
+    /// Numerical factorizations, including refactorizations with old pivots.
     pub factorizations: u64,
-    /// Factorisations done anew because the old pivots had grown bad.
+    /// Repeated factorizations because of bad old pivots.
     pub pivot_refreshes: u64,
     /// Steps rejected by the error test.
     pub error_test_failures: u64,
@@ -33,7 +33,7 @@ pub struct Counters {
     pub steps_by_order: Vec<u64>,
     /// Highest order allowed.
     pub max_order: u8,
-    /// Whose order that is; nothing where nothing was integrated, and in results of before it was told.
+    /// Method to which the order refers; none if nothing was integrated, and in results of earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<Method>,
 }
@@ -69,6 +69,6 @@ pub struct Wall {
     pub jacobian: Duration,
     /// Factorisations and solves.
     pub linear_solver: Duration,
-    /// Integrands of the integrals carried along.
+    /// Integrands of the integrals computed along with the solution.
     pub integrands: Duration,
 }

@@ -1,47 +1,47 @@
-//! Why the integrator could not go on.
+//! Errors of integrators.
 
 use std::fmt;
 
 use crate::dae::Dae;
 
-/// The unknown whose error is largest against its tolerance.
+/// Unknown with the largest error relative to its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// Position.
+    /// Index of the unknown.
     pub unknown: usize,
-    /// Name, for people.
+    /// Name of the unknown, for messages.
     pub name: String,
     /// Estimated error (or last Newton correction) over tolerance.
     pub ratio: f64,
 }
 
-/// A step that could not be done, or a request that cannot be met.
+/// A failed step, or an invalid request.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntegrationError {
-    /// IDA's code, negative; 0 when the failure is not IDA's.
+    /// IDA's error code, negative; 0 if the error is not from IDA.
     pub code: i32,
-    /// What the code means.
+    /// Meaning of the code.
     pub meaning: &'static str,
-    /// The equations' own fatal fault, verbatim.
+    /// Fatal error of the equations, verbatim.
     pub fatal: Option<String>,
-    /// IDA's message, or what was wrong with the request.
+    /// IDA's message, or the reason why the request is invalid.
     pub message: String,
     /// Time reached [s].
     pub time: f64,
-    /// Step last tried [s].
+    /// Size of the last attempted step [s].
     pub step: f64,
     /// Order of that step.
     pub order: u8,
-    /// The unknown that is worst, when a step has been tried.
+    /// Unknown with the largest error, if a step has been attempted.
     pub worst: Option<Worst>,
-    /// Last recoverable fault of the equations, if any since the last accepted step.
+    /// Last recoverable error of the equations since the last accepted step, if any.
     pub recoverable: Option<String>,
-    /// Name of the unknown whose column had no pivot, when the last matrix was singular.
+    /// Name of the unknown whose column had no pivot, if the last matrix was singular.
     pub singular: Option<String>,
 }
 
 impl IntegrationError {
-    /// A request that cannot be met, at time `time` [s].
+    /// Error for an invalid request, at time `time` [s].
     pub(crate) fn request(message: String, time: f64) -> Box<Self> {
         Box::new(Self {
             code: 0,
@@ -89,7 +89,7 @@ impl fmt::Display for IntegrationError {
 
 impl std::error::Error for IntegrationError {}
 
-/// Says which derivative is not finite; `entry` is a position in the pattern.
+/// Message that names the derivative that is not finite; `entry` is its index in the pattern.
 pub(crate) fn not_finite<D: Dae>(dae: &D, entry: usize, t: f64) -> String {
     let pattern = dae.pattern();
     let column = pattern.starts.partition_point(|&start| start as usize <= entry) - 1;

@@ -1,35 +1,35 @@
-//! A request to end soon with what there is, of whoever has something computed inside another program. It belongs to the threads of that
-//! computation; others know nothing of it.
+//! Requests to stop a computation early, from a program in which it is embedded. A request applies only to the threads of that
+//! computation.
 
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Why work ended that was asked to.
+/// Reason reported by work that was interrupted.
 pub const INTERRUPTED: &str = "interrupted";
 
 thread_local! {
     static HEARD: RefCell<Heard> = const { RefCell::new(Heard(None)) };
 }
 
-/// Where a request comes from, and whether it made anything end.
+/// A stop request: its source, and whether it has stopped any work.
 #[derive(Clone, Debug, Default)]
 pub struct Halt {
     raised: Arc<AtomicBool>,
     seen: Arc<AtomicBool>,
     answered: Arc<AtomicBool>,
-    /// Threads that complete something now.
+    /// Number of threads that are now completing work that must not be cut.
     completing: Arc<AtomicUsize>,
-    /// True if this thread does a part of the work of another one, which waits for it.
+    /// True if this thread does part of the work of another one, which waits for it.
     helps: bool,
 }
 
-/// What a thread listens to, for the threads that it begins.
+/// Stop request that a thread observes, to be passed to the threads it starts.
 #[derive(Clone, Debug, Default)]
 pub struct Heard(Option<Halt>);
 
 impl Halt {
-    /// A request by raising this flag.
+    /// Creates a request that is raised by this flag.
     pub fn by(raised: &Arc<AtomicBool>) -> Self {
         Self {
             raised: Arc::clone(raised),
@@ -37,12 +37,12 @@ impl Halt {
         }
     }
 
-    /// Whether something ended for it.
+    /// True if work has ended because of the request.
     pub fn was_seen(&self) -> bool {
         self.seen.load(Ordering::Relaxed)
     }
 
-    /// True if the thread that has begun the work ends it, or something is completed that is not to be cut.
+    /// True if the thread that started the work ends it, or if work that must not be cut is being completed.
     pub fn is_answered(&self) -> bool {
         self.answered.load(Ordering::Relaxed) || self.completing.load(Ordering::Relaxed) > 0
     }
@@ -54,14 +54,14 @@ impl Halt {
         }
     }
 
-    /// This thread listens to it from now on.
+    /// Makes this thread observe the request from now on.
     pub fn listen(&self) {
         HEARD.replace(Heard(Some(self.clone())));
     }
 }
 
 impl Heard {
-    /// Does a part of the work of the thread that has listened so far: the part listens to the same.
+    /// Runs `work` as part of the work of the observing thread; it observes the same request.
     pub fn during<T>(&self, work: impl FnOnce() -> T) -> T {
         let mut heard = self.clone();
         if let Some(halt) = &mut heard.0 {
@@ -74,17 +74,17 @@ impl Heard {
     }
 }
 
-/// What this thread listens to.
+/// Returns the request that this thread observes.
 pub fn heard() -> Heard {
     HEARD.with_borrow(Heard::clone)
 }
 
-/// This thread listens no more.
+/// Stops observing requests in this thread.
 pub fn deaf() {
     HEARD.take();
 }
 
-/// Something ends for the request.
+/// Records that work ends because of the request.
 pub fn see() {
     HEARD.with_borrow(|heard| {
         if let Some(halt) = &heard.0 {
@@ -93,7 +93,7 @@ pub fn see() {
     });
 }
 
-/// Completes something that is not to be cut, such as the files of a result.
+/// Completes work that must not be cut, such as writing the files of a result.
 pub fn complete<T>(work: impl FnOnce() -> T) -> T {
     let completing = heard().0.map(|halt| halt.completing);
     if let Some(count) = &completing {
@@ -106,7 +106,7 @@ pub fn complete<T>(work: impl FnOnce() -> T) -> T {
     done
 }
 
-/// Whether a flag is up; whoever asks is taken to end then.
+/// True if the flag is raised; records that the caller ends its work.
 pub fn raised(flag: &AtomicBool) -> bool {
     let raised = flag.load(Ordering::Relaxed);
     if raised {
@@ -115,7 +115,7 @@ pub fn raised(flag: &AtomicBool) -> bool {
     raised
 }
 
-/// Whether a computation is to end; it is taken to do so.
+/// True if the computation must end; records that the caller ends its work.
 pub fn asked() -> bool {
     HEARD.with_borrow(|heard| {
         let halt = heard.0.as_ref().filter(|halt| halt.raised.load(Ordering::Relaxed));

@@ -1,13 +1,13 @@
-//! What every integrator shares: what is asked of it, where it begins, what it tells of its work and its failures.
+//! Common parts of all integrators: requests, consistent initial values, work counters and errors.
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
 //! | [`tolerances`] | absolute tolerances |
-//! | [`start`], [`sensitivity_start`] | consistent initial values, and those of derivatives by parameters |
-//! | `request` | what is checked before it begins, and before a step |
-//! | [`counters`] | what it did, and where the time went |
-//! | [`halt`] | whether whoever asked wants it to end |
-//! | [`failure`] | why it could not go on |
+//! | [`start`], [`sensitivity_start`] | consistent initial values, also of derivatives by parameters |
+//! | `request` | checks before an integration and before a step |
+//! | [`counters`] | work counters and wall times |
+//! | [`halt`] | requests to stop early |
+//! | [`failure`] | errors |
 
 pub mod counters;
 pub mod failure;

@@ -1,10 +1,11 @@
-//! What every integrator checks before it begins, and before a step.
+//! Checks of every integrator before it starts, and before a step.
 
 use super::failure::IntegrationError;
 use crate::dae::Dae;
 use crate::sparse::{KluError, Lu, Pattern};
 
-/// The factors to be, by `analyse`, of a system that fits its values `[y, y']` and whose `options` were found good; else what is wrong.
+/// Analyzes the matrix of a system with `analyse`. Returns an error if the values `[y, y']` do not fit the system or the `options` are
+/// invalid.
 pub(crate) fn admit<D: Dae>(
     dae: &D,
     values: [&[f64]; 2],
@@ -26,7 +27,7 @@ pub(crate) fn admit<D: Dae>(
     })
 }
 
-/// Whether a stop time [s] is reached, round-off included; one that lies behind is refused.
+/// True if a stop time [s] is reached to rounding error; a stop time in the past is an error.
 pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IntegrationError>> {
     let round_off = 100.0 * f64::EPSILON * (time.abs() + stop.abs());
     if stop.is_nan() || stop < time - round_off {

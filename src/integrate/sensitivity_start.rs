@@ -6,11 +6,11 @@ use crate::sparse::{Klu, KluError};
 /// Solves `F_y s + F_y' s' + ∂F/∂σₖ = 0` ([E41]) for the sensitivities of algebraic unknowns and the rates of
 /// those of differential ones, for every parameter k of the equations; `(y, yp)` is consistent.
 ///
-/// Differential entries of `s[k]` are kept; rates of algebraic ones are set to 0. One correction removes what the factors' round-off
-/// leaves. Panics when a slice has another length than the unknowns.
+/// Differential entries of `s[k]` are kept; rates of algebraic ones are set to 0. One correction reduces the rounding error of the
+/// factors. Panics if a slice and the unknowns differ in length.
 ///
 /// # Errors
-/// What went wrong, in words: the equations' own fault, or a matrix that has no factors.
+/// Error message: an error of the equations, or a singular matrix.
 pub fn consistent_sensitivities<D: Dae>(
     dae: &mut D,
     t: f64,

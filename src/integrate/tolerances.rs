@@ -3,14 +3,14 @@
 /// Absolute tolerances, in the unit of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Absolute {
-    /// The same for all unknowns.
+    /// One value for all unknowns.
     Same(f64),
-    /// One for each unknown.
+    /// One value for each unknown.
     Each(Vec<f64>),
 }
 
 impl Absolute {
-    /// Checks tolerances for `n` unknowns; the error names the first that cannot be.
+    /// Checks the tolerances for `n` unknowns; the error names the first invalid one.
     pub fn check(&self, relative: f64, n: usize) -> Result<(), String> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         if !positive(relative) {
@@ -36,7 +36,7 @@ impl Absolute {
         Ok(())
     }
 
-    /// One for each of `n` unknowns.
+    /// Returns one tolerance for each of `n` unknowns.
     pub fn each(&self, n: usize) -> Vec<f64> {
         match self {
             Self::Same(value) => vec![*value; n],

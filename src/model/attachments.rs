@@ -1,4 +1,4 @@
-//! What is attached to the beam at places.
+//! Point masses, springs, dashpots and forces attached to the beam.
 
 use super::Load;
 use super::loads::LoadKind;
@@ -6,7 +6,7 @@ use crate::case::schema::{Attachment as Written, Case};
 use crate::functions::signals::Signal;
 use crate::numerics::Planar;
 
-/// A point mass, springs and dashpots to ground, and forces, at one place.
+/// A point mass, springs and dashpots to ground, and forces, all at one place of the beam.
 #[derive(Clone, Debug)]
 pub struct Attachment {
     /// Place `θ/l_s`.
@@ -15,7 +15,7 @@ pub struct Attachment {
     pub mass: f64,
     /// Rotary inertia about the mass centre [kg m²].
     pub inertia: f64,
-    /// From the place to the mass centre, across and along [m].
+    /// Vector from the place to the mass center, across and along [m].
     pub offset: Planar<f64>,
     /// Springs across and along [N/m].
     pub stiffness: Planar<f64>,
@@ -27,42 +27,42 @@ pub struct Attachment {
     pub forces: Vec<PointForce>,
 }
 
-/// How the direction of a force at a place goes with the beam.
+/// Direction of a point force relative to the beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Acting {
-    /// Stays as it is, along x (0) or z (1).
+    /// Constant, along x (0) or z (1).
     Dead,
-    /// The same, on the mass.
+    /// Constant, along x (0) or z (1), applied at the mass center.
     Weight,
     /// Turns with the beam: along `e_n` (0) or `e_t` (1).
     Follower,
 }
 
-/// `factor signal(t)` across (0) or along (1).
+/// The force `factor signal(t)` across (0) or along (1).
 #[derive(Clone, Debug)]
 pub struct PointForce {
-    /// Across or along.
+    /// 0 across, 1 along.
     pub axis: usize,
-    /// Dead or a follower.
+    /// Direction and point of application.
     pub acting: Acting,
-    /// 1 for what is given, `M b` for body forces on a point mass [kg].
+    /// 1 for a given force, `M b` for a body force on the point mass [kg].
     pub factor: f64,
     /// Time function.
     pub signal: Signal,
 }
 
 impl Attachment {
-    /// Whether it resists turning, or its mass is turned about its place.
+    /// True if the attachment has rotary inertia or an eccentric mass.
     pub fn is_body(&self) -> bool {
         self.inertia > 0.0 || self.offset != Planar::default()
     }
 
-    /// Whether some force turns with the beam.
+    /// True if a force turns with the beam.
     pub fn follows(&self) -> bool {
         self.forces.iter().any(|force| force.acting == Acting::Follower)
     }
 
-    /// All of a case.
+    /// Returns all attachments of a case.
     pub fn all(case: &Case) -> Vec<Self> {
         case.attachments
             .iter()

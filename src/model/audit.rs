@@ -1,4 +1,4 @@
-//! Audit of the coupling and of the range in which the model holds, when a case is read (`docs/model.md` section 4).
+//! Audit of the coupling and of the model's validity limits when a case is read (`docs/model.md` section 4).
 
 use std::collections::BTreeMap;
 
@@ -13,17 +13,17 @@ use crate::error::{Code, Violation};
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Number of its warning.
+    /// Code of its warning.
     pub code: Code,
-    /// Name, for the table of `check`.
+    /// Name in the table of `slcbeam check`.
     pub name: &'static str,
     /// Value.
     pub value: f64,
-    /// What is wanted, in words.
+    /// Required range, in words.
     pub wanted: &'static str,
-    /// Whether it is so.
+    /// True if the value is in the required range.
     pub good: bool,
-    /// What follows when it is not.
+    /// Consequence of a value outside the range.
     pub consequence: String,
 }
 
@@ -113,7 +113,7 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
     }
 }
 
-/// One warning of all numbers that say that the coupling is not reciprocal.
+/// One warning for all violated reciprocity conditions.
 fn not_reciprocal(findings: &[&Finding]) -> Option<String> {
     let first = findings.first()?;
     let numbers: Vec<String> = findings
@@ -159,7 +159,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
     }
 }
 
-/// Sum of pressures `p_u + p_d` up to which the kinked potential stays convex in bending and in stretch [Pa].
+/// Largest sum of pressures `p_u + p_d` at which the kinked potential is convex, in bending and in stretch [Pa].
 pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
     let Coupling::Reciprocal { length_ratio } = wet.coupling else {
         return (f64::INFINITY, f64::INFINITY);
@@ -213,8 +213,7 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
     .collect()
 }
 
-/// Why a case is refused although its text is valid: a kinked reciprocal potential that loses convexity at the
-/// pressures expected.
+/// Errors of a case with valid text: a kinked reciprocal potential that is not convex at the expected pressures.
 pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
     let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
         return vec![];
@@ -237,8 +236,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
         .collect()
 }
 
-/// Warnings of a case before it is run: those that stay, and characteristic numbers that are estimated out of the model's range;
-/// a run measures those.
+/// Warnings before a run: those of [`lasting`], and estimates beyond the validity limits, which a run measures instead.
 pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
     let mut all = lasting(case, model, numbers);
     if !model.effects.has(Effect::TubeLosses) {
@@ -261,7 +259,7 @@ pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> 
     all
 }
 
-/// A warning of a number, by name and in words, that is above its limit.
+/// Warning about a characteristic number (name, description) above its limit.
 fn over(
     numbers: &BTreeMap<String, f64>,
     code: Code,
@@ -276,22 +274,24 @@ fn over(
     )))
 }
 
-/// Output times in the window below which derivatives told of it are not those of the window.
+/// Fewest output times in the window for accurate derivatives of root mean squares.
 const OUTPUTS_A_WINDOW: f64 = 10.0;
-/// Output times in a period of the drive below which its peaks are missed.
+/// Fewest output times in a drive period that resolve its peaks.
 const OUTPUTS_A_PERIOD: f64 = 10.0;
 
-/// Warning of a run with derivatives: of root mean squares they are those of the output times.
+/// Warns that a run with sensitivities has too few output times in the window: derivatives of root mean squares use
+/// only these.
 pub fn derivatives(case: &Case) -> Option<String> {
     let within = case.time.window() / case.time.output_interval();
     (within < OUTPUTS_A_WINDOW).then(|| {
         Code::FewOutputs.warning(format!(
-            "output: {within:.1} output times in the window: derivatives of its root mean squares are told from these"
+            "output: {within:.1} output times in the window: derivatives of its root mean squares are computed from these"
         ))
     })
 }
 
-/// Warnings of a case whatever a run finds: bad findings, and characteristic numbers out of the model's range.
+/// Warnings that do not depend on the results of a run: failed findings, and characteristic numbers beyond the validity
+/// limits.
 pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
     let findings = coupling(case, model);
     let (twofold, others): (Vec<_>, Vec<_>) = findings
@@ -354,7 +354,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
     all
 }
 
-/// Warnings of a stream of which the model has a part.
+/// Warnings about streams that the model covers only in part.
 fn stream(model: &Model) -> Vec<String> {
     let Some((around, [across, along])) = (model.surroundings.as_ref()).and_then(|s| Some((s, s.stream.as_ref()?)))
     else {

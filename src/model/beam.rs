@@ -14,7 +14,7 @@ pub struct Section {
     pub axial_stiffness: f64,
     /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
     pub bending_stiffness: f64,
-    /// `kGA` [N]; infinite where sections stay across the beam.
+    /// `kGA` [N]; infinite without shear.
     pub shear_stiffness: f64,
     /// `y11 = (rho_s/m) (w_s h_s^3/12) f_i` [m^2].
     pub gyration_radius_squared: f64,
@@ -24,21 +24,21 @@ pub struct Section {
     pub bending_damping_time: f64,
     /// `c` [N s/m^2].
     pub drag: f64,
-    /// `m` less the mass of the fluid around that the beam displaces [kg/m]: what gravity acts on.
+    /// `m` less the mass per length of the displaced ambient fluid [kg/m]; gravity acts on it.
     pub weighing_per_length: f64,
     /// `c_2` [N s^2/m^3].
     pub quadratic_drag: f64,
-    /// `1 + Σ g`: stiffness of a solid that relaxes at once over that in the long term.
+    /// `1 + Σ g`: instantaneous over long-term stiffness of a relaxing solid.
     pub stiffening: f64,
 }
 
 impl Section {
-    /// Whether forces of the straight beam depend on velocities of its nodes.
+    /// True if forces on the straight beam depend on its node velocities.
     pub fn resists_motion(&self) -> bool {
         self.drag > 0.0 || self.quadratic_drag > 0.0 || self.axial_damping_time > 0.0
     }
 
-    /// What shear makes of an angular frequency of bending [1/s]: `ω²/(1 + EI k²/(kGA))`, `k² = ω √(m/EI)`, exact between pins.
+    /// Angular frequency of bending with shear [1/s]: `ω/√(1 + EI k²/(kGA))`, `k² = ω √(m/EI)`; exact for pinned ends.
     pub fn sheared(&self, omega: f64) -> f64 {
         let squared = omega * (self.mass_per_length / self.bending_stiffness).sqrt();
         omega / (1.0 + self.bending_stiffness * squared / self.shear_stiffness).sqrt()

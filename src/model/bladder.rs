@@ -1,4 +1,4 @@
-//! One bladder's cross-section: how its area changes with pressure, bending moment and normal force.
+//! Area of one bladder as a function of pressure, bending moment and normal force.
 
 use super::{ROWS, Section};
 use crate::case::schema::{Bladders, Case, Coupling as CouplingChoice};
@@ -33,8 +33,8 @@ pub struct AreaLaw {
 }
 
 impl AreaLaw {
-    /// Law of the case's bladders; without `asymmetry` (or with the reciprocal coupling, whose potential is convex
-    /// only with mean slopes) the half differences are zero.
+    /// Area law of the case's bladders. The half differences are zero without `asymmetry`, and with the reciprocal
+    /// coupling, whose potential is convex only with mean slopes.
     pub fn new(case: &Case, bladders: &Bladders, section: &Section, asymmetry: bool) -> Self {
         let m = &bladders.area_per_moment_m2_per_n_m;
         let n = &bladders.area_per_force_m2_per_n;
@@ -52,7 +52,7 @@ impl AreaLaw {
         }
     }
 
-    /// The law without what M or N does.
+    /// The law without the slopes by moment or by force.
     pub fn without(self, moment: bool, force: bool) -> Self {
         let mut law = self;
         if moment {
@@ -95,7 +95,7 @@ impl AreaLaw {
         -(kink_slope(moment, self.moment_width) * self.moment_half_difference) + row * self.moment_mean
     }
 
-    /// Pressure of a cell with area change `area`, where bending and force already account for `imposed`.
+    /// Pressure of a cell with area change `area`; `imposed` is the part caused by bending and force.
     #[inline]
     pub fn pressure<T: Scalar>(&self, area: T, imposed: T) -> T {
         (area - imposed) * self.per_area

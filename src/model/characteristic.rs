@@ -1,4 +1,4 @@
-//! Characteristic numbers of a case, printed before anything is run (`docs/model.md` section 11).
+//! Characteristic numbers of a case, printed before a run (`docs/model.md` section 11).
 
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -28,16 +28,16 @@ pub struct Mathieu {
     pub modulation: f64,
     /// Growth rate of the undamped single mode with the bladders drained [1/s]; 0 when stable.
     pub growth_rate: f64,
-    /// Bound of it, with what stretch of the axis and rotary inertia add [1/s].
+    /// Upper bound of the growth rate, with axial stretch and rotary inertia [1/s].
     pub growth_bound: f64,
 }
 
-/// Numbers of a case by name, SI units in the name.
+/// Characteristic numbers by name; the name contains the SI unit.
 pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
     numbers_with(case, model, mathieu(model).as_ref())
 }
 
-/// The same with Mathieu's parameters, which are known.
+/// [`numbers`] with Mathieu's parameters given.
 pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&Mathieu>) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     let mut put = |name: &str, value: f64| {
@@ -186,13 +186,13 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&Mathieu>) -> BT
     all
 }
 
-/// Whether the root is clamped and the tip free.
+/// True if the root is clamped and the tip free.
 fn is_cantilever(model: &Model) -> bool {
     let kind = |k: usize| end_kind(&model.ends[k]);
     kind(0) == (true, true) && kind(1) == (false, false)
 }
 
-/// Transverse motion held? Slope held?
+/// Flags of an end: displacement across prescribed, slope prescribed.
 fn end_kind(e: &ResolvedEnd) -> (bool, bool) {
     (
         matches!(e.transverse, Translation::Displacement(_)),
@@ -233,7 +233,7 @@ fn axial_wave_number(model: &Model) -> f64 {
     if held(0) == held(1) { PI } else { 0.5 * PI }
 }
 
-/// Highest frequency among the sines of the case, wherever they act and also as a term or factor [Hz].
+/// Highest frequency among all sines of the case, including those inside sums and products [Hz].
 pub fn forcing_frequency(case: &Case) -> Option<f64> {
     let mut highest: Option<f64> = None;
     let mut hear = |s: &Signal| {
@@ -262,14 +262,14 @@ pub fn forcing_frequency(case: &Case) -> Option<f64> {
     highest
 }
 
-/// Shortest period of the case's forcing [s], when there is a sine.
+/// Shortest period of the case's sines [s].
 pub fn forcing_period(case: &Case) -> Option<f64> {
     forcing_frequency(case).filter(|f| *f > 0.0).map(|f| 1.0 / f)
 }
 
-/// Mathieu's parameters when a cantilever's root is shaken along its axis by a sine.
+/// Mathieu's parameters of a cantilever with an axial sine motion of its root.
 pub fn mathieu(model: &Model) -> Option<Mathieu> {
-    // a solid that relaxes has not one stiffness
+    // a relaxing solid has no single stiffness
     if !is_cantilever(model) || !model.effects.has(Effect::SolidInertia) || !model.relaxation.is_empty() {
         return None;
     }
@@ -293,9 +293,10 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
     })
 }
 
-/// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` [1/s] from the trace of its monodromy matrix, by the classical
-/// Runge-Kutta method; 0 when stable. Of `n` steps over a period T its error is about `(ωT)⁵/(120 n⁴)`, with ω the largest frequency: 1e-12
-/// where no more than 4000 are needed for it.
+/// Growth rate of `q'' + [w2 - a sin(Ω t)] q = 0` [1/s] from the trace of its monodromy matrix; 0 when stable.
+///
+/// Integrates with the classical Runge-Kutta method. With `n` steps over a period T, the error is about
+/// `(ωT)⁵/(120 n⁴)`, ω the largest frequency. It is 1e-12 where 4000 steps suffice.
 pub fn mathieu_growth(w2: f64, a: f64, omega: f64) -> f64 {
     let period = 2.0 * PI / omega;
     let turns = (w2.abs() + a.abs()).sqrt() * period;

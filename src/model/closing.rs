@@ -1,21 +1,22 @@
-//! Bladders whose walls meet.
+//! Contact between the walls of a bladder.
 
 use super::{AreaLaw, Compression};
 use crate::case::schema::Closing as Written;
 use crate::numerics::Scalar;
 
-/// Share of the area at which walls meet below which the law goes on straight: no state gets there, trial states may.
+/// Share of the touching area below which the law is linear. Only trial states of the solver reach it.
 const SHUT: f64 = 1e-3;
 
-/// `[E71]` Walls that touch where the cross-section falls below a share ε of that at rest, and press on each other the more the less is left:
+/// `[E71]` Walls touch where the cross-section is below the share ε of its value at rest. Their contact pressure grows
+/// as the area shrinks:
 ///
 /// ```text
 /// p_c = P (ε/x - 1)²  for x = (A_0 + a1)/A_0 < ε, else 0        p = (a1 - R A_M - A_N)/a_p - p_c
 /// E gains Σ Δs A_0 P [ε²/x - x + 2 ε ln(x/ε)]
 /// ```
 ///
-/// `p + p_c` is what strains the walls, and the beam by them. p_c grows beyond all bounds as x falls to 0, and so does the energy of closing: the area
-/// stays positive.
+/// `p + p_c` strains the walls and, through them, the beam. p_c and the contact energy grow without bound as x
+/// approaches 0. The area therefore stays positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closing {
     /// `A_0` [m^2].
@@ -27,7 +28,7 @@ pub struct Closing {
 }
 
 impl Closing {
-    /// As a case writes it, of bladders of a cross-section [m^2].
+    /// Contact law of a case's bladders with a cross-section at rest [m^2].
     pub fn new(written: &Written, at_rest: f64) -> Self {
         Self {
             at_rest,
@@ -36,12 +37,12 @@ impl Closing {
         }
     }
 
-    /// Cross-section at which walls touch [m^2].
+    /// Area below which walls touch [m^2].
     pub fn touching(&self) -> f64 {
         self.below * self.at_rest
     }
 
-    /// `p_c` [Pa] and its derivative by the area change [Pa/m^2].
+    /// `p_c` [Pa] and its derivative with respect to the area change [Pa/m^2].
     pub fn at(&self, area: f64) -> (f64, f64) {
         let x = 1.0 + area / self.at_rest;
         if x >= self.below {
@@ -54,13 +55,13 @@ impl Closing {
         (pressure, slope / self.at_rest)
     }
 
-    /// `p_c` of an area change [Pa].
+    /// `p_c` at an area change [Pa].
     #[inline(never)] // so that its constants are not made where no walls meet
     pub fn pressure<T: Scalar>(&self, area: T) -> T {
         area.lift(|area| self.at(area))
     }
 
-    /// Energy of a cell per length [J/m].
+    /// Contact energy of a cell per length [J/m].
     pub fn energy(&self, area: f64) -> f64 {
         let (x, e) = (1.0 + area / self.at_rest, self.below);
         if x >= e {
@@ -69,7 +70,7 @@ impl Closing {
         self.at_rest * self.stiffness * (e * e / x - x + 2.0 * e * (x / e).ln())
     }
 
-    /// The area change at a pressure of the fluid, where bending and force account for `imposed`.
+    /// Area change at a fluid pressure; `imposed` is the part caused by bending and force.
     #[inline]
     pub fn swelling<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
         let a_p = law.per_pressure;
@@ -83,7 +84,7 @@ impl Closing {
         })
     }
 
-    /// The area change of a cell that stores `content` of a fluid that is compressed, [E54].
+    /// Area change of a cell with the content `content` of compressible fluid, [E54].
     #[inline]
     pub fn swelling_of<T: Scalar>(&self, law: &AreaLaw, fluid: &Compression, content: T, imposed: T) -> T {
         content.lift_with(imposed, |content, imposed| {
@@ -97,7 +98,7 @@ impl Closing {
         })
     }
 
-    /// `r(p) (A_0 + a1) - A_0` and its derivatives by area change and by what is imposed.
+    /// `r(p) (A_0 + a1) - A_0` and its derivatives with respect to area change and imposed area.
     pub fn missing(&self, law: &AreaLaw, fluid: &Compression, area: f64, imposed: f64) -> (f64, [f64; 2]) {
         let (contact, slope) = self.at(area);
         let (density, by_pressure) = fluid.density((area - imposed) / law.per_pressure - contact);
@@ -109,7 +110,8 @@ impl Closing {
         )
     }
 
-    /// Root of a function that grows, `open` where walls do not touch: Newton's iteration between bounds.
+    /// Root of an increasing function by Newton's iteration with bisection. `open` is the root where walls do not
+    /// touch.
     fn root(&self, open: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
         let (mut low, mut high) = (-self.at_rest, self.at_rest * (self.below - 1.0));
         if open >= high {

@@ -1,4 +1,4 @@
-//! Fluid that is compressed: gas, liquid that yields, liquid with free gas in it.
+//! Compressible fluid: gas, elastic liquid, or liquid with free gas.
 
 use crate::case::schema::Fluid;
 use crate::model::AreaLaw;
@@ -6,23 +6,26 @@ use crate::model::network::AccumulatorLaw;
 use crate::numerics::Scalar;
 use crate::numerics::gauss::Gauss;
 
-/// Absolute pressure over ambient below which gas is followed no further.
+/// Lowest absolute pressure over ambient pressure.
 const VACUUM: f64 = 1e-9;
-/// Points of the quadrature of Ψ where it has no closed form.
+/// Quadrature points of Ψ for mixtures, which have no closed form.
 const POINTS: usize = 16;
-/// Change of density between two ends below which the mean is that at the mean pressure: off by a 24th of its square.
+/// Relative density difference between two ends below which the mean is that at the mean pressure. The error is 1/24 of
+/// its square.
 const ALIKE: f64 = 1e-4;
 
-/// `[E54]` Fluid whose density follows its pressure, p above ambient, `P_0` ambient, x the part of its volume at ambient pressure that is gas,
-/// K the bulk modulus of the liquid, n the gas's polytropic exponent:
+/// `[E54]` Fluid with density as a function of pressure. p is the pressure above ambient, `P_0` the ambient pressure, x
+/// the gas fraction of the volume at ambient pressure. K is the bulk modulus of the liquid, n the polytropic exponent
+/// of the gas:
 ///
 /// ```text
 /// ρ = ρ_0 r(p)      1/r = (1 - x) e^(-p/K) + x (1 + p/P_0)^(-1/n)      gas: x = 1
 /// c = r(p) (A_0 + a1) - A_0      a1 = a_p p + R A_M + A_N
 /// ```
 ///
-/// What a cell of a bladder stores is its content c, the area change that its fluid would take at ambient density; its pressure is the one
-/// root of `r(p) (A_0 + R A_M + A_N + a_p p) = A_0 + c`, for isothermal gas of a quadratic. Incompressible fluid has r = 1, c = a1.
+/// The state of a bladder cell is its content c: the area change of its fluid at ambient density. The pressure is the
+/// unique root of `r(p) (A_0 + R A_M + A_N + a_p p) = A_0 + c`, a quadratic equation for isothermal gas. Incompressible
+/// fluid has r = 1, c = a1.
 #[derive(Clone, Debug)]
 pub struct Compression {
     /// `A_0`, cross-section of a bladder at rest [m^2].
@@ -35,12 +38,12 @@ pub struct Compression {
     ambient: f64,
     /// `n`.
     exponent: f64,
-    /// For Ψ of mixtures.
+    /// Quadrature of Ψ for mixtures.
     points: Option<Gauss>,
 }
 
 impl Compression {
-    /// Of a fluid in bladders of a cross-section [m^2]; none of incompressible fluid.
+    /// Compression of a fluid in bladders with a cross-section at rest [m^2]; none for incompressible fluid.
     pub fn new(fluid: &Fluid, area_at_rest: f64) -> Option<Self> {
         let softness = fluid.bulk_modulus_pa.map_or(0.0, f64::recip);
         let gas = fluid.gas();
@@ -54,7 +57,7 @@ impl Compression {
         })
     }
 
-    /// Pressure against ambient below which there is no fluid to speak of [Pa]; none of pure liquid.
+    /// Lowest pressure relative to ambient [Pa]; minus infinity for pure liquid.
     pub fn lowest(&self) -> f64 {
         match self.gas > 0.0 {
             true => self.ambient * (VACUUM - 1.0),
@@ -114,13 +117,13 @@ impl Compression {
         (mean, [slope(a), -slope(b)])
     }
 
-    /// `h` at a pressure, [`Self::enthalpy`].
+    /// `h` at a pressure as a scalar with derivatives, see [`Self::enthalpy`].
     #[inline]
     pub fn brought<T: Scalar>(&self, p: T) -> T {
         p.lift(|p| (self.enthalpy(p), 1.0 / self.density(p).0))
     }
 
-    /// `h = ∫ dp/r` from ambient pressure [Pa]: what a volume of fluid at ambient density brings along.
+    /// `h = ∫ dp/r` from ambient pressure [Pa]: energy carried per volume at ambient density.
     pub fn enthalpy(&self, p: f64) -> f64 {
         let p = p.max(self.lowest());
         let liquid = match self.softness {
@@ -135,14 +138,15 @@ impl Compression {
         (1.0 - self.gas) * liquid + self.gas * gas
     }
 
-    /// `[E55]` `Ψ = ∫ r dp` from ambient pressure [Pa], whose differences drive what flows, counted at ambient density. Along a duct of
-    /// resistance R at ambient density, `dΨ = r dp = -q dR`, so that resistances in series add as without compression:
+    /// `[E55]` `Ψ = ∫ r dp` from ambient pressure [Pa]. Its differences drive the flow, measured at ambient density.
+    /// Along a duct of resistance R at ambient density, `dΨ = r dp = -q dR`. Series resistances thus add as for
+    /// incompressible fluid:
     ///
     /// ```text
     /// q = g (Ψ(p_a) - Ψ(p_b))      isothermal gas: Ψ = p + p²/(2 P_0),   q ρ_0 = π r⁴/(16 μ l) (P_a² - P_b²)/(R_s T)
     /// ```
     ///
-    /// Ducts that flow creeps through store nothing.
+    /// Ducts with creeping flow store no fluid.
     #[inline]
     pub fn potential<T: Scalar>(&self, p: T) -> T {
         p.lift(|p| {
@@ -169,7 +173,7 @@ impl Compression {
         }
     }
 
-    /// The pressure of a value of Ψ [Pa]: Ψ is convex, and no less than p.
+    /// Pressure at a value of Ψ [Pa]. Ψ is convex and not below p.
     pub fn pressure_of_potential(&self, potential: f64) -> f64 {
         let mut p = potential.max(self.lowest());
         for _ in 0..60 {
@@ -182,8 +186,8 @@ impl Compression {
         p
     }
 
-    /// The same with its derivative `1/r`: the pressure of a junction, whose unknown is Ψ. In it the flows that meet are linear; in the pressure
-    /// they lose their slope towards vacuum, and with it Newton's iteration.
+    /// Pressure at a value of Ψ, with its derivative `1/r`. Ψ is the unknown of a junction: the flows there are linear
+    /// in Ψ. In the pressure, their slope would vanish towards vacuum, and Newton's iteration would fail.
     #[inline]
     pub fn at_potential<T: Scalar>(&self, potential: T) -> T {
         potential.lift(|potential| {
@@ -192,7 +196,7 @@ impl Compression {
         })
     }
 
-    /// Pressure of a cell that stores `content`, where bending and force account for `imposed` of its area, `[E54]`.
+    /// Pressure of a cell with content `content`, `[E54]`; `imposed` is the area caused by bending and force.
     #[inline]
     pub fn pressure<T: Scalar>(&self, law: &AreaLaw, content: T, imposed: T) -> T {
         content.lift_with(imposed, |content, imposed| {
@@ -200,8 +204,9 @@ impl Compression {
         })
     }
 
-    /// Newton's iteration on `a_p p - (c - A) - (A_0 + c) (1/r - 1)`, A what is imposed, a concave function that grows, from the root of
-    /// isothermal gas as soft as this fluid; the root with its derivatives by c and A.
+    /// Solves `a_p p - (c - A) - (A_0 + c) (1/r - 1) = 0` for p by Newton's iteration; A is the imposed area. The
+    /// function is concave and increasing. The initial guess is the root for isothermal gas of equal compressibility.
+    /// Returns the root and its derivatives by c and A.
     fn root(&self, a_p: f64, content: f64, imposed: f64) -> (f64, [f64; 2]) {
         let amount = self.area_at_rest + content;
         let softness = -self.expansion(0.0).1;
@@ -218,8 +223,8 @@ impl Compression {
         }
     }
 
-    /// The pressure at which `swollen(p) = amount (1/r - 1)`, of a function that grows and is straight or concave, and `1/d(swollen - amount/r)/dp`
-    /// there; none where that is absolute vacuum, or where there is less than nothing of a fluid to fill it.
+    /// Solves `swollen(p) = amount (1/r - 1)` for p; `swollen` is increasing, and linear or concave. Returns p and
+    /// `1/d(swollen - amount/r)/dp` there. Returns none in absolute vacuum, or if the amount of fluid is negative.
     fn filled(&self, amount: f64, begin: f64, swollen: impl Fn(f64) -> (f64, f64)) -> Option<(f64, f64)> {
         let lowest = self.lowest();
         let mut p = begin;
@@ -250,8 +255,9 @@ impl Compression {
         Some((p, 1.0 / (swollen(p).1 - amount * self.expansion(p).1)))
     }
 
-    /// Pressure in a vessel of walls of a law, by what it holds beyond that at ambient pressure [m^3], [E67]: the root of
-    /// `V(p) - c = (V_0 + c) (1/r - 1)`. One that holds nothing at rest may hold a little less, as one of incompressible fluid may.
+    /// Pressure in a vessel as a function of its content beyond that at ambient pressure [m^3], [E67]: the root of
+    /// `V(p) - c = (V_0 + c) (1/r - 1)`. A vessel without volume at rest may have a slightly negative content, as with
+    /// incompressible fluid.
     pub fn in_vessel<T: Scalar>(&self, law: &AccumulatorLaw, content: T) -> T {
         content.lift(|content| {
             let walls = |p: f64| (law.volume(p) - content, law.compliance(p));
@@ -264,39 +270,39 @@ impl Compression {
         })
     }
 
-    /// What a cell of an area change stores at a pressure, c, `[E54]`.
+    /// Content c of a cell at a pressure and an area change, `[E54]`.
     #[inline]
     pub fn content<T: Scalar>(&self, p: T, area: T) -> T {
         let density = p.lift(|p| self.density(p));
         density * (area + self.area_at_rest) - self.area_at_rest
     }
 
-    /// Rate of what a cell stores, from those of its pressure and of its area.
+    /// Rate of a cell's content from the rates of its pressure and area.
     pub fn content_rate(&self, [p, area]: [f64; 2], p_t: f64, area_t: f64) -> f64 {
         let (density, slope) = self.density(p);
         slope * (self.area_at_rest + area) * p_t + density * area_t
     }
 
-    /// Rate of a cell's pressure, from those of its content and of what is imposed.
+    /// Rate of a cell's pressure from the rates of its content and of the imposed area.
     pub fn pressure_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], content_t: f64, imposed_t: f64) -> f64 {
         let (density, slope) = self.density(p);
         (content_t - density * imposed_t) / (slope * (self.area_at_rest + area) + density * law.per_pressure)
     }
 
-    /// `[E56]` Energy of the fluid in a cell per length, relative to ambient pressure; with it
+    /// `[E56]` Energy of the fluid in a cell per length, relative to ambient pressure:
     ///
     /// ```text
     /// E = V (r h - p)      dE/dt + p dV/dt = h d(r V)/dt      V = (A_0 + a1) Δs
     /// P_port = q h(p_port)      D = q (h(p_a) - h(p_b)) >= 0 along a link
     /// ```
     ///
-    /// for isothermal gas `E = V (P ln(P/P_0) - p)`, P the absolute pressure: what flows carries h, and what is lost on its way is the fall
-    /// of h.
+    /// For isothermal gas, `E = V (P ln(P/P_0) - p)`, P the absolute pressure. Flow carries h; the loss along a link is
+    /// the drop of h.
     pub fn energy(&self, p: f64, area: f64) -> f64 {
         (self.area_at_rest + area) * (self.density(p).0 * self.enthalpy(p) - p)
     }
 
-    /// What compression adds to `a_p` at a pressure: `A_0 r'/r` [m^2/Pa].
+    /// Compliance added to `a_p` by compression at a pressure: `A_0 r'/r` [m^2/Pa].
     pub fn compliance(&self, p: f64) -> f64 {
         let lowest = if self.gas > 0.0 { -0.9 * self.ambient } else { p };
         let (density, slope) = self.density(p.max(lowest));

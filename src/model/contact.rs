@@ -1,23 +1,24 @@
-//! Walls that the beam may come to lie against.
+//! Contact of the beam with fixed walls.
 
 use crate::case::schema::{Case, Contact as Written};
 use crate::numerics::{Planar, Scalar, ramp};
 
-/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. Where the surface of the beam, at r from its line,
-/// is behind it by `g = n·(x_0 - x) + r > 0`, per length or at a place, k its stiffness and d its smoothing,
+/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. The surface of the beam is
+/// at the distance r from its center line. The contact acts where the surface is behind the face by
+/// `g = n·(x_0 - x) + r > 0`, per length or at one place. k is the stiffness, d the smoothing length:
 ///
 /// ```text
 /// f = k s(g) [m(1 + c g_t) n - μ m(1 + c g_t) v_t/√(v_t² + v_0²) t]      s(g) = g²/(2d) up to d, g - d/2 beyond      m(1) = 1
 /// E = k S(g),  S' = s      D = k s [(m - 1) g_t + μ m v_t²/√(v_t² + v_0²)]
 /// ```
 ///
-/// t along the face, `m(y)` is y, but smoothly not below 0: a wall never pulls. D ≥ 0: damping (Hunt & Crossley, J. Appl. Mech. 42 (1975) 440)
-/// and friction lose energy, k s(g) stores it.
+/// t is along the face. `m(y)` is y, smoothly kept above 0: a wall never pulls. k s(g) stores energy. Damping (Hunt &
+/// Crossley, J. Appl. Mech. 42 (1975) 440) and friction dissipate it: D ≥ 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contact {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// The place `θ/l_s` that it touches; none: all along.
+    /// Place `θ/l_s` of the contact; none: along the whole beam.
     pub at: Option<f64>,
     /// `x_0` [m].
     pub point: Planar<f64>,
@@ -25,7 +26,7 @@ pub struct Contact {
     pub reach: f64,
     /// `n`, of length 1.
     pub normal: Planar<f64>,
-    /// `k` [Pa], at a place [N/m].
+    /// `k` [Pa]; at one place [N/m].
     pub stiffness: f64,
     /// `d` [m].
     pub smoothing: f64,
@@ -37,19 +38,19 @@ pub struct Contact {
     pub slow: f64,
 }
 
-/// Forces of a wall per what stands for its measure: elastic, of damping, of friction.
+/// Contact forces per unit weight: elastic, damping and friction.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressed<T> {
-    /// Along the normal, stored.
+    /// Elastic force along the normal.
     pub elastic: Planar<T>,
-    /// Along the normal, lost.
+    /// Damping force along the normal.
     pub damping: Planar<T>,
-    /// Along the face.
+    /// Friction force along the face.
     pub friction: Planar<T>,
 }
 
 impl Contact {
-    /// All of a case.
+    /// Returns all contacts of a case.
     pub fn all(case: &Case) -> Vec<Self> {
         let reach = 0.5 * case.beam.height_m;
         case.contacts.iter().map(|written| Self::new(written, reach)).collect()
@@ -78,18 +79,18 @@ impl Contact {
         }
     }
 
-    /// Whether it loses energy.
+    /// True if the wall dissipates energy.
     pub fn is_lossy(&self) -> bool {
         self.damping > 0.0 || self.friction > 0.0
     }
 
-    /// How deep the surface of the beam is behind the face, where its line is at a point [m]; below 0 in front of it.
+    /// Depth of the beam's surface behind the face for a point of the center line [m]; negative in front of the face.
     #[inline]
     pub fn depth<T: Scalar>(&self, at: Planar<T>) -> T {
         (Planar::constant(self.point) - at).dot(Planar::constant(self.normal)) + self.reach
     }
 
-    /// Forces on a point that moves.
+    /// Contact forces on a moving point.
     #[inline]
     pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> Pressed<T> {
         let normal = Planar::constant(self.normal);
@@ -126,7 +127,7 @@ impl Contact {
     }
 }
 
-/// `m(1 + x) - 1` and its slope: x, but smoothly not below -1: from -1/2 on down a parabola, which ends at -3/2.
+/// `m(1 + x) - 1` and its slope: x above -1/2, a parabola from -1/2 to -3/2, and -1 below.
 fn not_below(x: f64) -> (f64, f64) {
     match x {
         x if x >= -0.5 => (x, 1.0),
@@ -152,8 +153,8 @@ mod tests {
         slow: 1e-3,
     };
 
-    /// Goal: nothing in front of the wall, pressed out and never pulled behind it, energy that is the work of the elastic part, and losses
-    /// of one sign.
+    /// Goal: no force in front of the wall, and no tension behind it. The energy is the work of the elastic part.
+    /// Damping and friction only dissipate.
     #[test]
     fn a_wall_presses_and_never_pulls() {
         let face = WALL.normal.normal();
@@ -181,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Goal: the damping's factor is continuous with its slope.
+    /// Goal: the damping factor and its slope are continuous.
     #[test]
     fn damping_has_no_kinks() {
         for seam in [-0.5, -1.5] {

@@ -1,17 +1,18 @@
-//! How pressure strains the beam.
+//! Strains of the beam caused by pressure.
 
 use super::AreaLaw;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
 use crate::numerics::Scalar;
 
-/// `[E3]` Stretch and curvature due to pressure (A.22-A.26), `p_u` and `p_d` the means over upper and lower bladder:
+/// `[E3]` Stretch and curvature caused by pressure (A.22-A.26). `p_u` and `p_d` are mean pressures of upper and lower
+/// bladder:
 ///
 /// ```text
 /// published    λ_p =  φ_b ζ' (p_u + p_d)/E              α_p = -φ_b ψ' (p_d - p_u)/E
 /// reciprocal   λ_p =  φ_b l_b A_N'(N) (p_u + p_d)       α_p =  φ_b l_b [am (p_u - p_d) - dm σ'(M) (p_u + p_d)]
 /// ```
 ///
-/// The second follows from one potential g*(N, M, p) together with the areas: energy is conserved.
+/// The reciprocal law and the areas derive from one potential g*(N, M, p), which conserves energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Coupling {
     /// The paper's coefficients.
@@ -21,7 +22,7 @@ pub enum Coupling {
         /// `φ_b ψ'/E` [1/(m Pa)].
         curvature_per_pressure: f64,
     },
-    /// From the potential; `φ_b l_b` [1].
+    /// From the potential.
     Reciprocal {
         /// `φ_b l_b` [1].
         length_ratio: f64,
@@ -43,7 +44,7 @@ impl Coupling {
         }
     }
 
-    /// The law without what pressure does to curvature or stretch, where its coefficients are its own.
+    /// The law without curvature or stretch by pressure; only the published form has coefficients to omit.
     pub fn without(self, curvature: bool, stretch: bool) -> Self {
         match self {
             Self::Published {

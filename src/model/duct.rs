@@ -1,4 +1,5 @@
-//! Straight ducts, no slip at the wall: permeability `q1`, flow for `-dp/ds = mu`, and what the profile of creeping flow says of its momentum.
+//! Straight ducts with no slip at the wall: permeability `q1`, the flow for `-dp/ds = mu`, and the momentum factor of
+//! creeping flow.
 
 use std::f64::consts::PI;
 
@@ -22,7 +23,7 @@ pub fn permeability(section: &CrossSection) -> f64 {
     }
 }
 
-/// `[E73]` β, the mean of the squared velocity of creeping flow through a cross-section over its mean's square:
+/// `[E73]` β, the momentum factor of creeping flow: mean squared velocity over the square of the mean velocity:
 ///
 /// ```text
 /// circle, ellipse 4/3    equilateral triangle 10/7    rectangle a > b, z = mπa/2b, m odd:
@@ -47,7 +48,8 @@ pub fn momentum_factor(section: &CrossSection) -> f64 {
     }
 }
 
-/// `2A/P` of a cross-section [m]: the radius of a circle. The perimeter of an ellipse is Ramanujan's.
+/// `2A/P` of a cross-section [m], equal to the radius for a circle. The perimeter of an ellipse uses Ramanujan's
+/// formula.
 pub fn hydraulic_radius(section: &CrossSection) -> f64 {
     match *section {
         CrossSection::Circle { radius_m } => radius_m,
@@ -60,17 +62,17 @@ pub fn hydraulic_radius(section: &CrossSection) -> f64 {
     }
 }
 
-/// Hagen-Poiseuille, `π r⁴/8`.
+/// Permeability of a circle (Hagen-Poiseuille), `π r⁴/8`.
 pub fn circle(radius: f64) -> f64 {
     PI * radius.powi(4) / 8.0
 }
 
-/// Radius of the circle that has a permeability.
+/// Radius of the circle with a given permeability.
 pub fn radius(permeability: f64) -> f64 {
     (8.0 * permeability / PI).powf(0.25)
 }
 
-/// Rectangle with the given sides.
+/// Permeability of a rectangle.
 pub fn rectangle(side: f64, other: f64) -> f64 {
     let (a, b) = (side.max(other), side.min(other));
     let series: f64 = (0..40)

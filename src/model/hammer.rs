@@ -1,4 +1,4 @@
-//! Water hammer: valves that shut faster than a pressure wave returns.
+//! Water hammer: valves that shut before a pressure wave returns.
 
 use std::f64::consts::PI;
 
@@ -10,22 +10,23 @@ use crate::error::numbers::{counted, quantity};
 use crate::functions::Signal;
 use crate::functions::signals::Clock;
 
-/// Bulk modulus of water [Pa], for liquids without one.
+/// Bulk modulus of water [Pa], for liquids without a given one.
 const WATER: f64 = 2.2e9;
-/// Closing times over the time of a wave along one part of a tube, from which on the parts follow the wave.
+/// Closing time over the travel time of a wave in one part of a tube above which the parts resolve the wave.
 const RESOLVES: f64 = 3.0;
-/// Parts of a tube at most that are proposed.
+/// Largest number of tube parts that a warning proposes.
 const MOST_PARTS: f64 = 100.0;
-/// Resistance of a valve over the impedance of waves in front of it, `ρ c/A`, from which on it stops the flow: three times that lets a quarter through.
+/// Ratio of valve resistance to wave impedance, `ρ c/A`, above which the valve stops the flow. At three, a quarter of
+/// the flow remains.
 const THROTTLES: f64 = 3.0;
-/// Share of the pressure that drives flow below which the rise is not told.
+/// Pressure rise over the driving pressure below which there is no warning.
 const SMALL: f64 = 0.05;
-/// Opening over the largest one at which a valve is shut.
+/// Opening over the largest opening below which a valve is shut.
 const SHUT: f64 = 0.01;
-/// Instants between two switching times at which a valve is looked at.
+/// Samples of a valve between two switching times.
 const LOOKS: usize = 64;
 
-/// Tubes in a row in front of a valve.
+/// Tubes in series in front of a valve.
 struct Column<'a> {
     tubes: Vec<&'a Link>,
 }
@@ -55,13 +56,13 @@ fn length(tube: &Link) -> f64 {
 pub struct Closing {
     /// Number of the tube among the links of the network.
     pub link: usize,
-    /// When the valve begins to fall, and when it is shut [s].
+    /// Begin and end of the valve's closing [s].
     pub times: [f64; 2],
-    /// Time from its largest opening at the steepest fall [s].
+    /// Largest opening over the steepest closing rate [s].
     shuts: f64,
 }
 
-/// Every closing of every valve of the network of a case, in order of the links and of time.
+/// Returns all closings of all valves, in order of links and time.
 pub fn closings(case: &Case, model: &Model) -> Vec<Closing> {
     let links = model.wet.iter().flat_map(|wet| wet.network.links.iter().enumerate());
     let of = |(link, valve): (usize, &Link)| {
@@ -76,8 +77,8 @@ pub fn closings(case: &Case, model: &Model) -> Vec<Closing> {
     links.flat_map(of).collect()
 }
 
-/// A warning for every valve that shuts in less than `2 l/c` where the tubes in front of it do not follow the wave: its pressure rises by
-/// `ρ c Δv` (Joukowsky 1898), `c = 1/√(ρ κ)`. Before a run `Δv` is bounded by that of the largest steady flow.
+/// Warns of valves that shut in less than `2 l/c`, if the tubes in front do not resolve the wave. The pressure rises by
+/// `ρ c Δv` (Joukowsky 1898), `c = 1/√(ρ κ)`. Before a run, `Δv` is bounded by the largest steady flow.
 pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     let Some(line) = Line::new(case, model) else {
         return vec![];
@@ -86,7 +87,8 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     line.described(closings(case, model).into_iter().filter_map(of))
 }
 
-/// The same after a run that came to a time [s], from the flow through each valve as it shut [m^3/s], in the order of [`closings`].
+/// [`warnings`] after a run until `reached` [s], with the flow through each valve as it shut [m^3/s], in the order of
+/// [`closings`].
 pub fn confirmed(case: &Case, model: &Model, reached: f64, flows: &[f64]) -> Vec<String> {
     let Some(line) = Line::new(case, model) else {
         return vec![];
@@ -96,7 +98,7 @@ pub fn confirmed(case: &Case, model: &Model, reached: f64, flows: &[f64]) -> Vec
     line.described(begun.filter_map(|(closing, flow)| line.hammer(&closing, Some(*flow))))
 }
 
-/// What all valves of a network share.
+/// Data common to all valves of a network.
 struct Line<'a> {
     network: &'a Network,
     /// Stiff ends of tubes.
@@ -106,7 +108,7 @@ struct Line<'a> {
     c: f64,
     /// Largest pressure difference [Pa].
     drive: f64,
-    /// Most that prescribed flows bring in [m^3/s].
+    /// Largest prescribed flow into a network component with tubes [m^3/s].
     fed: f64,
     /// True if the model has compressed fluid.
     compressed: bool,
@@ -133,7 +135,8 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// A closing that stops a flow [m^3/s] faster than a wave returns, if it does so; without a flow the largest steady one.
+    /// Water hammer of a closing, if it stops a flow [m^3/s] before a wave returns. Without `flow`, uses the largest
+    /// steady flow.
     fn hammer(&self, closing: &Closing, flow: Option<f64>) -> Option<Hammer> {
         let (network, c) = (self.network, self.c);
         let valve = &network.links[closing.link];
@@ -146,7 +149,7 @@ impl<'a> Line<'a> {
         let begins = flow.map(|_| closing.times[0]);
         let flow = flow.unwrap_or_else(|| steady_flow(tubes(), self.drive) + self.fed);
         let narrowest = tubes().map(area).fold(f64::INFINITY, f64::min);
-        // the wave runs into all tubes in front of the valve
+        // the wave enters all tubes in front of the valve
         let front = match node {
             Node::Junction(junction) if !column.tubes.is_empty() => {
                 let others = network.tubes_at(junction).filter(|tube| !std::ptr::eq(*tube, valve));
@@ -155,7 +158,7 @@ impl<'a> Line<'a> {
             _ => narrowest,
         };
         let impedance = self.density * c / front;
-        // a valve stops flow only where it resists more than waves do
+        // a valve stops flow only where its resistance exceeds the wave impedance
         let resists = valve.resistance
             + valve
                 .tube
@@ -177,7 +180,7 @@ impl<'a> Line<'a> {
         (hammer.stops < 2.0 * l / c && hammer.rise > SMALL * self.drive && !follows).then_some(hammer)
     }
 
-    /// A warning for each valve, of its closing that raises the pressure most.
+    /// One warning per valve, for its closing with the largest pressure rise.
     fn described(&self, all: impl Iterator<Item = Hammer>) -> Vec<String> {
         let mut worst: Vec<Hammer> = vec![];
         for hammer in all {
@@ -187,8 +190,8 @@ impl<'a> Line<'a> {
                 None => worst.push(hammer),
             }
         }
-        let told = worst.iter().map(|hammer| hammer.describe(self.network));
-        told.map(|what| Code::WaterHammer.warning(what)).collect()
+        let descriptions = worst.iter().map(|hammer| hammer.describe(self.network));
+        descriptions.map(|text| Code::WaterHammer.warning(text)).collect()
     }
 }
 
@@ -196,20 +199,20 @@ impl<'a> Line<'a> {
 struct Hammer {
     /// Number of its tube among the links.
     link: usize,
-    /// Tubes in a row in front of it.
+    /// Tubes in series in front of it.
     parts: usize,
-    /// Time in which it shuts, and in which it stops the flow [s].
+    /// Time to shut, and time to stop the flow [s].
     shuts: f64,
     stops: f64,
     /// Length of the tubes in front of it [m].
     l: f64,
     /// Velocity of sound [m/s].
     c: f64,
-    /// Rise of pressure [Pa].
+    /// Pressure rise [Pa].
     rise: f64,
-    /// Velocity that is stopped [m/s].
+    /// Velocity change [m/s].
     velocity: f64,
-    /// When the valve begins to shut [s], if the velocity is that of a run.
+    /// Begin of the closing [s], if the velocity is from a run.
     begins: Option<f64>,
     /// True if the model has compressed fluid.
     compressed: bool,
@@ -254,11 +257,11 @@ impl Hammer {
     }
 }
 
-/// Falls of a valve until `end` [s] that end shut: when each begins and ends, and the time from the largest opening at its steepest rate [s].
+/// Closings of a valve until `end` [s]: begin and end of each, and the largest opening over its steepest rate [s].
 fn falls(opening: &Signal, end: f64) -> Vec<([f64; 2], f64)> {
     let most = opening.largest(end).value;
     let mut before: Option<f64> = None;
-    // when the fall that goes on began, and its steepest rate
+    // begin and steepest rate of the current fall
     let mut falling: Option<(f64, f64)> = None;
     let mut all: Vec<([f64; 2], f64)> = vec![];
     for (from, to) in opening.smooth_intervals(end) {
@@ -282,7 +285,7 @@ fn falls(opening: &Signal, end: f64) -> Vec<([f64; 2], f64)> {
     all
 }
 
-/// Tubes in a row from a side of a valve on, as far as nothing but their own fluid stores between them.
+/// Tubes in series from one side of a valve, up to the first storage other than their own fluid.
 fn column<'a>(network: &'a Network, ends: &[TubeEnd], valve: &'a Link, side: Node) -> Column<'a> {
     let (mut tubes, mut last, mut here): (Vec<&Link>, &Link, Node) = (vec![], valve, side);
     while let Node::Junction(junction) = here {
@@ -300,7 +303,7 @@ fn column<'a>(network: &'a Network, ends: &[TubeEnd], valve: &'a Link, side: Nod
     Column { tubes }
 }
 
-/// The largest pressure difference that may drive flow [Pa]: of ports, vessels, bladders at ambient pressure, and pumps.
+/// Largest driving pressure difference [Pa], from ports, vessels, bladders at ambient pressure, and pumps.
 fn driving(case: &Case, network: &Network) -> f64 {
     let end = case.time.end_s;
     let ports = network.ports.iter().map(|port| port.pressure.range(0.0, end));
@@ -313,7 +316,7 @@ fn driving(case: &Case, network: &Network) -> f64 {
     high - low + pumps.map(|pump| pump.pressure.largest(end).value).sum::<f64>()
 }
 
-/// Steady flow through tubes in a row under a pressure difference [m^3/s].
+/// Steady flow through tubes in series under a pressure difference [m^3/s].
 fn steady_flow<'a>(tubes: impl Iterator<Item = &'a Link> + Clone, drive: f64) -> f64 {
     let resistance: f64 = tubes.clone().map(|tube| tube.resistance).sum();
     let (mut low, mut high) = (0.0, drive / resistance);

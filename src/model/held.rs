@@ -1,12 +1,12 @@
-//! What holds the beam as a whole: without it there is no state at rest.
+//! Supports of the beam against rigid-body translation, which a state at rest requires.
 
 use super::Model;
 use crate::case::Translation;
 use crate::case::schema::Effect;
 
 impl Model {
-    /// Directions in which neither an end nor a spring holds the beam: loads push it away as a whole, and without loads every
-    /// displaced state is one at rest too. A wall may stop it; what a beam held at one place turns into is for its loads to tell.
+    /// Directions in which neither an end nor a spring supports the beam. Loads accelerate it there, or without loads
+    /// its position is arbitrary. Walls count as supports. Rotation of a beam held at one place is not checked.
     pub fn unheld(&self) -> Vec<&'static str> {
         if !self.contacts.is_empty() {
             return vec![];

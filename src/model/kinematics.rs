@@ -1,14 +1,14 @@
-//! How strains follow from displacements.
+//! Strain-displacement relations.
 
 use super::EffectSet;
 use crate::case::schema::Effect;
 
-/// The kinematics of a model, from that of a bar to that of finite rotations.
+/// Kinematics of a model, from a bar to finite rotations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinematics {
-    /// A bar, which can only stretch.
+    /// A bar, stretch only.
     Bar,
-    /// Small rotations, and no normal force on bending: the linear beam.
+    /// Small rotations without normal force on bending: the linear beam.
     Linear,
     /// Small rotations (von Karman).
     SmallRotation,
@@ -17,7 +17,7 @@ pub enum Kinematics {
 }
 
 impl Kinematics {
-    /// The least that holds the effects.
+    /// The simplest kinematics that contain the effects.
     pub fn of(effects: &EffectSet) -> Self {
         match effects {
             e if !e.has(Effect::TransverseMotion) => Self::Bar,

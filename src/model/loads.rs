@@ -5,7 +5,7 @@ use crate::case::schema::{Distributed, Load as Written};
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
 
-/// What a load acts on.
+/// Quantity prescribed by a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadKind {
     /// Force per length in x [N/m].
@@ -23,7 +23,7 @@ pub enum LoadKind {
 /// `factor signal(t) profile(θ/l_s)`.
 #[derive(Clone, Debug)]
 pub struct Load {
-    /// What it acts on.
+    /// Prescribed quantity.
     pub kind: LoadKind,
     /// Constant factor: 1 for contact loads, `m` for body forces.
     pub factor: f64,
@@ -34,13 +34,13 @@ pub struct Load {
 }
 
 impl Load {
-    /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces times `m`, gravity times what weighs: `m` less the fluid that
-    /// the beam displaces.
+    /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces times `m`, gravity times `m` less the
+    /// mass of displaced fluid.
     pub fn resolve(written: &Written, section: &Section) -> Vec<Self> {
         Self::on(written, [section.mass_per_length, section.weighing_per_length])
     }
 
-    /// Of a mass, and of that part of it which gravity acts on.
+    /// Loads on a mass, or a mass per length; `weighing` is its part subject to gravity.
     pub fn on(written: &Written, [mass, weighing]: [f64; 2]) -> Vec<Self> {
         let one = |kind, factor, d: &Distributed| {
             vec![Self {

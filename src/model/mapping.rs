@@ -5,13 +5,13 @@ use super::network::Network;
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_label;
 
-/// The paper's tables use a tube of 0.0184 m where its text says 0.020 m.
+/// Ratio of the tube length in the paper's tables, 0.0184 m, to that in its text, 0.020 m.
 pub const TABLE_TUBE_RATIO: f64 = 0.92;
 
 /// Gap between separate arrays in table A.2.
 const GAP: f64 = 0.001;
 
-/// Where each bladder lies along `X_f`.
+/// Positions of bladders along `X_f`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkCoordinate {
     /// Bladders in a row.
@@ -20,7 +20,7 @@ pub struct NetworkCoordinate {
     pub bladder: f64,
     /// Start and end of each bladder, table A.2.
     pub spans: Vec<(f64, f64)>,
-    /// Centre of each bladder, table A.1 (no gaps between arrays).
+    /// Center of each bladder, table A.1 (no gaps between arrays).
     pub centres: Vec<f64>,
     /// Bladders in the order of `X_f`, array by array; unconnected ones are arrays of one.
     pub arrays: Vec<Vec<usize>>,
@@ -31,13 +31,13 @@ pub fn tube_length(case: &Case) -> f64 {
     case.tubes.as_ref().map_or(0.0, |t| t.length_m)
 }
 
-/// The network's coordinate as the paper's tables have it.
+/// Network coordinate of a case in the convention of the paper's tables.
 pub fn network_coordinate(case: &Case, wet: &Wet) -> NetworkCoordinate {
     NetworkCoordinate::of(wet, tube_length(case))
 }
 
 impl NetworkCoordinate {
-    /// As the paper's tables have it, of tubes of a length [m].
+    /// Network coordinate in the convention of the paper's tables, for a tube length in SI [m].
     pub fn of(wet: &Wet, tube_length: f64) -> Self {
         let tube = TABLE_TUBE_RATIO * tube_length;
         Self::new(&wet.network, wet.per_row, wet.bladder_length, tube)

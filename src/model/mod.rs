@@ -1,6 +1,7 @@
 //! Physics: one cross-section, one bladder, one network, as pure functions generic over the scalar.
 //!
-//! A [`Model`] is the case resolved: effects chosen, every law a closed enum, every signal in place. It knows no mesh.
+//! A [`Model`] is the resolved case: chosen effects, laws as closed enums, signals in place. It is independent of the
+//! mesh.
 
 pub mod attachments;
 pub mod audit;
@@ -52,7 +53,7 @@ pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainEnergy;
 pub use surroundings::Surroundings;
 
-/// The bladders and what they are filled with and joined by.
+/// Bladders with their fluid and network.
 #[derive(Clone, Debug)]
 pub struct Wet {
     /// Bladders in a row, `n/2`.
@@ -61,27 +62,27 @@ pub struct Wet {
     pub bladder_length: f64,
     /// Cross-section at rest `h_b w_b` [m^2].
     pub area_at_rest: f64,
-    /// Area change of a bladder cell; slopes of what does not change areas are zero.
+    /// Area change of a bladder cell; slopes of omitted effects are zero.
     pub area: AreaLaw,
-    /// How walls of bladders meet; none where that is left open.
+    /// Contact between the walls of a bladder; none if omitted.
     pub closing: Option<Closing>,
-    /// How its fluid is compressed; none of incompressible fluid.
+    /// Compression of the fluid; none for incompressible fluid.
     pub compression: Option<Compression>,
-    /// The law whose slopes pressure strains the beam with; those of what it does not strain are zero.
+    /// Slopes by which pressure strains the beam; those of omitted effects are zero.
     pub strains: AreaLaw,
     /// Strains caused by pressure.
     pub coupling: Coupling,
     /// Tubes, junctions, ports, turbines.
     pub network: Network,
-    /// Whether fluid flows at all.
+    /// True if fluid flows.
     pub flows: bool,
-    /// How each bladder stores fluid.
+    /// Storage law of each bladder.
     pub storage: Vec<Storage>,
-    /// Bladders that share a pressure.
+    /// Groups of bladders with a common pressure.
     pub lumped: Vec<LumpedNetwork>,
-    /// Whether something depends on mean moments: they are unknowns then.
+    /// True if a law depends on mean moments, which are then unknowns.
     pub takes_moments: bool,
-    /// Whether something depends on mean forces.
+    /// True if a law depends on mean forces, which are then unknowns.
     pub takes_forces: bool,
     /// Energy of the section beyond its quadratic part.
     pub strain_energy: Option<StrainEnergy>,
@@ -102,18 +103,17 @@ impl Wet {
         (bladder - row * self.per_row, ROWS[row])
     }
 
-    /// `φ_b l_b` of a beam of a length.
+    /// `φ_b l_b` for a beam length.
     pub fn length_ratio(&self, length: f64) -> f64 {
         self.bladder_length * self.per_row as f64 / length
     }
 
-    /// Area that a bladder stores per pressure [m^2/Pa], compression included, at ambient pressure.
+    /// Area stored per pressure at ambient pressure [m^2/Pa], with compression.
     pub fn compliance(&self) -> f64 {
         self.compliance_at(0.0)
     }
 
-    /// The same at a pressure [Pa]: what is stored over what its flow is driven by, and what is imposed over the pressure that it makes
-    /// where nothing leaves. Gas gets stiffer as it is pressed.
+    /// Area stored per pressure at a pressure [Pa], with compression. Gas stiffens with pressure.
     pub fn compliance_at(&self, pressure: f64) -> f64 {
         match &self.compression {
             None => self.area.per_pressure,
@@ -121,7 +121,7 @@ impl Wet {
         }
     }
 
-    /// What a cell stores at a pressure [m^2], where `imposed` is what bending and force make of its area.
+    /// Content of a cell at a pressure [m^2]; `imposed` is the area change by bending and force.
     #[inline]
     pub fn content<T: Scalar>(&self, pressure: T, imposed: T) -> T {
         match &self.compression {
@@ -130,7 +130,7 @@ impl Wet {
         }
     }
 
-    /// Area change of a cell at a pressure [m^2], likewise.
+    /// Area change of a cell at a pressure [m^2]; `imposed` is the part by bending and force.
     #[inline]
     pub fn swelling<T: Scalar>(&self, pressure: T, imposed: T) -> T {
         match &self.closing {
@@ -139,7 +139,7 @@ impl Wet {
         }
     }
 
-    /// What drives flow at a pressure, [E55].
+    /// Flow potential at a pressure, [E55].
     #[inline]
     pub fn potential<T: Scalar>(&self, pressure: T) -> T {
         match &self.compression {
@@ -148,12 +148,12 @@ impl Wet {
         }
     }
 
-    /// Energy that a volume at ambient density brings along [Pa], [E56].
+    /// Energy carried per volume at ambient density [Pa], [E56].
     pub fn enthalpy(&self, pressure: f64) -> f64 {
         self.compression.as_ref().map_or(pressure, |c| c.enthalpy(pressure))
     }
 
-    /// The whole coupling of a case's bladders.
+    /// Bladders of a case with all couplings.
     fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
         let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
         let area_at_rest = bladders.height_m * bladders.width_m;
@@ -181,8 +181,8 @@ impl Wet {
         }
     }
 
-    /// Leaves out what the effects leave out. Pressure strains by slopes of its own, which depend on M and N where they
-    /// are kinked.
+    /// Removes the couplings of omitted effects. Pressure strains the beam by its own slopes, which depend on M and N
+    /// where these are kinked.
     fn reduce(&mut self, effects: &EffectSet) {
         let reciprocal = matches!(self.coupling, Coupling::Reciprocal { .. });
         let bends = effects.has(Effect::PressureToCurvature) && reciprocal && self.strains.moment_half_difference > 0.0;
@@ -222,7 +222,7 @@ pub struct Model {
     pub length: f64,
     /// Form of the momentum balance.
     pub formulation: Formulation,
-    /// How strains follow from displacements.
+    /// Strain-displacement relations.
     pub kinematics: Kinematics,
     /// Effects that are simulated.
     pub effects: EffectSet,
@@ -230,27 +230,28 @@ pub struct Model {
     pub ends: [ResolvedEnd; 2],
     /// Distributed loads.
     pub loads: Vec<Load>,
-    /// What is attached to the beam at places.
+    /// Point masses, springs, dashpots and forces.
     pub attachments: Vec<Attachment>,
-    /// Walls that the beam may come to lie against.
+    /// Walls for contact.
     pub contacts: Vec<Contact>,
-    /// Branches of a solid that relaxes.
+    /// Branches of a relaxing solid.
     pub relaxation: Vec<Branch>,
-    /// What the beam moves through.
+    /// Ambient fluid.
     pub surroundings: Option<Surroundings>,
-    /// Fluid and bladders; absent in a dry beam.
+    /// Fluid and bladders; none for a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
     pub scales: Scales,
-    /// True where ends and streams have no velocity, however they depend on the time: for equilibria, whose time is the share of the loads.
+    /// True if ends and streams have zero velocity despite their signals: for equilibria, whose time is the load
+    /// factor.
     pub still: bool,
 }
 
 impl Model {
-    /// The model of a checked case: effects chosen as it asks.
+    /// Model of a checked case, with effects chosen as its settings require.
     ///
     /// # Errors
-    /// Of [`Network::of`], as of everything that makes a model: something named in the network is not there.
+    /// Returns the errors of [`Network::of`]: a name in the network that does not exist.
     pub fn new(case: &Case) -> Result<Self> {
         let section = Section::new(case);
         let network = Network::of(case)?;
@@ -264,7 +265,7 @@ impl Model {
         Ok(Self::of(case, section, network, effects))
     }
 
-    /// Everything that a checked case describes and does not leave out by name; with or without inertia of the solid.
+    /// Model with all effects that a checked case does not switch off by name; `inertia` includes inertia of the solid.
     pub fn whole(case: &Case, inertia: bool) -> Result<Self> {
         let network = Network::of(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
@@ -272,8 +273,9 @@ impl Model {
         Ok(Self::of(case, Section::new(case), network, effects))
     }
 
-    /// The same with inertia, and with Poiseuille's friction in tubes where unsteady friction is not named, unless fluid swings too fast for it
-    /// against a vessel: its memory has ten decays a tube, among which a search for modes would lose itself.
+    /// Model for a modal analysis: all effects, with inertia. Unsteady friction is omitted unless switched on by name,
+    /// or unless fluid oscillates against a vessel too fast for Poiseuille's profile. The ten decay modes of unsteady
+    /// friction per tube would crowd the spectrum.
     pub fn of_modes(case: &Case) -> Result<Self> {
         let network = Network::of(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
@@ -284,7 +286,7 @@ impl Model {
         Ok(Self::of(case, whole.section, network, whole.effects.forgetting()))
     }
 
-    /// The model of a changed case with the effects and scales of this one.
+    /// Model of a changed case with the effects and scales of this model.
     pub fn like(&self, case: &Case) -> Result<Self> {
         let paced = self.wet.as_ref().is_some_and(|wet| wet.network.paced);
         let network = Network::of(case)?.map(|network| Network { paced, ..network });
@@ -294,7 +296,7 @@ impl Model {
         })
     }
 
-    /// The same model of a case without inertia of the solid.
+    /// Model of a case with the effects of this model, without inertia of the solid.
     pub fn at_rest(&self, case: &Case) -> Result<Self> {
         let effects = self.effects.clone().at_rest();
         Ok(Self::of(case, self.section, Network::of(case)?, effects))
@@ -338,7 +340,7 @@ impl Model {
         }
     }
 
-    /// Finite volumes in each bladder: as the mesh says, or one.
+    /// Finite volumes per bladder: the mesh setting, or one without flow along bladders.
     pub fn cells_per_bladder(&self, case: &Case) -> usize {
         if self.effects.has(Effect::FlowAlongBladders) {
             case.mesh.cells_per_bladder
@@ -347,14 +349,14 @@ impl Model {
         }
     }
 
-    /// The bladders and the energy of the section beyond its quadratic part, where that is simulated.
+    /// Bladders and the section's energy beyond its quadratic part, if simulated.
     #[inline]
     pub fn strain_energy(&self) -> Option<(&Wet, &StrainEnergy)> {
         let wet = self.wet.as_ref()?;
         Some((wet, wet.strain_energy.as_ref()?))
     }
 
-    /// Whether forces of the published form act, which bending alone brings about.
+    /// True if the additional forces of the published form act.
     pub fn published(&self) -> bool {
         self.formulation == Formulation::Published && self.kinematics == Kinematics::FiniteRotation
     }

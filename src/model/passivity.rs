@@ -1,26 +1,27 @@
-//! Whether the coupling can give more than it takes.
+//! Passivity and reciprocity of the coupling.
 
 use nalgebra::{Matrix4, SymmetricEigen};
 
 use super::{Coupling, Model, Wet};
 use crate::error::numbers::quantity;
 
-/// What the local law does with the work put into it.
+/// Passivity of the local law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passivity {
-    /// Smallest eigenvalue of the symmetric part, 1 without coupling: above 0 every small load does work on the section.
+    /// Smallest eigenvalue of the symmetric part; 1 without coupling. If positive, every small load does positive work
+    /// on the section.
     pub least: f64,
-    /// M [N m], N [N], p_u [Pa], p_d [Pa] that take least work; the larger pressure is 1 kPa.
+    /// M [N m], N [N], p_u [Pa], p_d [Pa] of that eigenvalue, scaled to a larger pressure of 1 kPa.
     pub direction: [f64; 4],
-    /// Antisymmetric part over the coupling: 0 reciprocal, 1 where only one side acts on the other.
+    /// Antisymmetric part over the coupling: 0 if reciprocal, 1 if only one side acts on the other.
     pub defect: f64,
 }
 
-/// Times the width of a kink at which its slope is that of one side.
+/// Multiple of the kink width at which the slope equals its limit.
 const FAR: f64 = 1e6;
 
-/// `[E35]` The law that maps `(M, N, p_u, p_d)` to `(α, λ - 1, a_u, a_d)`, each over the square root of its own compliance,
-/// so that the work per length of any of them alone is half its square; with `r = φ_b l_b`:
+/// `[E35]` The law that maps `(M, N, p_u, p_d)` to `(α, λ - 1, a_u, a_d)`. Each quantity is scaled by the square root
+/// of its compliance, so the work per length of each alone is half its square. With `r = φ_b l_b`:
 ///
 /// ```text
 /// M/√EI ... N/√EA ... p √(r a_p)         L = 1 + [0 C; D 0]
@@ -28,7 +29,7 @@ const FAR: f64 = 1e6;
 /// passive: least eigenvalue of (L + Lᵀ)/2 > 0      reciprocal: L = Lᵀ      defect |L - Lᵀ|/|L + Lᵀ - 2|
 /// ```
 ///
-/// Where areas have a kink, the worst of its sides. None without bladders.
+/// Evaluates both sides of each kink and returns the worst. None without bladders.
 pub fn of(model: &Model) -> Option<Passivity> {
     let wet = model.wet.as_ref()?;
     let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
@@ -59,7 +60,7 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
     let eigen = SymmetricEigen::new(symmetric);
     let least = eigen.eigenvalues.imin();
     let v = eigen.eigenvectors.column(least);
-    // what is round-off of the others is nothing
+    // drop rounding errors
     let v = v.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
     let physical = [v[0] * ei, v[1] * ea, v[2] / fluid, v[3] / fluid];
     let pressure = if physical[2].abs() >= physical[3].abs() {
@@ -78,20 +79,20 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
 }
 
 impl Passivity {
-    /// Antisymmetric parts below this are round-off.
+    /// Antisymmetric parts below this limit are rounding errors.
     const ROUND_OFF: f64 = 1e-12;
 
-    /// Whether the law stores energy and gives back what it stores.
+    /// True if the law is reciprocal and its stored energy positive.
     pub fn passive(&self) -> bool {
         self.least > 0.0 && self.reciprocal()
     }
 
-    /// Whether strains and areas have one potential.
+    /// True if strains and areas derive from one potential.
     pub fn reciprocal(&self) -> bool {
         self.defect <= Self::ROUND_OFF
     }
 
-    /// The verdict in words.
+    /// Describes the result in words.
     pub fn words(&self, coupling: &Coupling) -> String {
         let name = match coupling {
             Coupling::Published { .. } => "published",

@@ -1,4 +1,4 @@
-//! Characteristic sizes of the unknowns, estimated from what the case does to the beam.
+//! Characteristic sizes of the unknowns, estimated from the loads and motions of a case.
 
 use std::f64::consts::PI;
 
@@ -10,10 +10,10 @@ use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Signal};
 use crate::model::network::Feed;
 
-/// Strain below which axial motion is not resolved further.
+/// Smallest strain that sets the scales of axial motion.
 const LEAST_STRAIN: f64 = 1e-6;
 
-/// Sizes to which tolerances are relative; SI units.
+/// Sizes for relative tolerances, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
     /// Transverse displacement, relative to the driven ends [m].
@@ -38,7 +38,7 @@ pub struct Scales {
     pub frequency: f64,
 }
 
-/// What acts on the beam, as magnitudes.
+/// Magnitudes of loads and prescribed motions.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Drive {
     /// Force per length across [N/m].
@@ -57,27 +57,27 @@ pub struct Drive {
     pub transverse_acceleration: f64,
     /// Acceleration of a driven end along [m/s^2].
     pub axial_acceleration: f64,
-    /// Velocity with which a driven end sets off from rest.
+    /// Initial velocity of a driven axial motion from rest [m/s].
     pub axial_jump: f64,
-    /// Axial motions of both ends, where both are driven.
+    /// Sum of the axial motions of both ends if both are driven [m].
     pub axial_pull: f64,
     /// Prescribed slope [rad].
     pub slope: f64,
-    /// Pressures at the start and at ports [Pa].
+    /// Initial and port pressures [Pa].
     pub pressure: f64,
-    /// Fastest angular frequency [1/s].
+    /// Highest angular frequency [1/s].
     pub frequency: f64,
 }
 
 impl Drive {
-    /// Of a case with these ends.
+    /// Drive of a case with the given ends.
     pub fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
         let end = case.time.end_s;
         let length = case.beam.length_m;
         let mut d = Self::default();
         let first_mode = 3.516 / (length * length) * (section.bending_stiffness / section.mass_per_length).sqrt();
         let size = |s: &Signal| s.largest(end).value.max(case.held_at_start(s).abs());
-        // A pulse much shorter than the beam's own period bends it by its impulse.
+        // A pulse much shorter than the first period bends the beam by its impulse.
         let bends = |s: &Signal| match case.held_at_start(s) {
             0.0 => size(s).min(first_mode * s.impulse(end)),
             _ => size(s),
@@ -163,13 +163,13 @@ impl Drive {
 }
 
 impl Scales {
-    /// Estimates every size: motions from loads by the linear cantilever, pressures from forces by the sealed bladder,
-    /// deflections from pressures; never below a small fraction of the largest sensible size.
+    /// Estimates all sizes: motions by loads from the linear cantilever, pressures by forces from the sealed bladder,
+    /// deflections by pressures. Each has a lower limit.
     pub fn estimate(case: &Case, section: &Section, wet: Option<&Wet>) -> Self {
         Self::pumped(case, section, wet, 0.0)
     }
 
-    /// The same where fluid that is pumped makes a pressure [Pa].
+    /// [`Self::estimate`] with an additional pressure by pumping [Pa].
     pub fn pumped(case: &Case, section: &Section, wet: Option<&Wet>, pressure: f64) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mut d = Drive::of(case, section, &ends);
@@ -211,7 +211,7 @@ impl Scales {
                         .largest(case.time.end_s)
                         .value
                         .max(case.held_at_start(volume).abs());
-                    // where nothing stores, what it takes to press it out counts alone
+                    // without storage, only the pressure to drive the flow counts
                     let compliance = wet.network.compliance_at(source.into, wet);
                     if compliance > 0.0 {
                         d.pressure = d.pressure.max(volume / compliance);
@@ -224,7 +224,7 @@ impl Scales {
             curvature = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
             stretch = wet.coupling.stretch(&wet.area, 0.0, d.pressure, 0.0).abs();
         }
-        // Relative to the driven ends: a beam lags behind one, by all of its motion at most, and follows two bending.
+        // Relative to driven ends: a beam lags behind one end by at most its motion; two driven ends bend it.
         let both = ends
             .iter()
             .all(|e| matches!(e.transverse, Translation::Displacement(_)));
@@ -239,7 +239,7 @@ impl Scales {
             .solver
             .transverse_scale_m
             .unwrap_or((lag + by_load + 0.5 * curvature * l * l + started).clamp(1e-5 * l, l));
-        // A beam that bends draws its end in, and swings about with the force that this takes; pressure stretches it.
+        // Bending shortens the beam and causes an inertial force along it; pressure stretches it.
         let foreshortening = 0.5 * transverse * transverse / l;
         let force = (force_of_loads
             + (d.transverse_force + d.transverse_load * l) * transverse / l
@@ -248,7 +248,8 @@ impl Scales {
             .max(LEAST_STRAIN * ea);
         let axial = (force * l / ea + foreshortening + size(&case.start.u3_m)).clamp(LEAST_STRAIN * l, 10.0 * l);
         let frequency = first_mode.max(d.frequency);
-        // The least axial motion counts as a wave: its velocity has the energy of its stretch, up to that of bending.
+        // The smallest axial motion counts as a wave: its velocity has the energy of its stretch, up to that of
+        // bending.
         let least_axial_rate = (LEAST_STRAIN * 0.5 * PI * (ea / m).sqrt()).min(transverse * frequency);
         Self {
             transverse,

@@ -1,16 +1,17 @@
-//! Every signal of a model: visited, replaced, held.
+//! Iteration over all signals of a model, and their replacement.
 
 use super::{Attachment, Load, Model, Network, Surroundings};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::{Clock, Jet, Signal};
 
 impl Model {
-    /// Puts another signal in place of every one: of ends, loads, ports, sources and pumps by `load`, of valves by `opening`.
+    /// Replaces all signals: those of valves by `opening`; those of ends, loads, streams, ports, sources and pumps by
+    /// `load`.
     pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
         self.each_signal_mut(|signal, valve| *signal = if valve { opening(signal) } else { load(signal) });
     }
 
-    /// Visits every signal, always in the same order, and tells whether it is that of a valve.
+    /// Visits every signal, always in the same order; the flag is true for a valve.
     pub fn each_signal_mut(&mut self, mut visit: impl FnMut(&mut Signal, bool)) {
         let mut replace = |signal: &mut Signal| visit(signal, false);
         for end in &mut self.ends {
@@ -47,13 +48,13 @@ impl Model {
         }
     }
 
-    /// Holds every signal at its value at an instant [s].
+    /// Fixes every signal at its value at an instant [s].
     pub fn freeze(&mut self, t: f64) {
         let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
         self.replace_signals(at, at);
     }
 
-    /// The value of a signal with its derivatives, which are 0 in a model that is still.
+    /// Value and derivatives of a signal; derivatives are 0 in a still model.
     pub fn jet(&self, signal: &Signal, clock: Clock) -> Jet {
         match signal.jet(clock) {
             moving if !self.still => moving,
@@ -61,7 +62,7 @@ impl Model {
         }
     }
 
-    /// Visits every signal that takes part.
+    /// Visits all signals of the model.
     pub fn each_signal(&self, visit: impl FnMut(&Signal)) {
         each_signal(
             &self.ends,
@@ -74,7 +75,7 @@ impl Model {
     }
 }
 
-/// Visits every signal: of ends, loads, attachments, a stream, valves, ports and pumps.
+/// Visits all signals: of ends, loads, attachments, a stream, valves, ports, sources and pumps.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
     loads: &[Load],

@@ -1,4 +1,4 @@
-//! How fast pressures of a network become equal.
+//! Relaxation times of network pressures.
 
 use nalgebra::DMatrix;
 
@@ -7,8 +7,8 @@ use super::network::{Component, Link, Network, Node};
 use crate::case::wiring::bladder_label;
 use crate::functions::signals::Clock;
 
-/// `[E20]` Slowest relaxation time of each component of the network [s], each bladder one volume; `None` for a
-/// single sealed bladder and where the component is too large for a dense eigenvalue problem.
+/// `[E20]` Slowest relaxation time of each network component [s], with one volume per bladder. `None` for a single
+/// sealed bladder, and for components too large for a dense eigenvalue problem.
 ///
 /// ```text
 /// C dp/dt = -L p    L the graph Laplacian of the conductances, ports grounded, junctions eliminated
@@ -18,17 +18,17 @@ pub fn times(wet: &Wet) -> Vec<Option<f64>> {
     parts.iter().map(|part| time(wet, part, 0.0)).collect()
 }
 
-/// The slowest of all components.
+/// The slowest component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slowest {
     /// Its relaxation time [s].
     pub time: f64,
-    /// Where most resists: the ends of a link.
+    /// Ends of its link with the smallest conductance.
     pub between: [String; 2],
 }
 
 impl Slowest {
-    /// Of all components, with valves as they stand at an instant [s].
+    /// Slowest component with valve openings at an instant [s].
     pub fn at(wet: &Wet, t: f64) -> Option<Self> {
         let parts = Component::all(&wet.network);
         let times = parts.iter().filter_map(|part| Some((time(wet, part, t)?, part)));
@@ -48,7 +48,7 @@ impl Slowest {
     }
 }
 
-/// What a link lets through at an instant, without a pump.
+/// Conductance of a link at an instant, without its pump.
 fn conductance(wet: &Wet, link: &Link, t: f64) -> f64 {
     let half = 0.5 * wet.bladder_length / wet.network.bladder_mobility;
     let cells = [link.from, link.to]

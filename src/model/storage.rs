@@ -1,4 +1,4 @@
-//! How each bladder stores fluid: what of it is unknown.
+//! Storage of fluid in bladders, and its unknowns.
 
 use super::network::{Component, LinkKind, Node};
 use super::{EffectSet, Network};
@@ -6,7 +6,7 @@ use crate::case::schema::Case;
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_index;
 
-/// `[E23]` What is known of a bladder's area and pressure:
+/// `[E23]` Storage laws of a bladder's area and pressure:
 ///
 /// ```text
 /// flowing   Δs da/dt = inflow of each cell       p = (a - R A_M(Mbar) - A_N(Nbar))/a_p
@@ -14,19 +14,19 @@ use crate::case::wiring::bladder_index;
 /// shared    a = a_p p + R A_M(Mbar) + A_N(Nbar)  p that of its lumped network, [E25]
 /// ```
 ///
-/// A sealed bladder whose pressure is uniform at the start stays so: "kept" is exact for it. For bladders that are joined
-/// it is the limit of motion fast against the network, ω τ → ∞; "shared" is the other one, ω τ → 0.
+/// A sealed bladder with uniform initial pressure keeps it uniform: "kept" is exact. For connected bladders "kept" is
+/// the limit of motion fast against the network, ω τ → ∞; "shared" is the limit ω τ → 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Storage {
     /// The areas of its cells are unknowns.
     Flowing,
-    /// Its volume is what it was at the start: no unknown.
+    /// Its volume keeps its initial value: no unknown.
     Kept,
-    /// Its pressure is that of a lumped network; which.
+    /// Its pressure is that of a lumped network, given by its index.
     Shared(usize),
 }
 
-/// `[E25]` Bladders joined so well that they have one pressure p:
+/// `[E25]` Bladders with a common pressure p:
 ///
 /// ```text
 /// closed   l_b Σ_j (a_p p + R A_M(Mbar_j) + A_N(Nbar_j)) = V0        one unknown, p
@@ -39,29 +39,29 @@ pub struct LumpedNetwork {
     pub component: usize,
     /// Its bladders.
     pub bladders: Vec<usize>,
-    /// What decides its pressure.
+    /// Quantity that determines its pressure.
     pub kind: LumpedKind,
 }
 
-/// What decides the pressure of a lumped network.
+/// Quantity that determines the pressure of a lumped network.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum LumpedKind {
-    /// Its volume, which is what it was at the start.
+    /// Its volume, which is constant.
     Closed,
-    /// A port; number among the network's ports.
+    /// A pressure port, given by its index.
     Port(usize),
-    /// Its volume, into which sources feed; their numbers.
+    /// Its volume, fed by sources, given by their indices.
     Fed(Vec<usize>),
 }
 
 impl LumpedNetwork {
-    /// Every component of the network as a lumped network; or why it cannot be one.
+    /// Each network component as a lumped network, or the reason why it cannot be lumped.
     pub fn all(network: &Network) -> impl Iterator<Item = Result<Self, String>> {
         let parts = Component::all(network).into_iter().enumerate();
         parts.map(|(component, part)| Self::new(network, component, part))
     }
 
-    /// A component of the network as a lumped network; or why it cannot be one.
+    /// A network component as a lumped network, or the reason why it cannot be lumped.
     fn new(network: &Network, component: usize, part: Component) -> Result<Self, String> {
         let mut ports = vec![];
         let links = part.links.iter().map(|&link| &network.links[link]);
@@ -106,7 +106,7 @@ impl LumpedNetwork {
     }
 }
 
-/// Storage of every bladder, and the lumped networks that some share.
+/// Storage law of every bladder, and the lumped networks.
 pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<Storage>, Vec<LumpedNetwork>) {
     let per_row = network.component_of_bladder.len() / 2;
     let uneven = |bladder: usize| {

@@ -1,15 +1,15 @@
-//! The section's energy beyond its quadratic part.
+//! Energy of the section beyond its quadratic part.
 
 use crate::case::schema::StrainEnergy as Written;
 use crate::numerics::Scalar;
 
 /// Highest degree of the polynomial.
 pub const DEGREE: usize = 6;
-/// Monomials of stretch and curvature up to that degree: so many with an even power of curvature, so many in all.
+/// Monomials of stretch and curvature up to that degree: number with an even power of curvature, total number.
 const EVEN: usize = 16;
 const ALL: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 
-/// `[E48]` What a law of finite strain adds to the potential of the section, `g_i` the larger limit of `y_i`:
+/// `[E48]` Potential added by a finite-strain law of the section; `g_i` is the larger limit of `y_i`:
 ///
 /// ```text
 /// Ω = Ω_2 + P(z)      y = (λ - 1 - λ_p, κ - α_p, p_u, p_d)      P = Σ P_k z^k, 3 <= |k| <= degree, k_2 + k_4 even
@@ -18,18 +18,18 @@ const ALL: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 /// ∂P/∂p_u = P_3 - (λ_p)' P_1 - (α_p)' P_2      ∂P/∂p_d = P_4 - (λ_p)' P_1 + (α_p)' P_2
 /// ```
 ///
-/// All three follow from one potential, so energy is conserved whatever the polynomial. An odd power of what bends (`k_2`, `k_4`) does not
-/// occur where the rows mirror each other.
+/// All derivatives follow from one potential, so every polynomial conserves energy. Odd total powers of curvature and
+/// pressure difference (`k_2 + k_4`) do not occur in mirror-symmetric sections.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainEnergy {
-    /// Limits below and above of `y`.
+    /// Lower and upper limits of `y`.
     limits: [[f64; 2]; 4],
     /// `1/g_1`, `1/g_2`, `1/2 g_3`.
     inverse: [f64; 3],
     blocks: Vec<Block>,
 }
 
-/// Powers of `z_1^a z_2^b`, those with an even power of curvature first, each kind by the sum of its powers.
+/// Powers of `z_1^a z_2^b`: first those with an even power of curvature, each kind sorted by total degree.
 const MONOMIALS: [[usize; 2]; ALL] = {
     let mut all = [[0; 2]; ALL];
     let mut n = 0;
@@ -40,7 +40,7 @@ const MONOMIALS: [[usize; 2]; ALL] = {
     all
 };
 
-/// Powers of the monomial at a place.
+/// Powers of the monomial at an index.
 const fn powers_of(place: usize) -> [usize; 2] {
     let odd = (place >= EVEN) as usize;
     let (mut left, mut sum) = (place - odd * EVEN, odd);
@@ -55,11 +55,11 @@ const fn powers_of(place: usize) -> [usize; 2] {
     }
 }
 
-/// All terms with the same powers of sum and difference of the pressures.
+/// All terms with equal powers of pressure sum and pressure difference.
 #[derive(Clone, Debug, PartialEq)]
 struct Block {
     powers: [usize; 2],
-    /// Of the monomials from `first` on; zero where `|k| < 3`.
+    /// Coefficients of the monomials from `first`; zero where `|k| < 3`.
     coefficients: Vec<f64>,
     first: usize,
 }
@@ -100,7 +100,7 @@ fn slope<T: Scalar>(powers: &Powers<T>, k: usize) -> T {
 }
 
 impl StrainEnergy {
-    /// That of a checked case.
+    /// Energy of a checked case.
     pub fn new(written: &Written) -> Self {
         let limits = written.limits();
         let degree = written.degree.min(DEGREE);
@@ -135,7 +135,7 @@ impl StrainEnergy {
         }
     }
 
-    /// At y.
+    /// Evaluates P and its derivatives at y.
     pub fn at<T: Scalar>(&self, [stretch, curvature, upper, lower]: [T; 4]) -> Slopes<T> {
         let [e, k] = [stretch * self.inverse[0], curvature * self.inverse[1]].map(powers);
         let [s, d] = [upper + lower, upper - lower].map(|p| powers(p * self.inverse[2]));
@@ -169,12 +169,12 @@ impl StrainEnergy {
         }
     }
 
-    /// How far out a state lies in the ellipsoid in which P is known, 1 at its border.
+    /// Position of a state relative to the ellipsoid of validity of P; 1 on its boundary.
     pub fn out(&self, y: &[f64; 4]) -> f64 {
         self.parts(y).map(|(part, _)| part * part).sum::<f64>().sqrt()
     }
 
-    /// Its rate.
+    /// Rate of [`Self::out`].
     pub fn out_rate(&self, y: &[f64; 4], rates: &[f64; 4]) -> f64 {
         let product: f64 = self
             .parts(y)
@@ -184,7 +184,7 @@ impl StrainEnergy {
         product / self.out(y).max(f64::MIN_POSITIVE)
     }
 
-    /// Each entry over the end of its axis on that side, with the end.
+    /// Each entry over the limit on its side, with the limit.
     fn parts(&self, y: &[f64; 4]) -> impl Iterator<Item = (f64, f64)> {
         let ends = self
             .limits
@@ -194,15 +194,15 @@ impl StrainEnergy {
         ends.map(|(y, end)| if end == 0.0 { (0.0, 1.0) } else { (y / end, end) })
     }
 
-    /// A bound of |P| over the quadratic part, `(EA y_1² + EI y_2² + Σ φ_b l_b a_p p²)/2` with `stiffness` these three, of all states
-    /// whose strains and pressures are at most `y` in size: each term is at most the largest square of an entry that it has, times the
-    /// rest of it.
+    /// Bound of |P| over the quadratic part `(EA y_1² + EI y_2² + Σ φ_b l_b a_p p²)/2` for all states with strains and
+    /// pressures up to `y`. `stiffness` contains the three coefficients. Each term is bounded by the product of a pair
+    /// of its factors, in terms of energy, and the rest of its factors.
     pub fn share(&self, stiffness: [f64; 3], y: [f64; 3]) -> f64 {
         // Σ p² = 2 g² 2 (z_3² + z_4²)
         let square = |i: usize| 0.5 * stiffness[i.min(2)] * [1.0, 1.0, 0.5, 0.5][i] / self.inverse[i.min(2)].powi(2);
         let z: [f64; 4] = std::array::from_fn(|i| y[i.min(2)] * self.inverse[i.min(2)] * [1.0, 1.0, 2.0, 2.0][i]);
         let term = |powers: [usize; 4]| -> f64 {
-            // |z_i z_j| <= (s_i z_i² + s_j z_j²)/(2 √(s_i s_j)), s the squares' parts in the energy
+            // |z_i z_j| <= (s_i z_i² + s_j z_j²)/(2 √(s_i s_j)), s the coefficients of the squares in the energy
             let pairs = (0..4).flat_map(|i| (0..=i).map(move |j| [i, j]));
             let bounds = pairs.filter_map(|pair| {
                 let left: Option<Vec<i32>> = (0..4)

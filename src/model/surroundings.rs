@@ -1,25 +1,25 @@
-//! What the beam moves through.
+//! Ambient fluid of the beam.
 
 use std::f64::consts::PI;
 
 use crate::case::schema::{Beam, Case, Surroundings as Written};
 use crate::functions::signals::Signal;
 
-/// A fluid around the beam.
+/// Ambient fluid.
 #[derive(Clone, Debug)]
 pub struct Surroundings {
-    /// `c = C_d ρ w/2` of its drag across [kg/m^2].
+    /// Transverse drag constant `c = C_d ρ w/2` [kg/m^2].
     pub drag: f64,
-    /// `m_a = C_a π ρ w²/4` of its inertia across [kg/m].
+    /// Transverse added mass `m_a = C_a π ρ w²/4` [kg/m].
     pub added_mass: f64,
-    /// Mass of the fluid that the beam displaces, per length [kg/m].
+    /// Mass of displaced fluid per length [kg/m].
     pub displaced: f64,
-    /// Velocity in x and z, where it streams [m/s].
+    /// Stream velocity in x and z [m/s]; none without a stream.
     pub stream: Option<[Signal; 2]>,
 }
 
 impl Surroundings {
-    /// Around the beam of a case, where something is.
+    /// Surroundings of a case, if given.
     pub fn of(case: &Case) -> Option<Self> {
         case.surroundings.as_ref().map(|written| Self::new(written, &case.beam))
     }
@@ -37,7 +37,7 @@ impl Surroundings {
     }
 }
 
-/// Mass of the fluid that a beam displaces, per length [kg/m]: gravity acts on the beam's own less this (Archimedes).
+/// Mass of fluid displaced by a beam, per length [kg/m]. Gravity acts on the beam's mass less this (Archimedes).
 pub fn displaced(written: Option<&Written>, beam: &Beam) -> f64 {
     written.map_or(0.0, |s| s.density_kg_m3 * beam.width_m * beam.height_m)
 }

@@ -1,33 +1,35 @@
-//! How fast shaking along the beam may make its first bending mode grow, on the safe side.
+//! Conservative bound of the growth of the first bending mode under axial base motion.
 
 use std::f64::consts::FRAC_PI_2;
 
 use super::Section;
 use super::characteristic::mathieu_growth;
 
-/// What modes above the first and finite stretch may change: 1 % for the published beam at 18 Hz (`slcbeam verify
-/// floquet-drained`), and twice that.
+/// Margin for higher modes and finite stretch: twice the 1 % found for the published beam at 18 Hz
+/// (`slcbeam verify floquet-drained`).
 const MARGIN: f64 = 1.02;
-/// How much more shaking pulls at the first mode of a beam that shears: at the shape of shear alone 10 % more than at that of bending.
+/// Margin for the parametric force on a shearing beam: 10 % more for the mode shape of pure shear than for that of
+/// bending.
 const SHEARED: f64 = 1.15;
-/// Squares of frequencies between that of bending and Dunkerley's at which growth is looked for, besides those of the tongues.
+/// Number of squared frequencies, between those of bending and of Dunkerley's formula, in the search for growth besides
+/// those of the tongues.
 const BETWEEN: u32 = 24;
-/// Nearest to the resonance of the axis that is followed; damping bounds what lies nearer.
+/// Smallest distance to the axial resonance, as |cos k|; damping bounds the response closer to it.
 const NEAREST: f64 = 0.1;
 /// Intervals of Simpson's rule.
 const PARTS: u32 = 100;
 const BETA: f64 = 1.875_104_068_712;
 
-/// Bound of the growth rate of a cantilever's first bending mode [1/s], its root shaken along by `amplitude` [m] at `omega`
-/// [rad/s]; undamped, bladders drained. Unlike Mathieu's equation of an axis that does not stretch, which is too hopeful, this
-/// one has the standing wave that the shaking makes in the axis, rotary inertia, and a margin for the rest:
+/// Upper bound of the growth rate of a cantilever's first bending mode [1/s]; undamped, bladders drained. The root
+/// moves axially by `amplitude` [m] at `omega` [rad/s]. Mathieu's equation of an inextensible axis underestimates
+/// growth. This one includes the standing axial wave, rotary inertia, and a margin for the rest:
 ///
 /// ```text
 /// q'' (1 + y11/l² ∫φ'²) + [ω1² - Ω² U/l ∫ g φ'² sin Ωt] q = 0    g = sin k(1-x)/(k cos k),  k = Ω l √(m/EA)
 /// ```
 ///
-/// Where sections shear, ω1 is no less than Dunkerley's, `1/ω1² <= 1/ω_b² + 1/ω_s²`, `ω_s² = (π/2)² kGA/(m l²)`, and no more than that of
-/// bending: the bound is the largest between the two.
+/// With shear, ω1 is between the frequency of bending and Dunkerley's, `1/ω1² <= 1/ω_b² + 1/ω_s²`,
+/// `ω_s² = (π/2)² kGA/(m l²)`. The bound is the largest growth between the two.
 pub fn growth_bound(section: &Section, length: f64, amplitude: f64, omega: f64, shears: bool) -> f64 {
     let k = omega * length * (section.mass_per_length / section.axial_stiffness).sqrt();
     let cosine = if k.cos().abs() < NEAREST {

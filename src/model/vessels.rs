@@ -1,14 +1,14 @@
-//! What vessels of the network hold, of fluid that is compressed or not.
+//! Content of network vessels with compressible or incompressible fluid.
 
 use super::Wet;
 use super::network::{Accumulator, AccumulatorLaw};
 use crate::numerics::Scalar;
 
-/// Error of Poiseuille's profile in a mode from which on the memory of friction counts.
+/// Error of Poiseuille's profile in a mode above which unsteady friction is included.
 const MEMORY: f64 = 1e-3;
 
-/// `[E67]` A vessel whose walls give way by V(p), [E60], of fluid of which it has V_0 at ambient pressure. What it holds is counted beyond that and at
-/// ambient density, as what cells hold is, [E54]:
+/// `[E67]` A vessel with the wall law V(p), [E60], and the fluid volume V_0 at ambient pressure. Its content c is
+/// counted beyond V_0 at ambient density, like the content of cells, [E54]:
 ///
 /// ```text
 /// c = r(p) (V_0 + V(p)) - V_0      dc/dt = Σ q      E = E_walls(V) + (V_0 + V) (r h - p)      dE = h dc
@@ -16,7 +16,7 @@ const MEMORY: f64 = 1e-3;
 ///
 /// Incompressible fluid has `c = V`.
 impl Wet {
-    /// Pressure by what it holds.
+    /// Pressure at a content.
     #[inline]
     pub fn vessel_pressure<T: Scalar>(&self, law: &AccumulatorLaw, content: T) -> T {
         match &self.compression {
@@ -25,7 +25,7 @@ impl Wet {
         }
     }
 
-    /// What it holds at a pressure [m^3].
+    /// Content at a pressure [m^3].
     pub fn vessel_content(&self, law: &AccumulatorLaw, pressure: f64) -> f64 {
         match &self.compression {
             None => law.volume(pressure),
@@ -36,7 +36,7 @@ impl Wet {
         }
     }
 
-    /// What it takes in per pressure [m^3/Pa].
+    /// Compliance at a pressure [m^3/Pa].
     pub fn vessel_compliance(&self, law: &AccumulatorLaw, pressure: f64) -> f64 {
         match &self.compression {
             None => law.compliance(pressure),
@@ -47,7 +47,7 @@ impl Wet {
         }
     }
 
-    /// True if fluid in a tube swings against a vessel at its end so fast that Poiseuille's profile does not follow: `Wo⁴/1152` above
+    /// True if fluid in a tube oscillates against a vessel too fast for Poiseuille's profile: `Wo⁴/1152` above
     /// [`MEMORY`], `Wo² = r²/(ν √(I C))`.
     pub(super) fn swings_fast(&self) -> bool {
         let fast = |one: &Accumulator| {
@@ -63,7 +63,7 @@ impl Wet {
         self.network.accumulators.iter().any(fast)
     }
 
-    /// Energy of its walls, and of the compression of what it holds, at a pressure [J].
+    /// Energy of the walls and of the compressed content, at a content and a pressure [J].
     pub fn vessel_energy(&self, law: &AccumulatorLaw, content: f64, pressure: f64) -> [f64; 2] {
         let Some(compression) = &self.compression else {
             return [law.energy(content), 0.0];

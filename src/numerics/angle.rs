@@ -1,9 +1,10 @@
-//! The angle of a vector, without branches and calls, so that loops over vectors stay in registers.
+//! Angle of a vector, without branches and calls, so that loops over vectors stay in registers.
 
-/// π/4, of which small multiples are exact, and what it lacks.
+/// π/4 as a double, whose small multiples are exact, and its rounding error.
 const EIGHTH: [f64; 2] = [std::f64::consts::FRAC_PI_4, 3.061_616_997_868_383e-17];
 
-/// Coefficients of `(atan z - z)/z³` over powers of z² up to 1/4: interpolation at Chebyshev's points, off by 8e-19 of the angle.
+/// Coefficients of `(atan z - z)/z³` in powers of z² up to 1/4, by interpolation at Chebyshev points; error 8e-19 of
+/// the angle.
 const SERIES: [f64; 13] = [
     -0.333_333_333_333_333_3,
     0.199_999_999_999_994_88,
@@ -20,14 +21,14 @@ const SERIES: [f64; 13] = [
     -0.009_215_792_047_089_858,
 ];
 
-/// Angle of the vector `(x, y)` in `[-π, π]`, zeros with signs as in C: of finite numbers off by 2 units in the last place at most, where the
-/// angle is no subnormal number and `|x| + |y|` does not overflow.
+/// Angle of the vector `(x, y)` in `[-π, π]`; signed zeros as in C. The error for finite numbers is at most 2 units in
+/// the last place, if the angle is not subnormal and `|x| + |y|` does not overflow.
 #[inline(always)]
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (along, across) = (x.abs(), y.abs());
     let steep = across > along;
     let (small, large) = if steep { (along, across) } else { (across, along) };
-    // tan(β - π/4) = (tan β - 1)/(tan β + 1), whose numerator is exact here
+    // tan(β - π/4) = (tan β - 1)/(tan β + 1); the numerator is exact here
     let turned = small > 0.5 * large;
     let (over, under) = if turned {
         (small - large, small + large)

@@ -1,11 +1,11 @@
-//! Numbers that look drawn by chance and are the same everywhere: SplitMix64 (Steele, Lea & Flood, 2014).
+//! Reproducible pseudo-random numbers: SplitMix64 (Steele, Lea & Flood, 2014).
 
-/// A source of such numbers.
+/// Pseudo-random number generator.
 #[derive(Clone, Debug)]
 pub struct Chance(u64);
 
 impl Chance {
-    /// The source of a seed and of a stream beside others of the same seed.
+    /// Generator of a seed and a stream; streams of one seed differ.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut own = Self(seed);
         let mixed = own.next() ^ stream.wrapping_mul(0xd1b5_4a32_d192_ed03);
@@ -19,28 +19,28 @@ impl Chance {
         z ^ (z >> 31)
     }
 
-    /// The next 32 bits.
+    /// Next 32 bits.
     pub fn bits(&mut self) -> u32 {
         (self.next() >> 32) as u32
     }
 
-    /// A number within 0 and 1, neither of them.
+    /// Next number in the open interval (0, 1).
     pub fn share(&mut self) -> f64 {
         ((self.next() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
 
-    /// The k-th [`Chance::share`] from here on, from 0.
+    /// The k-th following [`Chance::share`], counted from 0.
     pub fn at(mut self, k: u64) -> f64 {
         self.0 = self.0.wrapping_add(k.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         self.share()
     }
 
-    /// A number below `count`.
+    /// Next integer below `count`.
     pub fn below(&mut self, count: u64) -> u64 {
         ((u128::from(self.next()) * u128::from(count)) >> 64) as u64
     }
 
-    /// The numbers below `count` in an order by chance (Fisher & Yates).
+    /// Random permutation of the integers below `count` (Fisher & Yates).
     pub fn order(&mut self, count: u32) -> Vec<u32> {
         let mut all: Vec<u32> = (0..count).collect();
         for k in (1..all.len()).rev() {
@@ -55,7 +55,7 @@ impl Chance {
 mod tests {
     use super::*;
 
-    /// Source: the first numbers of SplitMix64 from 1234567, as Steele, Lea & Flood's code gives them.
+    /// Source: the first numbers of SplitMix64 from 1234567, by the code of Steele, Lea & Flood.
     #[test]
     fn numbers_are_those_of_splitmix() {
         let mut chance = Chance(1_234_567);

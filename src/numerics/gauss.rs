@@ -9,8 +9,8 @@ pub struct Gauss {
 }
 
 impl Gauss {
-    /// The rule of `n` points, exact for polynomials of degree `2 n - 1`: zeros of Legendre's polynomial by Newton's iteration
-    /// (Press et al., Numerical Recipes, 4.6).
+    /// Rule of `n` points, exact for polynomials of degree `2 n - 1`. The points are zeros of the Legendre polynomial,
+    /// by Newton's iteration (Press et al., Numerical Recipes, 4.6).
     pub fn new(n: usize) -> Self {
         let order = n as f64;
         let zero = |k: usize| {
@@ -41,7 +41,7 @@ impl Gauss {
     }
 }
 
-/// Legendre's polynomial of degree `n` and its derivative, inside (-1, 1).
+/// Legendre polynomial of degree `n` and its derivative, inside (-1, 1).
 fn legendre(n: usize, z: f64) -> (f64, f64) {
     let (mut before, mut value) = (0.0, 1.0);
     for k in 0..n {

@@ -1,4 +1,4 @@
-//! Linear problems whose answer may not be told by their data.
+//! Bayesian linear least squares for problems that the data may not determine.
 //!
 //! ```text
 //! b = A x + e        e normal, deviation 1        what is known of x before: R x normal, deviation 1/w
@@ -7,42 +7,42 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values below this share of the largest count as zero: derivatives are exact to some 1e-10.
+/// Share of the largest singular value below which others count as zero; derivatives are exact to about 1e-10.
 const NOTHING: f64 = 1e-8;
 
-/// Shares below this are round-off.
+/// Shares below this are rounding errors.
 const ALIKE: f64 = 1e-6;
 
-/// A problem, its rows turned into as many as there are unknowns.
+/// A linear problem, reduced to as many rows as unknowns.
 #[derive(Clone, Debug)]
 pub struct Linear {
     a: DMatrix<f64>,
     b: DVector<f64>,
-    /// What no unknowns explain of `|b|^2`.
+    /// Part of `|b|^2` that no x explains.
     left: f64,
-    /// Rows before.
+    /// Number of rows before the reduction.
     pub rows: usize,
 }
 
-/// What data and what was known before tell together.
+/// Posterior distribution of the unknowns.
 #[derive(Clone, Debug)]
 pub struct Posterior {
-    /// The mean; of what is not told the part of least magnitude.
+    /// Mean; the solution of least norm in undetermined directions.
     pub x: DVector<f64>,
-    /// Covariance, for data of deviation 1; nothing of what is not told.
+    /// Covariance for data with unit standard deviation; zero in undetermined directions.
     pub spread: DMatrix<f64>,
     /// `|b - A x|^2`.
     pub misfit: f64,
     /// `w^2 |R x|^2`.
     pub rough: f64,
-    /// Logarithm of the determinant of `A^T A + w^2 R^T R`, of its part that is told.
+    /// Logarithm of the determinant of `A^T A + w^2 R^T R`, over the determined directions.
     pub log_determinant: f64,
-    /// Directions of x that are told.
+    /// Number of determined directions of x.
     pub rank: usize,
 }
 
 impl Linear {
-    /// Of rows with errors of deviation 1.
+    /// Problem of rows with errors of unit standard deviation.
     pub fn new(a: DMatrix<f64>, b: DVector<f64>) -> Self {
         let rows = a.nrows();
         if rows <= a.ncols() {
@@ -55,7 +55,7 @@ impl Linear {
         Self { a: r, b, left, rows }
     }
 
-    /// With rows of what is known before, already times w; none of them where nothing is.
+    /// Posterior with the prior rows `w R`; no rows without prior.
     pub fn posterior(&self, before: &DMatrix<f64>) -> Posterior {
         let (m, k, n) = (self.a.nrows(), before.nrows(), self.a.ncols());
         let mut whole = DMatrix::zeros(m + k, n);
@@ -65,7 +65,6 @@ impl Linear {
         right.rows_mut(0, m).copy_from(&self.b);
         let Pieces { values, u, v } = Pieces::of(whole);
         let (mut x, mut spread) = (DVector::zeros(n), DMatrix::zeros(n, n));
-        let told = values.len();
         for (j, value) in values.iter().enumerate() {
             x += v.column(j) * (u.column(j).dot(&right) / value);
             spread += v.column(j) * v.column(j).transpose() / (value * value);
@@ -78,12 +77,12 @@ impl Linear {
             misfit,
             rough,
             log_determinant: values.iter().map(|s| 2.0 * s.ln()).sum(),
-            rank: told,
+            rank: values.len(),
         }
     }
 }
 
-/// Singular values that are not zero, with their vectors.
+/// Nonzero singular values with their vectors.
 struct Pieces {
     values: Vec<f64>,
     u: DMatrix<f64>,
@@ -96,43 +95,43 @@ impl Pieces {
         let svd = matrix.svd(true, true);
         let (u, v) = (svd.u.unwrap_or_default(), svd.v_t.unwrap_or_default().transpose());
         let largest = svd.singular_values.max();
-        let told: Vec<usize> = (0..svd.singular_values.len())
+        let kept: Vec<usize> = (0..svd.singular_values.len())
             .filter(|k| svd.singular_values[*k] > NOTHING * largest)
             .collect();
-        let of = |from: &DMatrix<f64>, rows| DMatrix::from_fn(rows, told.len(), |i, j| from[(i, told[j])]);
+        let of = |from: &DMatrix<f64>, rows| DMatrix::from_fn(rows, kept.len(), |i, j| from[(i, kept[j])]);
         Self {
-            values: told.iter().map(|k| svd.singular_values[*k]).collect(),
+            values: kept.iter().map(|k| svd.singular_values[*k]).collect(),
             u: of(&u, rows),
             v: of(&v, columns),
         }
     }
 }
 
-/// What rows tell of unknowns.
+/// Observability of unknowns by the rows of a matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Seen {
-    /// Singular values that are not zero, the largest first.
+    /// Nonzero singular values, largest first.
     pub values: Vec<f64>,
-    /// Combinations of unknowns that are told, as many as are independent; each has a 1 where the others have 0.
-    pub told: Vec<Vec<f64>>,
-    /// Combinations of unknowns that leave no trace in the rows, likewise.
+    /// Independent observable combinations of unknowns, in reduced form: each has a 1 where the others have 0.
+    pub observable: Vec<Vec<f64>>,
+    /// Independent unobservable combinations of unknowns, in reduced form.
     pub blind: Vec<Vec<f64>>,
-    /// Whether each unknown is told by itself.
+    /// For each unknown, true if it is observable alone.
     pub alone: Vec<bool>,
-    /// Onto what is told.
+    /// Projector onto the observable subspace.
     projector: DMatrix<f64>,
 }
 
 impl Seen {
-    /// Of the rows of a matrix whose unknowns are of comparable sizes.
+    /// Observability by the rows of a matrix, for unknowns of comparable size.
     pub fn of(matrix: &DMatrix<f64>) -> Self {
         let n = matrix.ncols();
         let Pieces { mut values, v, .. } = Pieces::of(matrix.clone());
         values.sort_by(|a, b| b.total_cmp(a));
         let projector = &v * v.transpose();
-        let told = echelon(v.transpose());
+        let observable = echelon(v.transpose());
         let rest = DMatrix::identity(n, n) - &projector;
-        // the eigenvectors of the rest that stay are what is not told
+        // the eigenvectors of the remainder with nonzero eigenvalue span the unobservable subspace
         let blind = match n - values.len() {
             0 => vec![],
             _ => echelon(Pieces::of(rest).v.transpose()),
@@ -140,21 +139,21 @@ impl Seen {
         let alone = (0..n).map(|k| projector[(k, k)] > 1.0 - ALIKE).collect();
         Self {
             values,
-            told,
+            observable,
             blind,
             alone,
             projector,
         }
     }
 
-    /// Whether a combination of unknowns is told.
-    pub fn tells(&self, factors: &[f64]) -> bool {
+    /// True if a combination of unknowns is observable.
+    pub fn observes(&self, factors: &[f64]) -> bool {
         let whole = DVector::from_column_slice(factors);
         (&self.projector * &whole - &whole).norm_squared() < ALIKE * whole.norm_squared()
     }
 }
 
-/// Rows that span the same, reduced: each has a 1 where the others have 0, and nothing that is much larger.
+/// Reduced rows with the same span, by full pivoting: each has a 1 where the others have 0, and no large entries.
 fn echelon(mut rows: DMatrix<f64>) -> Vec<Vec<f64>> {
     let mut pivots: Vec<usize> = vec![];
     for next in 0..rows.nrows() {
@@ -183,7 +182,7 @@ fn echelon(mut rows: DMatrix<f64>) -> Vec<Vec<f64>> {
     all.into_iter().map(|one| one.1).collect()
 }
 
-/// Differences of second order of neighbours: `x_{k-1} - 2 x_k + x_{k+1}`, a row each; none of fewer than three.
+/// Second differences of neighbors, `x_{k-1} - 2 x_k + x_{k+1}`, one per row; no rows for fewer than three unknowns.
 pub fn second_differences(count: usize) -> DMatrix<f64> {
     DMatrix::from_fn(count.saturating_sub(2), count, |row, column| {
         match column.checked_sub(row) {
@@ -217,7 +216,8 @@ mod tests {
         assert!((found.rough - (&r * &found.x).norm_squared()).abs() < 1e-13);
     }
 
-    /// Two unknowns that act alike in the ratio 1 : 2 are told together alone; a third is told by itself.
+    /// Goal: two unknowns with proportional effects are observable only in combination; a third one is observable
+    /// alone.
     #[test]
     fn what_acts_alike_is_told_together() {
         let a = DMatrix::from_fn(5, 3, |i, j| match j {
@@ -234,9 +234,9 @@ mod tests {
                     .all(|(a, b)| a.iter().zip(*b).all(|(a, b)| (a - b).abs() < 1e-9))
         };
         assert!(
-            near(&seen.told, &[&[0.5, 1.0, 0.0], &[0.0, 0.0, 1.0]]),
+            near(&seen.observable, &[&[0.5, 1.0, 0.0], &[0.0, 0.0, 1.0]]),
             "{:?}",
-            seen.told
+            seen.observable
         );
         assert!(near(&seen.blind, &[&[1.0, -0.5, 0.0]]), "{:?}", seen.blind);
         let whole = Seen::of(&DMatrix::identity(3, 3));

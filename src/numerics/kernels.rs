@@ -1,19 +1,20 @@
-//! Loops over vectors, written so that the compiler vectorises them and every run adds in the same order.
+//! Loops over vectors, written for vectorization by the compiler, with a fixed order of summation.
 //!
-//! Debian's SUNDIALS is compiled without optimisation; these kernels in place of its own cut a run to about 1/2.7.
+//! Debian builds SUNDIALS without optimization; with these kernels, the time of a run falls to about 1/2.7.
 
 use super::threads::{LARGE, both};
 use super::wide;
 
-/// Entries that sums of vectors are made of at a time: what is written stays in the first cache while vector after vector is added.
+/// Entries that a sum of vectors processes at a time: the output stays in the first-level cache while vectors are
+/// added.
 pub const TILE: usize = 512;
 
-/// Where two threads meet: half of so many numbers, in whole tiles.
+/// Split position for two threads: half the length, rounded up to whole tiles.
 pub fn halfway(len: usize) -> usize {
     (len / 2).next_multiple_of(TILE).min(len)
 }
 
-/// `out = Σ factorₖ vₖ`, terms added in their order. Panics when a vector has another length.
+/// `out = Σ factorₖ vₖ`, terms added in their order. Panics if vector lengths differ.
 pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (_, v) in terms {
         assert_eq!(v.len(), out.len(), "a vector of another system");
@@ -21,7 +22,7 @@ pub fn combine(out: &mut [f64], terms: &[(f64, &[f64])]) {
     halves(out, |first, part| wide!(combine_tiles(first, part, terms)));
 }
 
-/// Does a loop for all entries, where there are many in two threads for a half each; told how many stand before those it is given.
+/// Applies a loop to all entries, in two threads for large vectors. `each` receives the index of its first entry.
 fn halves(out: &mut [f64], each: impl Fn(usize, &mut [f64]) + Sync) {
     if out.len() < LARGE {
         return each(0, out);
@@ -31,7 +32,7 @@ fn halves(out: &mut [f64], each: impl Fn(usize, &mut [f64]) + Sync) {
     both(|| each(0, left), || each(half, right));
 }
 
-/// `out` begins at so many entries of the vectors.
+/// Sums one section of the vectors, from entry `first`.
 #[inline(always)]
 fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
     for (k, tile) in out.chunks_mut(TILE).enumerate() {
@@ -44,7 +45,7 @@ fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
         for (out, v) in tile.iter_mut().zip(&v[place.clone()]) {
             *out = factor * v;
         }
-        // two vectors a pass: what is written is read half as often
+        // two vectors per pass halve the reads of the output
         let (pairs, last) = rest.as_chunks::<2>();
         for [(f, v), (g, w)] in pairs {
             for ((out, v), w) in tile.iter_mut().zip(&v[place.clone()]).zip(&w[place.clone()]) {
@@ -59,7 +60,7 @@ fn combine_tiles(first: usize, out: &mut [f64], terms: &[(f64, &[f64])]) {
     }
 }
 
-/// `outᵢ = xᵢ yᵢ` of vectors of one length.
+/// `outᵢ = xᵢ yᵢ` for vectors of equal length.
 pub fn products(x: &[f64], y: &[f64], out: &mut [f64]) {
     halves(out, |first, out| {
         wide!({
@@ -70,17 +71,17 @@ pub fn products(x: &[f64], y: &[f64], out: &mut [f64]) {
     });
 }
 
-/// `xᵢ ← xᵢ yᵢ` of vectors of one length.
+/// `xᵢ ← xᵢ yᵢ` for vectors of equal length.
 pub fn multiply(x: &mut [f64], y: &[f64]) {
     halves(x, |first, x| {
         wide!(x.iter_mut().zip(&y[first..]).for_each(|(x, y)| *x *= y));
     });
 }
 
-/// Partial sums kept side by side: two registers of four doubles, or four of two.
+/// Number of interleaved partial sums: two registers of four doubles, or four of two.
 const LANES: usize = 8;
 
-/// `Σ term(xᵢ, yᵢ)`, added in [`LANES`] interleaved partial sums.
+/// `Σ term(xᵢ, yᵢ)`, in [`LANES`] interleaved partial sums.
 #[inline(always)]
 fn sum(x: &[f64], y: &[f64], term: impl Fn(f64, f64) -> f64) -> f64 {
     let mut sums = [0.0; LANES];
@@ -135,7 +136,7 @@ pub fn weighted_square_masked(x: &[f64], w: &[f64], id: &[f64]) -> f64 {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
-/// Largest of `value(xᵢ)`, at least `floor`; as in C, NaN never wins.
+/// Largest of `value(xᵢ)`, at least `floor`; ignores NaN, as in C.
 #[inline(always)]
 fn largest(x: &[f64], floor: f64, value: impl Fn(f64) -> f64) -> f64 {
     let mut most = [floor; LANES];
@@ -162,13 +163,13 @@ pub fn min(x: &[f64]) -> f64 {
     -largest(x, f64::NEG_INFINITY, |a| -a)
 }
 
-/// True when no entry is infinite or NaN.
+/// True if no entry is infinite or NaN.
 pub fn all_finite(x: &[f64]) -> bool {
-    // 0 · a is NaN for exactly those, and NaN stays in a sum
+    // 0 · a is NaN exactly for infinite and NaN entries, and NaN persists in a sum
     wide!(sum(x, x, |a, _| 0.0 * a)) == 0.0
 }
 
-/// Position of the first entry that is infinite or NaN.
+/// Index of the first entry that is infinite or NaN.
 pub fn first_not_finite(x: &[f64]) -> Option<usize> {
     if all_finite(x) {
         None
@@ -177,11 +178,11 @@ pub fn first_not_finite(x: &[f64]) -> Option<usize> {
     }
 }
 
-/// `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`; false when a weight is not positive and finite.
+/// `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`; false if a weight is not positive and finite.
 pub fn error_weights(y: &[f64], relative: f64, absolute: &[f64], w: &mut [f64]) -> bool {
     for ((w, &y), &absolute) in w.iter_mut().zip(y).zip(absolute) {
         *w = 1.0 / (relative * y.abs() + absolute);
     }
-    // zero stands for an infinite unknown
+    // a weight of zero results from an infinite unknown
     all_finite(w) && min(w) > 0.0
 }

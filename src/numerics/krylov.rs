@@ -1,13 +1,14 @@
-//! Krylov spaces of a map known only by what it does: the solution of `(1 - M) x = b`, and the largest eigenvalues of M.
+//! Krylov methods for a linear map given as a function: the solution of `(1 - M) x = b`, and the largest eigenvalues of
+//! M.
 
 use nalgebra::Complex;
 use slcbeam_dense::eigen;
 
 use crate::numerics::kernels::dot;
 
-/// A vector in which later ones have no part any more counts as none.
+/// Relative norm after orthogonalization below which a vector counts as zero.
 const SPENT: f64 = 1e-13;
-/// Angle [rad] from the real axis that round-off makes.
+/// Angle [rad] from the real axis attributed to rounding errors.
 const REAL: f64 = 1e-11;
 
 fn norm(a: &[f64]) -> f64 {
@@ -18,10 +19,10 @@ fn subtract(a: &mut [f64], factor: f64, b: &[f64]) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a -= factor * b);
 }
 
-/// An orthonormal basis that grows by what the map makes of its last vector, and the map in it.
+/// An orthonormal Krylov basis with the matrix of the map in it.
 struct Space {
     basis: Vec<Vec<f64>>,
-    /// Columns of the map in the basis: one entry more than the basis was long.
+    /// Columns of the matrix of the map; each has one entry more than the basis had vectors.
     columns: Vec<Vec<f64>>,
 }
 
@@ -34,14 +35,14 @@ impl Space {
         }
     }
 
-    /// Takes one vector more; false when the space is closed under the map.
+    /// Adds one vector; false if the space is invariant under the map.
     fn grow(&mut self, map: &mut dyn FnMut(&mut [f64])) -> bool {
         let k = self.columns.len();
         let mut v = self.basis[k].clone();
         map(&mut v);
         let before = norm(&v);
         let mut column = vec![0.0; k + 2];
-        // twice is enough (Kahan and Parlett)
+        // two passes suffice (Kahan and Parlett)
         for _ in 0..2 {
             for (q, h) in self.basis.iter().zip(&mut column) {
                 let part = dot(q, &v);
@@ -60,11 +61,12 @@ impl Space {
         open
     }
 
-    /// Eigenvalues of largest modulus of the map in the basis with unit vectors, and a place for residuals; complex pairs once.
+    /// Eigenvalues of largest modulus of the map in the basis, with unit vectors and residuals set to zero. Complex
+    /// pairs count once.
     fn pairs(&self, count: usize) -> Vec<(Complex<f64>, Vec<Complex<f64>>, f64)> {
         let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0).into();
         let found = eigen(self.columns.len(), &entry).unwrap_or_default();
-        // of a pair that round-off has parted from the real axis both halves count as real
+        // a pair that rounding errors separate from the real axis counts as two real eigenvalues
         let upper = found.into_iter().filter(|(value, _)| value.im >= -REAL * value.norm());
         let pairs = upper.take(count).map(|(value, vector)| {
             let real = value.im.abs() <= REAL * value.norm();
@@ -74,8 +76,8 @@ impl Space {
     }
 }
 
-/// Solves `(1 - M) x = b` by GMRES to a residual of `tolerance |b|`, in at most `most` applications of M. Returns x and the
-/// residual reached relative to b.
+/// Solves `(1 - M) x = b` by GMRES to a residual of `tolerance |b|`, with at most `most` applications of M. Returns x
+/// and the relative residual.
 pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: usize) -> (Vec<f64>, f64) {
     let (size, b_len) = (norm(b), b.len());
     if size == 0.0 {
@@ -87,7 +89,7 @@ pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: u
         v.iter_mut().zip(before).for_each(|(v, before)| *v = before - *v);
     };
     let mut space = Space::new(b);
-    // QR of the map in the basis by rotations, and what they make of the right-hand side
+    // QR factorization of the matrix by rotations, and the rotated right-hand side
     let (mut rotations, mut upper) = (Vec::<(f64, f64)>::new(), Vec::<Vec<f64>>::new());
     let mut right = vec![size];
     loop {
@@ -130,7 +132,7 @@ pub fn solve(mut map: impl FnMut(&mut [f64]), b: &[f64], tolerance: f64, most: u
     }
 }
 
-/// An eigenvalue with its vector, real and imaginary part.
+/// An eigenvalue with its vector as real and imaginary part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Eigen {
     /// Eigenvalue.
@@ -141,9 +143,9 @@ pub struct Eigen {
     pub residual: f64,
 }
 
-/// The `count` eigenvalues of largest modulus of a map on vectors of length `start.len()`, by Arnoldi's method from `start`,
-/// each to a residual of `tolerance`; complex pairs once, with positive imaginary part. The space grows up to `most` vectors.
-/// Where `most` is the dimension all eigenvalues are found.
+/// The `count` eigenvalues of largest modulus of a map on vectors of length `start.len()`, by Arnoldi's method from
+/// `start`, each to a residual of `tolerance`. Complex pairs count once, with positive imaginary part. The basis has at
+/// most `most` vectors; if `most` is the dimension, all eigenvalues are found.
 pub fn largest(
     mut map: impl FnMut(&mut [f64]),
     start: &[f64],
@@ -189,7 +191,7 @@ pub fn largest(
     }
 }
 
-/// A vector of which every eigenvector has a part, the same every time.
+/// A fixed start vector with components along all eigenvectors.
 pub fn everything(len: usize) -> Vec<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     (1..=len).map(|k| (k as f64 * GOLDEN).fract() - 0.5 + 1e-3).collect()

@@ -1,4 +1,4 @@
-//! Nonlinear least squares between bounds: Levenberg and Marquardt's method with projected steps.
+//! Bounded nonlinear least squares: the Levenberg-Marquardt method with projected steps.
 //!
 //! ```text
 //! min |r(x)|²,  0 <= x <= 1
@@ -6,77 +6,77 @@
 //! x+ = P(x + d)                    taken where |r|² falls by a part of what J foretells; λ after Nielsen (1999)
 //! ```
 //!
-//! Written here since the crate `levenberg-marquardt` knows no bounds, and a simulation that fails beside the way has to shorten a step,
-//! not to end the search. It ends where Gauss and Newton's step would move the foretold values by less than a ten-thousandth of what the
-//! residuals spread them (Bates & Watts, 1981): closer is beyond what the data tell.
+//! The crate `levenberg-marquardt` supports neither bounds nor points without residuals, such as a failed simulation;
+//! here such a step is shortened. The search ends where a Gauss-Newton step would change predicted values by less than
+//! 1e-4 of the standard deviation of the residuals (Bates & Watts, 1981).
 
 use nalgebra::{DMatrix, DVector};
 
-/// Residuals and their derivatives at a place.
+/// Residuals and their derivatives at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation {
     /// Residuals, n of them.
     pub residuals: DVector<f64>,
-    /// Their derivatives, n rows and a column for each number.
+    /// Jacobian: n rows, one column per parameter.
     pub jacobian: DMatrix<f64>,
 }
 
 impl Evaluation {
-    /// The sum of squares.
+    /// Sum of squared residuals.
     pub fn cost(&self) -> f64 {
         self.residuals.norm_squared()
     }
 }
 
-/// How a search ended.
+/// Outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// At a minimum, as far as data tell.
+    /// Converged to a minimum, to the accuracy of the data.
     Found,
-    /// Where no step lowers the sum further, though its derivatives say so: they are not those of the values to all digits.
+    /// No step lowers the sum, although the derivatives predict it: they are inaccurate.
     Stuck,
-    /// After as many steps as were allowed.
+    /// Reached the limit of steps.
     Unfinished,
 }
 
-/// What was found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
-    /// Where.
+    /// Parameters.
     pub x: Vec<f64>,
-    /// What is there.
+    /// Residuals and Jacobian there.
     pub at: Evaluation,
-    /// How the search ended.
+    /// Outcome of the search.
     pub ended: Ended,
-    /// Steps that were taken.
+    /// Number of accepted steps.
     pub steps: usize,
-    /// Places that were looked at.
+    /// Number of evaluations.
     pub evaluations: usize,
 }
 
 /// Relative offset at which a search ends.
 const OFFSET: f64 = 1e-4;
-/// One that is close enough where the simulator's own error lets no step go further.
+/// Relative offset accepted as converged when simulation errors prevent further steps.
 const CLOSE: f64 = 0.05;
-/// A step below this ends it as well.
+/// Step size below which a search ends.
 const STEP: f64 = 1e-11;
-/// Share of the foretold fall that a step must bring.
+/// Smallest accepted ratio of actual to predicted reduction.
 const WORTH: f64 = 1e-4;
-/// Damping of the first step, relative to the columns.
+/// Initial damping relative to the column lengths.
 const DAMPING: f64 = 1e-3;
-/// Damping at which no step is left.
+/// Largest damping; beyond it no step remains.
 const MOST_DAMPING: f64 = 1e12;
-/// Singular values below this share of the largest count as none.
+/// Share of the largest singular value below which others count as zero.
 const NOTHING: f64 = 1e-10;
 
-/// What is asked for residuals at a place.
+/// Function that evaluates residuals and Jacobian at a point; none if the point has no residuals.
 pub type Evaluate<'a, E> = dyn FnMut(&[f64]) -> Result<Option<Evaluation>, E> + 'a;
 
-/// Searches from a start. `evaluate` gives nothing where there are no residuals: a step there is shortened. Nothing where there are none at
-/// the start.
+/// Searches from a start. Where `evaluate` returns none, the step is shortened. Returns none if the start has no
+/// residuals.
 ///
 /// # Errors
-/// The first of `evaluate`.
+/// Returns the first error of `evaluate`.
 pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>) -> Result<Option<Minimum>, E> {
     let mut x: Vec<f64> = start.iter().map(|x| x.clamp(0.0, 1.0)).collect();
     let Some(mut at) = evaluate(&x)? else {
@@ -136,14 +136,14 @@ pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>)
     }))
 }
 
-/// The numbers that are not held at a bound towards which the sum falls.
+/// Indices of parameters that are not held at a bound by the gradient.
 pub fn free(x: &[f64], at: &Evaluation) -> Vec<usize> {
     let slope = at.jacobian.tr_mul(&at.residuals);
     let held = |k: &usize| (x[*k] <= 0.0 && slope[*k] >= 0.0) || (x[*k] >= 1.0 && slope[*k] <= 0.0);
     (0..x.len()).filter(|k| !held(k)).collect()
 }
 
-/// The step of least length that lowers the sum most where residuals are as their derivatives foretell.
+/// Gauss-Newton step of least norm.
 pub fn newton(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DVector<f64> {
     if jacobian.is_empty() {
         return DVector::zeros(jacobian.ncols());
@@ -154,7 +154,7 @@ pub fn newton(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DVector<f64>
     step.map_or_else(|_| DVector::zeros(jacobian.ncols()), |step| -step)
 }
 
-/// What a search has come to that no step takes further.
+/// Outcome of a search that no step can continue.
 fn stopped(x: &[f64], at: &Evaluation) -> Ended {
     match settled(x, at, CLOSE) {
         true => Ended::Found,
@@ -169,7 +169,7 @@ fn settled(x: &[f64], at: &Evaluation, least: f64) -> bool {
     }
     let own = at.jacobian.select_columns(&free);
     let step = newton(&own, &at.residuals);
-    // as far as the bounds let it go
+    // limited by the bounds
     let step = DVector::from_iterator(
         free.len(),
         free.iter()
@@ -183,7 +183,7 @@ fn settled(x: &[f64], at: &Evaluation, least: f64) -> bool {
     step.amax() < STEP || (freedom > 0 && offset < least)
 }
 
-/// The damped step, by orthogonal triangles: `J` and `√λ D` under each other.
+/// Damped step by QR factorization of `J` stacked on `√λ D`.
 fn damped(x: &[f64], at: &Evaluation, lengths: &[f64], damping: f64) -> Vec<f64> {
     let free = free(x, at);
     let (n, m) = (at.residuals.len(), free.len());
@@ -196,7 +196,7 @@ fn damped(x: &[f64], at: &Evaluation, lengths: &[f64], damping: f64) -> Vec<f64>
     let mut right = DVector::zeros(n + m);
     for (column, k) in free.iter().enumerate() {
         matrix.view_mut((0, column), (n, 1)).copy_from(&at.jacobian.column(*k));
-        // one by which nothing changes is not moved
+        // a parameter without effect is not moved
         matrix[(n + column, column)] = damping.sqrt() * lengths[*k].max(NOTHING * longest);
     }
     right.rows_mut(0, n).copy_from(&(-&at.residuals));
@@ -220,7 +220,8 @@ mod tests {
         found.expect("a start")
     }
 
-    /// Source: Rosenbrock (1960), whose valley ends at (1, 1), here 0.5 in both; beside it with a wall in the way.
+    /// Source: Rosenbrock (1960), whose valley ends at (1, 1), here 0.5 in both. A second case has points without
+    /// residuals.
     #[test]
     fn valleys_are_followed_to_their_end() {
         let rosenbrock = |x: &[f64]| {
@@ -236,7 +237,7 @@ mod tests {
         assert!(found.at.cost() < 1e-18 && found.evaluations < 100, "{found:?}");
     }
 
-    /// Goal: what would leave the bounds stays at one, and the other is best there.
+    /// Goal: a parameter that would leave its bounds stays at a bound, and the other one is optimal there.
     #[test]
     fn bounds_hold() {
         let line = |x: &[f64]| Evaluation {

@@ -1,23 +1,23 @@
-//! Mathematics that knows nothing of beams.
+//! Numerical methods, independent of beams.
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
-//! | [`scalar`] | the numbers in which equations are written |
-//! | [`dual`] | a number with its derivatives |
+//! | [`scalar`] | number types in which equations are written |
+//! | [`dual`] | dual numbers |
 //! | [`angle`] | angles of vectors |
 //! | [`planar`] | vectors in the plane |
 //! | [`kernels`] | loops over vectors |
-//! | `wide` | the same in vectors as wide as the processor has |
-//! | [`threads`] | and in two threads |
-//! | `gauss` | Gauss' quadrature |
-//! | `ramp` | a ramp with a round foot |
-//! | [`regression`], [`student`] | least squares with covariance, and intervals by Student's distribution |
-//! | [`levenberg`] | nonlinear least squares between bounds |
-//! | [`inverse`] | linear problems whose answer may not be told by their data: what is, and how surely |
-//! | [`sqp`] | least values between bounds under inequalities |
-//! | [`chance`], [`sobol`] | numbers by chance, and points that fill a cube evenly |
+//! | `wide` | loops in the widest vector registers |
+//! | [`threads`] | work in several threads |
+//! | `gauss` | Gauss quadrature |
+//! | `ramp` | ramp with a smooth start |
+//! | [`regression`], [`student`] | least squares with covariance, intervals by Student's distribution |
+//! | [`levenberg`] | bounded nonlinear least squares |
+//! | [`inverse`] | Bayesian linear least squares, observability |
+//! | [`sqp`] | minimization with bounds and inequalities |
+//! | [`chance`], [`sobol`] | pseudo-random numbers, Sobol sequences |
 //! | [`normal`] | quantiles of the normal distribution |
-//! | [`krylov`] | linear systems and eigenvalues of a map known only by what it does |
+//! | [`krylov`] | linear systems and eigenvalues of a map given as a function |
 
 pub mod angle;
 pub mod chance;

@@ -72,7 +72,7 @@ fn ratio([above, below]: &[[f64; 8]; 2], x: f64) -> f64 {
     value(above) / value(below)
 }
 
-/// The number below which a normal variable of mean 0 and deviation 1 lies with a probability within 0 and 1.
+/// Quantile of the standard normal distribution, for a probability in the open interval (0, 1).
 pub fn quantile(probability: f64) -> f64 {
     let q = probability - 0.5;
     if q.abs() <= 0.425 {
@@ -88,7 +88,7 @@ pub fn quantile(probability: f64) -> f64 {
     size.copysign(q)
 }
 
-/// The probability of a normal variable of mean 0 and deviation 1 below a number: Abramowitz & Stegun 26.2.17, error below 7.5e-8.
+/// Cumulative probability of the standard normal distribution: Abramowitz & Stegun 26.2.17, error below 7.5e-8.
 pub fn probability(x: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.231_641_9 * x.abs());
     let sum = [
@@ -120,7 +120,7 @@ mod tests {
         }
     }
 
-    /// Source: tables; the tails by Wichura's own test values.
+    /// Source: tables; the tails from Wichura's test values.
     #[test]
     fn quantiles_are_those_of_tables() {
         for (p, z) in [

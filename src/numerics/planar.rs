@@ -1,10 +1,10 @@
-//! Vectors in the plane of the beam's motion.
+//! Vectors in the plane of motion.
 
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
 use super::Scalar;
 
-/// A vector with a component across the straight beam, x, and one along it, z; `v[0]` is x, `v[1]` is z.
+/// A vector with the components x across and z along the straight beam; `v[0]` is x, `v[1]` is z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Planar<T> {
     /// Across.
@@ -14,38 +14,38 @@ pub struct Planar<T> {
 }
 
 impl<T: Scalar> Planar<T> {
-    /// From its components.
+    /// Vector of two components.
     #[inline(always)]
     pub fn new(x: T, z: T) -> Self {
         Self { x, z }
     }
 
-    /// Of constants.
+    /// Vector of constants.
     #[inline(always)]
     pub fn constant(v: Planar<f64>) -> Self {
         Self::new(T::constant(v.x), T::constant(v.z))
     }
 
-    /// No vector.
+    /// Zero vector.
     #[inline(always)]
     pub fn zero() -> Self {
         Self::new(T::zero(), T::zero())
     }
 
-    /// `(sin φ, cos φ)`: the unit tangent at an angle φ.
+    /// `(sin φ, cos φ)`: unit tangent at the angle φ.
     #[inline(always)]
     pub fn tangent(angle: T) -> Self {
         let (x, z) = angle.sin_cos();
         Self { x, z }
     }
 
-    /// `(-z, x)`: of a tangent `e_t` the normal `e_n`.
+    /// `(-z, x)`: the normal `e_n` for a tangent `e_t`.
     #[inline(always)]
     pub fn normal(self) -> Self {
         Self::new(-self.z, self.x)
     }
 
-    /// `factor` times this.
+    /// This vector times `factor`.
     #[inline(always)]
     pub fn times(self, factor: T) -> Self {
         Self::new(self.x * factor, self.z * factor)
@@ -57,25 +57,25 @@ impl<T: Scalar> Planar<T> {
         self.x * other.x + self.z * other.z
     }
 
-    /// How far `to` turns from here, in the sense of growing φ: `to.x self.z - to.z self.x`.
+    /// Cross product, positive if `to` turns from this vector in the sense of growing φ: `to.x self.z - to.z self.x`.
     #[inline(always)]
     pub fn cross(self, to: Self) -> T {
         to.x * self.z - to.z * self.x
     }
 
-    /// Square of its length.
+    /// Squared length.
     #[inline(always)]
     pub fn squared(self) -> T {
         self.x.squared() + self.z.squared()
     }
 
-    /// Of length one, in its direction.
+    /// Unit vector in its direction.
     #[inline(always)]
     pub fn unit(self) -> Self {
         self.times(T::constant(1.0) / self.squared().sqrt())
     }
 
-    /// Angle to another, `(-π, π]`.
+    /// Angle to another vector, in `(-π, π]`.
     #[inline(always)]
     pub fn angle_to(self, to: Self) -> T {
         self.cross(to).atan2(to.z * self.z + to.x * self.x)

@@ -1,4 +1,4 @@
-//! A ramp with a round foot.
+//! A ramp with a smooth start.
 
 /// `s(x)` and its slope: 0 below 0, `x²/(2w)` up to w, `x - w/2` beyond.
 #[inline]

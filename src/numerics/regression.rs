@@ -15,7 +15,7 @@ pub struct Regression {
     pub coefficients: Vec<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
-    /// What the fit leaves of each point.
+    /// Residuals of the points.
     pub residuals: Vec<f64>,
     /// Standard deviation of the residuals, s.
     pub deviation: f64,
@@ -23,13 +23,13 @@ pub struct Regression {
     pub freedom: f64,
 }
 
-/// Fits; none where there are no more points than coefficients, or where columns depend on each other.
+/// Fits by least squares; none unless there are more points than coefficients and the columns are independent.
 pub fn fit(columns: &[Vec<f64>], y: &[f64]) -> Option<Regression> {
     let (n, m) = (y.len(), columns.len());
     if n <= m || m == 0 {
         return None;
     }
-    // columns of length one, so that units do not matter to round-off
+    // normalize columns, so that units do not affect rounding errors
     let lengths: Vec<f64> = columns
         .iter()
         .map(|c| c.iter().map(|x| x * x).sum::<f64>().sqrt())
@@ -68,23 +68,23 @@ pub fn fit(columns: &[Vec<f64>], y: &[f64]) -> Option<Regression> {
 }
 
 impl Regression {
-    /// Standard error of a sum of coefficients with these weights.
+    /// Standard error of the weighted sum of coefficients.
     pub fn error(&self, weights: &[f64]) -> f64 {
         let w = DVector::from_column_slice(weights);
         (w.transpose() * &self.covariance * &w)[(0, 0)].max(0.0).sqrt()
     }
 
-    /// Sum of coefficients with these weights.
+    /// Weighted sum of coefficients.
     pub fn value(&self, weights: &[f64]) -> f64 {
         weights.iter().zip(&self.coefficients).map(|(w, b)| w * b).sum()
     }
 
-    /// Half width of the interval that holds the truth of that sum in 95 of 100 repetitions, for normal deviations.
+    /// Half width of the 95 % confidence interval of the weighted sum, for normal errors.
     pub fn half_width(&self, weights: &[f64]) -> f64 {
         student::quantile(0.05, self.freedom) * self.error(weights)
     }
 
-    /// Chance of a coefficient as large as number k if its truth is zero.
+    /// Probability of a coefficient of at least this size if its true value is zero (p-value of coefficient `k`).
     pub fn chance(&self, k: usize) -> f64 {
         let error = self.covariance[(k, k)].max(0.0).sqrt();
         match (error > 0.0, self.coefficients[k] == 0.0) {

@@ -1,9 +1,9 @@
-//! Numbers in which the equations are written: `f64` for the residual, dual numbers for its derivatives,
-//! and a tracer for its pattern.
+//! Number types for the equations: `f64` for the residual, dual numbers for its derivatives, and a tracer for its
+//! sparsity pattern.
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A real number or something that behaves like one.
+/// A real number, or a type with its arithmetic.
 pub trait Scalar:
     Copy
     + Add<Output = Self>
@@ -25,9 +25,9 @@ pub trait Scalar:
     fn atan2(self, x: Self) -> Self;
     /// Sine and cosine.
     fn sin_cos(self) -> (Self, Self);
-    /// A function of it, by value and derivative.
+    /// Applies a function given by value and derivative.
     fn lift(self, function: impl Fn(f64) -> (f64, f64)) -> Self;
-    /// A function of it and another, by value and both derivatives.
+    /// Applies a function of two numbers, given by value and both derivatives.
     fn lift_with(self, other: Self, function: impl Fn(f64, f64) -> (f64, [f64; 2])) -> Self;
     /// Zero.
     fn zero() -> Self {

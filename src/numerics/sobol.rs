@@ -1,15 +1,15 @@
-//! Sobol's sequence: points that fill a cube evenly, however many of them are taken.
+//! Sobol sequence: a low-discrepancy sequence of points in a cube.
 //!
 //! ```text
 //! x_n = g_1 v_1 ⊕ g_2 v_2 ⊕ ..        g the bits of n ⊕ n/2 (Antonov & Saleev), v_k = m_k/2^k
 //! ```
 //!
-//! Direction numbers `m` are the first of new-joe-kuo-6 (S. Joe & F. Y. Kuo, SIAM J. Sci. Comput. 30, 2635, 2008).
+//! The direction numbers `m` are the first of new-joe-kuo-6 (S. Joe & F. Y. Kuo, SIAM J. Sci. Comput. 30, 2635, 2008).
 
-/// Directions there are numbers for.
+/// Number of available dimensions.
 pub const MOST: usize = 20;
 
-/// Of each direction but the first: degree and inner coefficients of its polynomial, first numbers.
+/// For each dimension after the first: degree and inner coefficients of its polynomial, initial direction numbers.
 const JOE_KUO: [(u32, u32, &[u32]); MOST - 1] = [
     (1, 0, &[1]),
     (2, 1, &[1, 3]),
@@ -32,12 +32,12 @@ const JOE_KUO: [(u32, u32, &[u32]); MOST - 1] = [
     (7, 1, &[1, 3, 7, 11, 23, 15, 103]),
 ];
 
-/// The sequence along one direction.
+/// The sequence in one dimension.
 #[derive(Clone, Debug)]
 pub struct Sobol([u32; 32]);
 
 impl Sobol {
-    /// Along a direction below [`MOST`].
+    /// Sequence in a dimension below [`MOST`].
     pub fn along(direction: usize) -> Self {
         let mut v = [0; 32];
         let polynomial = direction.checked_sub(1).and_then(|k| JOE_KUO.get(k));
@@ -55,14 +55,15 @@ impl Sobol {
         Self(v)
     }
 
-    /// The 32 bits of a point, of which the first, number 0, is 0.
+    /// 32 bits of a point; those of point 0 are 0.
     pub fn bits(&self, number: u32) -> u32 {
         let gray = number ^ (number >> 1);
         let set = self.0.iter().enumerate().filter(|(k, _)| (gray >> k) & 1 == 1);
         set.fold(0, |sum, (_, v)| sum ^ v)
     }
 
-    /// A point within 0 and 1, its bits shifted, numbered from 0: the very first of the sequence, a corner of the cube, is left out.
+    /// Point `number` in the open interval (0, 1), digitally shifted. Omits the first point of the sequence, a corner
+    /// of the cube.
     pub fn share(&self, number: u32, shift: u32) -> f64 {
         (f64::from(self.bits(number + 1) ^ shift) + 0.5) / 2_f64.powi(32)
     }
@@ -76,7 +77,7 @@ mod tests {
         f64::from(Sobol::along(direction).bits(number)) / 2_f64.powi(32)
     }
 
-    /// Source: the first points of Joe & Kuo's own program.
+    /// Source: the first points by Joe & Kuo's program.
     #[test]
     fn first_points_are_known() {
         let first = [
@@ -94,7 +95,7 @@ mod tests {
         }
     }
 
-    /// Goal: of the first 2^k points each 2^k-th of every direction holds one.
+    /// Goal: in every dimension, each interval of length 2^-k contains exactly one of the first 2^k points.
     #[test]
     fn every_stratum_holds_one_point() {
         for direction in 0..MOST {

@@ -1,6 +1,7 @@
-//! Student's distribution: how far a mean lies from its truth, in its own standard errors.
+//! Student's distribution of a mean's deviation in units of its standard error.
 
-/// Chance of a magnitude of at least `|t|` with this many degrees of freedom: the incomplete beta function I_x(n/2, 1/2) at x = n/(n + t^2).
+/// Probability of a magnitude of at least `|t|` for the degrees of freedom n: the incomplete beta function I_x(n/2,
+/// 1/2) at x = n/(n + t^2).
 pub fn two_sided(t: f64, freedom: f64) -> f64 {
     if !t.is_finite() {
         return 0.0;
@@ -8,7 +9,7 @@ pub fn two_sided(t: f64, freedom: f64) -> f64 {
     incomplete_beta(freedom / (freedom + t * t), 0.5 * freedom, 0.5)
 }
 
-/// The magnitude that is passed with this chance.
+/// Magnitude exceeded with a given probability.
 pub fn quantile(chance: f64, freedom: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     while two_sided(high, freedom) > chance && high < 1e12 {
@@ -25,7 +26,7 @@ pub fn quantile(chance: f64, freedom: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Regularised, by Lentz' continued fraction (DLMF 8.17.22) on the side where it converges fast.
+/// Regularized incomplete beta function, by Lentz' continued fraction (DLMF 8.17.22) on the side of fast convergence.
 fn incomplete_beta(x: f64, a: f64, b: f64) -> f64 {
     if x <= 0.0 || x >= 1.0 {
         return x.clamp(0.0, 1.0);
@@ -59,7 +60,7 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
     h
 }
 
-/// Logarithm of the gamma function by Lanczos' series (g = 7, nine terms), relative 1e-15.
+/// Logarithm of the gamma function by Lanczos' series (g = 7, nine terms), relative error 1e-15.
 pub fn log_gamma(x: f64) -> f64 {
     const TERMS: [f64; 9] = [
         0.999_999_999_999_809_9,

@@ -1,14 +1,14 @@
-//! Work shared by threads, as many of them as pay and as the system grants.
+//! Work in several threads, up to the number that the system grants.
 
 use std::panic::resume_unwind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::{self, Builder, Scope, ScopedJoinHandle};
 
-/// Numbers from which on two threads share a loop: a thread takes some 50 us to begin and end, and vectors that the last cache holds are read by one thread
-/// nearly as fast as by two.
+/// Length above which two threads share a loop. A thread takes about 50 us to start and end, and one thread reads
+/// vectors in the last-level cache nearly as fast as two.
 pub const LARGE: usize = 1 << 18;
 
-/// Does both, at the same time where the machine can: what they give is the same.
+/// Runs both functions, in parallel on more than one core. The results do not depend on that.
 pub fn both<A: Send, B>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> B) -> (A, B) {
     static ALONE: OnceLock<bool> = OnceLock::new();
     if *ALONE.get_or_init(|| thread::available_parallelism().is_ok_and(|cores| cores.get() == 1)) {
@@ -21,15 +21,15 @@ pub fn both<A: Send, B>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> 
     })
 }
 
-/// A task that [`begin`] has begun.
+/// A task started by [`begin`].
 pub enum Begun<'scope, T> {
-    /// In a thread.
+    /// Runs in a thread.
     Thread(ScopedJoinHandle<'scope, Option<T>>),
-    /// The system grants no thread: whoever waits for the task does it.
+    /// No thread was available: [`Begun::join`] runs the task.
     Left(Box<dyn FnOnce() -> Option<T> + 'scope>),
 }
 
-/// Begins a task in a thread of a scope; where the system grants none, [`Begun::join`] does it.
+/// Starts a task in a thread of a scope. Without an available thread, [`Begun::join`] runs it.
 pub fn begin<'scope, T: Send + 'scope>(
     scope: &'scope Scope<'scope, '_>,
     task: impl FnOnce() -> T + Send + 'scope,
@@ -46,7 +46,7 @@ pub fn begin<'scope, T: Send + 'scope>(
 }
 
 impl<T> Begun<'_, T> {
-    /// Waits for the result of the task; its panic goes on here.
+    /// Waits for the result of the task; propagates its panic.
     pub fn join(self) -> T {
         let given = match self {
             Self::Thread(thread) => thread.join(),
@@ -60,13 +60,12 @@ impl<T> Begun<'_, T> {
     }
 }
 
-/// True if the system grants a thread now: for what begins one by itself.
+/// True if the system currently grants a thread, for code that starts one itself.
 pub fn granted() -> bool {
     Builder::new().spawn(|| ()).is_ok_and(|thread| thread.join().is_ok())
 }
 
-/// Does the same work in up to `count` threads, fewer where the system grants fewer, in this one where it grants none. Returns when all
-/// have ended.
+/// Runs `work` in up to `count` threads, or in the current thread if none is available. Returns when all have ended.
 pub fn crew(count: usize, work: impl Fn() + Sync) {
     let granted = thread::scope(|scope| {
         let threads = (0..count).map_while(|_| Builder::new().spawn_scoped(scope, &work).ok());

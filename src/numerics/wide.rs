@@ -1,9 +1,9 @@
-//! Loops in vectors as wide as the processor has.
+//! Loops in the widest vector registers of the processor.
 
-/// Runs what is inlined into it in the widest vectors of the processor: those of x86-64-v3, where it has them. Nothing is rounded otherwise than without:
-/// products are fused with sums only where the code says so.
+/// Runs inlined code in the widest vectors of the processor: x86-64-v3 if available. Rounding does not change: products
+/// and sums are fused only where the code requires it.
 ///
-/// A macro, since a function called from two places need not be inlined into either.
+/// This is a macro because a function called from two places may not be inlined into either.
 macro_rules! wide {
     ($loops:expr) => {{
         #[cfg(target_arch = "x86_64")]

@@ -1,35 +1,35 @@
-//! The size of the next step.
+//! Step size control.
 //!
-//! Estimates of the error behave as `e ~ φ h^k` with a slowly changing `φ`. After an accepted step the next one is the
-//! smaller of `h (ρ/eₙ)^(1/k)` and `h (ρ/eₙ)^(1/k) · hₙ/hₙ₋₁ (eₙ₋₁/eₙ)^(1/k)`, which foresees the change of `φ`
-//! (Gustafsson's predictive controller; Hairer & Wanner IV.8), `ρ = safety^k`. After a rejected one it is `h (ρ/e)^(1/k)`,
-//! and growth beyond that size waits.
+//! Error estimates behave as `e ~ φ h^k` with a slowly changing `φ`. After an accepted step the next size is the smaller of
+//! `h (ρ/eₙ)^(1/k)` and `h (ρ/eₙ)^(1/k) · hₙ/hₙ₋₁ (eₙ₋₁/eₙ)^(1/k)`, which extrapolates the change of `φ` (Gustafsson's predictive
+//! controller; Hairer & Wanner IV.8), `ρ = safety^k`. After a rejected step it is `h (ρ/e)^(1/k)`, and growth beyond that size is
+//! delayed.
 
-/// Fraction of the step that the estimate allows.
+/// Fraction of the step size that the estimate permits.
 const SAFETY: f64 = 0.9;
-/// Step sizes change by at most this factor, upwards and downwards.
+/// Largest factor by which step sizes change, upwards or downwards.
 const GROWTH: f64 = 5.0;
-/// Growth below which the step stays as it is, and with it the factors of Newton's matrix.
+/// Growth below which the step size is kept, and with it the factors of Newton's matrix.
 const KEEP: f64 = 1.5;
-/// Errors are taken as no smaller than this: a moment of rest does not stand for the past.
+/// Lower limit of errors: a short phase of rest does not represent the past.
 const LEAST: f64 = 1e-4;
 
-/// Longest wait for growth, in accepted steps.
+/// Longest delay of growth, in accepted steps.
 const LONGEST_WAIT: u32 = 32;
-/// Ratio of successive sizes from which on a step has grown.
+/// Ratio of successive sizes above which a step counts as grown.
 const GROWN: f64 = 1.01;
 
-/// Wait for growth after a rejected step.
+/// Delay of growth after a rejected step.
 ///
-/// Estimates of superposed oscillations fluctuate: a small one permits growth that the next one rejects, and each change of
-/// size costs a new matrix. A rejection of growth doubles the wait, growth that is accepted halves it.
+/// Estimates of superposed oscillations fluctuate: a small one permits growth that the next one rejects, and each change of size needs a
+/// new matrix. A rejection after growth doubles the delay, accepted growth halves it.
 #[derive(Clone, Debug)]
 struct Wait {
-    /// Largest size while it lasts [s].
+    /// Largest size during the delay [s].
     ceiling: f64,
-    /// Accepted steps until it ends.
+    /// Accepted steps until the delay ends.
     left: u32,
-    /// Length of the next one, in accepted steps.
+    /// Length of the next delay, in accepted steps.
     next: u32,
 }
 
@@ -42,7 +42,7 @@ impl Wait {
         }
     }
 
-    /// A step is rejected, `grown` from the one before; `size` [s] follows.
+    /// Starts a delay after a rejected step; `grown` refers to the step before, `size` [s] is the new size.
     fn begin(&mut self, size: f64, grown: bool) {
         if grown {
             self.next = (2 * self.next).min(LONGEST_WAIT);
@@ -50,7 +50,7 @@ impl Wait {
         (self.ceiling, self.left) = (size, self.next);
     }
 
-    /// A step is accepted, `grown` from the one before; limits the size of the next [s].
+    /// Limits the size [s] of the next step after an accepted one; `grown` refers to the step before it.
     fn limit(&mut self, size: f64, grown: bool) -> f64 {
         if self.left > 0 {
             self.left -= 1;
@@ -63,16 +63,16 @@ impl Wait {
     }
 }
 
-/// Step sizes from errors.
+/// Computes step sizes from errors.
 #[derive(Clone, Debug)]
 pub(super) struct Control {
     /// Size of the next step [s].
     pub size: f64,
     largest: f64,
     power: f64,
-    /// Size [s] and error of the last step accepted.
+    /// Size [s] and error of the last accepted step.
     last: Option<(f64, f64)>,
-    /// Whether the present step has failed before.
+    /// True if the present step has failed before.
     failed: bool,
     wait: Wait,
 }
@@ -89,28 +89,28 @@ impl Control {
         }
     }
 
-    /// Largest step [s] from now on.
+    /// Sets the largest step size [s] from now on.
     pub fn limit(&mut self, largest: f64) {
         self.largest = largest;
         self.size = self.size.min(largest);
     }
 
-    /// Begins with a step [s], without a past.
+    /// Starts with a step size [s], without a history.
     pub fn begin(&mut self, size: f64) {
         (self.size, self.last, self.failed) = (size.min(self.largest), None, false);
         self.wait = Wait::new();
     }
 
-    /// Tries no more than this as the next step [s].
+    /// Limits the size of the next step [s].
     pub fn shorten(&mut self, size: f64) {
         self.size = self.size.min(size);
     }
 
-    /// The step to try from `t` [s], and its end: not beyond `stop`, which is hit exactly, nor so near to it that a
-    /// sliver is left.
+    /// Returns size and end of the next attempt from `t` [s]. The step does not pass `stop`, hits it exactly, and
+    /// avoids a very short remainder before it.
     pub fn attempt(&self, t: f64, stop: f64) -> (f64, f64) {
         let left = stop - t;
-        // a fixed step is to fit into a whole interval in spite of rounding
+        // despite rounding errors, an integer number of fixed steps must fit into an interval
         if left <= self.size * (1.0 + 1e-9) {
             (left, stop)
         } else if left < 2.0 * self.size {
@@ -120,12 +120,12 @@ impl Control {
         }
     }
 
-    /// True if a step of size `h` [s] is larger than the last one accepted.
+    /// True if a step of size `h` [s] is larger than the last accepted one.
     fn grown(&self, h: f64) -> bool {
         self.last.is_some_and(|(last, _)| h > GROWN * last)
     }
 
-    /// A step of size `h` [s] is accepted with an error relative to the tolerance.
+    /// Records an accepted step of size `h` [s] with an error relative to the tolerance.
     pub fn accepted(&mut self, h: f64, error: f64) {
         let error = (error / SAFETY.powf(self.power)).max(LEAST);
         let per_step = 1.0 / self.power;
@@ -140,7 +140,7 @@ impl Control {
         factor = factor.clamp(1.0 / GROWTH, limit);
         let grown = self.grown(h);
         let next = self.wait.limit(h * factor, grown);
-        // a step cut short by a stop says little about the next
+        // a step shortened by a stop does not determine the next size
         let keep = (1.0..KEEP).contains(&(next / self.size)) || (h < self.size && next < self.size && !self.failed);
         if !keep {
             self.size = next.min(self.largest);
@@ -148,10 +148,10 @@ impl Control {
         (self.last, self.failed) = (Some((h, error)), false);
     }
 
-    /// A step of size `h` [s] is rejected for its error.
+    /// Records a step of size `h` [s] rejected by its error.
     pub fn rejected(&mut self, h: f64, error: f64) {
         let factor = (error / SAFETY.powf(self.power)).powf(-1.0 / self.power);
-        // written so that an error that is no number counts as large
+        // written so that a NaN counts as a large error
         self.size = h * if factor > 1.0 / GROWTH { factor } else { 1.0 / GROWTH };
         if !self.failed {
             let grown = self.grown(h);
@@ -160,7 +160,7 @@ impl Control {
         self.failed = true;
     }
 
-    /// Newton's iteration, or the equations, have failed with a step of size `h` [s].
+    /// Records a failure of Newton's iteration or of the equations with a step of size `h` [s].
     pub fn failed(&mut self, h: f64) {
         self.size = 0.25 * h;
         self.failed = true;

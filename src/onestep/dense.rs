@@ -1,7 +1,7 @@
-//! Values, rates and integrals inside the last step.
+//! Dense output: values, rates and integrals within the last step.
 //!
-//! Differential unknowns: Hermite's cubic through values and rates at both ends. Algebraic unknowns: the polynomial through
-//! the stages [`super::Tableau::nodes`]. Integrals: `h Σ bᵢ g(tᵢ, Yᵢ, Kᵢ)` from step to step, inside by Hermite's cubic.
+//! Differential unknowns: cubic Hermite polynomial through values and rates at both ends. Algebraic unknowns: polynomial through the
+//! stages [`super::Tableau::nodes`]. Integrals: `h Σ bᵢ g(tᵢ, Yᵢ, Kᵢ)` from step to step, cubic Hermite polynomial inside.
 
 use super::equations::StageError;
 use super::integrator::OneStep;
@@ -15,7 +15,7 @@ use crate::integrate::IntegrationError;
 pub(super) struct Integrals {
     total: [Vec<f64>; 2],
     rate: [Vec<f64>; 2],
-    /// Whether the integrands at the present time have been evaluated.
+    /// True if the integrands at the present time have been evaluated.
     known: bool,
     sum: Vec<f64>,
     stage: Vec<f64>,
@@ -33,14 +33,14 @@ impl Integrals {
         }
     }
 
-    /// Back to zero.
+    /// Resets the integrals to zero.
     pub fn restart(&mut self) {
         self.known = false;
         self.total[1].fill(0.0);
     }
 }
 
-/// Hermite's weights of values and scaled slopes at both ends, or of their derivative by the place.
+/// Hermite weights of values and scaled slopes at both ends, or the derivatives of these weights by x.
 fn hermite(x: f64, derivative: bool) -> [f64; 4] {
     if derivative {
         let bell = 6.0 * x * (1.0 - x);
@@ -52,9 +52,9 @@ fn hermite(x: f64, derivative: bool) -> [f64; 4] {
 }
 
 impl<D: Dae> OneStep<D> {
-    /// Derivative number `k`, 0 or 1, of the unknowns at a time [s] within the last step.
+    /// Derivative of order `k`, 0 or 1, of the unknowns at a time [s] within the last step.
     ///
-    /// Panics when `out` has another length than the unknowns.
+    /// Panics if `out` and the unknowns differ in length.
     pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let x = self.place(time)?;
         if k > 1 {
@@ -75,8 +75,8 @@ impl<D: Dae> OneStep<D> {
         Ok(())
     }
 
-    /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last step. `out` has
-    /// length `dae.integrals()`.
+    /// Integrals `∫ g dt` since the last restart, at the present time or at a time [s] within the last step. `out` has length
+    /// `dae.integrals()`.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Integrals { total, rate, .. } = &self.integrals;
         match time {
@@ -93,7 +93,7 @@ impl<D: Dae> OneStep<D> {
         Ok(())
     }
 
-    /// Place of a time within the last step, 0 to 1.
+    /// Relative position of a time within the last step, 0 to 1.
     fn place(&self, time: f64) -> Result<f64, Box<IntegrationError>> {
         let Stages { t, h, .. } = self.last;
         let x = (time - t) / h;
@@ -109,7 +109,7 @@ impl<D: Dae> OneStep<D> {
         Err(IntegrationError::request(message, self.time))
     }
 
-    /// Puts in the values of algebraic unknowns at a place in a step, or their rates [1/s].
+    /// Writes the values of algebraic unknowns at a relative position in a step, or their rates [1/s].
     pub(super) fn algebraic(&self, step: &Stages, x: f64, rates: bool, out: &mut [f64]) {
         let chosen = self.tableau.nodes;
         let mut nodes = [0.0; polynomial::NODES];
@@ -135,7 +135,7 @@ impl<D: Dae> OneStep<D> {
         self.algebraic(&self.now, self.tableau.c[i], true, out);
     }
 
-    /// Carries the integrals over the present step, which ends at `t1` [s].
+    /// Advances the integrals over the present step, which ends at `t1` [s].
     pub(super) fn integrate(&mut self, t1: f64) -> Result<(), StageError> {
         if self.integrals.sum.is_empty() {
             return Ok(());

@@ -1,4 +1,4 @@
-//! The system of equations, counted and timed; faults become obstacles.
+//! System of equations with counters and timers; converts errors to `StageError`.
 
 use std::time::{Duration, Instant};
 
@@ -6,14 +6,14 @@ use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::numerics::kernels;
 
-/// Why an attempt at a step was given up.
+/// Reason why a step attempt was abandoned.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum StageError {
     /// Newton's iteration does not converge.
     Newton,
     /// No pivot is left in a column.
     Singular(usize),
-    /// The equations ask for a shorter step.
+    /// The equations require a shorter step.
     Recoverable(String),
     /// No step can succeed.
     Fatal(String),
@@ -28,7 +28,7 @@ impl From<EvaluationError> for StageError {
     }
 }
 
-/// A [`Dae`] with its account.
+/// A [`Dae`] with counters and timers.
 pub(super) struct Equations<D> {
     pub dae: D,
     pub residuals: u64,
@@ -50,7 +50,7 @@ impl<D: Dae> Equations<D> {
         }
     }
 
-    /// `F(t, y, y')`; finite, or an obstacle that names the equation.
+    /// Evaluates `F(t, y, y')`; a result that is not finite is an error that names the equation.
     pub fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.residual(t, y, yp, out);
@@ -68,7 +68,7 @@ impl<D: Dae> Equations<D> {
         }
     }
 
-    /// `∂F/∂y + cj ∂F/∂y'` in the order of the pattern.
+    /// Evaluates `∂F/∂y + cj ∂F/∂y'` in the order of the pattern.
     pub fn jacobian(&mut self, t: f64, y: &[f64], yp: &[f64], cj: f64, values: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.jacobian(t, y, yp, Seeds::Step { cj }, values);
@@ -82,7 +82,7 @@ impl<D: Dae> Equations<D> {
         }
     }
 
-    /// Integrands of the integrals carried along.
+    /// Evaluates the integrands of the integrals computed along with the solution.
     pub fn integrands(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), StageError> {
         let begin = Instant::now();
         let done = self.dae.integrands(t, y, yp, out);

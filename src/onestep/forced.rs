@@ -1,4 +1,4 @@
-//! What a march makes of a change of its equations: the period map's derivative by a parameter.
+//! Response of a march to a change of its equations: derivative of the period map by a parameter.
 
 use super::stages::{add, values};
 use super::step_map::{StepError, StepMap};
@@ -8,17 +8,18 @@ use crate::dae::Dae;
 pub type Source<'a> = dyn FnMut([f64; 2], [&[f64]; 2], &mut [f64]) -> Result<(), String> + 'a;
 
 impl<D: Dae> StepMap<D> {
-    /// `[E75]` Carries a disturbance `d` of the differential unknowns to the last time as [`StepMap::propagate`] does, along the march
-    /// last gone, which began at `y` with the rates `yp`, while the equations change as well:
+    /// `[E75]` Propagates a disturbance `d` of the differential unknowns to the last time, like [`StepMap::propagate`], along the last
+    /// march. It began at `y` with the rates `yp`; the equations change as well:
     ///
     /// ```text
     /// (∂F/∂y + 1/(hγ) ∂F/∂y') hγ δKᵢ = -∂F/∂y (δyₙ + h Σ_{j<i} aᵢⱼ δKⱼ) - ∂F/∂σ
     /// ```
     ///
-    /// With d the derivative of the beginning by σ it becomes that of the end, exact for the steps taken.
+    /// If d is the derivative of the initial values by σ, it becomes the derivative of the final values, exact for the
+    /// steps taken.
     ///
     /// # Errors
-    /// When the source cannot be evaluated.
+    /// If the source cannot be evaluated.
     pub fn respond_along(
         &mut self,
         [y, yp]: [&[f64]; 2],
@@ -40,7 +41,7 @@ impl<D: Dae> StepMap<D> {
             out.iter_mut().for_each(|out| *out = -*out);
             Ok(())
         };
-        // the start is written along the same step for the source as for its matrix
+        // the start is evaluated with the cj of its step, for the source and for the matrix
         let cj = 1.0 / (self.tableau.gamma() * (self.times[1] - self.times[0]));
         self.equations.dae.approach(cj);
         self.linearise_start(self.times[0], y, yp)?;

@@ -13,7 +13,7 @@ use crate::numerics::kernels;
 use crate::sparse::Lu;
 use crate::sundials::Step;
 
-/// Failures of a first step after which it begins as short as the rates ask for.
+/// Failures of a first step after which the step size is limited according to the present rates.
 const BOLD: u16 = 3;
 
 /// Integrator of a system `F(t, y, y') = 0` of index one, with the interface of [`crate::sundials::Ida`].
@@ -23,16 +23,16 @@ pub struct OneStep<D: Dae> {
     pub(super) options: OneStepOptions,
     pub(super) tableau: Tableau,
     absolute: Vec<f64>,
-    /// Error that Newton's iteration may leave, as a fraction of the tolerance: at which it ends, and which it accepts where it contracts too
-    /// slowly for that.
+    /// Remaining error of Newton's iteration as a fraction of the tolerance: the stop criterion, and the largest accepted error if the
+    /// contraction is too slow for it.
     pub(super) newton_tolerance: [f64; 2],
     /// 1 for differential, 0 for algebraic unknowns.
     pub(super) mask: Vec<f64>,
-    /// Positions of algebraic unknowns.
+    /// Indices of algebraic unknowns.
     pub(super) algebraic: Vec<usize>,
-    /// The step that is tried; its first stage is the present state.
+    /// The attempted step; its first stage is the present state.
     pub(super) now: Stages,
-    /// The last step accepted.
+    /// The last accepted step.
     pub(super) last: Stages,
     pub(super) work: Work,
     pub(super) integrals: Integrals,
@@ -45,7 +45,8 @@ pub struct OneStep<D: Dae> {
 }
 
 impl<D: Dae> OneStep<D> {
-    /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
+    /// Creates an integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length
+    /// `dae.len()`.
     pub fn new(
         dae: D,
         t0: f64,
@@ -91,7 +92,7 @@ impl<D: Dae> OneStep<D> {
         Ok(this)
     }
 
-    /// Takes up a state, without a past.
+    /// Sets the state, without a history.
     fn begin(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.integrals.restart();
         self.time = t;
@@ -105,7 +106,7 @@ impl<D: Dae> OneStep<D> {
         self.weigh()
     }
 
-    /// Weights of the error norm at the present state.
+    /// Computes the weights of the error norm at the present state.
     fn weigh(&mut self) -> Result<(), Box<IntegrationError>> {
         let (y, relative) = (&self.now.y[0], self.options.relative);
         if kernels::error_weights(y, relative, &self.absolute, &mut self.work.weights) {
@@ -115,17 +116,17 @@ impl<D: Dae> OneStep<D> {
         Err(IntegrationError::request(message, self.time))
     }
 
-    /// Largest step [s] from now on.
+    /// Sets the largest step size [s] from now on.
     pub fn limit(&mut self, largest: f64) {
         self.control.limit(largest);
     }
 
-    /// Tries this as the next step [s]; 0 leaves it to the state.
+    /// Proposes the size of the next step [s]; 0 leaves the choice to the integrator.
     pub fn propose(&mut self, size: f64) {
         self.control.begin(size);
     }
 
-    /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
+    /// Performs one accepted step that does not pass `stop` [s]. A stop within the rounding error counts as reached.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         let order = self.options.method.order();
         if request::reached(self.time, stop)? {
@@ -143,7 +144,7 @@ impl<D: Dae> OneStep<D> {
         self.recoverable = None;
         for failures in 0..self.options.max_failures {
             if failures == BOLD && self.last.h == 0.0 {
-                // what a filtered estimate tells of a transient does not fall with the step until it is as short
+                // the filtered error estimate of a fast transient falls only if the step is as short as the transient
                 self.control.shorten(self.first_step(stop));
             }
             let (h, t1) = self.control.attempt(self.time, stop);
@@ -191,7 +192,7 @@ impl<D: Dae> OneStep<D> {
         ))
     }
 
-    /// The step tried becomes the last one, and its end the present.
+    /// Makes the attempted step the last one, and its end the present state.
     fn accept(&mut self, h: f64, t1: f64, error: f64) -> Result<(), Box<IntegrationError>> {
         let mut yp = std::mem::take(&mut self.yp);
         let end = self.tableau.stages - 1;
@@ -209,8 +210,9 @@ impl<D: Dae> OneStep<D> {
         self.weigh()
     }
 
-    /// A first step [s]: short against the way to the stop, and short enough for the present rates to change nothing by
-    /// more than half its tolerance (IDA's choice), but no shorter than time can tell: rates after a switch may relax faster.
+    /// Size of a first step [s]: a small fraction of the distance to the stop, and short enough that the present rates change the
+    /// unknowns by at most half their tolerance (IDA's choice). It is never below the resolution of time, because rates after a switch
+    /// may relax faster.
     fn first_step(&self, stop: f64) -> f64 {
         if let Some(step) = self.options.initial_step {
             return step;
@@ -226,7 +228,7 @@ impl<D: Dae> OneStep<D> {
         }
     }
 
-    /// Everything known about a failure.
+    /// Collects all information about a failure.
     fn failure(&self, meaning: &'static str, step: f64, fatal: Option<String>) -> Box<IntegrationError> {
         let ratios = self.work.r.iter().zip(&self.work.weights).map(|(r, w)| (r * w).abs());
         let worst = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -258,31 +260,31 @@ impl<D: Dae> OneStep<D> {
         &self.now.y[0]
     }
 
-    /// Their derivatives at the present time [1/s].
+    /// Derivatives of the unknowns at the present time [1/s].
     pub fn yp(&self) -> &[f64] {
         &self.yp
     }
 
-    /// Goes on from consistent values at time `t` [s], forgetting the past, factors, pivots and step size included, so that
-    /// a new integrator from the same values would do the same bit for bit. Integrals start at zero.
+    /// Restarts from consistent values at time `t` [s]. History, factors, pivots and step size are discarded: a new integrator from the
+    /// same values would give bitwise identical results. Integrals start at zero.
     ///
-    /// Panics when a slice has another length than the unknowns.
+    /// Panics if a slice and the unknowns differ in length.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.matrix.forget();
         self.go_on(t, y, yp)
     }
 
-    /// As [`OneStep::restart`], with the factors and pivots that there are: for a jump that changes forces more than stiffness. Factors with
-    /// which Newton's iteration does not converge are made anew.
+    /// Like [`OneStep::restart`], but keeps the factors and pivots, for a jump that changes forces more than stiffness. Factors are
+    /// renewed if Newton's iteration does not converge with them.
     ///
-    /// Panics when a slice has another length than the unknowns.
+    /// Panics if a slice and the unknowns differ in length.
     pub fn go_on(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         self.counters.restarts += 1;
         self.matrix.doubt();
         self.begin(t, y, yp)
     }
 
-    /// The step that would be tried next, if no stop were near [s]; 0 where that is left to the state.
+    /// Size of the next step [s] if no stop is near; 0 if the integrator will choose it.
     pub fn size(&self) -> f64 {
         self.control.size
     }
@@ -320,12 +322,12 @@ impl<D: Dae> OneStep<D> {
         &self.equations.dae
     }
 
-    /// The equations; after changing what they mean, [`OneStep::restart`].
+    /// Mutable access to the equations; call [`OneStep::restart`] after a change of their meaning.
     pub fn dae_mut(&mut self) -> &mut D {
         &mut self.equations.dae
     }
 
-    /// Gives the equations back.
+    /// Returns the equations.
     pub fn into_dae(self) -> D {
         self.equations.dae
     }

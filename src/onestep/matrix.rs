@@ -1,4 +1,4 @@
-//! Newton's matrix `∂F/∂y + cj ∂F/∂y'`, its factors, and when they are too old.
+//! Newton's matrix `∂F/∂y + cj ∂F/∂y'`, its factors, and the criteria for renewing it.
 
 use std::time::{Duration, Instant};
 
@@ -6,37 +6,37 @@ use super::equations::{Equations, StageError};
 use crate::dae::{Corotation, Dae};
 use crate::sparse::{KluError, Lu};
 
-/// Contraction that is assumed before one is measured: corrections are then taken for what is left.
+/// Contraction rate assumed before one is measured: the remaining error then equals the correction.
 const UNKNOWN_RATE: f64 = 0.5;
-/// Measured contraction from which on a new matrix pays.
+/// Measured contraction rate above which a new matrix is worthwhile.
 const SLOW: f64 = 0.1;
-/// Relative change of `cj` that asks for a new matrix once two steps in a row have the same size.
+/// Relative change of `cj` that requires a new matrix once two successive steps have equal sizes.
 const STEADY_BAND: f64 = 5e-3;
-/// Relative difference up to which two sizes are the same.
+/// Relative difference up to which two sizes count as equal.
 const SAME_SIZE: f64 = 1e-6;
 
-/// The factors and what is known of them.
+/// Factors of Newton's matrix with their history.
 pub(super) struct Matrix {
     pub lu: Lu,
-    /// True if the beam has turned since a matrix was made, now or before.
+    /// True if the beam has rotated since a matrix was computed, now or before.
     pub has_turned: bool,
-    /// How the beam has turned since.
+    /// Rotation of the beam since the present matrix was computed.
     pub corotation: Corotation,
     values: Vec<f64>,
     /// `cj` of the factors; 0 without factors.
     cj: f64,
-    /// `cj` of the last attempt at a step; 0 before the first.
+    /// `cj` of the last step attempt; 0 before the first.
     attempted: f64,
-    /// Contraction of Newton's iteration with these factors, as last measured.
+    /// Last measured contraction rate of Newton's iteration with these factors.
     pub rate: f64,
-    /// Asks for new factors at the next stage.
+    /// Requires new factors at the next stage.
     pub stale: bool,
-    /// Whether the factors were made in the present attempt.
+    /// True if the factors were computed in the present attempt.
     pub fresh: bool,
     slow: bool,
     pub solves: u64,
     pub wall: Duration,
-    /// Column that had no pivot, of the last matrix.
+    /// Column of the last matrix that had no pivot.
     pub singular: Option<usize>,
 }
 
@@ -59,7 +59,7 @@ impl Matrix {
         }
     }
 
-    /// As new, counters apart.
+    /// Resets everything but the counters.
     pub fn forget(&mut self) {
         self.lu.forget();
         (self.cj, self.rate, self.stale) = (0.0, UNKNOWN_RATE, true);
@@ -68,13 +68,13 @@ impl Matrix {
         self.has_turned = false;
     }
 
-    /// What was measured of the factors no longer holds.
+    /// Discards the measured contraction rate.
     pub fn doubt(&mut self) {
         self.rate = UNKNOWN_RATE;
     }
 
-    /// A new attempt at a step begins. Steps that keep their size get a matrix of that size: linear equations then take one
-    /// iteration, and its leftover does not add up over a long undamped motion.
+    /// Begins a new step attempt. Steps of constant size get a matrix for that size. Linear equations then need one iteration, and its
+    /// remaining error does not accumulate over a long undamped motion.
     pub fn begin(&mut self, cj: f64) {
         let apart = |other: f64| (cj / other - 1.0).abs();
         let steady = apart(self.attempted) <= SAME_SIZE && apart(self.cj) > STEADY_BAND;
@@ -83,7 +83,7 @@ impl Matrix {
         self.fresh = false;
     }
 
-    /// Makes factors for `cj` at a state, when there are none that will do.
+    /// Computes factors for `cj` at a state, unless the present ones are adequate.
     pub fn prepare<D: Dae>(
         &mut self,
         equations: &mut Equations<D>,
@@ -114,7 +114,7 @@ impl Matrix {
         }
     }
 
-    /// Replaces `b` by the solution; returns the factor by which it is to be multiplied for an old `cj`.
+    /// Replaces `b` by the solution; returns the factor by which it must be multiplied for an old `cj`.
     ///
     /// `2 / (1 + cj/cj_old)` halves the error at both ends of the spectrum (IDA's choice).
     pub fn solve(&mut self, b: &mut [f64], cj: f64) -> f64 {
@@ -127,15 +127,14 @@ impl Matrix {
         2.0 / (1.0 + cj / self.cj)
     }
 
-    /// Notes a measured contraction; a slow one asks for a new matrix in the next step, unless all that is to be gained is
-    /// there already.
+    /// Records a measured contraction rate. A slow one requires a new matrix in the next step, unless the iteration has settled.
     pub fn measured(&mut self, rate: f64, settled: bool) {
         self.rate = rate.min(UNKNOWN_RATE);
         self.slow |= rate > SLOW && !settled;
     }
 
-    /// Contraction to be reckoned with, measured in the present iteration or before; one that was measured before does not hold for a beam that has turned
-    /// since: what else has changed is not known.
+    /// Contraction rate to be assumed, measured in the present iteration or before. An earlier measurement is invalid if the beam has
+    /// rotated since, because other changes are unknown.
     pub fn rate_of(&self, measured: bool) -> f64 {
         if measured || !self.corotation.turned() {
             self.rate
@@ -144,7 +143,7 @@ impl Matrix {
         }
     }
 
-    /// Trust in an old measurement fades (Hairer & Wanner IV.8).
+    /// Reduces the confidence in an old measurement (Hairer & Wanner IV.8).
     pub fn trust_less(&mut self) {
         self.rate = self.rate.max(1e-12).powf(0.8).min(UNKNOWN_RATE);
     }

@@ -4,23 +4,23 @@
 //! Kᵢ = y' at stage i        Yᵢ = yₙ + h Σ_{j<i} aᵢⱼ Kⱼ + h γ Kᵢ        F(tₙ + cᵢ h, Yᵢ, Kᵢ) = 0
 //! ```
 //!
-//! for the differential unknowns; algebraic ones are solved for in `Yᵢ` itself, since their derivative never appears. The
-//! first stage is the last one of the step before (`a₁₁ = 0`, `c₁ = 0`), the last stage is the result (`b = aₛ`): values and
-//! rates fulfil the equations at the end of every step. Newton's matrix is `∂F/∂y + 1/(h γ) ∂F/∂y'`, the same for all stages.
+//! holds for the differential unknowns. Algebraic ones are solved for in `Yᵢ` itself, since their derivatives do not appear. The first
+//! stage is the last one of the previous step (`a₁₁ = 0`, `c₁ = 0`); the last stage is the result (`b = aₛ`). Values and rates therefore
+//! satisfy the equations at the end of every step. Newton's matrix `∂F/∂y + 1/(h γ) ∂F/∂y'` is equal for all stages.
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
 //! | [`tableau`] | the methods: coefficients, orders |
-//! | [`options`] | what can be asked |
-//! | [`integrator`] | one accepted step at a time |
-//! | [`step_map`] | a march over a fixed grid and its exact derivative |
-//! | [`forced`] | that derivative by a number of the equations |
-//! | `stages` | Newton's iteration from stage to stage, and the estimate of the error |
-//! | `matrix` | Newton's matrix, its factors, and when they are too old |
-//! | `control` | the size of the next step |
-//! | `dense` | values, rates and integrals inside a step |
+//! | [`options`] | settings |
+//! | [`integrator`] | integrator, one accepted step at a time |
+//! | [`step_map`] | march over a fixed grid, and its exact derivative |
+//! | [`forced`] | derivative of a march by a parameter of the equations |
+//! | `stages` | Newton's iteration from stage to stage, and the error estimate |
+//! | `matrix` | Newton's matrix, its factors, and the criteria for renewing it |
+//! | `control` | step size control |
+//! | `dense` | dense output: values, rates and integrals within a step |
 //! | `polynomial` | weights of interpolation and differentiation |
-//! | `equations` | the system, counted, timed, its faults kept |
+//! | `equations` | system of equations with counters, timers and errors |
 //!
 //! Sources: Hairer & Wanner, *Solving Ordinary Differential Equations II*, IV.6, IV.8 and VI.1; Kennedy & Carpenter,
 //! *Diagonally implicit Runge-Kutta methods for ordinary differential equations*, NASA/TM-2016-219173.

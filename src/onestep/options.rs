@@ -1,4 +1,4 @@
-//! What can be asked of a one-step method.
+//! Settings of a one-step method.
 
 use super::tableau::Method;
 use crate::case::schema;
@@ -13,16 +13,16 @@ pub struct OneStepOptions {
     pub relative: f64,
     /// Absolute tolerances, > 0.
     pub absolute: Absolute,
-    /// Error that Newton's iteration may leave, as a fraction of the tolerance; absent:
+    /// Remaining error of Newton's iteration as a fraction of the tolerance; absent:
     /// [`super::Tableau::newton_tolerance`].
     pub newton_tolerance: Option<f64>,
-    /// Relative change of `1/(h γ)` that asks for a new matrix.
+    /// Relative change of `1/(h γ)` that requires a new matrix.
     pub matrix_band: f64,
-    /// First step [s], after every restart; a guess when absent.
+    /// First step [s] after every restart; chosen automatically if absent.
     pub initial_step: Option<f64>,
     /// Largest step [s].
     pub max_step: Option<f64>,
-    /// Failures allowed in one step, of Newton's iteration and of the error test together.
+    /// Maximum number of failures in one step, of Newton's iteration and of the error test together.
     pub max_failures: u16,
 }
 
@@ -41,7 +41,7 @@ impl Default for OneStepOptions {
     }
 }
 
-/// As a case names it.
+/// Name of the method in a case.
 impl From<Method> for schema::Method {
     fn from(method: Method) -> Self {
         match method {
@@ -54,7 +54,7 @@ impl From<Method> for schema::Method {
 }
 
 impl OneStepOptions {
-    /// Checks the settings for a system of `n` unknowns; the error names the first that cannot be.
+    /// Checks the settings for a system of `n` unknowns; the error names the first invalid one.
     pub fn check(&self, n: usize) -> Result<(), String> {
         self.absolute.check(self.relative, n)?;
         let positive = |value: f64| value.is_finite() && value > 0.0;

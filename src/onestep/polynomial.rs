@@ -1,9 +1,9 @@
 //! Lagrange's polynomial through a few nodes: weights for values and for derivatives.
 
-/// Most nodes.
+/// Maximum number of nodes.
 pub const NODES: usize = 8;
 
-/// Weights `wₖ` with `p(x) = Σ wₖ p(xₖ)`; at most [`NODES`] nodes, all different.
+/// Weights `wₖ` with `p(x) = Σ wₖ p(xₖ)`; at most [`NODES`] different nodes.
 pub fn value(nodes: &[f64], x: f64) -> [f64; NODES] {
     let mut out = [0.0; NODES];
     for (k, out) in out.iter_mut().enumerate().take(nodes.len()) {
@@ -27,7 +27,7 @@ pub fn slope(nodes: &[f64], x: f64) -> [f64; NODES] {
     out
 }
 
-/// Pairs of node `k` with every other.
+/// Pairs of node `k` with every other node.
 fn others(nodes: &[f64], k: usize) -> impl Iterator<Item = (f64, f64)> {
     let at = nodes[k];
     let rest = nodes.iter().enumerate().filter(move |(m, _)| *m != k);

@@ -1,8 +1,8 @@
-//! From stage to stage by a simplified Newton iteration, and the estimate of the error.
+//! Solution of the stages by a simplified Newton iteration, and the error estimate.
 //!
-//! A stage's own unknowns are `x`: the rate `K` where differential, the value where algebraic. With `base` the part of `Y`
-//! that the stages before give, `Y = base + s x`, `s = h γ` or 1. A correction `δ` of `Y` is one of `δ/s` of `x`, so that rates
-//! are never differences of values.
+//! A stage's own unknowns are `x`: the rate `K` if differential, the value if algebraic. `base` is the part of `Y` given by the previous
+//! stages: `Y = base + s x`, `s = h γ` or 1. A correction `δ` of `Y` is the correction `δ/s` of `x`, so that rates are never differences
+//! of values.
 
 use super::equations::StageError;
 use super::integrator::OneStep;
@@ -13,29 +13,29 @@ use crate::numerics::kernels::{self, TILE, weighted_square};
 use crate::numerics::threads::{LARGE, both};
 use crate::numerics::wide;
 
-/// Iterations allowed in one stage.
+/// Maximum number of iterations in one stage.
 const ITERATIONS: usize = 7;
-/// Part of the last step from which on a step is short.
+/// Ratio to the last step below which a step is short.
 const SHORT: f64 = 0.1;
-/// Matrices that an iteration makes on its way, at most.
+/// Maximum number of matrix renewals during an iteration.
 const RENEWALS: usize = 2;
-/// Contraction beyond which an iteration is given up.
+/// Contraction rate above which an iteration is abandoned.
 const DIVERGING: f64 = 0.9;
-/// Nodes of the polynomial that predicts a stage.
+/// Number of nodes of the polynomial that predicts a stage.
 const PREDICTOR_NODES: usize = 3;
 
-/// Most vectors that one sum has.
+/// Maximum number of vectors in one sum.
 const TERMS: usize = tableau::STAGES + 1;
 
-/// What a sum is made of.
+/// Factors and vectors of a sum.
 type Terms<'a> = [(f64, &'a [f64]); TERMS];
 
 /// Stages of one step.
 #[derive(Clone, Debug)]
 pub(super) struct Stages {
-    /// Time at its beginning [s].
+    /// Time at the beginning of the step [s].
     pub t: f64,
-    /// Its size [s]; 0 before there is one.
+    /// Size of the step [s]; 0 before the first.
     pub h: f64,
     /// Rates of differential, values of algebraic unknowns, at every stage.
     pub x: Vec<Vec<f64>>,
@@ -55,14 +55,14 @@ impl Stages {
     }
 }
 
-/// Vectors to work with.
+/// Work vectors.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
-    /// Part of a stage's values that the stages before give, of differential unknowns.
+    /// Part of a stage's values that is given by the previous stages, for differential unknowns.
     pub base: Vec<f64>,
     /// Rates, 0 for algebraic unknowns.
     pub yp: Vec<f64>,
-    /// Residual, then correction; after a step what it is estimated to be off by.
+    /// Residual, then correction; after a step, its estimated error.
     pub r: Vec<f64>,
     /// Weights of the error norm.
     pub weights: Vec<f64>,
@@ -92,13 +92,13 @@ fn norm(v: &[f64], weights: &[f64]) -> f64 {
     (weighted_square(v, weights) / v.len() as f64).sqrt()
 }
 
-/// `f` of a differential unknown, 1 of an algebraic one; `mask` is 1 or 0.
+/// `f` for a differential unknown, 1 for an algebraic one; `mask` is 1 or 0.
 #[inline(always)]
 fn or_one(mask: f64, f: f64) -> f64 {
     mask * f + (1.0 - mask)
 }
 
-/// What a correction changes, all of it or a part.
+/// Arrays that a correction reads or changes, or parts of them.
 struct Corrected<'a> {
     x: &'a mut [f64],
     y: &'a mut [f64],
@@ -110,7 +110,7 @@ struct Corrected<'a> {
 }
 
 impl<'a> Corrected<'a> {
-    /// Its first entries and the rest.
+    /// Splits the arrays at entry `k`.
     fn split_at(self, k: usize) -> [Self; 2] {
         let (x, y) = (self.x.split_at_mut(k), self.y.split_at_mut(k));
         let (yp, r) = (self.yp.split_at_mut(k), self.r.split_at_mut(k));
@@ -145,7 +145,7 @@ impl<'a> Corrected<'a> {
         left + right
     }
 
-    /// What is written stays in the first cache until it is read again.
+    /// Processes tiles: written data stay in the first-level cache until they are read again.
     fn tile_by_tile(mut self, factors: [f64; 2], step: f64) -> f64 {
         let mut square = 0.0;
         while !self.r.is_empty() {
@@ -162,7 +162,7 @@ impl<'a> Corrected<'a> {
     }
 }
 
-/// `r` becomes the correction of the values, and `x` is moved by that of its own: `∂x/∂Y` is `cj` or 1.
+/// Scales `r` to the correction of the values, and adds the corresponding correction to `x`: `∂x/∂Y` is `cj` or 1.
 #[inline(always)] // three slices that the compiler knows to be apart
 fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
     for ((x, r), mask) in x.iter_mut().zip(r).zip(mask) {
@@ -171,7 +171,8 @@ fn correct(x: &mut [f64], r: &mut [f64], mask: &[f64], [factor, cj]: [f64; 2]) {
     }
 }
 
-/// `Y = base + s x` with `s = h γ`, of algebraic unknowns `x`; rates of differential unknowns, 0 of the others.
+/// `Y = base + s x` with `s = h γ` for differential and `Y = x` for algebraic unknowns; rates of differential unknowns,
+/// 0 for algebraic ones.
 #[inline(always)]
 fn values_of(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
     for (((y, yp), (x, base)), mask) in y.iter_mut().zip(yp).zip(x.iter().zip(base)).zip(mask) {
@@ -180,7 +181,7 @@ fn values_of(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f
     }
 }
 
-/// The same, in wide vectors, and shared by two threads where there is much of it.
+/// Like `values_of`, but in wide vectors, and shared by two threads if the vectors are long.
 pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: [&mut [f64]; 2]) {
     if x.len() < LARGE {
         return wide!(values_of(x, base, mask, step, [y, yp]));
@@ -194,7 +195,7 @@ pub(super) fn values(x: &[f64], base: &[f64], mask: &[f64], step: f64, [y, yp]: 
 }
 
 impl<D: Dae> OneStep<D> {
-    /// Tries a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
+    /// Attempts a step of size `h` that ends at `t1` [s]; returns its error relative to the tolerance.
     pub(super) fn attempt(&mut self, h: f64, t1: f64) -> Result<f64, StageError> {
         let cj = 1.0 / (h * self.tableau.gamma());
         self.matrix.begin(cj);
@@ -206,7 +207,7 @@ impl<D: Dae> OneStep<D> {
             self.lay_base(i);
             self.predict(i);
             match self.newton(i, t, cj) {
-                // what failed with old factors is tried with new ones
+                // a failure with old factors is repeated with new ones
                 Err(StageError::Newton | StageError::Recoverable(_)) if !self.matrix.fresh => {
                     self.matrix.stale = true;
                     self.predict(i);
@@ -218,7 +219,7 @@ impl<D: Dae> OneStep<D> {
         self.estimate(t1, cj)
     }
 
-    /// `yₙ + h Σ_{j<i} aᵢⱼ Kⱼ`.
+    /// Computes `yₙ + h Σ_{j<i} aᵢⱼ Kⱼ`.
     fn lay_base(&mut self, i: usize) {
         let now = &self.now;
         let mut terms: Terms = [(1.0, &now.y[0]); TERMS];
@@ -230,7 +231,7 @@ impl<D: Dae> OneStep<D> {
         kernels::combine(&mut self.work.base, &terms[..count]);
     }
 
-    /// Predicts stage `i` by the polynomial through the stages before, of the last step too.
+    /// Predicts stage `i` by the polynomial through previous stages, including those of the last step.
     fn predict(&mut self, i: usize) {
         let (tableau, last) = (&self.tableau, &self.last);
         let mut nodes = [0.0; polynomial::NODES];
@@ -261,8 +262,8 @@ impl<D: Dae> OneStep<D> {
         kernels::combine(&mut rest[0], &terms[..count]);
     }
 
-    /// Solves stage `i` at time `t` [s] from its prediction. Where the iteration does not converge though the step is short and the matrix new, as where a valve
-    /// opens on the way, it goes on from where it is with one made there.
+    /// Solves stage `i` at time `t` [s] from its prediction. If the iteration does not converge despite a short step and a new matrix,
+    /// e.g. because a valve opens, it continues from its last iterate with a matrix computed there.
     fn newton(&mut self, i: usize, t: f64, cj: f64) -> Result<(), StageError> {
         let short = self.now.h < SHORT * self.last.h;
         for _ in 0..RENEWALS {
@@ -290,7 +291,7 @@ impl<D: Dae> OneStep<D> {
                 self.matrix.corotation.look(&self.equations.dae);
                 self.matrix.has_turned |= self.matrix.corotation.turned();
                 if self.matrix.has_turned {
-                    // matrices that turn contract too slowly for more
+                    // a rotated matrix contracts too slowly for a stricter tolerance
                     tolerance = accepted;
                 }
             }
@@ -301,14 +302,14 @@ impl<D: Dae> OneStep<D> {
             }
             if let Some(before) = before {
                 let rate = size / before;
-                // at round-off nothing contracts any further
+                // at the level of rounding errors there is no further contraction
                 self.matrix.measured(rate, size <= 0.1 * accepted);
                 if size <= 0.1 * tolerance {
                     return Ok(());
                 }
                 let left = (ITERATIONS - 1 - iteration) as i32;
                 if rate > DIVERGING || rate.powi(left) * size * rate / (1.0 - rate) > accepted {
-                    // where it contracts no further, the leftover accepted before suffices
+                    // if the contraction stops, the remaining error accepted before suffices
                     return if enough && rate < 1.0 {
                         Ok(())
                     } else {
@@ -330,14 +331,14 @@ impl<D: Dae> OneStep<D> {
         if enough { Ok(()) } else { Err(StageError::Newton) }
     }
 
-    /// Values and rates of stage `i` from its own unknowns.
+    /// Computes values and rates of stage `i` from its own unknowns.
     fn take_up(&mut self, i: usize) {
         let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
         let step = *h * self.tableau.gamma();
         values(&x[i], &w.base, &self.mask, step, [&mut y[i], &mut w.yp]);
     }
 
-    /// Corrects these by a solution times a factor; returns the norm of the correction.
+    /// Corrects stage `i` by a solution times a factor; returns the norm of the correction.
     fn correct(&mut self, i: usize, factors: [f64; 2]) -> f64 {
         let (Stages { x, y, h, .. }, w) = (&mut self.now, &mut self.work);
         let n = w.r.len() as f64;
@@ -355,10 +356,10 @@ impl<D: Dae> OneStep<D> {
 
     /// Error of the step, relative to the tolerance.
     ///
-    /// The embedded method gives `e = h Σ (bᵢ - b̂ᵢ) Kᵢ`, which for stiff components is as large as they are stiff. Solved for
-    /// once more, `(∂F/∂y + cj ∂F/∂y') err = cj ∂F/∂y' e`, it is what the method would do to a disturbance `e` (Shampine;
-    /// Hairer & Wanner IV.8): `(1 - h γ λ)⁻¹ e`. The right-hand side is a residual with the rates moved by `cj e`. Algebraic
-    /// unknowns have the error that the differential ones bring them, and count.
+    /// The embedded method gives `e = h Σ (bᵢ - b̂ᵢ) Kᵢ`, which grows with the stiffness of stiff components. Another solution,
+    /// `(∂F/∂y + cj ∂F/∂y') err = cj ∂F/∂y' e`, filters it like the method filters a disturbance `e` (Shampine; Hairer & Wanner IV.8):
+    /// `(1 - h γ λ)⁻¹ e`. The right-hand side is a residual with the rates changed by `cj e`. Algebraic unknowns have the error caused by
+    /// the differential ones, and contribute to the norm.
     fn estimate(&mut self, t1: f64, cj: f64) -> Result<f64, StageError> {
         let s = self.tableau.stages;
         let (b, gamma) = (self.tableau.b(), self.tableau.gamma());

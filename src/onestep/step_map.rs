@@ -1,8 +1,8 @@
-//! A march over given times, and its exact derivative: what a period map needs.
+//! March over a fixed time grid and its exact derivative, for period maps.
 //!
-//! The steps are those of a one-step method over a fixed grid, each stage solved to round-off, so that the end is a smooth
-//! function of the beginning. The equations of the stages, differentiated, carry disturbances along: with the factors of
-//! every stage at hand that costs one solve a stage and disturbance.
+//! The steps are those of a one-step method over a fixed grid. Each stage is solved to rounding error, so that the end is a smooth
+//! function of the beginning. The differentiated equations of the stages propagate disturbances. With the stored factors of every stage,
+//! this requires one solve per stage and disturbance.
 
 use std::ops::AddAssign;
 
@@ -15,53 +15,53 @@ use crate::dae::{Dae, Seeds};
 use crate::integrate::{StartOptions, consistent_start, halt};
 use crate::sparse::Klu;
 
-/// Correction, relative to 1 + |unknown|, at which a stage counts as solved.
+/// Correction, relative to 1 + |unknown|, below which a stage counts as solved.
 const SOLVED: f64 = 1e-12;
-/// The same where corrections no longer shrink: round-off of the residual.
+/// Correction below which a stage counts as solved if corrections no longer decrease: rounding error of the residual.
 const ROUND_OFF: f64 = 1e-8;
-/// Newton steps allowed in a stage.
+/// Maximum number of Newton steps in a stage.
 const ITERATIONS: usize = 25;
-/// Contraction beyond which old factors are replaced.
+/// Contraction rate above which old factors are replaced.
 const SLOW: f64 = 0.2;
-/// Disturbances carried along at once.
+/// Number of disturbances propagated at once.
 const BLOCK: usize = 64;
 
-/// Bytes kept for an entry of the Jacobian: its value, and with fill about four entries of the factors with their places.
+/// Bytes stored per entry of the Jacobian: its value, and, with fill-in, about four entries of the factors with their indices.
 const BYTES: f64 = 80.0;
-/// Bytes that the factors of all stages may take.
+/// Maximum memory for the factors of all stages [bytes].
 const MOST_ROOM: f64 = 2e9;
 
-/// Why a march could not be finished.
+/// Error of a march.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepError {
     /// Time [s].
     pub time: f64,
-    /// What happened.
+    /// Description of the failure.
     pub what: String,
 }
 
 impl StepError {
-    /// What happened at a time [s].
+    /// Creates an error at a time [s].
     pub fn new(time: f64, what: impl Into<String>) -> Self {
         let what = what.into();
         Self { time, what }
     }
 }
 
-/// What has been done, by one march or by several.
+/// Work of one or several marches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepMapWork {
     /// Steps.
     pub steps: u64,
-    /// Residuals.
+    /// Residual evaluations.
     pub residual_evaluations: u64,
-    /// Jacobians, `∂F/∂y` for the disturbances among them.
+    /// Jacobian evaluations, including `∂F/∂y` for disturbances.
     pub jacobian_evaluations: u64,
     /// Factorisations.
     pub factorizations: u64,
     /// Linear solves of stages.
     pub linear_solves: u64,
-    /// Disturbances carried over the whole march.
+    /// Disturbances propagated over the whole march.
     pub disturbances: u64,
 }
 
@@ -79,7 +79,7 @@ impl AddAssign for StepMapWork {
 /// The matrix of one stage.
 pub(super) struct Slot {
     klu: Klu,
-    /// Whether it holds factors.
+    /// True if it contains factors.
     factored: bool,
     /// `∂F/∂y` at the solution, in the order of the pattern.
     of_y: Vec<f64>,
@@ -93,17 +93,17 @@ pub struct StepMap<D: Dae> {
     pub(super) tableau: Tableau,
     pub(super) times: Vec<f64>,
     pub(super) mask: Vec<f64>,
-    /// Of the start, then of every implicit stage in order of time.
+    /// Matrix of the start, then of every implicit stage in order of time.
     pub(super) slots: Vec<Slot>,
     values: Vec<f64>,
     pub(super) work: StepMapWork,
 }
 
 impl<D: Dae> StepMap<D> {
-    /// A march from the first to the last of `times` [s], ascending, at least two.
+    /// Creates a march from the first to the last of `times` [s], ascending, at least two.
     ///
     /// # Errors
-    /// When the equations' matrix cannot be analysed.
+    /// If the equations' matrix cannot be analyzed, or the factors would need too much memory.
     pub fn new(dae: D, method: Method, times: Vec<f64>) -> Result<Self, StepError> {
         let tableau = method.tableau();
         let n = dae.len();
@@ -140,7 +140,7 @@ impl<D: Dae> StepMap<D> {
         &self.times
     }
 
-    /// Gives the equations back.
+    /// Returns the equations.
     pub fn into_dae(self) -> D {
         self.equations.dae
     }
@@ -154,11 +154,11 @@ impl<D: Dae> StepMap<D> {
         }
     }
 
-    /// From the differential unknowns in `y` at the first time to all unknowns and their rates at the last. On the way `y` and
-    /// `yp` pass consistent values; the entries of algebraic unknowns are first guesses. Ready for [`StepMap::propagate`] afterwards.
+    /// Marches from the differential unknowns in `y` at the first time to all unknowns and their rates at the last. Consistent values are
+    /// computed on the way; the entries of algebraic unknowns are initial guesses. [`StepMap::propagate`] may be called afterwards.
     ///
     /// # Errors
-    /// When no consistent start is found or a stage has no solution: `y` and `yp` are then of no use.
+    /// If no consistent start is found or a stage has no solution; `y` and `yp` are then meaningless.
     pub fn go(&mut self, y: &mut [f64], yp: &mut [f64]) -> Result<(), StepError> {
         let t0 = self.times[0];
         consistent_start(&mut self.equations.dae, t0, y, yp, &StartOptions::default())
@@ -201,7 +201,7 @@ impl<D: Dae> StepMap<D> {
         Ok(())
     }
 
-    /// Solves one stage from the guess `x` and leaves its matrix for the disturbances.
+    /// Solves one stage from the guess `x` and stores its matrix for disturbances.
     #[allow(clippy::too_many_arguments)]
     fn stage(
         &mut self,
@@ -278,7 +278,7 @@ impl<D: Dae> StepMap<D> {
         Ok(out)
     }
 
-    /// The matrix that gives rates and algebraic unknowns of the start from its differential ones.
+    /// Computes the matrix that gives rates and algebraic unknowns of the start from its differential ones.
     pub(super) fn linearise_start(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), StepError> {
         let free: Vec<f64> = self.mask.iter().map(|m| 1.0 - m).collect();
         let seeds = Seeds::Columns {
@@ -293,16 +293,16 @@ impl<D: Dae> StepMap<D> {
         Ok(())
     }
 
-    /// `[E36]` Carries disturbances of the differential unknowns at the first time, one after the other in `block`, each as
-    /// long as all unknowns, to the last time, along the march last gone. Entries of algebraic unknowns count for nothing
-    /// and come back as zero.
+    /// `[E36]` Propagates disturbances of the differential unknowns from the first to the last time along the last march. `block`
+    /// contains them one after the other, each with an entry for every unknown. Entries of algebraic unknowns are ignored and returned as
+    /// zero.
     ///
     /// ```text
     /// ∂F/∂y δYᵢ + ∂F/∂y' δKᵢ = 0     δYᵢ = δyₙ + h Σⱼ aᵢⱼ δKⱼ     δyₙ₊₁ = δYₛ
     /// (∂F/∂y + 1/(hγ) ∂F/∂y') hγ δKᵢ = -∂F/∂y (δyₙ + h Σ_{j<i} aᵢⱼ δKⱼ)
     /// ```
     ///
-    /// the stages of [`super`], differentiated: exact for the steps taken, not for the flow they approximate.
+    /// These are the differentiated stages of [`super`]: exact for the steps taken, not for the flow they approximate.
     pub fn propagate(&mut self, block: &mut [f64]) {
         let n = self.mask.len();
         assert!(block.len().is_multiple_of(n), "disturbances of another system");
@@ -312,7 +312,7 @@ impl<D: Dae> StepMap<D> {
         }
     }
 
-    /// As [`StepMap::propagate`], of a few disturbances, which `look` sees at the beginning and at the end of every step.
+    /// Like [`StepMap::propagate`], for a few disturbances; `look` receives them at the beginning and at the end of every step.
     pub fn propagate_by_steps(&mut self, block: &mut [f64], look: &mut dyn FnMut(&[f64])) {
         let n = self.mask.len();
         let count = block.len() / n;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// The methods, all L-stable, `p(q)s`: order, order of the estimate, stages.
+/// The methods, all L-stable; `p(q)s` are the order, the order of the estimate and the number of stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// TR-BDF2, 2(3)3: Bank et al. 1985; Hosea & Shampine 1996.
@@ -16,7 +16,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All, by rising order.
+    /// All methods, by ascending order.
     pub const ALL: [Self; 4] = [Self::TrBdf2, Self::Esdirk34, Self::Esdirk46, Self::Esdirk57];
 
     /// Order of the result.
@@ -51,54 +51,54 @@ impl fmt::Display for Method {
     }
 }
 
-/// Largest fraction of the tolerance that Newton's iteration may leave.
+/// Largest remaining error of Newton's iteration, as a fraction of the tolerance.
 pub(super) const LEFTOVER: f64 = 0.02;
-/// Relative tolerance from which on this fraction suffices.
+/// Relative tolerance above which this fraction suffices.
 const LEFTOVER_TOLERANCE: f64 = 1e-4;
-/// Least leftover that is asked for, relative to the unknowns: rounding errors of a stage stay below it.
+/// Smallest remaining error that is required, relative to the unknowns: rounding errors of a stage stay below it.
 const LEAST_LEFTOVER: f64 = 2e-12;
 
-/// Most stages of a method.
+/// Maximum number of stages of a method.
 pub const STAGES: usize = 7;
 
-/// A method's coefficients; of each array the first [`Tableau::stages`] entries count.
+/// Coefficients of a method; only the first [`Tableau::stages`] entries of each array are used.
 ///
 /// The first row of `a` is zero, the diagonal of the others is `γ`, the last row is `b`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tableau {
-    /// Number of stages, the explicit first one included.
+    /// Number of stages, including the explicit first one.
     pub stages: usize,
-    /// `h^power` is what the estimate of the error falls with.
+    /// The error estimate is proportional to `h^power`.
     pub power: u8,
     /// Power of `h ω` with which a step damps an undamped oscillation: `1 - |R(i h ω)| ~ (h ω)^damping`.
     pub damping: u8,
     /// Times of the stages within the step.
     pub c: [f64; STAGES],
-    /// Weights of the stages before and of each itself.
+    /// Weights of the previous stages and of the stage itself.
     pub a: [[f64; STAGES]; STAGES],
     /// Weights of the embedded method.
     pub embedded: [f64; STAGES],
-    /// Stages through which algebraic unknowns are interpolated: well apart, both ends included.
+    /// Stages through which algebraic unknowns are interpolated: well separated, including both ends.
     pub nodes: &'static [usize],
 }
 
 impl Tableau {
-    /// The diagonal.
+    /// Diagonal element γ.
     pub fn gamma(&self) -> f64 {
         self.a[1][1]
     }
 
-    /// Fraction κ of the tolerance that Newton's iteration may leave.
+    /// Remaining error of Newton's iteration as a fraction κ of the tolerance.
     ///
-    /// The error test chooses `(h ω)^power ~ rtol`, and a step takes `(h ω)^damping` of the amplitude of an undamped oscillation.
-    /// The leftover has either sign. It stays below that loss, and energy does not grow, with `κ rtol ~ rtol^(damping/power)`.
+    /// The error test chooses `(h ω)^power ~ rtol`, and a step removes `(h ω)^damping` of the amplitude of an undamped oscillation. The
+    /// remaining error has either sign. With `κ rtol ~ rtol^(damping/power)` it stays below that loss, and energy does not grow.
     pub fn newton_tolerance(&self, relative: f64) -> f64 {
         let excess = f64::from(self.damping) / f64::from(self.power) - 1.0;
         let share = LEFTOVER * (relative / LEFTOVER_TOLERANCE).min(1.0).powf(excess);
         share.max(LEAST_LEFTOVER / relative).min(LEFTOVER)
     }
 
-    /// Factor by which a step multiplies the solution of `y' = λ y`, `z = h λ`, real and imaginary part: `1 + z bᵀ(1 - zA)⁻¹ 1`.
+    /// Factor by which a step multiplies the solution of `y' = λ y`, for `z = h λ` as real and imaginary part: `1 + z bᵀ(1 - zA)⁻¹ 1`.
     pub fn stability(&self, (re, im): (f64, f64)) -> (f64, f64) {
         let mul = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
         let mut u = [(0.0, 0.0); STAGES];
@@ -120,7 +120,7 @@ impl Tableau {
     }
 }
 
-/// An array that begins with these.
+/// Array that begins with the given entries; the rest is zero.
 const fn row(first: &[f64]) -> [f64; STAGES] {
     let mut row = [0.0; STAGES];
     let (begin, _) = row.split_at_mut(first.len());

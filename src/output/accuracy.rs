@@ -1,12 +1,12 @@
-//! An accuracy that was asked for, in words.
+//! Text about a requested accuracy.
 
 use super::numbers::{counted, error_percent, significant};
 use crate::run::summary::{Accuracy, Estimate};
 
-/// Errors told.
+/// Largest number of errors listed.
 const TOLD: usize = 4;
 
-/// What was asked, what is known of the worst numbers, and how it was reached; a line each.
+/// Requested accuracy, largest errors, and mesh and tolerance, as two lines.
 pub fn words(found: &Accuracy) -> String {
     format!(
         "accuracy {}; largest errors: {}\nwith {}\n",
@@ -16,13 +16,13 @@ pub fn words(found: &Accuracy) -> String {
     )
 }
 
-/// The accuracy, and whether it is reached.
+/// Requested accuracy, and whether it is reached.
 pub fn reached(found: &Accuracy) -> String {
     let verb = if found.reached { "reached" } else { "not reached" };
     format!("{} {verb}", error_percent(found.asked))
 }
 
-/// Mesh, tolerance and the number of runs.
+/// Mesh, tolerance, and the number of coarser computations before.
 pub fn setting(found: &Accuracy) -> String {
     let before = match found.pilots.len() {
         0 => String::new(),
@@ -36,7 +36,7 @@ pub fn setting(found: &Accuracy) -> String {
     )
 }
 
-/// The largest errors, with what makes them where that is known.
+/// The largest errors, with their contributions if known.
 pub fn largest(found: &Accuracy) -> Vec<String> {
     let mut worst: Vec<(&String, &Estimate)> = found.quantities.iter().collect();
     worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));

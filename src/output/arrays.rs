@@ -1,7 +1,7 @@
-//! `fields.npz`: each field streams into a raw file of its own; at the end all are packed. Memory stays flat.
+//! `fields.npz`: each field is streamed into a raw file; at the end all raw files are packed. Memory use stays constant.
 //!
-//! While a run is under way `fields.part/NAME.f64` holds little-endian doubles, time after time, and
-//! `fields.part/t_fields_s.f64` the times; what a killed run leaves there `numpy.fromfile` reads.
+//! During a run `fields.part/NAME.f64` contains little-endian doubles, instant after instant, and `fields.part/t_fields_s.f64` the times.
+//! `numpy.fromfile` reads these files after a killed run.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -23,13 +23,13 @@ use crate::run::record::{Axis, Field, Header};
 /// Name of the array of times.
 pub const TIMES: &str = "t_fields_s";
 
-/// Bytes that are read or written at once.
+/// Size of read and write buffers [byte].
 const BLOCK: usize = 1 << 16;
 
-/// What of each raw file was safe on disk at a checkpoint.
+/// Part of each raw file that was safe on disk at a checkpoint.
 pub type Marks = BTreeMap<String, Mark>;
 
-/// Streams fields into raw files and packs them.
+/// Streams fields into raw files and packs these.
 #[derive(Debug)]
 pub struct ArraysWriter {
     dir: PathBuf,
@@ -42,7 +42,7 @@ pub struct ArraysWriter {
 }
 
 impl ArraysWriter {
-    /// Opens the raw files in `dir`, which is made.
+    /// Creates the folder `dir` and the raw files in it.
     pub fn create(dir: &Path, header: &Header) -> Result<Self> {
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let raw = header.fields.iter().map(|f| RawFile::create(dir, f.name));
@@ -57,7 +57,7 @@ impl ArraysWriter {
         })
     }
 
-    /// Checks that the raw files of an interrupted run still hold what was marked, and as many instants of each field.
+    /// Checks that the raw files of an interrupted run still contain the marked parts, with an equal number of instants of each field.
     pub fn verify(dir: &Path, header: &Header, marks: &Marks) -> Result<()> {
         let instants = marks.get(TIMES).map_or(0, |mark| mark.bytes / 8);
         let fields = header.fields.iter().map(|f| (f.name, f.len as u64));
@@ -74,7 +74,7 @@ impl ArraysWriter {
         Ok(())
     }
 
-    /// Opens the raw files of an interrupted run, verified, and drops what came after the marks.
+    /// Opens the verified raw files of an interrupted run and truncates them at the marks.
     pub fn reopen(dir: &Path, header: &Header, marks: &Marks) -> Result<Self> {
         let mark = |name: &str| marks.get(name).copied().unwrap_or(Mark { bytes: 0, crc32: 0 });
         let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, mark(f.name)));
@@ -89,7 +89,7 @@ impl ArraysWriter {
         })
     }
 
-    /// All instants so far, safe on disk.
+    /// Syncs all instants to the disk and returns the marks.
     pub fn secure(&mut self) -> Result<Marks> {
         self.flush()?;
         let names = self.fields.iter().map(|f| f.name).chain([TIMES]);
@@ -100,7 +100,7 @@ impl ArraysWriter {
             .collect()
     }
 
-    /// Appends one instant: its time and all fields, one after the other in the order of the header.
+    /// Appends one instant: its time, then all fields in the order of the header.
     pub fn append(&mut self, instant: &[f64]) -> Result<()> {
         if instant.len() != self.numbers() {
             let why = "the arrays do not have the lengths announced";
@@ -124,7 +124,7 @@ impl ArraysWriter {
         Ok(())
     }
 
-    /// Brings everything to the disk.
+    /// Flushes all buffers to the files.
     pub fn flush(&mut self) -> Result<()> {
         self.flushed = Instant::now();
         for raw in &mut self.raw {
@@ -133,12 +133,12 @@ impl ArraysWriter {
         self.times.flush()
     }
 
-    /// Numbers of one of them.
+    /// Number of values of an instant: its time and all fields.
     pub(super) fn numbers(&self) -> usize {
         1 + self.fields.iter().map(|f| f.len).sum::<usize>()
     }
 
-    /// All times [s], once they are flushed.
+    /// All times [s], read back from disk; requires a flush before.
     pub fn times(&self) -> Result<Vec<f64>> {
         let mut all = self.times.read(self.instants as usize, &[0])?;
         Ok(all.pop().unwrap_or_default())
@@ -149,7 +149,7 @@ impl ArraysWriter {
         self.axes.iter().find(|a| a.name == name).map(|a| a.values.as_slice())
     }
 
-    /// One field at chosen instants, read back from disk once it is flushed; `None` when there is no such field.
+    /// One field at chosen instants, read back from disk; requires a flush before. `None` if there is no such field.
     pub fn read(&self, name: &str, instants: &[usize]) -> Result<Option<Vec<Vec<f64>>>> {
         let Some(k) = self.fields.iter().position(|f| f.name == name) else {
             return Ok(None);
@@ -157,9 +157,9 @@ impl ArraysWriter {
         self.raw[k].read(self.fields[k].len, instants).map(Some)
     }
 
-    /// Packs axes, times and fields, once they are flushed, into a file that is to become `target`; the raw files stay.
+    /// Packs axes, times and fields into a file that is to become `target`; requires a flush before. The raw files stay.
     ///
-    /// Arrays are stored, not deflated: doubles of a simulation hardly shrink, and stored ones load at once.
+    /// Arrays are stored without compression: doubles of a simulation hardly shrink, and stored arrays load faster.
     pub(super) fn packed(&self, target: &Path) -> Result<Whole> {
         Whole::fill(target, |file| self.pack(file))
     }
@@ -178,7 +178,7 @@ impl ArraysWriter {
     }
 }
 
-/// What, once something could not be written, takes whatever comes for written: an archive that is given up then has no words of its own for it.
+/// Writer that reports only its first error; later failures count as success. An abandoned archive then prints no message of its own.
 pub(super) struct Patient<W> {
     out: W,
     failed: bool,
@@ -215,7 +215,7 @@ impl<W: Seek> Seek for Patient<W> {
     }
 }
 
-/// Writes one array of a zip archive of arrays.
+/// Writes one array into a zip archive of arrays.
 pub(super) fn write_array<W: Write + Seek>(
     npz: &mut ZipWriter<W>,
     name: &str,
@@ -236,18 +236,18 @@ fn start_array<'a, W: Write + Seek>(
     name: &str,
     shape: &[u64],
 ) -> io::Result<BufWriter<&'a mut ZipWriter<W>>> {
-    // Beyond 4 GiB the format needs its larger headers.
+    // Archives need larger headers beyond 4 GiB.
     let large = shape.iter().product::<u64>() * 8 > u64::from(u32::MAX) / 2;
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Stored)
-        // The same run gives the same file, whenever it is run.
+        // The same run gives the same file at any time.
         .last_modified_time(DateTime::default())
         .large_file(large);
     npz.start_file(format!("{name}.npy"), options)?;
     Ok(BufWriter::with_capacity(BLOCK, npz))
 }
 
-/// Writes the header of little-endian doubles.
+/// Writes the header of an array of little-endian doubles.
 fn begin<W: Write>(out: W, shape: &[u64]) -> io::Result<NpyWriter<f64, W>> {
     let doubles = DType::Plain("<f8".parse().map_err(io::Error::other)?);
     npyz::WriteOptions::new()
@@ -257,7 +257,7 @@ fn begin<W: Write>(out: W, shape: &[u64]) -> io::Result<NpyWriter<f64, W>> {
         .begin_nd()
 }
 
-/// Little-endian doubles in a file, appended and read back.
+/// File of little-endian doubles, appended and read back.
 #[derive(Debug)]
 struct RawFile {
     path: PathBuf,
@@ -298,7 +298,7 @@ impl RawFile {
         self.out.flush().map_err(|e| fault("write", &self.path, e))
     }
 
-    /// The instants of these numbers, `len` values each.
+    /// Reads the given instants, `len` values each.
     fn read(&self, len: usize, instants: &[usize]) -> Result<Vec<Vec<f64>>> {
         let get = || -> io::Result<Vec<Vec<f64>>> {
             let file = File::open(&self.path)?;
@@ -312,10 +312,10 @@ impl RawFile {
         get().map_err(|e| fault("read", &self.path, e))
     }
 
-    /// All of it as an array of a zip archive, once it is flushed.
+    /// Copies the entire file into a zip archive as an array; requires a flush before.
     fn pack<W: Write + Seek>(&self, npz: &mut ZipWriter<W>, name: &str, shape: &[u64]) -> io::Result<()> {
         let mut blocks = start_array(npz, name, shape)?;
-        // the header alone: its numbers are bytes already
+        // only the header: the file already contains the numbers as bytes
         drop(begin(&mut blocks, shape)?);
         let (numbers, bytes) = (
             shape.iter().product::<u64>(),

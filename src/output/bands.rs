@@ -1,17 +1,17 @@
-//! Figures beside what uncertain numbers leave open of them, in words.
+//! Text about figures with their uncertainty bands.
 
 use super::numbers::{count, counted, quantity, significant};
 use crate::results::run::{Band, Bands};
 
-/// Digits of the ends of a band at least, and at most.
+/// Smallest and largest number of digits of the ends of a band.
 const DIGITS: (f64, f64) = (3.0, 8.0);
-/// Relative difference of a figure that is shown and one that has a band, below which they are the same.
+/// Relative difference below which a displayed figure and one with a band are the same.
 const SAME: f64 = 1e-9;
-/// Part of a figure below which its numerical error is round-off.
+/// Fraction of a figure below which its numerical error is round-off.
 const ROUND_OFF: f64 = 1e-9;
 
-/// The band of a value that is shown of a quantity: that of the first of its figures that has this value, by magnitude. An extreme whose
-/// band goes through zero changes sides from sample to sample, so that its magnitude says more.
+/// Finds the band of a displayed value: that of a figure with equal magnitude, preferably with equal sign. Skips an extreme whose band
+/// contains zero: its sign changes between samples, so its magnitude is more informative.
 pub fn of<'a>(bands: &'a Bands, name: &str, figures: &[&str], value: f64) -> Option<&'a Band> {
     let all = figures.iter().filter_map(|figure| {
         let band = bands.get(&format!("{name}.{figure}"))?;
@@ -25,7 +25,7 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.max(b)
 }
 
-/// A band in words beside a value, told with its unit: `95 % of samples: 21.4 mm … 23.9 mm; numerical error ± 0.1 mm`.
+/// Text of a band beside a value, formatted by `told`: `95 % of samples: 21.4 mm … 23.9 mm; numerical error ± 0.1 mm`.
 pub fn beside(band: &Band, value: f64, told: &dyn Fn(f64, usize) -> String) -> String {
     let magnitude = if band.value * value < 0.0 { " in magnitude" } else { "" };
     let error = error(band, told).map_or(String::new(), |error| format!("; numerical error {error}"));
@@ -39,14 +39,14 @@ pub fn beside(band: &Band, value: f64, told: &dyn Fn(f64, usize) -> String) -> S
     }
 }
 
-/// The same in short, with a unit: `−21.6 nm … −18.2 nm (± 2.1 nm numerically)`; nothing where the figure does not spread.
+/// Short text of a band with its unit: `−21.6 nm … −18.2 nm (± 2.1 nm numerically)`; `None` if the figure does not spread.
 pub fn short(band: &Band, unit: &str) -> Option<String> {
     let told = |x: f64, digits: usize| quantity(x, unit, digits);
     let error = error(band, &told).map_or(String::new(), |error| format!(" ({error} numerically)"));
     Some(between(band, &told)? + &error)
 }
 
-/// Whose band it is.
+/// Samples of a band, with their number if some are missing.
 fn samples(band: &Band) -> String {
     match band.samples < band.drawn {
         true => format!(
@@ -58,7 +58,7 @@ fn samples(band: &Band) -> String {
     }
 }
 
-/// Both ends, with as many digits as tell them apart.
+/// Both ends of a band, with enough digits to distinguish them; `None` if the figure does not spread.
 pub fn between(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
     if band.sd == 0.0 {
         return None;
@@ -67,7 +67,7 @@ pub fn between(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<Strin
     Some(format!("{} … {}", told(band.low, digits), told(band.high, digits)))
 }
 
-/// Digits that tell the ends of a band apart.
+/// Number of digits that distinguish the ends of a band.
 pub fn digits(low: f64, high: f64) -> usize {
     let wanted = 2.0 + (low.abs().max(high.abs()) / (high - low)).log10().floor();
     match wanted.is_finite() {
@@ -76,7 +76,7 @@ pub fn digits(low: f64, high: f64) -> usize {
     }
 }
 
-/// The numerical error, where it is known.
+/// Numerical error, if known.
 fn error(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
     let error = band.numerical_error?;
     Some(match error <= ROUND_OFF * band.value.abs() {
@@ -105,7 +105,7 @@ mod tests {
         quantity(x, "m", digits)
     }
 
-    /// Goal: the ends of a band can be told apart, an error that is none is no row of digits, and a magnitude is called so.
+    /// Goal: the ends of a band are distinguishable, a negligible error has no row of digits, and magnitudes are marked as such.
     #[test]
     fn a_band_is_told_beside_its_error() {
         let told = |band: &Band, value: f64| beside(band, value, &metres);
@@ -136,7 +136,7 @@ mod tests {
         assert_eq!(short(&exact, "m"), None);
     }
 
-    /// Goal: a tile has the band of what it shows, and none of another figure of the quantity.
+    /// Goal: a tile shows the band of its own figure, not that of another figure of the quantity.
     #[test]
     fn a_value_has_the_band_of_its_own_figure() {
         let all: Bands = [

@@ -1,6 +1,6 @@
-//! The files that grow with a run, written behind it: a thread makes text of numbers while the run goes on.
+//! Writes the files that grow with a run: a thread formats numbers as text while the run continues.
 //!
-//! Rows are handed over in batches, of which few numbers wait at a time, so that memory stays flat. Files hold what they would if the run wrote them itself.
+//! Rows are handed over in batches. The queue is short, so memory use stays constant. The files are the same as without the thread.
 
 use std::io;
 use std::mem;
@@ -17,12 +17,12 @@ use super::history::HistoryWriter;
 use super::stream::Mark;
 use crate::error::{Error, Result};
 
-/// Numbers of a batch.
+/// Number of values in a batch.
 const BATCH: usize = 1 << 13;
-/// Wall time after which a batch is handed over however small it is.
+/// Wall time after which a batch of any size is handed over.
 const WAIT: Duration = Duration::from_millis(100);
-/// Numbers that may wait to be written, so that a disk that is busy for a moment does not hold up the run; of a large beam one batch, which
-/// holds a whole instant.
+/// Largest number of queued values, so that a disk that is busy for a moment does not block the run. For a large beam the queue is a single
+/// batch with a whole instant.
 const WAITING: usize = 1 << 18;
 
 /// The files of a folder that grow with a run.
@@ -30,17 +30,17 @@ const WAITING: usize = 1 << 18;
 pub struct Growing {
     /// The history.
     pub history: HistoryWriter,
-    /// The same in memory, if it is whole and short.
+    /// History in memory, if it is complete and short.
     pub kept: Option<Remembered>,
     /// Fields.
     pub arrays: ArraysWriter,
-    /// What is left of output times that are not written.
+    /// Statistics over output times that the history leaves out.
     pub envelope: Option<HistoryWriter>,
     /// Derivatives.
     pub sensitivities: Option<HistoryWriter>,
 }
 
-/// How much of each of these files is safe on the disk.
+/// Part of each file that is safe on the disk.
 #[derive(Clone, Debug)]
 pub struct Secured {
     /// The tables.
@@ -49,19 +49,19 @@ pub struct Secured {
     pub arrays: Marks,
 }
 
-/// The tables among them.
+/// Part of each table that is safe on the disk.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
     /// The history.
     pub history: Mark,
-    /// What is left of output times that are not written.
+    /// Statistics over output times that the history leaves out.
     pub envelope: Option<Mark>,
     /// Derivatives.
     pub sensitivities: Option<Mark>,
 }
 
 impl Growing {
-    /// Brings everything to the disk itself.
+    /// Syncs all files to the disk.
     pub fn secure(&mut self) -> Result<Secured> {
         let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
         Ok(Secured {
@@ -91,7 +91,7 @@ impl Growing {
     }
 }
 
-/// Rows, one after the other.
+/// Consecutive rows.
 #[derive(Debug, Default)]
 struct Rows {
     values: Vec<f64>,
@@ -119,7 +119,7 @@ struct Batch {
     history: Rows,
     envelope: Rows,
     sensitivities: Rows,
-    /// Of each instant its time and all fields.
+    /// Time and all fields of each instant.
     fields: Rows,
 }
 
@@ -135,7 +135,7 @@ enum Work {
     Secure(Sender<Secured>),
 }
 
-/// Writes [`Growing`] files in a thread; it ends at the first file that cannot be written.
+/// Writes [`Growing`] files in a thread, which ends at the first write error.
 #[derive(Debug)]
 pub struct Behind {
     batch: Batch,
@@ -145,10 +145,10 @@ pub struct Behind {
 }
 
 impl Behind {
-    /// Takes over the files.
+    /// Starts the thread.
     ///
     /// # Errors
-    /// The system grants no thread.
+    /// The system cannot start a thread.
     pub fn new(files: Growing) -> Result<Self> {
         let batch = BATCH.max(files.arrays.numbers());
         let (work, todo) = mpsc::sync_channel((WAITING / batch).max(1));
@@ -161,25 +161,25 @@ impl Behind {
         })
     }
 
-    /// A row of the history.
+    /// Queues a row of the history.
     pub fn history(&mut self, row: &[f64]) -> Result<()> {
         self.batch.history.push([row]);
         self.hand_over_in_time()
     }
 
-    /// A row of the envelope.
+    /// Queues a row of the envelope.
     pub fn envelope(&mut self, row: &[f64]) -> Result<()> {
         self.batch.envelope.push([row]);
         self.hand_over_in_time()
     }
 
-    /// A row of derivatives.
+    /// Queues a row of derivatives.
     pub fn sensitivities(&mut self, row: &[f64]) -> Result<()> {
         self.batch.sensitivities.push([row]);
         self.hand_over_in_time()
     }
 
-    /// An instant of all fields.
+    /// Queues an instant of all fields.
     pub fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()> {
         self.batch
             .fields
@@ -198,7 +198,7 @@ impl Behind {
         }
     }
 
-    /// Waits until everything is written; gives the files back.
+    /// Waits until everything is written and returns the files.
     pub fn close(mut self) -> Result<Growing> {
         self.hand_over()?;
         self.end()
@@ -222,7 +222,7 @@ impl Behind {
         if taken { Ok(()) } else { self.broken() }
     }
 
-    /// Why the thread has ended.
+    /// Returns the error with which the thread ended.
     fn broken<T>(&mut self) -> Result<T> {
         self.end().and_then(|_| Err(gone()))
     }
@@ -238,7 +238,7 @@ impl Behind {
 }
 
 impl Drop for Behind {
-    /// What was handed over is written, whatever ends the run.
+    /// Writes everything queued, however the run ends.
     fn drop(&mut self) {
         if self.thread.is_some() {
             let _ = self.hand_over().and_then(|()| self.end());
@@ -252,7 +252,7 @@ fn write(mut files: Growing, todo: &Receiver<Work>) -> Result<Growing> {
             Work::Write(batch) => files.take(&batch)?,
             Work::Secure(tell) => {
                 let secured = files.secure()?;
-                // nobody waits for it if the run has ended meanwhile
+                // no receiver if the run has ended meanwhile
                 let _ = tell.send(secured);
             }
         }

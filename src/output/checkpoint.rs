@@ -1,7 +1,7 @@
-//! `checkpoint.json`: a checkpoint with marks of the files that belong to it, in two generations.
+//! `checkpoint.json`: a checkpoint with marks of its files, in two generations.
 //!
-//! Two lines: what the file is, with length and checksum of the second; and the checkpoint. A new one takes its name only when it
-//! is safe on disk, and the one before stays as `checkpoint-before.json`.
+//! The file has two lines: a heading with length and checksum of the second line, and the checkpoint. A new checkpoint gets its final name
+//! only when it is safe on disk. The previous one stays as `checkpoint-before.json`.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _};
@@ -16,21 +16,21 @@ use super::stream::Mark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
-/// Number of the format: another one whenever a key of the file, or what it means, is another (tests/formats.rs).
+/// Format number. Increase it whenever a key of the file or its meaning changes (tests/formats.rs).
 const FORMAT: u32 = 14;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
-    /// What of `history.csv` belongs to it.
+    /// Mark of `history.csv`.
     pub history: Mark,
-    /// What of `envelope.csv` does, where there is one.
+    /// Mark of `envelope.csv`, if it exists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub envelope: Option<Mark>,
-    /// What of `sensitivities.csv` does, where there is one.
+    /// Mark of `sensitivities.csv`, if it exists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sensitivities: Option<Mark>,
-    /// What of each raw file of fields does.
+    /// Marks of the raw files of fields.
     pub fields: Marks,
     /// The run.
     pub run: Checkpoint,
@@ -42,12 +42,12 @@ struct Heading {
     format: u32,
     /// The program that wrote it, [`build`].
     build: String,
-    /// Of the second line.
+    /// Mark of the second line.
     #[serde(flatten)]
     body: Mark,
 }
 
-/// Writes it whole or not at all; the one before stays.
+/// Writes a checkpoint completely or not at all; the previous one stays.
 pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
     let path = folder.path(CHECKPOINT);
     let body = serde_json::to_vec(saved).map_err(|e| fault("write", &path, e.into()))?;
@@ -67,11 +67,11 @@ pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
     folder.secure()
 }
 
-/// The newest checkpoint of a folder that is whole, and what is wrong with a newer one; `None` when there is none.
+/// Reads the newest intact checkpoint of a folder, and the fault of a newer damaged one; `None` if there is no checkpoint.
 ///
 /// # Errors
 ///
-/// There are checkpoints, but none can be used.
+/// Checkpoints exist, but none is usable.
 pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
     let newest = one(&dir.join(CHECKPOINT));
     let before = || one(&dir.join(CHECKPOINT_BEFORE));
@@ -117,7 +117,7 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         .map_err(|e| fault("go on from", path, e.into()))
 }
 
-/// What only this build of the program has: version, and length and checksum of the file that runs.
+/// Identifies this build: version, and length and checksum of the executable.
 pub fn build() -> String {
     static BUILD: OnceLock<String> = OnceLock::new();
     let name = || {

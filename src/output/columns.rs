@@ -1,20 +1,20 @@
-//! Tables as people read them.
+//! Text tables for readers.
 
 use textwrap::core::display_width;
 
-/// Cells that stand between bars in a text: `name | size`.
+/// Splits a text into trimmed cells at `|`: `name | size`.
 pub fn cells<const N: usize>(row: &str) -> [&str; N] {
     let mut cells = row.split('|').map(str::trim);
     [(); N].map(|()| cells.next().unwrap_or_default())
 }
 
-/// What to know, a line each.
+/// Warnings, one per line.
 pub fn warnings(all: &[String]) -> String {
     all.iter().map(|warning| format!("warning: {warning}\n")).collect()
 }
 
-/// A table under its headings, which have ` | ` between: `name | <words`. Cells stand on the right, on the left in columns whose heading
-/// begins with `<`.
+/// Table under headings separated by ` | `: `name | <words`. Cells are right-aligned, or left-aligned in columns whose heading begins with
+/// `<`.
 pub fn table<L: AsRef<[String]>>(headings: &str, rows: impl IntoIterator<Item = L>) -> String {
     let headings: Vec<&str> = headings.split(" | ").map(str::trim).collect();
     let left: Vec<usize> = (0..headings.len()).filter(|k| headings[*k].starts_with('<')).collect();
@@ -28,8 +28,8 @@ pub fn table<L: AsRef<[String]>>(headings: &str, rows: impl IntoIterator<Item = 
     aligned(&lines, &left)
 }
 
-/// A line a row, columns two blanks apart and as wide as their widest cell; cells stand on the right except in the columns of `left`.
-/// An empty first column indents.
+/// One line per row; columns are as wide as their widest cell, with two spaces between. Cells are right-aligned, or left-aligned in the
+/// columns of `left`. An empty first column indents.
 pub fn aligned<L: AsRef<[String]>>(lines: &[L], left: &[usize]) -> String {
     let mut widths = vec![];
     for line in lines {

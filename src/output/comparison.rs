@@ -1,4 +1,4 @@
-//! The picture of a comparison, from two recordings.
+//! Picture of a comparison of two recordings.
 
 use super::plot::canvas::Stroke;
 use super::plot::colour::PALETTE;
@@ -7,10 +7,10 @@ use crate::discrete::quantities::{Observable, Role};
 use crate::study::compare::interpolate::cubic;
 use crate::study::compare::{Comparison, Recording};
 
-/// Rows drawn of a history, at most.
+/// A history is thinned to fewer than twice this number of rows.
 const ROWS: usize = 1500;
 
-/// The text of the picture; `None` when no quantity is in both.
+/// SVG of the picture; `None` if the recordings share no headline quantity.
 pub fn picture(a: &Recording, b: &Recording, comparison: &Comparison) -> Option<String> {
     let headlines = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
     let shared = headlines.filter(|one| comparison.histories.iter().any(|d| d.name == one.name()));
@@ -19,7 +19,7 @@ pub fn picture(a: &Recording, b: &Recording, comparison: &Comparison) -> Option<
     Picture::stacked("two runs over each other".into(), about, panels).svg()
 }
 
-/// One quantity of both, and its difference.
+/// Panels of one quantity: both curves, and their difference.
 fn pair(a: &Recording, b: &Recording, name: &str) -> Option<[Panel; 2]> {
     let (of_a, of_b) = (a.column(name)?, b.column(name)?);
     let x = PictureAxis::new("time t", "s", 10).between(

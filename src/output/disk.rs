@@ -1,32 +1,32 @@
-//! How large the files of a run will be.
+//! Estimated sizes of the files of a run.
 
 use crate::case::Case;
 use crate::run::record::Header;
 use crate::run::stretch::Stretches;
 
-/// A number in a text, with its comma [byte].
+/// Size of a number in a text file, with its comma [byte].
 const WORD: f64 = 20.0;
-/// A number in arrays, raw and as archived [byte].
+/// Size of a number in arrays, raw and archived together [byte].
 const ARRAYED: f64 = 16.0;
-/// Pictures, page, summary [byte].
+/// Size of pictures, page and summary together [byte].
 const PICTURES: f64 = 2e6;
 
-/// Bytes of history and of fields at most.
+/// Largest expected sizes of the files of a run [byte].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
     /// `history.csv`, `envelope.csv` and `sensitivities.csv`.
     pub history: f64,
-    /// `fields.npz`, and the raw arrays while it is made.
+    /// `fields.npz`, and the raw arrays from which it is packed.
     pub fields: f64,
     /// Checkpoints, pictures, page.
     pub others: f64,
 }
 
 impl Disk {
-    /// Of a run that records what the header says, with so many unknowns and derivatives by so many numbers.
+    /// Estimates the sizes for a header, a number of unknowns, and derivatives with respect to a number of parameters.
     pub fn of(case: &Case, header: &Header, unknowns: usize, parameters: usize) -> Self {
         let time = &case.time;
-        // those at the start, at the end and where the window begins beside them
+        // plus rows at the start, at the end and at the start of the window
         let rows = time.written(time.output_interval()) + 3.0;
         let instants = time.written(time.fields_interval()) + 3.0;
         let outputs = time.end_s / time.output_interval();
@@ -45,7 +45,7 @@ impl Disk {
         }
     }
 
-    /// All of it.
+    /// Total size [byte].
     pub fn all(&self) -> f64 {
         self.history + self.fields + self.others
     }

@@ -1,5 +1,5 @@
-//! A history of any length, read back in one pass into bounded memory: least and largest value of each column in each
-//! of at most so many stretches of time.
+//! Reads a history of any length in one pass into bounded memory: least and largest value of each column in a limited number of stretches
+//! of time.
 
 use std::fs::File;
 use std::io;
@@ -23,7 +23,7 @@ impl Extremes {
         }
     }
 
-    /// Both stretches as one; what is not a number loses against a number.
+    /// Joins two stretches; NaN loses against any number.
     fn join(self, other: Self) -> Self {
         let beats = |a: f64, b: f64, less: bool| b.is_nan() || if less { a < b } else { a > b };
         let least = if beats(other.least.1, self.least.1, true) {
@@ -40,11 +40,11 @@ impl Extremes {
     }
 }
 
-/// Columns of a history, thinned so that curves drawn from them look like the whole.
+/// Columns of a history, thinned so that their curves look like those of the full history.
 #[derive(Clone, Debug, Default)]
 pub struct Envelope {
     names: Vec<(String, String)>,
-    /// Row-major: one entry a column and stretch.
+    /// Row-major: one row per stretch, one entry per column.
     stretches: Vec<Extremes>,
     most: usize,
     rows_a_stretch: usize,
@@ -52,7 +52,7 @@ pub struct Envelope {
 }
 
 impl Envelope {
-    /// For columns of given names and units; keeps at most `most` stretches.
+    /// Creates an envelope of columns with these names and units; it keeps at most `most` stretches.
     pub fn new(names: Vec<(String, String)>, most: usize) -> Self {
         Self {
             names,
@@ -63,8 +63,8 @@ impl Envelope {
         }
     }
 
-    /// Reads a history, and before the window what is left of it, where not all was written. A last line cut short, as
-    /// a killed run leaves it, is passed over.
+    /// Reads a history. If not all of it was written, the envelope file replaces it before the window. Skips an incomplete last line of a
+    /// killed run.
     pub fn read(history: History, most: usize) -> Result<Self> {
         let mut envelope = Self::new(vec![], most);
         each_row(history, |names, source, row| {
@@ -113,7 +113,7 @@ impl Envelope {
             let (from, to) = ((count - 1) * columns, count / 2 * columns);
             self.stretches.copy_within(from..from + columns, to);
         } else {
-            // The last pair is full; a single last stretch is half full and goes on growing.
+            // A joined last pair is full. A single last stretch (odd count) is half full and grows further.
             self.rows_in_last *= 2;
         }
         self.stretches.truncate(count.div_ceil(2) * columns);
@@ -125,7 +125,7 @@ impl Envelope {
         &self.names
     }
 
-    /// Times and values of a column, extremes in the order in which they occurred.
+    /// Times and values of a column; the extremes of a stretch are in the order of their times.
     pub fn points(&self, column: usize) -> Vec<(f64, f64)> {
         let mut points = Vec::new();
         for e in self.stretches.iter().skip(column).step_by(self.names.len().max(1)) {
@@ -142,8 +142,8 @@ impl Envelope {
         points
     }
 
-    /// All columns over common times, time first: of a stretch of several rows its ends, with least and largest value in the
-    /// order in which they occurred.
+    /// All columns over common times, time first. A stretch of several rows gives two values: its end times, and in each column the least
+    /// and largest value in the order of their times.
     pub fn columns(&self) -> Vec<Vec<f64>> {
         let width = self.names.len();
         let mut columns = vec![Vec::new(); width];
@@ -166,24 +166,24 @@ impl Envelope {
     }
 }
 
-/// Where a row of a curve comes from.
+/// Origin of a row of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// A row of the history that is drawn.
+    /// A drawn row of the history.
     History,
-    /// A row of the history before the window, where the envelope tells more.
+    /// A row of the history before the window; the envelope is more complete there.
     Covered,
-    /// The envelope.
+    /// A row of the envelope.
     Rest,
 }
 
 /// Names and units of the columns of a history.
 pub type Names = [(String, String)];
 
-/// Numbers of a history that are kept in memory at most.
+/// Largest number of values of a history kept in memory.
 const KEPT: usize = 1 << 19;
 
-/// A history that is short enough to be kept in memory while it is written, and need not be read back.
+/// A history short enough to stay in memory while it is written. It need not be read back.
 #[derive(Debug)]
 pub struct Remembered {
     names: Vec<(String, String)>,
@@ -191,7 +191,7 @@ pub struct Remembered {
 }
 
 impl Remembered {
-    /// With the columns of these headings.
+    /// Creates an empty history with these headings.
     pub fn new(headings: &[String]) -> Self {
         Self {
             names: headings.iter().map(|heading| split_name(heading)).collect(),
@@ -199,33 +199,33 @@ impl Remembered {
         }
     }
 
-    /// Adds a row of as many numbers as columns; whether the history is still short enough.
+    /// Adds a row with one number per column. Returns true if the history is still short enough.
     pub fn push(&mut self, row: &[f64]) -> bool {
-        // of what is no number the text says no more than that
+        // text does not store sign and payload of NaN
         let as_read = row.iter().map(|&x| if x.is_nan() { f64::NAN } else { x });
         self.numbers.extend(as_read);
         self.numbers.len() < KEPT
     }
 }
 
-/// Where a history is.
+/// Location of a history.
 #[derive(Clone, Copy, Debug)]
 pub enum History<'a> {
-    /// In the tables of a folder.
+    /// Tables in a folder.
     Folder(&'a Path),
-    /// In memory, all of it.
+    /// Memory, with the complete history.
     Memory(&'a Remembered),
 }
 
 impl<'a> History<'a> {
-    /// Of a run that has just ended in a folder.
+    /// History of a run that has just ended in a folder.
     pub fn of(dir: &'a Path, kept: Option<&'a Remembered>) -> Self {
         kept.map_or(Self::Folder(dir), Self::Memory)
     }
 }
 
-/// All rows of a history in order of time, with the names of their columns: those of the envelope, least values where a stretch begins
-/// and greatest ones where it ends, then those of the history. Rows of the history that the envelope covers come where they stand.
+/// Passes all rows of a history to `take`, with the names of their columns. Rows of the envelope precede: least values at the start of a
+/// stretch, greatest values at its end. Then follow all rows of the history, including those that the envelope covers.
 pub fn each_row(history: History, mut take: impl FnMut(&Names, Source, &[f64])) -> Result<()> {
     let dir = match history {
         History::Folder(dir) => dir,
@@ -271,7 +271,7 @@ pub fn each_row(history: History, mut take: impl FnMut(&Names, Source, &[f64])) 
     Ok(())
 }
 
-/// Rows of a table of numbers, each as far as it is one.
+/// Rows of a table of numbers. A row ends before its first cell that is not a number.
 struct Rows<'a> {
     path: &'a Path,
     reader: csv::Reader<File>,
@@ -306,7 +306,7 @@ fn table(path: &Path) -> Result<(Vec<(String, String)>, Rows<'_>)> {
     Ok((names, rows))
 }
 
-/// `tip_u1 [m]` into name and unit.
+/// Splits `tip_u1 [m]` into name and unit.
 fn split_name(heading: &str) -> (String, String) {
     match heading.trim().strip_suffix(']').and_then(|h| h.rsplit_once(" [")) {
         Some((name, unit)) => (name.to_string(), unit.to_string()),

@@ -1,11 +1,11 @@
-//! Errors as scripts and people read them.
+//! Errors as JSON for scripts and as text for readers.
 
 use serde_json::{Value, json};
 
 use crate::case::Places;
 use crate::error::{At, Code, Error, SolverError, Violation};
 
-/// An error for scripts, the answer of a command with `--json`.
+/// JSON of an error, as printed by commands with `--json`.
 pub fn json(error: &Error) -> Value {
     let mut told = json!({"status": "failed", "exit_code": error.exit_code(), "code": error.code().id(), "what": error.to_string()});
     match error {
@@ -41,9 +41,9 @@ fn violation(places: &mut Places, violation: &Violation) -> Value {
     })
 }
 
-/// A failed run in words.
+/// Text of an error of the solver.
 pub fn diagnosis(fault: &SolverError) -> String {
-    // modes and equilibria belong to an instant and do not run
+    // modes and equilibria have no time of a run
     let failed = match (fault.code, fault.at) {
         (Code::NoModes | Code::NoEquilibrium | Code::Interrupted, _) => String::new(),
         (Code::NoCycle, At::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
@@ -71,7 +71,7 @@ pub fn diagnosis(fault: &SolverError) -> String {
 mod tests {
     use super::*;
 
-    /// Goal: what does not run does not fail at a time of a run.
+    /// Goal: only a run reports a time of failure.
     #[test]
     fn only_runs_fail_at_a_time() {
         let words = |code| {

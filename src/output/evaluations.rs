@@ -1,4 +1,4 @@
-//! The journal of a search: its evaluations, in a hidden file of the result folder until the search is complete.
+//! Journal of the evaluations of a search, in a hidden file of the result folder until the search is complete.
 
 use std::path::PathBuf;
 
@@ -10,13 +10,13 @@ use crate::error::Result;
 use crate::results::Provenance;
 use crate::study::evaluations::{Evaluation, Evaluations, Write};
 
-/// Its file.
+/// Name of the journal file.
 pub const EVALUATIONS: &str = ".slcbeam.evaluations.jsonl";
 
-/// Format of rows: one more where a key or a value of any command means something else.
+/// Format of rows. Increase it when a key or value of any command changes its meaning.
 const FORMAT: u32 = 1;
 
-/// Checksum of everything that decides the evaluations of a command: its case with tables, its settings in words, the build.
+/// Checksum of everything that determines the evaluations of a command: case with tables, settings as text, and build.
 fn plan(command: &str, case: &Case, settings: &str) -> u32 {
     let written = case.written();
     let all = (
@@ -30,10 +30,10 @@ fn plan(command: &str, case: &Case, settings: &str) -> u32 {
     crc32fast::hash(&serde_json::to_vec(&all).unwrap_or_default())
 }
 
-/// Begins the journal of a command in a folder with the rows that are there; returns what of it is damaged, in words.
+/// Opens the journal of a command in a folder and reads its rows. Returns a description of damaged rows.
 ///
 /// # Errors
-/// It cannot be read.
+/// The journal cannot be read.
 pub fn begin(
     evaluations: &Evaluations,
     folder: &ResultFolder,
@@ -44,7 +44,7 @@ pub fn begin(
     let path = path(folder);
     let lines = Lines::read(&path, plan, false, |_, row| known.push(row))?;
     let damage = lines.damage("case or command");
-    // made by the first row: a search that computes nothing leaves no file
+    // created with the first row: a search that computes nothing leaves no file
     let mut journal: Option<Journal> = None;
     let write: Write = Box::new(move |row: &Evaluation| match &mut journal {
         Some(journal) => journal.put(row),
@@ -54,15 +54,15 @@ pub fn begin(
     Ok(damage)
 }
 
-/// Where it is.
+/// Path of the journal.
 pub fn path(folder: &ResultFolder) -> PathBuf {
     folder.path(EVALUATIONS)
 }
 
-/// Removes it: the result has all that it was for.
+/// Removes the journal, whose content the result contains by then.
 ///
 /// # Errors
-/// It cannot be removed.
+/// The file cannot be removed.
 pub fn remove(folder: &ResultFolder) -> Result<()> {
     folder.remove(EVALUATIONS)
 }

@@ -10,7 +10,7 @@ use super::stream::{Mark, Stream};
 use crate::error::Result;
 use crate::run::record::Column;
 
-/// Wall time after which rows reach the disk at the latest, so that a run can be watched and loses little when killed.
+/// Longest wall time until rows are in the file: a run can be watched, and loses little when killed.
 pub(crate) const FLUSH: Duration = Duration::from_millis(500);
 
 /// Names of columns with their units, `name [unit]`.
@@ -18,7 +18,7 @@ pub fn headings(columns: &[Column]) -> Vec<String> {
     columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
 }
 
-/// Writes the history as it comes.
+/// Writes a history row by row.
 #[derive(Debug)]
 pub struct HistoryWriter {
     path: PathBuf,
@@ -28,12 +28,12 @@ pub struct HistoryWriter {
 }
 
 impl HistoryWriter {
-    /// Creates the file with its line of names, `name [unit]`.
+    /// Creates the file with its headings, `name [unit]`.
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self> {
         Self::with_names(path, headings(columns))
     }
 
-    /// Creates the file with its line of names, which hold the units already.
+    /// Creates the file with its headings, which already contain the units.
     pub fn with_names(path: &Path, names: Vec<String>) -> Result<Self> {
         let mut writer = Self {
             path: path.to_path_buf(),
@@ -47,7 +47,7 @@ impl HistoryWriter {
         Ok(writer)
     }
 
-    /// Opens the file of an interrupted run, verified, and drops what came after the mark.
+    /// Opens the verified file of an interrupted run and truncates it at the mark.
     pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
         let columns = || -> csv::Result<usize> {
             let mut reader = csv::Reader::from_reader(open(path)?);
@@ -61,13 +61,13 @@ impl HistoryWriter {
         })
     }
 
-    /// All rows so far, safe on disk.
+    /// Syncs all rows to the disk and returns the mark.
     pub fn secure(&mut self) -> Result<Mark> {
         self.flush()?;
         self.out.get_ref().secure()
     }
 
-    /// Appends a row; as many numbers as columns.
+    /// Appends a row with one number per column.
     pub fn row(&mut self, row: &[f64]) -> Result<()> {
         debug_assert_eq!(row.len(), self.columns);
         let mut room = zmij::Buffer::new();
@@ -84,12 +84,12 @@ impl HistoryWriter {
         Ok(())
     }
 
-    /// Name of the file, and CRC-32 of what was flushed.
+    /// Name of the file, and CRC-32 of the flushed content.
     pub fn checksum(&self) -> (String, u32) {
         (name_of(&self.path), self.out.get_ref().mark().crc32)
     }
 
-    /// Brings everything to the disk.
+    /// Flushes all rows to the file.
     pub fn flush(&mut self) -> Result<()> {
         self.flushed = Instant::now();
         self.out.flush().map_err(|e| fault("write", &self.path, e))

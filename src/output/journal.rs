@@ -1,5 +1,5 @@
-//! Journals: a JSON object a line, each with a checksum of its row and of the plan. What a killed program leaves half written at the
-//! end is dropped; a row that was changed, or that belongs to another plan, is not used.
+//! Journals: one JSON object per line, each with a checksum over its row and the plan. An incomplete last line of a killed program is
+//! dropped. A row that was changed or belongs to another plan is ignored.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead as _, BufReader, Read as _, Write as _};
@@ -11,13 +11,13 @@ use serde::de::DeserializeOwned;
 use super::folder::{damaged, fault, open};
 use crate::error::Result;
 
-/// No line of a row is longer [byte].
+/// Largest length of the line of a row [byte].
 const LONGEST: u64 = 16 << 20;
 
-/// What separates a row from its checksum.
+/// Separator between a row and its checksum.
 const SEAL: &[u8] = b",\"crc32\":";
 
-/// Lines of damaged rows that a message names.
+/// Largest number of damaged lines named in a message.
 const NAMED: usize = 5;
 
 /// A journal that is being written.
@@ -46,10 +46,10 @@ fn checksum(plan: u32, row: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// A line as it was read.
+/// A line that was read.
 enum Line<T> {
     Checked(T),
-    /// A row as versions before checksums wrote it.
+    /// A row of a version before checksums.
     Unchecked(T),
     Damaged,
 }
@@ -60,7 +60,7 @@ impl<T: Serialize + DeserializeOwned> Line<T> {
             return Self::Damaged;
         };
         let sealed_line = line.windows(SEAL.len()).any(|part| part == SEAL);
-        // byte for byte: an unknown key or a space may be what is left of a checksum
+        // byte for byte: an unknown key or a space may be the rest of a checksum
         match sealed_line {
             true if sealed(plan, &row).is_ok_and(|own| own.strip_suffix(b"\n") == Some(line)) => Self::Checked(row),
             false if serde_json::to_vec(&row).is_ok_and(|own| own == line) => Self::Unchecked(row),
@@ -70,10 +70,10 @@ impl<T: Serialize + DeserializeOwned> Line<T> {
 }
 
 impl Journal {
-    /// Opens it to go on behind what is whole.
+    /// Opens a journal to append after its complete lines.
     ///
     /// # Errors
-    /// It cannot be made or cut.
+    /// The file cannot be created or truncated.
     pub fn go_on(path: PathBuf, lines: &Lines) -> Result<Self> {
         let opened = || -> io::Result<File> {
             if path.is_symlink() {
@@ -93,19 +93,19 @@ impl Journal {
         Ok(Self { path, file, plan })
     }
 
-    /// Appends a row; it is on the disk when this returns.
+    /// Appends a row and syncs it to the disk.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The row cannot be written.
     pub fn append(&mut self, row: &impl Serialize) -> Result<()> {
         self.put(row)?;
         self.secure()
     }
 
-    /// Appends a row, in one piece; one that is longer than any is left out.
+    /// Appends a row in one piece; skips a row above the largest length.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The row cannot be written.
     pub fn put(&mut self, row: &impl Serialize) -> Result<()> {
         let line = sealed(self.plan, row).map_err(|e| fault("write", &self.path, e.into()))?;
         if line.len() as u64 >= LONGEST {
@@ -114,10 +114,10 @@ impl Journal {
         self.file.write_all(&line).map_err(|e| fault("write", &self.path, e))
     }
 
-    /// Brings everything to the disk.
+    /// Syncs all rows to the disk.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The rows cannot be written.
     pub fn secure(&self) -> Result<()> {
         self.file.sync_data().map_err(|e| fault("write", &self.path, e))
     }
@@ -127,7 +127,7 @@ impl Journal {
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     path: PathBuf,
-    /// Bytes of whole lines.
+    /// Bytes of complete lines.
     whole: u64,
     /// Checksum of the plan.
     plan: u32,
@@ -136,11 +136,11 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Reads a journal, where there is one, and gives each sound row to `take` with the byte at which its line begins. Rows without
-    /// checksums, which versions before these wrote, are sound before the first that has one, where `unchecked` admits them.
+    /// Reads a journal, if it exists, and passes each valid row to `take` with the byte offset of its line. If `unchecked`, rows without
+    /// checksums, from earlier versions, are valid up to the first row with a checksum.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The journal cannot be read.
     pub fn read<T: Serialize + DeserializeOwned>(
         path: &Path,
         plan: u32,
@@ -182,19 +182,19 @@ impl Lines {
                     checked = true;
                     take(begin, row);
                 }
-                // those of an earlier version come before all others
+                // rows of an earlier version precede all others
                 Line::Unchecked(row) if !checked => take(begin, row),
                 _ => self.damaged.push(number),
             }
         }
     }
 
-    /// Its path.
+    /// Path of the journal.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What is damaged, in words; nothing where nothing is. `plan` is what rows may belong to besides.
+    /// Description of damaged rows; `None` if there are none. `plan` names the other plan to which rows may belong.
     pub fn damage(&self, plan: &str) -> Option<String> {
         let count = self.damaged.len();
         let named: Vec<String> = self.damaged.iter().take(NAMED).map(usize::to_string).collect();

@@ -1,4 +1,4 @@
-//! What kind of result a folder holds, by the files in it.
+//! Kind of result in a folder, identified by its files.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use super::folder::{HISTORY, RUN_FILES, SUMMARY, entries, fault, name_of};
 use super::uncertainty::UNCERTAINTY;
 use crate::error::{Error, Result};
 
-/// Which command filled a folder.
+/// Command that filled a folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `run`.
@@ -24,7 +24,7 @@ pub enum Kind {
     Floquet,
     /// `floquet --map`.
     Map,
-    /// `periodic`: a run of one cycle, and what is told of it.
+    /// `periodic`: a run of one cycle, with its stability.
     Cycle,
     /// `periodic --sweep`.
     Sweep,
@@ -41,7 +41,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// All of them; a cycle before the run in its folder, many designs before what has a `sweep.json` too.
+    /// All kinds. A cycle precedes the run in its folder; designs precede other kinds with a `sweep.json`.
     const ALL: [Self; 14] = [
         Self::Cycle,
         Self::Designs,
@@ -59,7 +59,7 @@ impl Kind {
         Self::Response,
     ];
 
-    /// Name in the page, command, and sign.
+    /// Name on the page, command, and identifying file.
     fn told(self) -> [&'static str; 3] {
         match self {
             Self::Run => ["run", "run", SUMMARY],
@@ -79,7 +79,7 @@ impl Kind {
         }
     }
 
-    /// Name in the page.
+    /// Name on the page.
     pub fn name(self) -> &'static str {
         self.told()[0]
     }
@@ -89,12 +89,12 @@ impl Kind {
         self.told()[1]
     }
 
-    /// The file that tells it; it is written last, but where a command goes on in its folder first.
+    /// File that identifies the kind. It is written last, except the plan of `sweep`, which is written first.
     pub fn sign(self) -> &'static str {
         self.told()[2]
     }
 
-    /// All files that the command writes itself, the sign first; case and page come besides.
+    /// All files that the command itself writes, the identifying file first; case and page are additional.
     pub fn files(self) -> Vec<&'static str> {
         let own: &[&str] = match self {
             Self::Run | Self::Cycle => &RUN_FILES,
@@ -126,13 +126,13 @@ impl Kind {
         Self::ALL.into_iter().any(|kind| kind.files().contains(&name))
     }
 
-    /// Whose result a folder holds; that of a run that was killed has a history, but no summary.
+    /// Kind of the result in a folder. A killed run has a history, but no summary.
     pub fn within(dir: &Path) -> Option<Self> {
         let found = Self::ALL.into_iter().find(|kind| dir.join(kind.sign()).is_file());
         found.or_else(|| dir.join(HISTORY).is_file().then_some(Self::Run))
     }
 
-    /// Why a path is not the folder of a run, where this can be told: it is a case or another file, or the folder of another command.
+    /// Reason why a path is not the folder of a run, if apparent: it is a case or another file, or the folder of another command.
     pub fn no_run(path: &Path) -> Option<String> {
         if path.is_file() {
             return Some(format!("{} {}", path.display(), file(path)));
@@ -147,11 +147,11 @@ impl Kind {
         }
     }
 
-    /// Looks at the files of a folder.
+    /// Determines the kind of a result folder.
     ///
     /// # Errors
     ///
-    /// There is no such folder, or nothing in it is a result; the message names what would be one, and a result nearby.
+    /// The folder does not exist or contains no result; the message lists identifying files and a result nearby.
     pub fn find(dir: &Path) -> Result<Self> {
         if let Some(kind) = Self::within(dir) {
             return Ok(kind);
@@ -176,11 +176,11 @@ impl Kind {
         Err(unfit("report on", dir, what, &|_| true))
     }
 
-    /// Looks in a folder for the result of one of some commands, for `action`.
+    /// Checks that a folder contains a result of one of these commands, for `action`.
     ///
     /// # Errors
     ///
-    /// There is no such folder, or it holds something else; the message says what is wanted and what is there, and names a result nearby that would do.
+    /// The folder does not exist or contains something else; the message names what is expected and found, and a suitable result nearby.
     pub fn wanted(action: &'static str, dir: &Path, kinds: &[Self]) -> Result<Self> {
         let commands: Vec<String> = kinds
             .iter()
@@ -198,7 +198,7 @@ impl Kind {
     }
 }
 
-/// What a file is where a folder is wanted.
+/// Description of a file in place of a folder.
 fn file(path: &Path) -> String {
     let around = path.parent().filter(|dir| Kind::within(dir).is_some());
     match around {
@@ -212,7 +212,7 @@ fn file(path: &Path) -> String {
 
 const NOWHERE: &str = "there is no such folder";
 
-/// The fault of a folder in which something else is wanted, with a result nearby that would do.
+/// Error for an unsuitable folder, with a suitable result nearby.
 fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(Kind) -> bool) -> Error {
     let hint = near(dir, fits).map_or(String::new(), |found| format!("; did you mean {found}?"));
     let kind = match dir.is_dir() {
@@ -222,7 +222,7 @@ fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(Kind) -> 
     fault(action, dir, io::Error::new(kind, format!("{what}{hint}")))
 }
 
-/// A result in the folder, or else the one beside it whose name is most like it.
+/// A result inside the folder, or else the result beside it with the most similar name.
 fn near(dir: &Path, fits: &dyn Fn(Kind) -> bool) -> Option<String> {
     let results = |of: &Path| -> Vec<PathBuf> {
         let mut all = entries(of).unwrap_or_default();

@@ -1,10 +1,10 @@
-//! What the machine has left.
+//! Available memory and disk space of the machine.
 
 use std::fs;
 use std::path::Path;
 
-/// Memory that the process can have without others losing theirs [byte]: what the system says is available, within the limits of
-/// the process and its group. None where the system does not say.
+/// Memory available to the process [byte]: available memory of the system, within the limits of the process and its control group. `None`
+/// if the system does not report it.
 pub fn memory() -> Option<f64> {
     let told = fs::read_to_string("/proc/meminfo").ok()?;
     let available = kilobytes(&told, "MemAvailable:")?;
@@ -12,20 +12,20 @@ pub fn memory() -> Option<f64> {
     Some(limits.into_iter().flatten().fold(available, f64::min))
 }
 
-/// Bytes that a user can still write where a path is or will be. None where nothing is stored, as in `/proc`.
+/// Free space for a user at a path that exists or will exist [byte]. `None` for file systems without storage, such as `/proc`.
 pub fn free(path: &Path) -> Option<f64> {
     let there = path.ancestors().find(|part| part.exists()).unwrap_or(Path::new("."));
     let told = rustix::fs::statvfs(there).ok().filter(|told| told.f_blocks > 0)?;
     Some(told.f_bavail as f64 * told.f_frsize as f64)
 }
 
-/// `NAME   123 kB` in bytes.
+/// Converts a line `NAME   123 kB` to bytes.
 fn kilobytes(text: &str, name: &str) -> Option<f64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     Some(1024.0 * line.trim().trim_end_matches("kB").trim().parse::<f64>().ok()?)
 }
 
-/// The limit of the process's group.
+/// Memory limit of the control group of the process [byte].
 fn group() -> Option<f64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let own = groups.lines().find_map(|line| line.strip_prefix("0::"))?;
@@ -39,7 +39,7 @@ fn group() -> Option<f64> {
     limits.reduce(f64::min)
 }
 
-/// What is left of the addresses that the process may have [byte]. None without a limit.
+/// Remaining address space of the process [byte]. `None` without a limit.
 pub fn address_space() -> Option<f64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let limit = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;

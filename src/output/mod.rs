@@ -1,42 +1,42 @@
 //! Results as files: history, arrays, summary and pictures of a run. Nothing here prints.
 //!
 //! ```text
-//! folder    which folder, one writer at a time, and how files get into it without ever being half written
-//! kind      which command filled a folder
+//! folder    the result folder: one writer at a time, no incomplete file
+//! kind      the command that filled a folder
 //! stream    files that grow with a run, with checksums
 //! journal   rows with checksums, each on the disk as soon as it is computed
 //! history   history.csv, row by row
 //! envelope  a history of any length, read back in bounded memory
 //! arrays    fields.npz, streamed through raw files
-//! behind    the files that grow with a run, written by a thread of their own
-//! npz       arrays back from such a file, checked against it
-//! checkpoint  where an interrupted run goes on
-//! recorder  the Recorder that ties them together
-//! summary   summary.json, there and back
-//! reading   a result folder back into memory
-//! errors    what went wrong, for scripts and for people
+//! behind    writes the files that grow with a run, in a thread
+//! npz       reads arrays from such a file and verifies them
+//! checkpoint  state from which an interrupted run resumes
+//! recorder  the Recorder that combines these files
+//! summary   writes and reads summary.json
+//! reading   reads a result folder into memory
+//! errors    errors for scripts and for readers
 //! export    a result in other formats: tables of the fields, surfaces for ParaView
 //! comparison  the picture of two runs over each other
 //! effects   effects.csv, effects.json, effects.svg, table and sentence
 //! equilibrium  path.csv, shapes.csv, equilibrium.json, path.svg, table
-//! evaluations  evaluations of an interrupted search
-//! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their words
-//! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their words
-//! optimum   optimum.json, designs.csv, optimum.svg, optimum-case.json, and their words
-//! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their words
+//! evaluations  journal of the evaluations of a search
+//! fit       fit.json, fit.csv, fit.svg, fitted-case.json, and their text
+//! floquet   floquet.csv, floquet.json, floquet.svg; map.csv, map.json, map.svg, and their text
+//! optimum   optimum.json, designs.csv, optimum.svg, optimum-case.json, and their text
+//! periodic  cycle.json; sweep.csv, sweep.json, sweep.svg, and their text
 //! sense     sense.csv, sensors.csv, sense.json, sense.svg, table and sentences
 //! study     study.csv, study.json, study.svg, table and sentence
-//! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their words
-//! uncertainty  uncertainty.json, its words and its table
-//! bands     figures beside what uncertain numbers leave open of them, in words
+//! sweep     designs.jsonl, sweep.csv, sweep.npz, sweep.json of many designs, and their text
+//! uncertainty  uncertainty.json, its text and its table
+//! bands     text about figures with their uncertainty bands
 //! modes     modes.csv, modes.json, modes.npz, modes.svg, table and sentences
 //! report    report.html: a result folder as one page
-//! pictures  from recorded files to the data of each picture
-//! plot      one picture a file, from plain data to SVG text
-//! numbers   numbers as people read them
+//! pictures  converts recorded files to the data of each picture
+//! plot      draws pictures: plain data to SVG text
+//! numbers   formats numbers for readers
 //! records   rows as the text of a CSV file
-//! columns   rows as a table for people
-//! accuracy  an accuracy that was asked for, in words
+//! columns   rows as a text table for readers
+//! accuracy  text about a requested accuracy
 //! ```
 
 pub mod accuracy;

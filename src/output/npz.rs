@@ -1,8 +1,8 @@
-//! Arrays back from a `.npz`: what the file says of itself is held against its real size before anything is allocated, and what was
-//! read against its checksum.
+//! Reads arrays from a `.npz`. Sizes stated in the file are compared with its real size before memory is allocated, and data with their
+//! checksum.
 //!
-//! Read is what this program writes ([`super::arrays`]): entries that are stored, not deflated, of little-endian doubles, row by row.
-//! Anything else was written by something else, or is damaged.
+//! Accepts only the format that this program writes ([`super::arrays`]): entries that are stored, not deflated, of little-endian doubles,
+//! row by row. Any other file is foreign or damaged.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -13,45 +13,45 @@ use zip::read::ZipFile;
 
 use super::folder::{damaged, open};
 
-/// Longest description of an array [byte]; this program's have 118.
+/// Largest header of an array [byte]; headers of this program have 118.
 const LONGEST: usize = 4096;
-/// Arrays at most; a result has some twenty.
+/// Largest number of arrays; a result has about twenty.
 const MOST: usize = 1000;
 
-/// What an entry is.
+/// Name and shape of an array.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// Name of the array.
     pub name: String,
-    /// Lengths, one or two.
+    /// Lengths of its one or two dimensions.
     pub shape: Vec<usize>,
 }
 
 impl Entry {
-    /// Numbers that stand in a row: all of one axis, those of one instant of a field.
+    /// Length of a row: all numbers of an axis, or those of one instant of a field.
     pub fn width(&self) -> usize {
         self.shape[self.shape.len() - 1]
     }
 
-    /// Rows; an axis is one.
+    /// Number of rows; an axis has one.
     pub fn rows(&self) -> usize {
         if self.shape.len() == 1 { 1 } else { self.shape[0] }
     }
 }
 
-/// A file of arrays, each of which fits into it.
+/// A file of arrays whose stated sizes are verified.
 pub struct Npz {
     zip: ZipArchive<BufReader<File>>,
     entries: Vec<Entry>,
 }
 
 impl Npz {
-    /// Opens the file and looks at the description of every array.
+    /// Opens the file and checks the header of every array.
     ///
     /// # Errors
     ///
-    /// It is no such file; an array is said to be larger than its entry, or all entries together than the file, as where they lie over
-    /// each other; a name is none of an array.
+    /// The file is no such archive; an array is stated to be larger than its entry, or all entries together larger than the file, as when
+    /// they overlap; a name is not that of an array.
     pub fn open(path: &Path) -> io::Result<Self> {
         let file = open(path)?;
         let there = file.metadata()?.len();
@@ -98,7 +98,7 @@ impl Npz {
     ///
     /// # Errors
     ///
-    /// There is none of that name, it is cut short, or its checksum differs.
+    /// There is no such array, it is incomplete, or its checksum differs.
     pub fn read(&mut self, name: &str) -> io::Result<Vec<f64>> {
         let mut rows = self.rows(name)?;
         let mut all = Vec::with_capacity(rows.left * rows.width);
@@ -110,11 +110,11 @@ impl Npz {
         Ok(all)
     }
 
-    /// An array row by row: a file may be larger than memory.
+    /// Reads an array row by row: a file may be larger than memory.
     ///
     /// # Errors
     ///
-    /// There is none of that name.
+    /// There is no such array.
     pub fn rows(&mut self, name: &str) -> io::Result<Rows<'_>> {
         let found = self.entries.iter().position(|e| e.name == name);
         let k = found.ok_or_else(|| damaged(format!("{name} is missing")))?;
@@ -131,7 +131,7 @@ impl Npz {
     }
 }
 
-/// Rows of an array still to be read.
+/// Unread rows of an array.
 pub struct Rows<'a> {
     entry: ZipFile<'a, BufReader<File>>,
     width: usize,
@@ -140,7 +140,7 @@ pub struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// The next row, if there is one.
+    /// Reads the next row. Returns false at the end.
     pub fn next(&mut self, row: &mut Vec<f64>) -> io::Result<bool> {
         if !self.pass()? {
             return Ok(false);
@@ -150,7 +150,7 @@ impl Rows<'_> {
         Ok(true)
     }
 
-    /// Passes a row over; whether there was one.
+    /// Skips a row. Returns false at the end.
     pub fn pass(&mut self) -> io::Result<bool> {
         if self.left == 0 {
             return Ok(false);
@@ -160,13 +160,13 @@ impl Rows<'_> {
         Ok(true)
     }
 
-    /// Passes all that is left over; the checksum is that of the whole.
+    /// Reads all remaining rows: the checksum covers the entire array.
     pub fn finish(mut self) -> io::Result<()> {
         io::copy(&mut self.entry, &mut io::sink()).map(|_| ())
     }
 }
 
-/// Reads the description of an array in front of its numbers: the lengths, which are those of an entry of `size` bytes.
+/// Reads the header of an array: its lengths, which must fit an entry of `size` bytes.
 fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
     let mut head = [0; 10];
     entry.read_exact(&mut head)?;
@@ -192,13 +192,13 @@ fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
             "it is said to have {shape:?} numbers, which are not as many as its {size} bytes hold"
         )));
     }
-    // each is at most the file's size but for empty arrays, whose other length is then of no meaning
+    // lengths are at most the file's size, except in empty arrays, whose other length is meaningless
     let lengths = shape.iter().map(|&n| usize::try_from(n).ok().filter(|_| n <= size));
     let lengths: Option<Vec<usize>> = lengths.collect();
     lengths.ok_or_else(|| damaged("it is empty, but of an impossible length"))
 }
 
-/// The lengths in `{'descr': '<f8', 'fortran_order': False, 'shape': (11, 3), }`.
+/// Parses the lengths in `{'descr': '<f8', 'fortran_order': False, 'shape': (11, 3), }`.
 fn shape(text: &str) -> Option<Vec<u64>> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     let has = |part: &str| plain.contains(part);

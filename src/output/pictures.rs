@@ -1,4 +1,4 @@
-//! From recorded files to the data of each picture.
+//! Converts recorded files to the data of each picture.
 
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
@@ -6,15 +6,15 @@ use super::plot::{self, Curve, Deflection, Energy, History, Pressure};
 use crate::discrete::quantities::{Axis, Field, Observable};
 use crate::error::Result;
 
-/// Curves in a picture over space.
+/// Number of curves in a picture over space.
 const CURVES: usize = 24;
-/// Stretches of time kept of a history; more than there are pixels across.
+/// Number of stretches of time kept of a history; more than the pixels across.
 pub const STRETCHES: usize = 1200;
 
-/// Name of a picture and its text.
+/// Name of a picture, and its SVG.
 pub type Picture = (&'static str, String);
 
-/// `history.svg` and `energy.svg`, as far as their columns are there.
+/// `history.svg` and `energy.svg`, if their columns exist.
 pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
     let mut shown = History {
         case: case.to_string(),

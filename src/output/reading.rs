@@ -1,4 +1,4 @@
-//! A result folder back into memory, to be compared with another.
+//! Reads a result folder into memory, for comparison with another.
 
 use std::io;
 use std::path::Path;
@@ -50,7 +50,7 @@ pub fn read(dir: &Path) -> Result<Recording> {
     Ok(out)
 }
 
-/// Columns `name [unit]`. A last row that an interruption cut short is left out.
+/// Reads columns `name [unit]`. Omits an incomplete last row of an interrupted run.
 fn history(path: &Path) -> io::Result<Vec<Series>> {
     let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(open(path)?);
     let mut columns: Vec<Series> = reader
@@ -78,7 +78,7 @@ fn history(path: &Path) -> io::Result<Vec<Series>> {
     Ok(columns)
 }
 
-/// Arrays over time have as many instants as there are times.
+/// Reads axes and fields. Each field must have as many instants as there are times.
 fn arrays(path: &Path, out: &mut Recording) -> io::Result<()> {
     let mut npz = Npz::open(path)?;
     for entry in npz.entries().to_vec() {
@@ -108,7 +108,7 @@ fn arrays(path: &Path, out: &mut Recording) -> io::Result<()> {
     ascending(&out.field_times).map_err(|k| damaged(format!("{TIMES} is not in order at its number {k}")))
 }
 
-/// Whether numbers do not fall, all finite; else which does.
+/// Checks that numbers are finite and do not decrease. The error is the index of the first that violates this.
 fn ascending(numbers: &[f64]) -> std::result::Result<(), usize> {
     let follows = |k: &usize| numbers[*k].is_finite() && (*k == 0 || numbers[*k] >= numbers[*k - 1]);
     (0..numbers.len()).find(|k| !follows(k)).map_or(Ok(()), Err)

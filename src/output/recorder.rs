@@ -28,22 +28,22 @@ use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::Laps;
 
-/// Called after every step; decides whether to go on.
+/// Called after every step; decides whether the run continues.
 pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
 
-/// What is recorded besides the run itself.
+/// Data recorded in addition to the run itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Labels {
     /// Name of the case, for the pictures.
     pub case_name: String,
-    /// The case as resolved.
+    /// The resolved case.
     pub case: Written,
-    /// Frequency of the drive [Hz]: pictures over space then show its last cycle.
+    /// Frequency of the drive [Hz]; pictures over space then show its last cycle.
     pub frequency_hz: Option<f64>,
 }
 
 impl Labels {
-    /// Those of a case.
+    /// Labels of a case.
     pub fn of(case: &Case) -> Self {
         Self {
             case_name: case.name.clone(),
@@ -55,8 +55,8 @@ impl Labels {
 
 /// Streams a run into a folder.
 ///
-/// An older result in the folder stands until [`Recorder::begin`]: a run that cannot start destroys nothing. Dropped
-/// without [`FolderRecorder::finish`], it leaves `history.csv` and the raw arrays as far as they were written.
+/// An older result in the folder stays until [`Recorder::begin`], so a run that cannot start destroys nothing. Dropping it without
+/// [`FolderRecorder::finish`] keeps `history.csv` and the raw arrays as written so far.
 pub struct FolderRecorder {
     folder: ResultFolder,
     labels: Labels,
@@ -66,7 +66,7 @@ pub struct FolderRecorder {
 }
 
 impl FolderRecorder {
-    /// Into this folder, asking `hook` after every step.
+    /// Records into this folder, with `hook` called after every step.
     pub fn new(folder: ResultFolder, labels: Labels, hook: Hook) -> Self {
         Self {
             folder,
@@ -77,19 +77,19 @@ impl FolderRecorder {
         }
     }
 
-    /// Leaves summary, case and arrays alone in the end. Tables are written all the same while the run is under way: by them its folder is
-    /// known, and it goes on from them.
+    /// Keeps only summary, case and arrays at the end. Tables are still written during the run: they identify the folder, and the run can
+    /// resume from them.
     #[must_use]
     pub fn lean(self, lean: bool) -> Self {
         Self { lean, ..self }
     }
 
-    /// Goes on in the folder of an interrupted run; what was recorded after its checkpoint is dropped. All files are verified
-    /// before any is touched.
+    /// Resumes in the folder of an interrupted run. Drops everything recorded after the checkpoint. Verifies all files before it changes
+    /// any.
     ///
     /// # Errors
     ///
-    /// A file is damaged or gone; then the folder is as it was.
+    /// A file is damaged or missing; then the folder is unchanged.
     pub fn resume(folder: ResultFolder, labels: Labels, hook: Hook, saved: &Saved, header: &Header) -> Result<Self> {
         let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
         Stream::verify(&history, saved.history)?;
@@ -119,15 +119,15 @@ impl FolderRecorder {
         })
     }
 
-    /// Completes the folder however the run ended: history, arrays and the summary that says they are whole go to the disk together,
-    /// and only then do arrays and summary take their names; then come pictures. What a run could go on from stays until
-    /// [`Finished::close`], so that all of this can be repeated.
+    /// Completes the folder, however the run ended. Syncs history, arrays and summary to the disk together, then gives arrays and summary
+    /// their names; pictures follow. The files from which a run resumes stay until [`Finished::close`], so that the completion can be
+    /// repeated.
     ///
     /// A run that failed before it began leaves case and summary, and moves an older result aside.
     ///
     /// # Errors
     ///
-    /// A file cannot be written; where it is one of tables or arrays the summary says `failed`, and why.
+    /// A file cannot be written. If it is a table or an array, the summary has the status `failed` and the reason.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
         let (mut laps, mut spent) = (Laps::since(Instant::now()), Spent::default());
         let aside = match self.open {
@@ -140,8 +140,8 @@ impl FolderRecorder {
             None => summary::write(&self.folder, summary).map(|_| Completed::default()),
         };
         if let Err(error) = &completed {
-            // Where arrays or tables are not whole nothing may say that they are. The summary matters most: it is tried whatever could
-            // not be written before.
+            // If arrays or tables are incomplete, no file may claim that they are complete. The summary matters most, so it is attempted
+            // after any other failure.
             let failed = Summary {
                 status: Status::Failed,
                 reason: Some(error.to_string()),
@@ -156,7 +156,7 @@ impl FolderRecorder {
         } = cased.and(completed)?;
         self.folder.secure_behind()?;
         if self.lean {
-            // of a run that is gone on with
+            // those of a run that was resumed
             self.folder.remove_all(&PICTURES)?;
             self.folder.remove(REPORT)?;
         }
@@ -177,13 +177,13 @@ impl FolderRecorder {
         })
     }
 
-    /// Brings tables, arrays and summary to the disk, and draws pictures meanwhile.
+    /// Syncs tables, arrays and summary to the disk, and draws the pictures meanwhile.
     fn complete(&self, open: Behind, summary: &Summary, laps: &mut Laps, spent: &mut Spent) -> Result<Completed> {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
         let tables = [Some(files.history), files.envelope, files.sensitivities];
-        // of a lean run that has finished they go again
+        // a lean run that has finished removes them again
         let stay = !self.lean || summary.status != Status::Finished;
         let mut tables: Vec<_> = tables.into_iter().flatten().filter(|_| stay).collect();
         tables.iter_mut().try_for_each(HistoryWriter::flush)?;
@@ -223,18 +223,18 @@ impl FolderRecorder {
     }
 }
 
-/// What a folder that is whole has still to be given.
+/// Results of completing a folder.
 #[derive(Default)]
 struct Completed {
-    /// Pictures, or why there are none.
+    /// Pictures, or errors of drawing.
     drawn: Vec<Result<Vec<Picture>>>,
-    /// The history, if it was kept.
+    /// The history, if it is in memory.
     history: Option<Remembered>,
-    /// CRC-32 of its tables.
+    /// CRC-32 of the tables.
     tables_crc32: BTreeMap<String, u32>,
 }
 
-/// Brings tables, laid files, arrays and summary to the disk itself, all at once; then arrays and summary take their names.
+/// Syncs tables, laid files, arrays and summary to the disk at the same time; then renames arrays and summary.
 fn put(
     mut tables: Vec<HistoryWriter>,
     laid: &[Whole],
@@ -252,7 +252,7 @@ fn put(
     summary.name().map(|_| ())
 }
 
-/// Wall time that a completed folder took [s].
+/// Wall time of completing a folder [s].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Spent {
     /// Pictures.
@@ -269,16 +269,16 @@ pub struct Finished {
     history: Option<Remembered>,
     resumable: bool,
     lean: bool,
-    /// What completing it took.
+    /// Wall time of the completion.
     pub spent: Spent,
-    /// Where an older result went.
+    /// Folder to which an older result was moved.
     pub aside: Option<PathBuf>,
-    /// CRC-32 of its tables, for whoever writes the summary again.
+    /// CRC-32 of the tables, for rewriting the summary.
     pub tables_crc32: BTreeMap<String, u32>,
 }
 
 impl Finished {
-    /// A folder that took over the result of another, with all that belongs to it.
+    /// A folder that has taken over the complete result of another folder.
     pub fn of(folder: ResultFolder) -> Self {
         Self {
             resumable: true,
@@ -291,27 +291,27 @@ impl Finished {
         }
     }
 
-    /// Takes over the result in another folder, in place of its own.
+    /// Replaces the result by that of another folder.
     ///
     /// # Errors
-    /// It cannot be moved.
+    /// The files cannot be moved.
     pub fn replace(&mut self, with: &Path) -> Result<()> {
         self.folder.replace(with)?;
         (self.resumable, self.history) = (true, None);
         Ok(())
     }
 
-    /// Writes the page.
+    /// Writes the page of the result.
     ///
     /// # Errors
     ///
-    /// It cannot be made; then the folder is not to be closed, and all of this can be repeated.
+    /// The page cannot be written. Then do not close the folder, so that the completion can be repeated.
     pub fn page(&self) -> Result<()> {
         report::lay(&self.folder, self.history.as_ref())
     }
 
-    /// Brings everything to the disk itself and removes what a run could go on from, unless it is yet to go on. Returns the folder, still
-    /// locked.
+    /// Syncs everything to the disk and removes the files from which a run resumes, unless the run can still resume. Returns the folder,
+    /// still locked.
     pub fn close(self) -> Result<ResultFolder> {
         self.folder.secure()?;
         if self.resumable {
@@ -322,7 +322,7 @@ impl Finished {
         }
         self.folder.remove_raw()?;
         if self.lean {
-            // last: with a checkpoint still there, it would be damaged without them
+            // last: a remaining checkpoint would be unusable without these
             self.folder.remove_all(&[HISTORY, ENVELOPE, SENSITIVITIES])?;
         }
         Ok(self.folder)
@@ -347,7 +347,7 @@ impl Recorder for FolderRecorder {
                 .then(|| HistoryWriter::with_names(&path, names.to_vec()))
                 .transpose()
         };
-        // all of it, in rows that page and pictures are made of
+        // the complete history, for page and pictures
         let shown = !self.lean && header.envelope.is_empty();
         let files = Growing {
             history,

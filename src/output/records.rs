@@ -1,11 +1,11 @@
-//! Words and numbers as the text of a CSV file.
+//! Text and numbers as CSV.
 
 use super::numbers::shortest;
 
-/// First characters by which a spreadsheet takes a cell for a formula.
+/// First characters that make a spreadsheet evaluate a cell as a formula.
 const FORMULAS: [char; 4] = ['=', '+', '-', '@'];
 
-/// A cell of text that no spreadsheet evaluates: an apostrophe stands before it where it begins like a formula and is no number.
+/// A text cell that no spreadsheet evaluates: an apostrophe precedes text that begins like a formula and is not a number.
 pub fn cell(text: String) -> String {
     match text.starts_with(FORMULAS) && text.parse::<f64>().is_err() {
         true => format!("'{text}"),
@@ -13,12 +13,12 @@ pub fn cell(text: String) -> String {
     }
 }
 
-/// Headings, then rows of as many cells. A cell is quoted where it would not read back as it is, and no text of it is a formula.
+/// CSV text of headings and rows. Cells are quoted if necessary, and no text is a formula.
 pub fn text<C: AsRef<[u8]>>(
     headings: impl IntoIterator<Item = C>,
     rows: impl IntoIterator<Item = Vec<String>>,
 ) -> String {
-    // rows are written as they come, and memory takes everything: nothing here fails
+    // rows may differ in length, and memory accepts all text: nothing here fails
     let mut out = csv::WriterBuilder::new().flexible(true).from_writer(vec![]);
     let _ = out.write_record(headings);
     for row in rows {
@@ -27,7 +27,7 @@ pub fn text<C: AsRef<[u8]>>(
     String::from_utf8(out.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// A number; empty when unknown or not finite.
+/// Text of a number; empty if unknown or not finite.
 pub fn number(x: Option<f64>) -> String {
     x.filter(|x| x.is_finite()).map_or_else(String::new, shortest)
 }

@@ -16,9 +16,9 @@ use crate::error::numbers::error_percent;
 use crate::results;
 use crate::results::response::{Curve, Peak, Response};
 
-/// One row a frequency.
+/// One row per frequency.
 pub const CSV: &str = "response.csv";
-/// Everything.
+/// Complete result.
 pub const JSON: &str = "response.json";
 /// Amplitude and phase.
 pub const PICTURE: &str = "response.svg";
@@ -53,7 +53,7 @@ fn csv(found: &Response) -> String {
     )
 }
 
-/// The table of peaks, and the poles.
+/// Table of the peaks, errors by the mesh, and number of poles.
 pub fn words(found: &Response) -> String {
     let mut text = format!(
         "{}: response to {}, {} to {} Hz, {}\n\n",
@@ -113,10 +113,10 @@ pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>
     folder.fill(files)
 }
 
-/// Amplitudes that are drawn, around their median: poles without damping, and zeros, have no end [dB].
+/// Largest distance of a drawn amplitude from the median [dB]: undamped poles and zeros are unbounded.
 const AROUND: f64 = 100.0;
 
-/// Amplitude and phase over frequency.
+/// Picture of amplitude and phase over frequency.
 fn picture(found: &Response) -> Option<Picture> {
     let band = (*found.frequency_hz.first()?, *found.frequency_hz.last()?);
     let x = || {
@@ -146,7 +146,7 @@ fn picture(found: &Response) -> Option<Picture> {
         let mut phase: Vec<(f64, f64)> = vec![];
         for (f, (re, im)) in found.frequency_hz.iter().zip(curve.real.iter().zip(&curve.imag)) {
             let angle = im.atan2(*re).to_degrees();
-            // a jump by a turn is no part of the curve
+            // a jump by a full turn is not part of the curve
             if phase.last().is_some_and(|(_, before)| (angle - before).abs() > 270.0) {
                 phase.push((*f, f64::NAN));
             }

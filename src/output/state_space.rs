@@ -11,13 +11,13 @@ use super::folder::{fault, put_whole};
 use crate::error::{Error, Result};
 use crate::run::response::state_space::StateSpace;
 
-/// A model with what names it.
+/// A model with the names of its case, input and outputs.
 #[derive(Serialize)]
 struct Named<'a> {
     case: &'a str,
     /// Signal of the case.
     input: &'a str,
-    /// Rate of the signal that is the input of the model: 0, 1 or 2.
+    /// Derivative of the signal that is the input of the model: 0 (its value), 1 or 2.
     input_rate: usize,
     outputs: Vec<String>,
     states: &'a [String],
@@ -34,7 +34,7 @@ struct Named<'a> {
 /// Writes a model to a file, `.npz` or `.json`.
 ///
 /// # Errors
-/// Another ending; the file cannot be written.
+/// The ending is neither `.npz` nor `.json`, or the file cannot be written.
 pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f64, model: &StateSpace) -> Result<()> {
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
         Some("npz") => arrays(model).map_err(|why| fault("write", path, why))?,
@@ -67,7 +67,7 @@ pub fn write(path: &Path, case: &str, input: &str, outputs: Vec<String>, at_s: f
     put_whole(path, |file| file.write_all(&bytes))
 }
 
-/// `A`, `B`, `C`, `D`, `input_rate`, `x0`, `u0`, `z0`.
+/// Arrays `A`, `B`, `C`, `D`, `input_rate`, `x0`, `u0`, `z0`.
 fn arrays(model: &StateSpace) -> io::Result<Vec<u8>> {
     let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
     let [n, outputs] = [model.b.len() as u64, model.d.len() as u64];

@@ -1,4 +1,4 @@
-//! Files that grow with a run, and marks from which they are known again: so many bytes, with such a checksum.
+//! Files that grow with a run, and marks that identify their content: a length with a checksum.
 
 use std::fs::File;
 use std::io::{self, Read, Seek as _, SeekFrom, Write};
@@ -21,7 +21,7 @@ pub struct Mark {
     pub crc32: u32,
 }
 
-/// A file that is appended to, with the checksum of all that went into it.
+/// A file for appending, with the checksum of its content.
 #[derive(Debug)]
 pub struct Stream {
     path: PathBuf,
@@ -31,7 +31,7 @@ pub struct Stream {
 }
 
 impl Mark {
-    /// Of all that a reader has.
+    /// Mark of the entire content of a reader.
     pub fn of(mut from: impl Read) -> io::Result<Self> {
         let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, [0; BLOCK]);
         loop {
@@ -50,7 +50,7 @@ impl Mark {
 }
 
 impl Stream {
-    /// Makes the file, empty.
+    /// Creates an empty file.
     pub fn create(path: &Path) -> Result<Self> {
         let file = create(path).map_err(|e| fault("create", path, e))?;
         Ok(Self {
@@ -61,11 +61,11 @@ impl Stream {
         })
     }
 
-    /// Checks that a file still begins with what was marked; changes nothing.
+    /// Checks that a file still begins with the marked content; changes nothing.
     ///
     /// # Errors
     ///
-    /// It is not there, is shorter, or holds something else.
+    /// The file is missing, too short, or has other content.
     pub fn verify(path: &Path, mark: Mark) -> Result<()> {
         let verify = || -> io::Result<()> {
             let file = open(path)?;
@@ -86,7 +86,7 @@ impl Stream {
         verify().map_err(|e| fault("go on with", path, e))
     }
 
-    /// Opens a file that is verified and drops what came after the mark.
+    /// Opens a verified file and truncates it at the mark.
     pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
         let open = || -> io::Result<File> {
             let mut file = File::options().write(true).open(path)?;
@@ -102,13 +102,13 @@ impl Stream {
         })
     }
 
-    /// Brings what was written to the disk itself.
+    /// Syncs the written content to the disk and returns its mark.
     pub fn secure(&self) -> Result<Mark> {
         self.file.sync_data().map_err(|e| fault("write", &self.path, e))?;
         Ok(self.mark())
     }
 
-    /// All that was written.
+    /// Mark of all written content.
     pub fn mark(&self) -> Mark {
         Mark {
             bytes: self.bytes,
@@ -116,7 +116,7 @@ impl Stream {
         }
     }
 
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -1,4 +1,4 @@
-//! `summary.json`, there and back. What is not finite is written as null, or left out of maps.
+//! Writes and reads `summary.json`. Numbers that are not finite are null, or omitted from maps.
 
 use std::path::{Path, PathBuf};
 
@@ -8,13 +8,13 @@ use crate::error::Result;
 use crate::results::run::{Quantity, Summary};
 use crate::results::{self, Found};
 
-/// Format from which on all wall time is told of; before, the total was that of a run without what came before and after it.
+/// First format with a complete wall time. Earlier totals exclude the time before and after the run.
 const WHOLE_WALL: u32 = 2;
 
 /// The text of `summary.json`.
 pub fn to_json(summary: &Summary) -> String {
     let mut summary = summary.clone();
-    // serde_json turns what is not finite into null; where a key can be left out, it is.
+    // serde_json writes non-finite numbers as null; keys that can be omitted are omitted.
     summary.balances.energy_j.retain(|_, x| x.is_finite());
     summary.characteristic.retain(|_, x| x.is_finite());
     let derivatives = summary
@@ -52,7 +52,7 @@ pub fn read(dir: &Path) -> Result<Summary> {
     Ok(found(dir)?.result)
 }
 
-/// The same with what it says of itself.
+/// Reads the summary of a result folder with its header.
 pub fn found(dir: &Path) -> Result<Found<Summary>> {
     let mut found: Found<Summary> = super::folder::result(&dir.join(SUMMARY))?;
     if found.head.format.is_none_or(|format| format < WHOLE_WALL) {
@@ -62,10 +62,10 @@ pub fn found(dir: &Path) -> Result<Found<Summary>> {
     Ok(found)
 }
 
-/// Compares a table with the checksum that the summary of its folder has; results of earlier versions have none.
+/// Compares a table with its checksum in the summary of its folder; results of earlier versions have no checksum.
 ///
 /// # Errors
-/// It cannot be read, or it was changed.
+/// The table cannot be read, or it was changed.
 pub fn verify_table(dir: &Path, name: &str, summary: &Summary) -> Result<()> {
     let Some(expected) = summary.tables_crc32.get(name) else {
         return Ok(());

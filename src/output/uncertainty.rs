@@ -1,4 +1,4 @@
-//! `uncertainty.json` beside the result of any command that has figures, in words and as a table.
+//! `uncertainty.json` beside the result of any command that has figures; its text and its table.
 
 use serde_json::{Value, json};
 
@@ -10,21 +10,21 @@ use crate::error::Result;
 use crate::results;
 use crate::results::uncertainty::{Input, Spread, Uncertainty};
 
-/// The file.
+/// Name of the file.
 pub const UNCERTAINTY: &str = "uncertainty.json";
 
-/// Writes it into a folder.
+/// Writes the file into a folder.
 ///
 /// # Errors
-/// It cannot be written.
+/// The file cannot be written.
 pub fn write(folder: &ResultFolder, found: &Uncertainty) -> Result<()> {
     folder.write(UNCERTAINTY, results::text(found).as_bytes()).map(|_| ())
 }
 
-/// Digits of the ends of a band at most, in a table.
+/// Largest number of digits of the ends of a band in a table.
 const MOST_DIGITS: usize = 6;
 
-/// What is told of each figure.
+/// Headings of the table of figures.
 const HEADINGS: [&str; 7] = [
     "figure",
     "value",
@@ -35,12 +35,12 @@ const HEADINGS: [&str; 7] = [
     "mostly by",
 ];
 
-/// Figures of a quantity of which one is told, the first that there is; the file has the others.
+/// Figures of a quantity, in order of preference. The table shows the first that exists; the file contains all.
 const TOLD: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
 
-/// A table of one figure of each quantity that spreads, and what to know of them.
+/// Table of one figure of each quantity that spreads, and warnings.
 pub fn words(found: &Uncertainty) -> String {
-    // of a multiplier its growth decides, whose frequency the drive may hold
+    // of a multiplier growth is shown: the drive may fix its frequency
     let foremost: &[&str] = if found.command == "floquet" {
         &["growth_per_s"]
     } else {
@@ -71,7 +71,7 @@ pub fn words(found: &Uncertainty) -> String {
     text + &warnings(&found.warnings)
 }
 
-/// What the table is of.
+/// Heading of the table: inputs and samples.
 fn about(found: &Uncertainty) -> String {
     let inputs: Vec<String> = found
         .inputs
@@ -94,7 +94,7 @@ fn about(found: &Uncertainty) -> String {
 /// The cells of a figure.
 fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
     let size = one.value.abs();
-    // beside a value of 0 nothing is relative
+    // no relative numbers for a value of 0
     let relative = |x: f64| match size {
         0.0 => significant(x, 2),
         _ => percent(x / size),
@@ -115,7 +115,7 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
     ]
 }
 
-/// Whose share in the variance is largest: by Sobol's index with all that it does together with others, else by derivatives.
+/// Input with the largest share of the variance: by Sobol's total index, else by derivatives.
 fn mostly(one: &Spread, inputs: &[Input]) -> Option<String> {
     if one.sd == 0.0 {
         return None;
@@ -129,7 +129,7 @@ fn mostly(one: &Spread, inputs: &[Input]) -> Option<String> {
     Some(format!("{} {}", inputs.get(k)?.pointer, percent(share.clamp(0.0, 1.0))))
 }
 
-/// The part of a page about it.
+/// Section of a page.
 pub fn section(found: &Uncertainty) -> Value {
     let rows: Vec<_> = found
         .figures

@@ -1,4 +1,4 @@
-//! `floquet.json`, `cycle.json`, `map.json`, `sweep.json`: steady cycles and whether they hold.
+//! `floquet.json`, `cycle.json`, `map.json`, `sweep.json`: steady cycles and their stability.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,31 +18,31 @@ pub use crate::study::stability::{Along, Map};
 pub struct Cycle {
     /// Name of the case.
     pub case: String,
-    /// How the cycle was found.
+    /// Search for the cycle.
     pub cycle: Search,
-    /// After how many periods it comes back, when several were asked for.
+    /// Number of periods after which the cycle repeats, if several were requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periods: Option<Periods>,
-    /// Its multipliers.
+    /// Multipliers of the cycle.
     pub floquet: Floquet,
-    /// What uncertain numbers leave open of figures, by the names of `uncertainty.json`.
+    /// Uncertainty bands of figures, by the names of `uncertainty.json`.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,
-    /// What to know of case and cycle.
+    /// Warnings about case and cycle.
     pub warnings: Vec<String>,
-    /// Why the tolerance of the cycle is not the case's own.
+    /// Tightened tolerance, if it differs from that of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refined: Option<Refined>,
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
-    /// What meshes do to it, where no accuracy was asked for.
+    /// Effect of the mesh on the cycle, if no accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meshes: Option<Meshes>,
 }
 
 impl Cycle {
-    /// The relative error of a figure that an accuracy reached, or that meshes make, where it is known.
+    /// Relative error of a figure: that of the reached accuracy, or that of the mesh; `None` if unknown.
     pub fn error(&self, name: &str) -> Option<f64> {
         match &self.accuracy {
             Some(accuracy) => accuracy.quantities.get(name)?.total,
@@ -54,7 +54,7 @@ impl Cycle {
     }
 }
 
-/// The method of all cycles.
+/// Method of all cycles.
 fn shooting() -> Option<Integrator> {
     Some(Integrator {
         name: METHOD.into(),

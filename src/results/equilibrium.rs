@@ -1,4 +1,4 @@
-//! `equilibrium.json`: the last state of a path of equilibria, and the way to it.
+//! `equilibrium.json`: the last state of a path of equilibria, and the path to it.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use super::run::{Accuracy, Bands, Status};
 use crate::run::null;
 use crate::study::refine::meshes::Meshes;
 
-/// Numbers by name, unit included; nothing where one is not finite.
+/// Numbers by name, which contains the unit; null if not finite.
 pub type Numbers = Ordered<Option<f64>>;
 
 /// A path of equilibria.
@@ -16,30 +16,30 @@ pub type Numbers = Ordered<Option<f64>>;
 pub struct Equilibrium {
     /// Name of the case.
     pub case: String,
-    /// Whether the path reached its end.
+    /// Status; `finished` if the path reached its end.
     pub status: Status,
-    /// Why it did not.
+    /// Reason why the path did not reach its end.
     pub reason: Option<String>,
     /// Instant of the loads [s].
     pub loads_at_s: f64,
-    /// Instants whose loads were to be reached before [s].
+    /// Instants whose loads are reached before [s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub via_s: Vec<f64>,
-    /// Instants as of which valves stood on the way there, where these are the instants at which valves shut [s].
+    /// Instants that determine the positions of valves in these stages, if the stages are those of closing valves [s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub valves_s: Vec<f64>,
-    /// Load factor of the last state: share of the loads, 1 more for every stage before; nothing without states.
+    /// Load factor of the last state: share of the loads, plus 1 for every previous stage; null without states.
     pub load_factor: Option<f64>,
-    /// States on the path.
+    /// Number of states on the path.
     pub states: usize,
-    /// What is read off the last state.
+    /// Quantities of the last state.
     pub quantities: Option<Numbers>,
-    /// What uncertain numbers leave open of them.
+    /// Uncertainty bands of the quantities.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,
-    /// Whether the last state holds, where that is known.
+    /// Stability of the last state, if known.
     pub stability: Option<Stability>,
-    /// What happens on the way.
+    /// Events on the path.
     pub events: Vec<Event>,
     /// Derivatives of the quantities, by JSON pointers of numbers of the case.
     pub sensitivities: Ordered<Derivatives>,
@@ -47,62 +47,62 @@ pub struct Equilibrium {
     pub solver: Work,
     /// Wall time.
     pub wall_s: Wall,
-    /// What to think of first.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
-    /// What meshes do to the last state, where no accuracy was asked for.
+    /// Effect of the mesh on the last state, if no accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub meshes: Option<Meshes>,
 }
 
 impl Kept for Equilibrium {}
 
-/// Whether a state holds.
+/// Stability of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stability {
-    /// Whether nothing gives way.
+    /// True if there is no unstable mode.
     pub stable: bool,
-    /// Ways in which it gives way.
+    /// Number of unstable modes.
     pub unstable_modes: usize,
     /// The eigenvalue of least magnitude [1/s^2], where it was computed.
     pub softest_1_s2: Option<f64>,
 }
 
-/// Something that happens on the way.
+/// An event on the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
-    /// Load factor: share of the loads, 1 more for every stage before.
+    /// Load factor: share of the loads, plus 1 for every previous stage.
     pub load_factor: f64,
-    /// Stage in which it happens, from 1, where there are several.
+    /// Stage of the event, from 1, if there are several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stage: Option<usize>,
-    /// In words.
+    /// Description.
     pub what: String,
 }
 
-/// Derivatives by one number of the case.
+/// Derivatives with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Derivatives {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// By quantity.
+    /// Derivatives by quantity.
     pub derivatives: Numbers,
 }
 
 /// Work along the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Work {
-    /// Newton steps.
+    /// Number of Newton steps.
     pub newton_iterations: u64,
-    /// Residuals.
+    /// Number of residual evaluations.
     pub residual_evaluations: u64,
-    /// Factorisations.
+    /// Number of factorizations.
     pub factorizations: u64,
-    /// Steps along the path that were taken back.
+    /// Rejected steps along the path.
     pub rejected_steps: u64,
-    /// Newton correction that was left, scaled.
+    /// Remaining Newton correction, scaled.
     #[serde(deserialize_with = "null::number")]
     pub largest_correction_left: f64,
 }
@@ -110,6 +110,6 @@ pub struct Work {
 /// Wall time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wall {
-    /// Everything [s].
+    /// Total [s].
     pub total: f64,
 }

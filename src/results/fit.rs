@@ -1,4 +1,4 @@
-//! `fit.json`: numbers of a case from measured data; what `compare` prints of a run over such.
+//! `fit.json`: numbers of a case estimated from measured data; and the output of `compare` for a run over data.
 
 use super::Kept;
 pub use crate::study::fit::beside::Beside;

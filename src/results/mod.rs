@@ -1,24 +1,24 @@
-//! Results as files hold them: one type a kind, which writers fill and readers get back.
+//! Results as stored in files: one type per kind, which writers fill and readers return.
 //!
-//! | file | kind |
+//! | module | content |
 //! |---|---|
 //! | [`run`] | `summary.json` |
 //! | [`equilibrium`] | `equilibrium.json` |
 //! | [`modes`] | `modes.json` |
 //! | [`response`] | `response.json` |
 //! | [`cycles`] | `floquet.json` and `cycle.json`, `map.json`, `sweep.json` |
-//! | [`studies`] | `study.json`, `effects.json`, what `compare --json` prints |
+//! | [`studies`] | `study.json`, `effects.json`, output of `compare --json` |
 //! | [`sense`] | `sense.json` |
 //! | [`sweep`] | `plan.json` and `sweep.json` of `slcbeam sweep` |
 //! | [`uncertainty`] | `uncertainty.json`, beside the result of any command that has figures |
-//! | [`fit`] | `fit.json`, what `compare --json` prints of a run over data |
+//! | [`fit`] | `fit.json`, output of `compare --json` for a run over data |
 //! | [`optimum`] | `optimum.json` |
-//! | [`verify`] | a row of what `verify --json` prints |
-//! | [`provenance`] | what made a result |
-//! | [`ordered`] | numbers by name, in an order of their own |
+//! | [`verify`] | a row of the output of `verify --json` |
+//! | [`provenance`] | origin of a result |
+//! | [`ordered`] | values by name, in their own order |
 //!
-//! A result is one object: the number of its format, its provenance, and the keys of its type. A number that is not finite is
-//! null. A key that is missing or of another kind is an error that names its place.
+//! A result is one object: the number of its format, its provenance, and the keys of its type. A number that is not finite is null. A key
+//! that is missing or has another type is an error, which names the place.
 
 pub mod cycles;
 pub mod equilibrium;
@@ -43,19 +43,19 @@ use serde_json::Value;
 
 pub use provenance::{Integrator, Provenance};
 
-/// A result that a file holds.
+/// A result stored in a file.
 pub trait Kept: Serialize + DeserializeOwned {
-    /// Number of the format: one more where a key goes or means something else, the same where one comes. Results of before there
-    /// were numbers have none.
+    /// Format number. Increase it when a key is removed or changes its meaning, not when a key is added. Results without a number precede
+    /// format 1.
     const FORMAT: u32 = 1;
 
-    /// How time was integrated, where one method holds for all of it.
+    /// Method of time integration, if one method applies to the entire result.
     fn integrator(&self) -> Option<Integrator> {
         None
     }
 }
 
-/// Everything in the file of a result.
+/// Complete content of the file of a result.
 #[derive(Serialize)]
 struct Whole<'a, T: Kept> {
     format: u32,
@@ -77,18 +77,18 @@ impl<'a, T: Kept> Whole<'a, T> {
     }
 }
 
-/// The text of a result.
+/// JSON text of a result.
 pub fn text<T: Kept>(found: &T) -> String {
     told(found, None)
 }
 
-/// The same with a sentence at its end that says what was found.
+/// JSON text of a result with a closing sentence about it.
 pub fn told<T: Kept>(found: &T, sentence: Option<&str>) -> String {
-    // What could fail are keys that are no text, and there are none.
+    // Serialization fails only for keys that are not text, and there are none.
     serde_json::to_string_pretty(&Whole::of(found, sentence)).unwrap_or_default() + "\n"
 }
 
-/// A result as a part of something larger.
+/// JSON value of a result, as a part of something larger.
 pub fn value<T: Kept>(found: &T) -> Value {
     serde_json::to_value(Whole::of(found, None)).unwrap_or_default()
 }
@@ -98,21 +98,21 @@ pub fn value<T: Kept>(found: &T) -> Value {
 pub struct Found<T> {
     /// The result.
     pub result: T,
-    /// What it says of itself.
+    /// Header of the result.
     pub head: Head,
 }
 
-/// What a result says of itself; results of before that was told say nothing.
+/// Header of a result; empty for results of versions without headers.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 pub struct Head {
     /// Number of its format.
     pub format: Option<u32>,
-    /// What made it.
+    /// Origin of the result.
     pub provenance: Option<Provenance>,
 }
 
 impl Head {
-    /// In words, a sentence.
+    /// Header as a sentence.
     pub fn words(&self) -> String {
         let by = self.provenance.as_ref().map(Provenance::words);
         match (self.format, by) {
@@ -127,7 +127,7 @@ impl Head {
 ///
 /// # Errors
 ///
-/// The text is not JSON, something in it is missing or of another kind, or a later version wrote it; the words name the place.
+/// The text is not JSON, a key is missing or has another type, or a later version wrote it. The error names the place.
 pub fn read<T: Kept>(text: &str) -> io::Result<Found<T>> {
     let head: Head = parse(text)?;
     if let Some(format) = head.format.filter(|format| *format > T::FORMAT) {
@@ -145,7 +145,7 @@ pub fn read<T: Kept>(text: &str) -> io::Result<Found<T>> {
     }
 }
 
-/// Whether a text is that of a result: a JSON object with the name of a case.
+/// True if a text is that of a result: a JSON object with the name of a case.
 pub fn is_one(text: &str) -> bool {
     #[derive(Deserialize)]
     struct Named {
@@ -155,7 +155,7 @@ pub fn is_one(text: &str) -> bool {
     parsed::<Named>(text).is_ok()
 }
 
-/// A value of JSON.
+/// Parses JSON.
 ///
 /// # Errors
 ///
@@ -164,7 +164,7 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> io::Result<T> {
     parsed(text).map_err(damaged)
 }
 
-/// A value of JSON, or what is wrong with it, with a JSON pointer where it is below the top.
+/// Parses JSON. The error has a JSON pointer to the place, unless this is the top.
 fn parsed<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut reader).map_err(|e| {

@@ -7,7 +7,7 @@ use super::ordered::Ordered;
 use super::run::{Accuracy, Bands};
 pub use crate::run::modes::{Kind, Limit, Sort};
 
-/// State about which a case moves.
+/// State about which a case is linearized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum About {
@@ -22,95 +22,95 @@ pub enum About {
 pub struct Modes {
     /// Name of the case.
     pub case: String,
-    /// State about which, in words.
+    /// State of linearization as text.
     pub about: String,
-    /// The same as one word; absent in results of before it was told.
+    /// State of linearization; absent in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<About>,
     /// Instant of loads and valves [s].
     pub at_s: f64,
-    /// Frequency near which modes were looked for [Hz].
+    /// Frequency near which modes were searched [Hz].
     pub near_hz: f64,
-    /// The one kind that was asked for.
+    /// The only kind of modes requested, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub of_kind: Option<Sort>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub unknowns: usize,
-    /// Finite eigenvalues that there are.
+    /// Number of finite eigenvalues.
     pub finite_eigenvalues: usize,
-    /// Whether none of the modes grows.
+    /// True if no mode grows.
     pub stable: bool,
-    /// The same in a sentence.
+    /// Stability in a sentence.
     pub verdict: String,
     /// The modes.
     pub modes: Vec<Mode>,
-    /// Whether the coupling can give more than it takes; nothing without bladders.
+    /// Passivity of the coupling; null without bladders.
     pub coupling: Option<Coupling>,
     /// Derivatives of all modes, by JSON pointers of numbers of the case.
     pub sensitivities: Ordered<Derivatives>,
     /// Work.
     pub solver: Work,
-    /// What to know before trusting them.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
 }
 
 impl Kept for Modes {}
 
-/// One mode; of a pair of conjugates that with positive frequency.
+/// One mode; of a conjugate pair the one with positive frequency.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
-    /// What it does.
+    /// Kind of the mode.
     pub kind: Kind,
-    /// Frequency [Hz], where it swings.
+    /// Frequency [Hz], if the mode oscillates.
     pub frequency_hz: Option<f64>,
-    /// Damping ratio, where it swings.
+    /// Damping ratio, if the mode oscillates.
     pub damping_ratio: Option<f64>,
     /// Growth rate [1/s].
     pub growth_per_s: f64,
-    /// Time in which it changes by a factor e [s].
+    /// Time in which the mode changes by a factor e [s].
     pub time_s: Option<f64>,
     /// Angular frequency [1/s].
     pub angular_frequency_per_s: f64,
-    /// Bound of the error of both [1/s].
+    /// Error bound of growth rate and angular frequency [1/s].
     pub error_per_s: Option<f64>,
-    /// Backward error of the pair.
+    /// Backward error of the eigenpair.
     pub residual: Option<f64>,
-    /// Share of the motion that is across the beam.
+    /// Transverse share of the motion.
     pub transverse_share: Option<f64>,
-    /// The same mode with every bladder sealed.
+    /// Similar mode with every bladder sealed.
     pub undrained: Option<Limit>,
-    /// The same mode with one pressure in each network.
+    /// Similar mode with one pressure in each network.
     pub drained: Option<Limit>,
-    /// The same mode on half the cells.
+    /// Similar mode on half the cells.
     pub on_half_the_cells: Option<Limit>,
-    /// Frequency to which both meshes point [Hz].
+    /// Frequency extrapolated from both meshes [Hz].
     pub extrapolated_frequency_hz: Option<f64>,
-    /// Growth rate to which both meshes point [1/s].
+    /// Growth rate extrapolated from both meshes [1/s].
     pub extrapolated_growth_per_s: Option<f64>,
-    /// Error of the frequency by the mesh, relative.
+    /// Relative error of the frequency by the mesh.
     pub mesh_error: Option<f64>,
-    /// Error of the growth rate by the mesh, relative.
+    /// Relative error of the growth rate by the mesh.
     pub rate_mesh_error: Option<f64>,
-    /// What uncertain numbers leave open of frequency, damping ratio and growth rate, by these keys.
+    /// Uncertainty bands of frequency, damping ratio and growth rate, by these keys.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,
 }
 
-/// Whether the coupling can give more than it takes.
+/// Passivity of the coupling: whether loads and pressures can gain energy from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coupling {
-    /// It cannot.
+    /// True if loads and pressures cannot gain energy.
     pub passive: bool,
-    /// Least eigenvalue of the symmetric part, 1 without coupling.
+    /// Least eigenvalue of the symmetric part; 1 without coupling.
     pub least_eigenvalue: f64,
-    /// Antisymmetric part over the coupling.
+    /// Antisymmetric part, relative to the coupling.
     pub reciprocity_defect: f64,
-    /// Loads that take least work.
+    /// Loads that do the least work.
     pub direction: Direction,
-    /// In a sentence.
+    /// Verdict in a sentence.
     pub words: String,
 }
 
@@ -127,24 +127,24 @@ pub struct Direction {
     pub lower_pressure_pa: f64,
 }
 
-/// Derivatives of all modes by one number of the case.
+/// Derivatives of all modes with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Derivatives {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// Of growth rates [1/s], mode after mode.
+    /// Derivatives of growth rates [1/s], mode after mode.
     pub growth_rate_1_s: Vec<Option<f64>>,
-    /// Of frequencies [Hz], mode after mode.
+    /// Derivatives of frequencies [Hz], mode after mode.
     pub frequency_hz: Vec<Option<f64>>,
 }
 
 /// Work of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
-    /// Factorisations.
+    /// Number of factorizations.
     pub factorizations: u64,
-    /// Solves.
+    /// Number of solves.
     pub solves: u64,
-    /// Whether all eigenvalues were computed at once.
+    /// True if all eigenvalues were computed at once.
     pub all_at_once: bool,
 }

@@ -1,4 +1,4 @@
-//! `optimum.json`: the numbers of a case with which a figure is largest or least.
+//! `optimum.json`: the numbers of a case for which a figure is largest or smallest.
 
 use super::Kept;
 pub use crate::study::optimize::found::*;

@@ -1,4 +1,4 @@
-//! Values by name, in an order of their own.
+//! Values by name, in their own order.
 
 use std::fmt;
 use std::marker::PhantomData;

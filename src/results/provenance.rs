@@ -1,5 +1,5 @@
-//! What made a result: the program, its libraries, the method. Nothing of the machine, so that the same program makes the same of a
-//! case everywhere.
+//! Origin of a result: program, libraries and method. It contains nothing of the machine, so that the same program gives the same result of
+//! a case on every machine.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,36 +8,36 @@ use crate::integrate::Counters;
 use crate::sparse::suitesparse_version;
 use crate::sundials::sundials_version;
 
-/// What made a result.
+/// Origin of a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Name of the program.
     pub program: String,
     /// Its version.
     pub version: String,
-    /// Commit of its sources, `+` behind it where they had been changed; absent where they were built outside a checkout.
+    /// Commit of its sources, followed by `+` if they had been changed; absent if they were built outside a checkout.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Version of SUNDIALS.
     pub sundials: String,
     /// Version of SuiteSparse.
     pub suitesparse: String,
-    /// How time was integrated, where it was and one method holds for all of the result.
+    /// Method of time integration, if one method applies to the entire result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<Integrator>,
 }
 
-/// What integrates in time.
+/// A method of time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Integrator {
     /// Its name; never "auto".
     pub name: Method,
-    /// Its order; of IDA the highest allowed.
+    /// Its order; for IDA the highest allowed order.
     pub order: u8,
 }
 
 impl Integrator {
-    /// Of what it has counted.
+    /// Integrator recorded in counters.
     pub fn of(counters: &Counters) -> Option<Self> {
         let order = counters.max_order;
         counters.method.map(|name| Self { name, order })
@@ -45,7 +45,7 @@ impl Integrator {
 }
 
 impl Provenance {
-    /// Of a result of this program.
+    /// Origin of a result of this program.
     pub fn of(method: Option<Integrator>) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME").into(),

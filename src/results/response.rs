@@ -12,7 +12,7 @@ pub struct Response {
     pub case: String,
     /// JSON pointer of the input.
     pub input: String,
-    /// State about which.
+    /// State of linearization.
     pub state: About,
     /// Instant of loads and valves [s].
     pub at_s: f64,
@@ -20,10 +20,10 @@ pub struct Response {
     pub unknowns: usize,
     /// Frequencies [Hz].
     pub frequency_hz: Vec<f64>,
-    /// The first output.
+    /// Curve of the first output.
     #[serde(flatten)]
     pub first: Curve,
-    /// Further outputs.
+    /// Curves of further outputs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub further: Vec<Curve>,
     /// Poles in the band, the lowest first.
@@ -41,7 +41,7 @@ impl Response {
     }
 }
 
-/// The transfer function of an output, in its unit over that of the input, for exp(i ω t).
+/// Transfer function to an output, in its unit over that of the input, for exp(i ω t).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Key of the output: `tip_u1_m`.
@@ -52,7 +52,7 @@ pub struct Curve {
     pub real: Vec<f64>,
     /// Imaginary part at each frequency.
     pub imag: Vec<f64>,
-    /// Estimated error by the meshes at each frequency, absolute; absent where it is not known.
+    /// Estimated absolute error by the mesh at each frequency; absent if unknown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<f64>,
     /// Local maxima of the amplitude.
@@ -60,7 +60,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Median over frequencies of the relative error, and the largest error over the largest amplitude.
+    /// Median of the relative error over frequencies, and largest error relative to the largest amplitude.
     pub fn errors(&self) -> Option<[f64; 2]> {
         let sizes = || self.real.iter().zip(&self.imag).map(|(re, im)| re.hypot(*im));
         let mut relative: Vec<f64> = self
@@ -88,7 +88,7 @@ pub struct Peak {
     pub damping_ratio: Option<f64>,
 }
 
-/// A pole `s`; of a pair of conjugates that with positive imaginary part.
+/// A pole `s`; of a conjugate pair the one with positive imaginary part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pole {
     /// Real part [1/s].

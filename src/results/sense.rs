@@ -1,4 +1,4 @@
-//! `sense.json`: loads behind measured pressures.
+//! `sense.json`: loads estimated from measured pressures.
 
 use super::Kept;
 pub use crate::study::sense::sensed::{BandKind, Banded, Chosen, Combination, Noise, NoiseFrom, Row, Sensed, Unknown};

@@ -1,4 +1,4 @@
-//! `study.json`, `effects.json`, and a comparison: many runs, one question.
+//! `study.json`, `effects.json`, and comparisons of runs.
 
 use super::Kept;
 pub use crate::study::accuracy::Study;

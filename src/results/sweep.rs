@@ -7,24 +7,24 @@ use serde::{Deserialize, Serialize};
 use super::Kept;
 pub use crate::study::sweep::{Plan, Row, Shard};
 
-/// What a table of designs is about, and how far it has come.
+/// Description and progress of a table of designs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweep {
     /// Name of the first case.
     pub case: String,
-    /// As it was asked for.
+    /// The requested plan.
     pub plan: Plan,
-    /// Whether every design of the plan, or of its shard, has a row.
+    /// True if every design of the plan, or of its shard, has a row.
     pub complete: bool,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Designs without one.
+    /// Number of designs without a row.
     pub missing: usize,
-    /// Rows by status.
+    /// Number of rows by status.
     pub statuses: BTreeMap<String, usize>,
     /// Columns of the table, in its order.
     pub columns: Vec<Column>,
-    /// What to know of the table as a whole.
+    /// Warnings about the table as a whole.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
@@ -32,11 +32,11 @@ pub struct Sweep {
 /// A column of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// Its heading.
+    /// Heading of the column.
     pub name: String,
-    /// Its array in `sweep.npz`; nothing where it is text.
+    /// Name of its array in `sweep.npz`; null for text.
     pub array: Option<String>,
-    /// Its unit: `1` where there is none, `as in the case` where the case's key has it.
+    /// Unit: `1` if dimensionless, `as in the case` if the case's key contains it.
     pub unit: String,
 }
 

@@ -1,4 +1,4 @@
-//! `uncertainty.json`: what uncertain numbers of a case leave open of its figures.
+//! `uncertainty.json`: uncertainty of the figures from uncertain numbers of a case.
 
 use super::Kept;
 pub use crate::study::uncertain::{FirstOrder, Index, Input, Spread, Uncertainty};

@@ -1,4 +1,4 @@
-//! A row of `verify --json`: an exact result against a computed one.
+//! A row of `verify --json`: a computed result compared with an exact one.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,23 +7,23 @@ use crate::error;
 use crate::run::null;
 use crate::study::verify::{self, Measure};
 
-/// An exact result with what came of it.
+/// An exact result, and the computed figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Name.
     pub name: String,
-    /// Where the answer comes from.
+    /// Source of the exact result.
     pub source: String,
-    /// What it shows.
+    /// Goal of the comparison.
     pub goal: String,
-    /// Why the tolerances are what they are.
+    /// Reason for the tolerances.
     pub tolerance_reason: String,
-    /// Whether all figures are as they should be, and there is one.
+    /// True if there is at least one figure and all figures pass.
     pub passed: bool,
-    /// The figures, where they could be computed.
+    /// Figures, if they could be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub figures: Option<Vec<Figure>>,
-    /// Why they could not.
+    /// Reason why the figures could not be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
@@ -31,7 +31,7 @@ pub struct Row {
 impl Kept for Row {}
 
 impl Row {
-    /// Of a row and its figures.
+    /// Combines a row and its figures.
     pub fn of(row: &verify::Row, figures: &error::Result<Vec<verify::Figure>>) -> Self {
         Self {
             name: row.name.clone(),
@@ -50,9 +50,9 @@ impl Row {
 /// One number, computed and exact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figure {
-    /// What it is, with its unit.
+    /// Quantity with its unit.
     pub quantity: String,
-    /// As computed.
+    /// Computed value.
     #[serde(deserialize_with = "null::number")]
     pub computed: f64,
     /// Exact value.
@@ -61,20 +61,20 @@ pub struct Figure {
     /// Error.
     #[serde(deserialize_with = "null::number")]
     pub error: f64,
-    /// Relative or absolute.
+    /// Measure of the error: relative or absolute.
     pub error_is: Measure,
     /// Largest error accepted.
     pub tolerance: f64,
-    /// Order in the mesh size.
+    /// Order of convergence in the mesh size.
     pub order: Option<f64>,
-    /// Error of the limit to which meshes point.
+    /// Error of the value extrapolated over the meshes.
     pub limit_error: Option<f64>,
-    /// The largest accepted.
+    /// Largest accepted error of the extrapolated value.
     pub limit_tolerance: Option<f64>,
-    /// Error that the meshes alone show.
+    /// Error estimated from the meshes alone.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub estimate: Option<f64>,
-    /// Whether error, order, limit and estimate are as they should be.
+    /// True if error, order, extrapolated value and estimate are as required.
     pub passed: bool,
 }
 

@@ -1,7 +1,7 @@
-//! Checkpoints: everything from which a run goes on as if it had not been interrupted.
+//! Checkpoints: the data from which a run resumes as if it had not been interrupted.
 //!
-//! At every planned checkpoint time the uninterrupted run too starts its integrator afresh, with new factors and
-//! integrals from zero, so that a resumed run repeats it bit for bit.
+//! The uninterrupted run also restarts its integrator at every planned checkpoint time, with new factors and integrals
+//! from zero. A resumed run therefore repeats it bit for bit.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,35 +18,35 @@ use crate::error::{Error, Result};
 pub struct Checkpoint {
     /// Version of the program that wrote it.
     pub version: String,
-    /// The case as resolved, word for word; a run with another case does not go on from here.
+    /// Resolved case as JSON text. A run of another case does not resume from this checkpoint.
     pub case: String,
     /// Simulated time [s].
     pub t: f64,
-    /// Which of the run's stops this is.
+    /// Index of this stop among the stops of the run.
     pub stop: usize,
     /// Unknowns, scaled.
     pub y: Vec<f64>,
-    /// Their rates, scaled.
+    /// Rates of the unknowns, scaled.
     pub yp: Vec<f64>,
-    /// Integrals up to here.
+    /// Integrals up to this time.
     pub integrals: Vec<f64>,
     /// Number of the next output.
     pub next_output: u64,
     /// Work done so far.
     pub counters: Counters,
-    /// What the observer has seen.
+    /// Data accumulated by the observer.
     pub observed: Observed,
-    /// Sensitivities, where there are some.
+    /// Sensitivities, if the run computes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forward: Option<Kept>,
 }
 
 impl Checkpoint {
-    /// Checks that a run of this case can go on from here.
+    /// Checks that a run of this case can resume from this checkpoint.
     ///
     /// # Errors
     ///
-    /// Another case or version of the program wrote it, or its numbers are not as many as the case has.
+    /// Another case or version of the program wrote it, its arrays do not fit the case, or a number is not finite.
     pub fn fits(&self, case: &Case, system: &System) -> Result<()> {
         let fault = |why: &str| Err(Error::Usage(format!("the checkpoint {why}; nothing was changed")));
         if self.case != case.resolved_json() || self.version != VERSION {

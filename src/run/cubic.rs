@@ -1,17 +1,17 @@
-//! Between the ends of a step: the cubic through values and rates at both, or through values at four places.
+//! Interpolation within a time step: a cubic through values and rates at both ends, or through values at four positions.
 
 use serde::{Deserialize, Serialize};
 
 use crate::discrete::glance::Moving;
 
-/// A cubic over a step, its place counted from 0 to 1.
+/// Cubic over a step, as a function of the relative position from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cubic {
-    /// Coefficients of the powers of the place.
+    /// Coefficients of the powers of the position, from the constant up.
     c: [f64; 4],
 }
 
-/// Places and weights of Gauss' rule with four points on 0 to 1: exact for the square of a cubic.
+/// Nodes and weights of the four-point Gauss rule on 0 to 1; exact for the square of a cubic.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),
@@ -20,7 +20,7 @@ const GAUSS: [(f64, f64); 4] = [
 ];
 
 impl Cubic {
-    /// Hermite's, through values and rates at both ends of a step of length `h` [s].
+    /// Hermite interpolant through values and rates at both ends of a step of length `h` [s].
     pub fn new([a, ra]: Moving, [b, rb]: Moving, h: f64) -> Self {
         let (rise, ra, rb) = (b - a, h * ra, h * rb);
         Self {
@@ -28,9 +28,9 @@ impl Cubic {
         }
     }
 
-    /// Lagrange's, through values at 0, 1/3, 2/3 and 1: off by no more than a 1944th of `h^4` times the fourth derivative.
+    /// Lagrange interpolant through values at 0, 1/3, 2/3 and 1. Its error is at most `h^4/1944` times the fourth derivative.
     pub fn through([a, b, c, d]: [f64; 4]) -> Self {
-        // by differences to the first, which lose no digits of a value that hardly moves
+        // differences to the first value avoid cancellation if the value changes little
         let [b, c, d] = [b - a, c - a, d - a];
         Self {
             c: [
@@ -42,20 +42,20 @@ impl Cubic {
         }
     }
 
-    /// The same, with the other sign where `sign` is -1.
+    /// Returns the cubic times `sign` (1 or -1).
     pub fn signed(self, sign: f64) -> Self {
         Self {
             c: self.c.map(|c| sign * c),
         }
     }
 
-    /// Value at a place.
+    /// Value at a position.
     pub fn at(&self, x: f64) -> f64 {
         let [a, b, c, d] = self.c;
         a + x * (b + x * (c + x * d))
     }
 
-    /// Places between 0 and 1 at which it turns.
+    /// Positions between 0 and 1 at which the cubic has an extremum.
     pub fn turns(&self) -> impl Iterator<Item = f64> + use<> {
         let [_, b, c, d] = self.c;
         let (p, q) = (2.0 * c, 3.0 * d);
@@ -65,12 +65,13 @@ impl Cubic {
         [s / q, b / s].into_iter().filter(|x| *x > 0.0 && *x < 1.0)
     }
 
-    /// First place at which it is above `limit`, given that it is not so at 0 and is at the end of `upto`.
+    /// Position at which the cubic crosses `limit` upwards. It must not exceed `limit` at 0, and must exceed it at `upto`.
     pub fn crosses(&self, limit: f64, upto: f64) -> f64 {
         self.between([0.0, upto], limit)
     }
 
-    /// Place at which it passes `limit` between one at which it is not above and one at which it is; the latter side of it.
+    /// Bisects for the position at which the cubic crosses `limit`, between one at which it is not above and one at which it is.
+    /// Returns the side above the limit.
     pub fn between(&self, [mut below, mut above]: [f64; 2], limit: f64) -> f64 {
         for _ in 0..40 {
             let middle = 0.5 * (below + above);
@@ -84,7 +85,7 @@ impl Cubic {
     }
 }
 
-/// `∫ f dx` from a place to 1, exact where f is a polynomial of degree seven.
+/// `∫ f dx` from a position to 1; exact if f is a polynomial of degree seven or less.
 pub fn integral(from: f64, f: impl Fn(f64) -> f64) -> f64 {
     let width = 1.0 - from;
     GAUSS.iter().map(|(x, w)| width * w * f(from + width * x)).sum()

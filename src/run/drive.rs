@@ -1,4 +1,4 @@
-//! The common period of everything that acts on a case, once whatever starts smoothly has started.
+//! Common period of all signals that act on a case, after their smooth starts.
 
 use crate::case::schema::Case;
 use crate::error::{Error, Result};
@@ -6,28 +6,28 @@ use crate::functions::signals::{Signal, Sine};
 use crate::model::Model;
 use crate::run::equilibrium::TIGHT;
 
-/// Periods of two signals that fit into a common one this often are told apart.
+/// Largest number of cycles of the slowest signal in a common period.
 const MOST_CYCLES: u32 = 64;
-/// Frequencies count as commensurable when their ratio is within this of a ratio of small integers.
+/// Relative tolerance within which a frequency ratio counts as one of small integers.
 const COMMENSURABLE: f64 = 1e-9;
-/// Time, over that of the steepest rise of a sigmoid, after which nothing of it is left but round-off: `exp(-37)`.
+/// Time, in units of a sigmoid's inverse steepness, after which its distance from the limit is round-off: `exp(-37)`.
 const ROUND_OFF: f64 = 37.0;
 
-/// What drives a case in the long run.
+/// Periodic excitation of a case in the long run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     /// Common period [s].
     pub period: f64,
-    /// Whether any signal changes in the long run; else the period is the one that was asked for.
+    /// True if any signal changes in the long run; otherwise the period is the requested one.
     pub driven: bool,
 }
 
-/// The common period of all signals of a case, their smooth starts left aside: constants have any, ramps and tables come
-/// to rest, sines, their sums and products go on. `asked` [s] is the period of a case in which nothing goes on.
+/// Returns the common period of all signals of a case, without their smooth starts. A constant has any period, ramps and
+/// tables come to rest, and sines, their sums and products continue. `asked` [s] is the period of a case without periodic signal.
 ///
 /// # Errors
-/// [`Error::Usage`] that names the signal which is not periodic, the frequencies that have no common period, or says that
-/// nothing goes on and no period was asked for.
+/// [`Error::Usage`]: a signal is not periodic, or the frequencies have no common period. Also if no signal is periodic and no valid
+/// period was requested, or if a period was requested although the case has its own.
 pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     let mut frequencies = vec![];
     let mut endless = None;
@@ -82,16 +82,16 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     }
 }
 
-/// True if everything that acts comes to rest in the long run.
+/// True if every signal becomes constant in the long run.
 pub fn comes_to_rest(model: &Model) -> bool {
     let mut rests = true;
     model.each_signal(|signal| rests &= settled(signal).is_constant());
     rests
 }
 
-/// What a signal becomes in the long run: sines without their smooth start, ramps and tables at their last value, unless these repeat.
+/// Long-run form of a signal: sines without their smooth start, ramps and tables at their last value, unless these repeat.
 ///
-/// Polynomials of degree one and more stay what they are: they come to no rest.
+/// Polynomials of degree one and more remain unchanged: they never become constant.
 pub fn settled(signal: &Signal) -> Signal {
     match signal {
         _ if signal.is_constant() => Signal::Constant(signal.value(0.0)),
@@ -110,7 +110,7 @@ pub fn settled(signal: &Signal) -> Signal {
     }
 }
 
-/// The same of a valve: one that moves and comes to rest as good as shut is shut.
+/// Long-run form of a valve's opening: one that moves and settles at or below `TIGHT` becomes zero.
 pub fn settled_opening(opening: &Signal) -> Signal {
     match settled(opening) {
         rests if !opening.is_constant() && rests.is_constant() && rests.value(0.0) <= TIGHT => Signal::Constant(0.0),
@@ -118,7 +118,7 @@ pub fn settled_opening(opening: &Signal) -> Signal {
     }
 }
 
-/// Instant from which on a signal is what it is in the long run [s]: to round-off, where it only comes near.
+/// Time from which on a signal has its long-run form [s], to round-off for a sigmoid.
 pub fn settles_at(signal: &Signal) -> f64 {
     let latest = |times: &mut dyn Iterator<Item = f64>| times.fold(0.0, f64::max);
     match signal {
@@ -133,7 +133,7 @@ pub fn settles_at(signal: &Signal) -> f64 {
     }
 }
 
-/// Period of the first table that repeats with kinks or jumps [s].
+/// Period [s] of the first repeating table that has kinks or jumps.
 fn kinked_period(signal: &Signal, found: &mut Option<f64>) {
     match signal {
         Signal::Table(table) if table.repeat && !table.is_smooth() => *found = found.or(table.period_s()),
@@ -142,7 +142,7 @@ fn kinked_period(signal: &Signal, found: &mut Option<f64>) {
     }
 }
 
-/// A settled signal repeats itself, if its frequencies do, and has no kinks or jumps, at which no step of a cycle ends.
+/// True if a settled signal is periodic and without kinks or jumps. No step of a cycle ends at kinks or jumps.
 fn is_periodic(signal: &Signal) -> bool {
     match signal {
         Signal::Polynomial(_) => false,
@@ -152,7 +152,7 @@ fn is_periodic(signal: &Signal) -> bool {
     }
 }
 
-/// Frequencies of sines and of tables that repeat in a settled signal [Hz].
+/// Collects the frequencies [Hz] of sines and repeating tables in a settled signal.
 fn collect(signal: &Signal, out: &mut Vec<f64>) {
     match signal {
         Signal::Sine(sine) if !signal.is_constant() => out.push(sine.frequency_hz),
@@ -162,7 +162,7 @@ fn collect(signal: &Signal, out: &mut Vec<f64>) {
     }
 }
 
-/// The shortest time [s] that is a whole number of cycles of every frequency [Hz].
+/// Shortest time [s] that is a whole number of cycles of every frequency [Hz]; `None` if it has too many cycles.
 pub fn common_period(frequencies: &[f64]) -> Option<f64> {
     let slowest = frequencies.iter().copied().fold(f64::INFINITY, f64::min);
     (1..=MOST_CYCLES).map(f64::from).find_map(|cycles| {

@@ -1,14 +1,14 @@
-//! Sizes of what drives a beam.
+//! Magnitudes of the loads and motions that drive a beam.
 
 use crate::discrete::TimeData;
 use crate::discrete::time_data::PointForces;
 use crate::numerics::Planar;
 
-/// Kinds of what drives a beam: loads along x and z and their moments, forces and followers of ends and places, moments of ends, their motions
-/// and slopes, pressures and flows of ports.
+/// Number of kinds of excitation: distributed loads along x and z and their moments; forces at ends and points along x and z;
+/// follower forces; moments and slopes of ends; motions of ends along x and z; pressures and flows of ports.
 pub(super) const KINDS: usize = 10;
 
-/// Sizes of what drives the beam at an instant, by kind.
+/// Magnitude of each kind of excitation at an instant.
 pub(super) fn sizes(now: &TimeData) -> [f64; KINDS] {
     let size = |most: f64, v: &f64| most.max(v.abs());
     let largest = |values: &[f64]| values.iter().fold(0.0, size);

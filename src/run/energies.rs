@@ -1,7 +1,7 @@
-//! Energies of a run and their errors: every figure of energy beside the balance over the same time.
+//! Energies of a run and their errors: each energy figure is compared with the energy balance over the same time.
 //!
-//! With H harvested, D dissipated otherwise, P what a coupling without reciprocity and the published formulation add, and r
-//! the residual of the balance, over any time
+//! Symbols: H is the harvested energy, D other dissipation, r the residual of the balance. P is the energy added by a
+//! nonreciprocal coupling and by the published formulation. Over any time
 //!
 //! ```text
 //! W - ΔE = H + D - P - Δr                    W put in, E stored
@@ -9,9 +9,9 @@
 //! efficiency = H/W over the run (3.2),  H/(H + D - P) over the window
 //! ```
 //!
-//! What is stored when the window begins is not put in within it: over the window the quotient has `W - ΔE` below, and takes it
-//! from where it went, since Δr is an error of the works, which are differences of what goes in and comes back, more than of
-//! losses, which only grow. A quotient whose denominator is below the numerical error of the run has no value:
+//! Energy stored before the window is no input within it, so the window efficiency divides by `W - ΔE`. This is computed as
+//! `H + D - P`: Δr is mainly an error of the works, which are differences of energy put in and returned. Losses only grow and
+//! have smaller errors. A quotient whose denominator is below the numerical error of the run has no value:
 //!
 //! ```text
 //! |denominator| <= max(E_f, max(rtol², 1e-12) max(|E|, |W|))        E_f the energy of a displacement that is round-off
@@ -28,13 +28,13 @@ use crate::discrete::quantities::{Group, Interest, Row};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
-/// Open by more than this part of a figure: it is warned of.
+/// Relative error of a figure above which the run warns.
 const OPEN: f64 = 0.1;
-/// Figures of energy below this part of the largest energy stored are what remains of larger ones that cancel.
+/// Energy figures below this fraction of the largest stored energy are remainders of larger terms that cancel.
 pub const REMAINDER: f64 = 3e-3;
-/// An efficiency is above one, or below zero, when it is so by more than its round-off.
+/// Amount by which an efficiency must be above one, or below zero, to exceed its rounding error.
 const ROUND_OFF: f64 = 1e-6;
-/// Rounding error of energies that are sums over the beam and the run, relative to the largest one.
+/// Rounding error of energies summed over the beam and the run, relative to the largest energy.
 pub const ROUNDING: f64 = 1e-12;
 
 /// Energies at an instant, or gains over a time [J].
@@ -64,7 +64,7 @@ impl Parts {
     }
 }
 
-/// Since an instant: what was there with the residual of the balance, and between what it has been from then on [J].
+/// Energies and residual of the balance at an instant, and the range of the residual since then [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Since {
     start: Option<(Parts, f64)>,
@@ -77,7 +77,7 @@ impl Since {
         self.residual = Some([low.min(residual), high.max(residual)]);
     }
 
-    /// How far the balance has opened.
+    /// Largest change of the residual since the instant [J].
     fn open(&self) -> f64 {
         match (self.start, self.residual) {
             (Some((_, first)), Some([low, high])) => (high - first).max(first - low).max(0.0),
@@ -90,18 +90,18 @@ impl Since {
     }
 }
 
-/// Follows the energies of a history.
+/// Accumulates the energies of a history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
     window_start: f64,
     turbines: bool,
     last: Parts,
-    /// Of the outputs [J].
+    /// Largest stored energy of the outputs [J].
     pub largest_stored: f64,
-    /// Likewise of what was put in [J].
+    /// Largest input energy of the outputs [J].
     #[serde(default)]
     pub largest_input: f64,
-    /// Energies that are round-off [J].
+    /// Energy below which values are round-off [J].
     #[serde(default)]
     floor: f64,
     run: Since,
@@ -109,7 +109,7 @@ pub struct Energies {
 }
 
 impl Energies {
-    /// For a case in which energies below a floor [J] are round-off.
+    /// Creates the accumulator of a case in which energies below `floor` [J] are round-off.
     pub fn new(case: &Case, floor: f64) -> Self {
         Self {
             floor,
@@ -119,7 +119,7 @@ impl Energies {
         }
     }
 
-    /// Takes one row, as of the history.
+    /// Adds one row of the history.
     pub fn take(&mut self, row: &Row) {
         let now = Parts {
             input: row.sum(Group::PutIn),
@@ -139,7 +139,7 @@ impl Energies {
         }
     }
 
-    /// Takes the residual of the balance [J] at any time [s].
+    /// Adds the residual of the balance [J] at any time [s].
     pub fn see(&mut self, t: f64, residual: f64) {
         self.run.see(residual);
         if t >= self.window_start {
@@ -147,14 +147,14 @@ impl Energies {
         }
     }
 
-    /// Numerical error of energies of a run with a tolerance [J].
+    /// Numerical error [J] of the energies of a run with relative tolerance `rtol`.
     fn numerical_error(&self, rtol: f64) -> f64 {
         let relative = (rtol * rtol).max(ROUNDING);
         self.floor.max(relative * self.largest_stored.max(self.largest_input))
     }
 
-    /// Gives every figure of energy of a run with a tolerance its error, and the window its efficiency; an efficiency of what is numerical error
-    /// alone has no value.
+    /// Sets the error of every energy figure of a run with relative tolerance `rtol`, and the efficiency of the window. An
+    /// efficiency whose denominator is below the numerical error has no value.
     pub fn complete(&self, quantities: &mut BTreeMap<String, Quantity>, rtol: f64) {
         let (run, window) = (self.run.gained(&self.last), self.window.gained(&self.last));
         let (opened, open) = (self.run.open(), self.window.open());
@@ -183,7 +183,7 @@ impl Energies {
         }
     }
 
-    /// Which figures the balance does not carry, and what is strange about an efficiency; none when all is well.
+    /// Warns of energy figures with a large error of the balance, and of efficiencies outside 0 to 1. `None` if there are none.
     pub fn warning(&self, quantities: &BTreeMap<String, Quantity>) -> Option<String> {
         let mut all = vec![];
         let times = [("over the run", self.run), ("in the window", self.window)];
@@ -225,8 +225,8 @@ impl Energies {
     }
 }
 
-/// Largest error over the window of an efficiency and of energies, but of those that remain of much larger ones, the largest of
-/// which is given [J].
+/// Largest error over the window of the efficiency and the energies. Energies that are remainders relative to `largest` [J]
+/// do not count.
 pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -> Option<f64> {
     let all = [Interest::InputEnergy, Interest::HarvestedEnergy, Interest::Efficiency];
     let counts = |of: Interest, value: f64| of == Interest::Efficiency || value.abs() > REMAINDER * largest;
@@ -238,12 +238,12 @@ pub fn open_over_window(quantities: &BTreeMap<String, Quantity>, largest: f64) -
     figures.reduce(f64::max)
 }
 
-/// Whether a figure that is open by so much of it is to be warned of.
+/// True if a figure with this relative error needs a warning.
 pub fn too_open(error: f64) -> bool {
     error > OPEN
 }
 
-/// Where an efficiency beyond its bounds comes from.
+/// Explains an efficiency outside 0 to 1.
 fn why(gained: &Parts) -> String {
     if gained.added.abs() > ROUND_OFF * gained.harvested.abs() {
         return format!(

@@ -1,8 +1,7 @@
-//! The quantities of interest of a run: last value, largest value, and what happened in the window at its end.
+//! Quantities of interest of a run: last value, largest value, and figures of the window at its end.
 //!
-//! Largest values and root mean squares are those of the motion: of every step's end, of the turning points between, and of
-//! the output times; last values and increments are those of the run's and the window's ends, where the state is taken whether
-//! there is an output or not.
+//! Largest values and root mean squares describe the motion: they use the end of every step, the extrema between, and the
+//! output times. Last values and increments use the states at the ends of run and window, also if there is no output.
 
 use std::collections::BTreeMap;
 
@@ -17,25 +16,25 @@ use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::quantities::{Interest, Row, Source};
 
-/// Share of the characteristic size below which nothing is a motion.
+/// Fraction of the characteristic size below which a value does not count as motion.
 const FLOOR: f64 = 1e-9;
 
-/// Follows the motion and the history.
+/// Accumulates the quantities of interest from the motion and the history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     window_start: f64,
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
-    /// Of the quantities that the run has, in the order of [`Interest::ALL`].
+    /// Tracks of the available quantities, in the order of [`Interest::ALL`].
     tracks: Vec<Track>,
-    /// Whether there is fluid, whether there are turbines.
+    /// True if there is fluid, and if there are turbines.
     has: [bool; 2],
-    /// Length of the beam [m] and Young's modulus [Pa]: sizes against which motion is nothing.
+    /// Length of the beam [m] and Young's modulus [Pa]: reference sizes of negligible motion.
     sizes: [f64; 2],
 }
 
 impl Figures {
-    /// Of a case and its system.
+    /// Creates the figures of a case and its system.
     pub fn new(case: &Case, system: &System) -> Self {
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         let has = [system.fluid.is_some(), turbines];
@@ -52,7 +51,7 @@ impl Figures {
         Interest::of(self.has).zip(&mut self.tracks)
     }
 
-    /// Takes one row, as of the history, with the look at the same state.
+    /// Adds one row of the history and the glance at the same state.
     pub fn take(&mut self, row: &Row, glance: &Glance) {
         let in_window = row.t() >= self.window_start;
         for (one, track) in self.each() {
@@ -65,7 +64,7 @@ impl Figures {
         }
     }
 
-    /// Takes a state at any time.
+    /// Adds a state at any time.
     pub fn see(&mut self, glance: &Glance) {
         let in_window = glance.t >= self.window_start;
         for (one, track) in self.each() {
@@ -75,7 +74,7 @@ impl Figures {
         }
     }
 
-    /// Integrates squares over a step, as far as it lies in the window.
+    /// Integrates squares over the part of a step that lies in the window.
     pub fn span(&mut self, before: &Glance, now: &Glance) {
         let h = now.t - before.t;
         if now.t <= self.window_start || h <= 0.0 {
@@ -101,8 +100,8 @@ impl Figures {
         }
     }
 
-    /// Takes a turning point of the cubic between two steps, so that largest values change steadily with the motion. Returns whether
-    /// it is worth a look at the state itself: much larger than what has been seen, and no mere round-off.
+    /// Adds an extremum of the cubic between two steps, so that largest values vary continuously with the motion. Returns true
+    /// if the state itself must be evaluated: the extremum is much larger than previous values and above round-off.
     pub fn turn(&mut self, which: Watched, value: f64, t: f64) -> bool {
         let size = value.abs();
         let in_window = t >= self.window_start;
@@ -126,7 +125,7 @@ impl Figures {
         worth
     }
 
-    /// Instants after a time [s] at which largest values were reached.
+    /// Times after `after` [s] at which largest values were reached.
     pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> {
         self.tracks.iter().flat_map(move |track| track.reached(after))
     }
@@ -139,7 +138,7 @@ impl Figures {
     /// The quantities by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let [input, harvested] = [Interest::InputEnergy, Interest::HarvestedEnergy].map(|of| self.track(of));
-        // before the motion has come to the window there is nothing to tell of it
+        // the window has no figures before the motion reaches it
         let reached = self.window_time > 0.0 || input.is_some_and(Track::in_window);
         let ratio = |of: fn(&Track) -> f64| {
             let ratio = of(harvested?) / of(input?);
@@ -173,13 +172,13 @@ impl Figures {
     }
 }
 
-/// Whether what is followed has a sign: what is largest anywhere is a size.
+/// True if the quantity has a sign. A largest value over the beam is a magnitude.
 fn has_sign(watched: &[Watched]) -> bool {
     let sizes = [Watched::Largest1, Watched::Largest3];
     watched.iter().all(|which| !sizes.contains(which))
 }
 
-/// A value as its quantity has it: of several the larger in size.
+/// Value of a quantity: of several watched values the one of largest magnitude.
 fn value(glance: &Glance, watched: &[Watched]) -> f64 {
     match watched {
         [which] => sized(glance, *which)[0],
@@ -190,7 +189,7 @@ fn value(glance: &Glance, watched: &[Watched]) -> f64 {
     }
 }
 
-/// A value with its rate; of what is largest anywhere, the size.
+/// Value and its rate; the magnitude if the value is the largest one over the beam.
 pub fn sized(glance: &Glance, which: Watched) -> [f64; 2] {
     let [value, rate] = glance.of(which);
     match which {

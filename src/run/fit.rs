@@ -1,4 +1,4 @@
-//! Which simple law explains a growing series: an exponential, a straight line, a power of time.
+//! Simple laws fitted to a growing series: an exponential, a straight line, a power of time.
 
 /// Points `(t, d)` with `t, d > 0`.
 type Points<'a> = &'a [(f64, f64)];
@@ -13,8 +13,8 @@ pub fn exponential(points: Points<'_>) -> Option<(f64, f64)> {
     Some((slope, correlation))
 }
 
-/// Whether an exponential is nearer to the points than a straight line and a power of time: sums of squares of relative
-/// distances.
+/// True if an exponential fits the points better than a straight line and a power of time, by the sum of squared relative
+/// deviations.
 pub fn is_exponential(points: Points<'_>) -> bool {
     let misses = |law: &dyn Fn(f64) -> f64| -> f64 { points.iter().map(|(t, d)| (law(*t) / d - 1.0).powi(2)).sum() };
     let of_logarithms = |abscissa: &dyn Fn(f64) -> f64| {
@@ -30,7 +30,7 @@ pub fn is_exponential(points: Points<'_>) -> bool {
     exponential < straight.min(power)
 }
 
-/// Straight line by least squares with weights of the ordinate: value at zero, slope, squared correlation.
+/// Straight line by weighted least squares, with weights from the ordinate: value at zero, slope, squared correlation.
 fn line(points: &[(f64, f64)], weight: impl Fn(f64) -> f64) -> Option<(f64, f64, f64)> {
     let total: f64 = points.iter().map(|p| weight(p.1)).sum();
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(|p| weight(p.1) * f(p)).sum::<f64>() / total;

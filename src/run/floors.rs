@@ -1,4 +1,4 @@
-//! Sizes below which what a run finds is round-off, known from the case alone.
+//! Rounding scales of a case: magnitudes below which results of a run are round-off.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,14 +7,14 @@ use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::Model;
 
-/// Quantities whose size is below this part of others of their unit, or of what the case is expected to do, are round-off.
+/// Quantities below this fraction of others of their unit, or of the magnitude expected of the case, are round-off.
 pub const NOTHING: f64 = 1e-6;
-/// Displacements below this part of the length, and pressures below this part of the modulus, need not be more than round-off;
-/// they count where the case is expected to do no more.
+/// Displacements below this fraction of the length, and pressures below this fraction of the modulus, may be round-off. The
+/// rounding scale is smaller if the case is expected to move less.
 const SMALL: f64 = 1e-9;
 
-/// Of a run in which nothing of a kind happens every figure of that kind is round-off, and none stands beside a larger one. One
-/// function for whatever is told relative to what was seen: balances, errors of energies, estimates, accuracies.
+/// Rounding scale of each kind of quantity. If a run does not excite a kind, all its values are round-off, and there is no
+/// larger value for comparison. Balances, errors of energies, estimates and accuracies are relative to at least these scales.
 ///
 /// ```text
 /// d  of displacements    energy EI d²/l³    momentum m l d ω    angular momentum m l² d ω    ω = (EI/m)^(1/2)/l²
@@ -23,7 +23,7 @@ const SMALL: f64 = 1e-9;
 pub struct Floors {
     /// Length of the beam [m].
     pub length: f64,
-    /// Displacement [m], and angle times length.
+    /// Displacement [m]; also angle times length.
     pub displacement: f64,
     /// Pressure [Pa].
     pub pressure: f64,
@@ -33,18 +33,18 @@ pub struct Floors {
     /// Momentum [N s].
     #[serde(default)]
     pub momentum: f64,
-    /// Volume that a floor of pressure stores in a bladder [m^3].
+    /// Volume stored in a bladder at the rounding scale of pressure [m^3].
     #[serde(default)]
     pub volume: f64,
 }
 
 impl Floors {
-    /// Of a case.
+    /// Rounding scales of a case.
     pub fn of(case: &Case) -> Result<Self> {
         Ok(Self::of_model(case, &Model::new(case)?))
     }
 
-    /// Of a case and its model.
+    /// Rounding scales of a case and its model.
     pub fn of_model(case: &Case, model: &Model) -> Self {
         let (scales, section) = (&model.scales, &model.section);
         let (length, modulus) = (model.length, case.beam.young_modulus_pa);
@@ -64,7 +64,7 @@ impl Floors {
         }
     }
 
-    /// In the unit that a quantity is compared in, beside a largest energy [J].
+    /// Rounding scale in the unit in which a quantity is compared; `energy` [J] is the largest energy.
     pub fn of_unit(&self, unit: &str, energy: f64) -> f64 {
         match unit {
             "m" => self.displacement,
@@ -74,7 +74,7 @@ impl Floors {
         }
     }
 
-    /// Unit and size in which a quantity of a name and size is compared with others: an angle as the displacement that it makes.
+    /// Unit and magnitude in which a quantity is compared with others; an angle is compared as angle times length.
     pub fn weighed(&self, name: &str, size: f64) -> (&'static str, f64) {
         match Interest::named(name).map_or("1", Interest::unit) {
             "rad" => ("m", size * self.length),

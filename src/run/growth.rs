@@ -1,4 +1,4 @@
-//! Does the response grow, and what drives it?
+//! Growth of the response, and its causes.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,21 +9,21 @@ use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::quantity;
 use crate::model::characteristic::Mathieu;
 
-/// Windows into which a run is divided.
+/// Number of windows into which a run is divided.
 const WINDOWS: usize = 16;
 
-/// By how much a response must outgrow what drives it.
+/// Factor by which the growth of a response must exceed that of its drive.
 const OUTGROWN: f64 = 2.0;
-/// Factor over the later part of a run from which on growth is worth a word.
+/// Least growth factor over the later part of a run that counts as growth.
 const GROWN: f64 = 3.0;
 
-/// Share of a deflection to which it falls before it counts as one that turns.
+/// Fraction of the first deflection below which a minimum counts as a reversal.
 const FALLEN: f64 = 0.5;
 
-/// Squared correlation of its logarithm with time from which on a deflection grows exponentially.
+/// Least squared correlation of the logarithm of the deflection with time that counts as exponential growth.
 const STRAIGHT: f64 = 0.6;
 
-/// The largest values in one window of the run, and cumulated works at its end.
+/// Largest values in one window of the run, and cumulative works at its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Window {
     deflection: f64,
@@ -31,16 +31,16 @@ struct Window {
     reciprocity: f64,
     formulation: f64,
     residual: f64,
-    /// Work of loads, ends and ports, sizes added.
+    /// Work of loads, ends and ports: sum of magnitudes.
     work: f64,
-    /// Largest size of each kind of drive, in its own unit.
+    /// Largest magnitude of each kind of excitation, in its own unit.
     drive: [f64; KINDS],
     samples: u32,
     /// Time of the works [s].
     t: f64,
 }
 
-/// Follows the deflection window by window.
+/// Records the deflection window by window.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Growth {
     end: f64,
@@ -49,12 +49,12 @@ pub struct Growth {
     compression: f64,
 }
 
-/// What drives a growing response.
+/// Cause of a growing response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Driver {
     /// `parametric`, `buckling`, `coupling`, `formulation`, `integrator`, `loads` or `unknown`.
     pub name: String,
-    /// The numbers that say so.
+    /// Numbers that support the cause.
     pub evidence: String,
 }
 
@@ -73,11 +73,11 @@ pub struct Growing {
     pub rate_per_s: f64,
     /// Deflection at the end over that after the first quarter.
     pub factor: f64,
-    /// What drives it, the strongest first.
+    /// Causes, in the order in which they are checked.
     pub drivers: Vec<Driver>,
 }
 
-/// What is known about the scene from its linearisation.
+/// Properties of the scene from its linearization.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Linear {
     /// Axial base motion.
@@ -87,7 +87,7 @@ pub struct Linear {
 }
 
 impl Growth {
-    /// For a run until `end` [s].
+    /// Creates the record of a run until `end` [s].
     pub fn new(end: f64) -> Self {
         Self {
             end,
@@ -96,8 +96,8 @@ impl Growth {
         }
     }
 
-    /// Takes a state, in whatever order of time: deflection relative to the root [m], bending energy [J], most negative normal
-    /// force [N].
+    /// Adds a state, in any order of time: deflection relative to the root [m], bending energy [J], most negative normal force
+    /// [N].
     pub fn take(
         &mut self,
         now: &TimeData,
@@ -127,7 +127,7 @@ impl Growth {
         }
     }
 
-    /// Whether the deflection grows, exponentially and to the end, and why. `length` [m] is the beam's.
+    /// Returns growth and causes if the deflection grows exponentially until the end. `length` [m] is the length of the beam.
     pub fn judge(&self, length: f64, linear: &Linear) -> Option<Growing> {
         let seen: Vec<&Window> = self.windows.iter().take_while(|w| w.samples > 0).collect();
         if seen.len() < WINDOWS / 2 {
@@ -152,15 +152,15 @@ impl Growth {
         let largest = |part: &[&Window]| part.iter().map(|w| w.deflection).fold(0.0, f64::max);
         let still =
             largest(&late[late.len() - quarter..]) / largest(&late[late.len() - 2 * quarter..late.len() - quarter]);
-        // A factor over the span, along a straight line in the logarithm, and still going on.
+        // Growth needs a factor over the span, a straight line in the logarithm, and an increase that continues.
         if factor < GROWN || straight < STRAIGHT || still < 1.2 || rate <= 0.0 {
             return None;
         }
-        // What swings up by itself is strained more and more; a beam that moves away as a load falls is not.
+        // Self-excited growth increases the bending energy; a beam that moves away as a load falls does not.
         if last.bending_energy < OUTGROWN * late[0].bending_energy {
             return None;
         }
-        // What a straight line or a power of time explains as well is no instability, nor is what follows its drive.
+        // There is no instability if a straight line or a power of time fits as well, or if the response follows its drive.
         if !fit::is_exponential(&points) || follows(late) {
             return None;
         }
@@ -171,8 +171,8 @@ impl Growth {
         })
     }
 
-    /// A warning when a beam without inertia stayed straight although its compression passed Euler's load: an equilibrium,
-    /// but no stable one, which nothing in the equations of a perfect column notices.
+    /// Warns if a beam without inertia stayed straight although its compression exceeded Euler's load. This equilibrium is
+    /// unstable, but the equations of a perfect column do not detect it.
     pub fn straight_beyond_buckling(&self, length: f64, linear: &Linear) -> Option<String> {
         let euler = linear.euler_load?;
         let largest = self.windows.iter().map(|w| w.deflection).fold(0.0, f64::max);
@@ -265,15 +265,15 @@ impl Growth {
     }
 }
 
-/// The windows from that of the least deflection on, where the deflection fell before: it passes through zero where a load falls, and only
-/// what follows can be growth.
+/// Returns the windows from the least deflection on, if the deflection fell before. It passes through zero where a load falls,
+/// and only the later part can be growth.
 fn rising<'a>(late: &'a [&'a Window]) -> &'a [&'a Window] {
     let least = (0..late.len()).min_by(|a, b| late[*a].deflection.total_cmp(&late[*b].deflection));
     let least = least.filter(|least| late[*least].deflection < FALLEN * late[0].deflection);
     &late[least.unwrap_or(0)..]
 }
 
-/// Whether some drive explains the growth: from the first window in which it acts, the response does not outgrow it.
+/// True if a drive explains the growth: from the first window in which it acts, the response does not outgrow it.
 fn follows(late: &[&Window]) -> bool {
     let last = late[late.len() - 1];
     (0..KINDS).any(|kind| {
@@ -287,7 +287,7 @@ fn follows(late: &[&Window]) -> bool {
 }
 
 impl Growing {
-    /// As one warning.
+    /// Formats the growth as one warning.
     pub fn warning(&self) -> String {
         format!(
             "the deflection grows at {:.3} 1/s, by a factor {:.3} over the later three quarters of the run; driven by: {}",

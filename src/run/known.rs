@@ -1,4 +1,4 @@
-//! What is known of a case before anything is computed, for every command in the same words.
+//! Warnings that are known before a computation, with the same text for every command.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::model::{audit, characteristic};
 /// Characteristic numbers by name.
 type Numbers = BTreeMap<String, f64>;
 
-/// What stays true whatever a run finds: of the case with its characteristic numbers, and of its mesh.
+/// Warnings that no result of a run changes: those of the case, of its characteristic numbers and of its mesh.
 pub fn lasting(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
     with_the_mesh(
         audit::lasting(case, &system.model, numbers),
@@ -22,20 +22,20 @@ pub fn lasting(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
     )
 }
 
-/// The same of a run, which observes the flows that its valves stop.
+/// Lasting warnings before a run, without water hammer: the run observes the flows that its valves stop.
 pub fn before_a_run(case: &Case, system: &System, numbers: &Numbers) -> Vec<String> {
     let mut all = lasting(case, system, numbers);
     all.retain(|warning| !warning.starts_with(Code::WaterHammer.id()));
     all
 }
 
-/// The part of that which no mesh changes.
+/// Lasting warnings that do not depend on the mesh.
 pub fn on_any_mesh(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
     audit::lasting(case, &system.model, &numbers)
 }
 
-/// That, and what is expected of it: of what does not run and look for itself.
+/// Lasting warnings and those of the expected behavior, for commands that do not simulate the case.
 pub fn warnings(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
     with_the_mesh(
@@ -47,15 +47,15 @@ pub fn warnings(case: &Case, system: &System) -> Vec<String> {
     )
 }
 
-/// The same of what has no output times: a cycle, multipliers.
+/// Warnings for results without output times: a cycle, multipliers.
 pub fn without_outputs(case: &Case, system: &System) -> Vec<String> {
     let mut all = warnings(case, system);
     all.retain(|warning| !warning.starts_with(Code::FewOutputs.id()));
     all
 }
 
-/// The same of a state at rest, and of what swings about it by as little as one likes: numbers of motions that the case expects say
-/// nothing of its flows and strains, which the state itself has.
+/// Warnings for an equilibrium and small oscillations about it. Excludes estimates of the expected motion, since the
+/// equilibrium has its own flows and strains.
 pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     let numbers = characteristic::numbers(case, &system.model);
     let mut of_case = audit::lasting(case, &system.model, &numbers);
@@ -64,7 +64,7 @@ pub fn at_rest(case: &Case, system: &System) -> Vec<String> {
     with_the_mesh(of_case, case, system, &numbers, true)
 }
 
-/// What there is to say of an instant that a command is asked about [s].
+/// Warning about the time [s] at which a command evaluates the case, if it is unusual.
 pub fn instant(case: &Case, at: Option<f64>) -> Option<String> {
     Some(Code::Seldom.warning(seldom::instant(case, at?)?))
 }
@@ -74,7 +74,7 @@ fn told(seldom: Vec<(String, String)>) -> Vec<String> {
     seldom.into_iter().map(told).collect()
 }
 
-/// Adds what sizes of the case and its mesh give; of a state `at_rest` nothing that belongs to what changes in time.
+/// Adds warnings from the sizes of the case and its mesh. With `at_rest`, excludes warnings about changes in time.
 fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System, numbers: &Numbers, at_rest: bool) -> Vec<String> {
     all.extend(told(seldom::sizes(case)));
     if !at_rest {

@@ -1,4 +1,4 @@
-//! Which integrator a run uses, and why; both behind one face.
+//! Choice of the integrator of a run with its reason, and a common interface of the integrators.
 
 use super::order::{self, OrderChoice};
 use crate::case::schema::{self, Case, MaxOrder};
@@ -14,24 +14,24 @@ use crate::sundials::{Ida, Step};
 pub struct MethodChoice {
     /// A one-step method; `None` for IDA.
     pub one_step: Option<Method>,
-    /// In words.
+    /// Reason for the method, as text.
     pub reason: String,
     /// Highest order.
     pub order: OrderChoice,
 }
 
 impl MethodChoice {
-    /// Name of the method, for people.
+    /// Name of the method for messages.
     pub fn name(&self) -> String {
         self.one_step.map_or("IDA".into(), |method| method.to_string())
     }
 }
 
-/// Loosest tolerance at which waves without damping are left to ESDIRK46: from 1e-3 on it costs a half to a ninth of BDF 2 at
-/// equal error; at 1e-2 as much or twice, but BDF 2 is then wrong by 10 to 80 % (docs/accuracy.md).
+/// Loosest tolerance at which ESDIRK46 integrates undamped waves. From 1e-3 on it costs a half to a ninth of BDF 2 at equal error.
+/// At 1e-2 it costs as much or twice, but BDF 2 is then wrong by 10 to 80 % (docs/accuracy.md).
 const LOOSEST: f64 = 1e-2;
 
-/// Method for a case: as asked, else ESDIRK46 where BDF would be kept at order 2 by waves that nothing damps, else IDA.
+/// Chooses the method of a case: the requested one, else ESDIRK46 if undamped waves limit BDF to order 2, else IDA.
 pub fn choose(case: &Case, system: &System) -> MethodChoice {
     let (method, rtol) = (case.solver.method, case.solver.rtol);
     let bdf = || order::choose(case, system);
@@ -71,7 +71,7 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
     }
 }
 
-/// Method for a case whose sensitivities are asked for: IDA, which carries them along.
+/// Chooses the method of a case with sensitivities: IDA, the only one that integrates them.
 pub fn with_sensitivities(case: &Case, system: &System) -> MethodChoice {
     let usual = choose(case, system);
     if usual.one_step.is_none() {
@@ -87,24 +87,24 @@ pub fn with_sensitivities(case: &Case, system: &System) -> MethodChoice {
     }
 }
 
-/// IDA's Newton iteration ends at this part of the tolerance where the solid has inertia. IDA's own third leaves noise that
-/// its error test takes for truncation, step after step, on slow motions; it costs a tenth less elsewhere.
+/// Fraction of the tolerance at which IDA's Newton iteration ends if the solid has inertia. IDA's default, a third, leaves noise
+/// that its error test mistakes for truncation error at each step of slow motions. Elsewhere the default costs a tenth less.
 const NONLINEAR: f64 = 0.033;
 
-/// The same without inertia: the smoother the motion, the smaller the steps' own error beside that noise.
+/// Fraction for a solid without inertia. The smoother the motion, the smaller is the truncation error relative to the noise.
 const NONLINEAR_STATIC: f64 = 1e-4;
 
-/// What is asked of the integrator of a case.
+/// Settings of the integrator of a case.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Options {
     /// IDA's settings.
     Ida(IdaOptions),
-    /// Those of a one-step method.
+    /// Settings of a one-step method.
     OneStep(OneStepOptions),
 }
 
 impl Options {
-    /// Settings of a case, its method chosen.
+    /// Settings for a case and its chosen method.
     pub fn new(case: &Case, system: &System, choice: &MethodChoice, max_step: f64) -> Self {
         let solver = &case.solver;
         let (relative, absolute) = (solver.rtol, Absolute::Same(solver.rtol));
@@ -142,7 +142,7 @@ impl Options {
     }
 }
 
-/// An integrator: IDA, or a one-step method. See [`Ida`] for what its functions promise.
+/// An integrator: IDA or a one-step method. See [`Ida`] for the contracts of its functions.
 #[allow(clippy::large_enum_variant)] // there is one of it in a run
 pub enum Integrator<D: Dae> {
     /// Variable-order BDF.
@@ -151,7 +151,7 @@ pub enum Integrator<D: Dae> {
     OneStep(OneStep<D>),
 }
 
-/// The same call on whichever integrator it is.
+/// Calls the same function of either integrator.
 macro_rules! either {
     ($this:expr, $one:ident => $call:expr) => {
         match $this {
@@ -170,12 +170,12 @@ impl<D: Dae> Integrator<D> {
         }
     }
 
-    /// One accepted step, which does not pass `stop` [s].
+    /// Makes one accepted step, which does not pass `stop` [s].
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         either!(self, one => one.step(stop))
     }
 
-    /// Largest step [s] from now on; what has been learned of the motion is kept.
+    /// Sets the largest step [s] from now on, and keeps the history of the integrator.
     pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationError>> {
         match self {
             Self::Ida(ida) => ida.limit(largest),
@@ -196,7 +196,7 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.y())
     }
 
-    /// Their derivatives at the present time [1/s].
+    /// Derivatives of the unknowns at the present time [1/s].
     pub fn yp(&self) -> &[f64] {
         either!(self, one => one.yp())
     }
@@ -206,12 +206,12 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.interpolate(time, k, out))
     }
 
-    /// The integrals since the last restart, at the present time or at one [s] within the last step.
+    /// Integrals since the last restart, at the present time or at `time` [s] within the last step.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.integrals(time, out))
     }
 
-    /// Goes on from consistent values at time `t` [s], forgetting the past.
+    /// Restarts from consistent values at time `t` [s], without the history of past steps.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         either!(self, one => one.restart(t, y, yp))
     }
@@ -231,7 +231,7 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.wall())
     }
 
-    /// IDA, when it is that.
+    /// Returns IDA if it is the integrator.
     pub fn ida_mut(&mut self) -> Option<&mut Ida<D>> {
         match self {
             Self::Ida(ida) => Some(ida),
@@ -244,7 +244,7 @@ impl<D: Dae> Integrator<D> {
         either!(self, one => one.dae())
     }
 
-    /// The equations; after changing what they mean, [`Integrator::restart`].
+    /// The equations, mutable. Call [`Integrator::restart`] after changing their meaning.
     pub fn dae_mut(&mut self) -> &mut D {
         either!(self, one => one.dae_mut())
     }

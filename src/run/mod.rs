@@ -1,4 +1,4 @@
-//! Runs: what drives the solver over a model. Emits what happens, prints nothing.
+//! Runs: they apply the solver to a model, emit events and print nothing.
 
 pub mod band;
 pub mod checkpoint;

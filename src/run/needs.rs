@@ -1,4 +1,4 @@
-//! What a run will take, told from the case before anything is made of it.
+//! Memory and time that a run needs, estimated from the case alone.
 
 use crate::case::Case;
 
@@ -6,28 +6,28 @@ use crate::case::Case;
 const PROGRAM: f64 = 15e6;
 /// Memory for each unknown of a dry beam: state, history of the integrator, pattern, Jacobian, factors [byte].
 const DRY: f64 = 1.7e3;
-/// The same with bladders.
+/// Memory for each unknown of a beam with bladders [byte].
 const WET: f64 = 3.5e3;
-/// Memory for each pair of a beam cell and a bladder cell in the same segment: all of these meet in the segment's mean moment [byte].
+/// Memory for each pair of a beam cell and a bladder cell in the same segment [byte]. The segment's mean moment couples them all.
 const PAIR: f64 = 250.0;
-/// Memory for each unknown and parameter by which a run is differentiated [byte].
+/// Memory for each unknown and each parameter of a sensitivity analysis [byte].
 const DERIVATIVE: f64 = 1e3;
-/// Time for each unknown, and for each of those pairs, until the first step is made [s].
+/// Set-up time before the first step for each unknown, and for each pair of cells [s].
 const SET_UP: [f64; 2] = [5e-5, 1e-5];
 
-/// Estimates of size, from sums over blocks of unknowns with constants that were measured; they hold to a factor of three.
+/// Estimates from sums over blocks of unknowns with measured constants. They are accurate to a factor of three.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Needs {
-    /// Unknowns at most: with inertia, and every bladder's cells among them.
+    /// Upper bound of the number of unknowns: with inertia, and with the cells of all bladders.
     pub unknowns: f64,
-    /// Memory at its largest [byte].
+    /// Peak memory [byte].
     pub memory: f64,
     /// Wall time until the first step [s].
     pub set_up_s: f64,
 }
 
 impl Needs {
-    /// Of a run of a case with derivatives by so many of its numbers.
+    /// Estimates the needs of a run of a case with derivatives by `parameters` of its numbers.
     pub fn of(case: &Case, parameters: usize) -> Self {
         let segments = case.segments() as f64;
         let cells = case.mesh.cells_per_segment as f64;

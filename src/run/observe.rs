@@ -1,4 +1,4 @@
-//! What a run looks at on its way: at every accepted step whatever may invalidate it, at output times what is recorded.
+//! Observer of a run: checks validity limits at every accepted step, and samples the results at output times.
 
 use std::borrow::Cow;
 
@@ -27,7 +27,7 @@ use super::step_response::StepResponses;
 use super::stretch::{self, Stretch, Stretches};
 use super::valves::ValveFlows;
 
-/// What may turn between two steps.
+/// Quantities whose extrema between two steps are searched.
 const TURNING: [Watched; Watched::COUNT] = [
     Watched::Tip1,
     Watched::Tip3,
@@ -46,10 +46,10 @@ const TURNING: [Watched; Watched::COUNT] = [
     Watched::Mach,
     Watched::Depth,
 ];
-/// Turning points closer than this part of the step are looked at as one.
+/// Extrema closer together than this fraction of the step are evaluated once.
 const APART: f64 = 0.05;
 
-/// What has been seen so far; a checkpoint keeps it.
+/// Accumulated observations; part of a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Observed {
     /// Energy and invariants at the start.
@@ -61,42 +61,42 @@ pub struct Observed {
     pub figures: Figures,
     /// Figures at probes.
     pub probes: ProbeFigures,
-    /// Step responses, where they are asked for.
+    /// Step responses, if requested.
     pub steps: Option<StepResponses>,
-    /// Errors of those that are energies.
+    /// Errors of the energies among the quantities of interest.
     pub energies: Energies,
     /// Growth of the response.
     pub growth: Growth,
-    /// Waves that grow in the linearised equations.
+    /// Waves that grow in the linearized equations.
     #[serde(default, skip_serializing_if = "super::waves::Seen::is_empty")]
     pub waves: super::waves::Seen,
-    /// How far the beam has turned at the end of the last step.
+    /// Angle unwrapping at the end of the last step.
     #[serde(default)]
     pub turns: Turns,
     /// The last sample.
     #[serde(default)]
     pub row: Row,
-    /// Outputs before the window that are not written one by one.
+    /// Statistics over the current stretch of outputs before the window.
     #[serde(default)]
     stretch: Stretch,
-    /// Flows through valves as they shut [m^3/s].
+    /// Flows through valves as they close [m^3/s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub valve_flows: Vec<f64>,
 }
 
-/// Watches a run, samples it for its recorder and keeps what the summary needs.
+/// Observes a run: samples it for its recorder and collects the data of the summary.
 pub struct Observer {
     cell_order: Vec<usize>,
     fields_every: u64,
     thinning: Thinning,
     stretches: Stretches,
     limits: Limits,
-    /// The end of the last step, or the start of the first after a switch.
+    /// End of the last step, or start of the first step after a switch.
     before: Option<Glance>,
     turning: Vec<f64>,
     readings: Readings,
     valves: ValveFlows,
-    /// What has been seen so far.
+    /// Accumulated observations.
     pub seen: Observed,
 }
 
@@ -130,7 +130,7 @@ impl Observer {
         }
     }
 
-    /// What will be recorded.
+    /// Describes the recorded data.
     pub fn header(case: &Case, system: &System) -> Header {
         let axis = |axis: quantities::Axis| Axis {
             name: axis.name(),
@@ -163,7 +163,7 @@ impl Observer {
         }
     }
 
-    /// Begins a smooth stretch: at the start of a run, and after every switch. Returns what lies beyond the model, if anything.
+    /// Begins a smooth interval: at the start of a run, and after every switch. Returns the validity limit that is exceeded, if any.
     pub fn enter(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
@@ -176,8 +176,8 @@ impl Observer {
         self.limits.beyond(&glance)
     }
 
-    /// Watches the end of an accepted step, and finds out where between its ends something may have turned: see
-    /// [`Observer::turning`]. Returns what lies beyond the model there, if anything; nothing is kept of such a step.
+    /// Observes the end of an accepted step, and finds the times of possible extrema within it: see [`Observer::turning`].
+    /// Returns the validity limit that is exceeded, if any; nothing of such a step is stored.
     pub fn arrive(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.accepted(t, y, yp);
@@ -200,12 +200,12 @@ impl Observer {
         None
     }
 
-    /// Times [s] inside the step that [`Observer::arrive`] has seen, in order, at which to look as well.
+    /// Times [s] of possible extrema inside the step that [`Observer::arrive`] observed, in order; to be evaluated as well.
     pub fn turning(&self) -> &[f64] {
         &self.turning
     }
 
-    /// Looks at a state inside the step. Returns what lies beyond the model there, if anything.
+    /// Observes a state inside the step. Returns the validity limit that is exceeded, if any.
     pub fn look(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
@@ -218,12 +218,12 @@ impl Observer {
         beyond
     }
 
-    /// The times [s] inside the step at which [`Observer::read`] is to read tip and probes.
+    /// Times [s] inside the step at which [`Observer::read`] reads tip and probes.
     pub fn reading(&self) -> impl Iterator<Item = f64> + use<> {
         self.readings.times()
     }
 
-    /// Reads tip and probes inside the step; after the second state the step is taken into their figures.
+    /// Reads tip and probes inside the step. The second reading adds the step to their figures.
     pub fn read(&mut self, dae: &mut BeamDae, second: bool, t: f64, y: &[f64], yp: &[f64]) {
         let (system, now, w) = dae.evaluate(t, y, yp);
         self.readings.within(second, system, now, w);
@@ -235,7 +235,7 @@ impl Observer {
         }
     }
 
-    /// Instants after a time [s], in order, at which largest values were reached.
+    /// Times after `after` [s], in order, at which largest values were reached.
     pub fn reached(&self, after: f64) -> Vec<f64> {
         let mut all: Vec<f64> = self
             .seen
@@ -248,14 +248,14 @@ impl Observer {
         all
     }
 
-    /// What lies beyond the model in a state, if anything; nothing is kept.
+    /// Returns the validity limit that a state exceeds, if any; stores nothing.
     pub fn beyond(&self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64]) -> Option<String> {
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = Glance::new(system, now, t, self.limits.half_height, w);
         self.limits.beyond(&glance)
     }
 
-    /// Balances, growth and largest values of a state, in whatever order of time.
+    /// Updates balances, growth and largest values with a state, in any order of time.
     fn watch(
         &mut self,
         system: &System,
@@ -287,7 +287,7 @@ impl Observer {
         balance
     }
 
-    /// Notes where the cubics through the step's ends turn, wherever that may be beyond all that has been seen.
+    /// Notes the extrema of the cubics through the ends of the step that may exceed all previous values.
     fn look_between(&mut self, before: &Glance, now: &Glance) {
         let h = now.t - before.t;
         for which in TURNING {
@@ -304,8 +304,8 @@ impl Observer {
         self.turning.dedup_by(|next, kept| *next - *kept < APART * h);
     }
 
-    /// Takes a scaled state into the figures, in order of time, and records it as the output of a number, if it is one. Of what lies beyond the
-    /// model nothing is kept, but where the run ends there.
+    /// Adds a scaled state to the figures, in order of time, and records it if it has an output number. A state beyond a validity
+    /// limit is dropped, unless the run ends there.
     #[allow(clippy::too_many_arguments)]
     pub fn sample(
         &mut self,
@@ -325,7 +325,7 @@ impl Observer {
             return Ok(Sampled::Beyond(what));
         }
         let balance = self.watch(system, now, w, &glance, integrals);
-        // The last step's end is later, but where the run ends within the step.
+        // The end of the last step is later than `t`, unless the run ends within the step.
         let before = self.before.filter(|before| before.t < t);
         self.seen.range.take(&self.limits, before.as_ref(), &glance);
         if let Some(before) = before {
@@ -364,7 +364,7 @@ impl Observer {
         Ok(Sampled::Written)
     }
 
-    /// Records what a run that ends has not yet.
+    /// Records the pending statistics at the end of a run.
     pub fn close(&mut self, recorder: &mut dyn Recorder) -> Result<()> {
         match self.seen.stretch.close() {
             Some(row) => recorder.envelope(&row),
@@ -377,7 +377,7 @@ impl Observer {
         &self.seen.row
     }
 
-    /// Balances that stay open, and limits of the model's range that were passed.
+    /// Warnings of open balances and of exceeded limits of the model's range.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = self.seen.residuals.warnings();
         all.extend(self.seen.range.warnings(&self.limits));

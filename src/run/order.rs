@@ -1,24 +1,24 @@
-//! Which BDF order a scene can bear.
+//! Highest BDF order that is stable for a scene.
 //!
-//! BDF of order 1 and 2 damps every oscillation that decays; orders 3, 4 and 5 amplify waves with damping ratios below
-//! 0.069, 0.287 and 0.618 (the cosines of their stability angles 86.0, 73.4 and 51.8 degrees) at steps of about their
-//! period. An undamped beam always carries such waves.
+//! BDF of order 1 and 2 damps every oscillation that decays. At steps of about their period, orders 3, 4 and 5 amplify waves with
+//! damping ratios below 0.069, 0.287 and 0.618 (cosines of their stability angles 86.0, 73.4 and 51.8 degrees). An undamped
+//! beam always has such waves.
 
 use crate::case::schema::{Case, MaxOrder};
 use crate::discrete::System;
 use crate::discrete::waves::{ENOUGH, carries, highest_frequency, least_damping_ratio};
 use crate::error::numbers::{quantity, significant};
 
-/// Highest order, and why.
+/// Highest order and its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OrderChoice {
     /// 1 to 5.
     pub order: u8,
-    /// In words.
+    /// Reason, as text.
     pub reason: String,
 }
 
-/// Highest order for a case: as asked, else decided from the scene.
+/// Chooses the highest order for a case: the requested one, else one derived from the scene.
 pub fn choose(case: &Case, system: &System) -> OrderChoice {
     let chosen = |order, reason: String| OrderChoice { order, reason };
     match case.solver.max_order {
@@ -48,8 +48,8 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
     }
 }
 
-/// A sentence when the steps of a run were held down by stability and not by accuracy: orders beyond 2 were allowed on
-/// hardly damped waves, and the mean step stayed near the period of the fastest wave.
+/// Warns if stability and not accuracy limited the steps of a run. Orders above 2 were then allowed for weakly damped waves, and
+/// the mean step stayed near the period of the fastest wave.
 pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, rejected: u64) -> Option<String> {
     if order <= 2 || !carries(system) || steps < 1000 {
         return None;
@@ -66,12 +66,12 @@ pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, reje
     })
 }
 
-/// Steps from which on it is told that too many were rejected, and the part of them that is too many.
+/// Least number of steps for a warning about rejections, and the rejected fraction above which it is given.
 const MANY: u64 = 200;
 const TOO_MANY: f64 = 1.0 / 3.0;
 
-/// A sentence when BDF's error test has rejected more than a third of many steps: it is stuck at short steps of low order, and what it makes of
-/// errors is not known. `chosen`: by the program.
+/// Warns if BDF's error test rejected more than a third of many steps: steps stay short and of low order, and the error is
+/// unknown. `chosen` is true if the program chose the method.
 pub fn stuck(steps: u64, rejected: u64, chosen: bool) -> Option<String> {
     let often = steps >= MANY && rejected as f64 > TOO_MANY * steps as f64;
     let instead = if chosen { "esdirk46" } else { "auto" };

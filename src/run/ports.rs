@@ -9,14 +9,14 @@ use super::track::Track;
 use crate::discrete::System;
 use crate::discrete::quantities::stations;
 
-/// Figures of the flow and the pressure of every port, and of the pressure in every accumulator, by their columns of the history.
+/// Figures of the flow and pressure of every port, and of the pressure in every accumulator, by column of the history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PortFigures {
     names: Vec<String>,
-    /// Their places among the columns of ports, accumulators and walls.
+    /// Indices among the columns of ports, accumulators and walls.
     places: Vec<usize>,
     tracks: Vec<Track>,
-    /// Time of the last sample [s], and the values there.
+    /// Time [s] and values of the last sample.
     last: Option<(f64, Vec<f64>)>,
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
@@ -28,7 +28,7 @@ pub fn unit(name: &str) -> &'static str {
 }
 
 impl PortFigures {
-    /// Of a system.
+    /// Creates the figures of a system.
     pub fn new(system: &System) -> Self {
         let (places, names): (Vec<usize>, Vec<String>) = stations::of_fluid(system).unzip();
         Self {
@@ -44,7 +44,7 @@ impl PortFigures {
         self.names.is_empty()
     }
 
-    /// Takes a sample of all columns of ports, accumulators and walls.
+    /// Adds a sample of all columns of ports, accumulators and walls.
     pub fn take(&mut self, t: f64, columns: &[f64], in_window: bool) {
         if self.is_empty() {
             return;

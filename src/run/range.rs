@@ -1,4 +1,4 @@
-//! How far the model holds: limits beyond which results are to be looked at twice, and those beyond which a run ends.
+//! Validity limits of the model: limits above which a run warns, and limits at which it ends.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,22 +11,22 @@ use crate::error::Code;
 use crate::error::numbers::quantity;
 use crate::model::audit;
 
-/// Fibre strain above which a run warns.
+/// Fiber strain above which a run warns.
 pub const STRAIN: f64 = 0.5;
 /// Reynolds number above which a run warns.
 pub const REYNOLDS: f64 = 100.0;
 /// Mach number above which a run warns.
 pub const MACH: f64 = 0.3;
-/// Part of ambient pressure, absolute, below which gas ends a run.
+/// Fraction of the absolute ambient pressure below which gas ends a run.
 const VACUUM: f64 = 1e-3;
-/// Fibre strain above which a linear law means nothing: a fibre pressed by as much has no length left.
+/// Fiber strain above which a linear law is meaningless: a fiber compressed by this strain has no length left.
 const STRAIN_ENDS: f64 = 1.0;
-/// Pressure over Young's modulus above which the body around a bladder is no longer what it was.
+/// Ratio of pressure to Young's modulus above which the model of the body around a bladder is invalid.
 const PRESSURE_ENDS: f64 = 10.0;
-/// Motion of a node against the root over the length of the beam that no strain allows.
+/// Motion of a node relative to the root, over the length of the beam, that no strain can produce.
 const MOTION_ENDS: f64 = 1e3;
 
-/// Limits of a case.
+/// Validity limits of a case.
 #[derive(Clone, Debug)]
 pub struct Limits {
     /// Half of the beam's height [m].
@@ -37,21 +37,21 @@ pub struct Limits {
     swelling: f64,
     /// `p_u + p_d` up to which the potential is convex [Pa].
     convex_up_to: f64,
-    /// `2 ρ/(π μ)`: Reynolds number of a tube over its flow by radius [s/m^2]; 0 where the model has what comes of it.
+    /// `2 ρ/(π μ)`: Reynolds number of a tube over its flow by radius [s/m^2]; 0 if the model includes tube losses.
     reynolds_per_flow: f64,
-    /// `√ρ_0`: Mach number of a tube over what is watched of it.
+    /// `√ρ_0`: Mach number of a tube over the value that is watched.
     mach_per_flow: f64,
-    /// What of the model holds flow in tubes back.
+    /// Effects of the model that limit the flow in tubes, as text.
     held_back: &'static str,
-    /// Pressure at which gas is as good as gone [Pa].
+    /// Pressure at or below which gas counts as evacuated [Pa].
     vacuum: f64,
-    /// Whether the start is an equilibrium.
+    /// True if the case starts at an equilibrium.
     at_rest: bool,
-    /// What is not physical.
+    /// Limits of physical results.
     pub unphysical: Unphysical,
 }
 
-/// A limit that was passed: the largest value with its time and place, and when it began.
+/// An exceeded limit: the largest value with its time and place, and the time at which the limit was first exceeded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Passed {
     largest: f64,
@@ -60,7 +60,7 @@ struct Passed {
     began: Option<f64>,
 }
 
-/// Limits of the model's range met on the way.
+/// Limits of the model's range that a run exceeded.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Range {
     strain: Passed,
@@ -70,7 +70,7 @@ pub struct Range {
     pressed: Passed,
     #[serde(default)]
     touched: Passed,
-    /// Depth behind a wall at the start, where no equilibrium has found it [m].
+    /// Depth of the beam behind a wall at a start that is not an equilibrium [m].
     #[serde(default)]
     begun: f64,
     #[serde(default)]
@@ -78,7 +78,7 @@ pub struct Range {
 }
 
 impl Passed {
-    /// Takes a value over a step from `before`; `factor` turns what is watched into what has the limit.
+    /// Adds a value over a step from `before`; `factor` converts the watched value to the limited one.
     fn take(&mut self, which: Watched, factor: f64, limit: f64, before: Option<&Glance>, now: &Glance, place: usize) {
         let value = factor * now.of(which)[0];
         if value > self.largest {
@@ -94,7 +94,7 @@ impl Passed {
         }
     }
 
-    /// The largest value with its time and place, and since when it is above a limit; none where it stayed below.
+    /// Describes the largest value with its time and place, and the start of exceedance. `None` if the limit was not exceeded.
     fn told(&self, digits: usize, place: String, limit: f64) -> Option<String> {
         let began = self.began?;
         let (largest, t) = (self.largest, self.t);
@@ -109,7 +109,7 @@ fn in_tube(passed: &Passed) -> String {
 }
 
 impl Limits {
-    /// Of a case.
+    /// Limits of a case.
     pub fn new(case: &Case, system: &System) -> Self {
         let wet = system.model.wet.as_ref();
         let convex_up_to = wet.map_or(f64::INFINITY, |wet| {
@@ -144,7 +144,7 @@ impl Limits {
         }
     }
 
-    /// Reynolds number of the fastest flow through a tube in a state; 0 where the model has what comes of it.
+    /// Reynolds number of the fastest flow through a tube in a state; 0 if the model includes tube losses.
     pub fn reynolds(&self, g: &Glance) -> f64 {
         self.reynolds_per_flow * g.of(Watched::Flow)[0]
     }
@@ -154,7 +154,7 @@ impl Limits {
         self.mach_per_flow * g.of(Watched::Mach)[0]
     }
 
-    /// Whether a state lies within the model.
+    /// True if a state lies within the model's range.
     fn hold(&self, g: &Glance) -> bool {
         let value = |which| g.of(which)[0];
         let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
@@ -168,7 +168,7 @@ impl Limits {
             && g.moved <= MOTION_ENDS * self.length
     }
 
-    /// What lies beyond the model in a state, if anything does.
+    /// Describes the limit that a state exceeds, if any.
     pub fn beyond(&self, g: &Glance) -> Option<String> {
         if self.hold(g) {
             return None;
@@ -180,7 +180,7 @@ impl Limits {
         self.beyond_at(g, &at)
     }
 
-    /// The same, told with where it is.
+    /// Describes the limit that a state exceeds, if any, with the time or place `at`.
     pub fn beyond_at(&self, g: &Glance, at: &str) -> Option<String> {
         if self.hold(g) {
             return None;
@@ -237,7 +237,8 @@ impl Limits {
         ))
     }
 
-    /// Whether a value between two steps matters, given the largest seen: near or above a limit.
+    /// True if the state at a value between two steps must be evaluated. The value is then near or above a limit; if `seen` has a
+    /// record of it, the value also exceeds this.
     pub fn matters(&self, which: Watched, value: f64, seen: &Range) -> bool {
         let larger = |largest: f64, value: f64, from: f64| value > 0.9 * from && value > 1.001 * largest;
         match which {
@@ -255,7 +256,7 @@ impl Limits {
 }
 
 impl Range {
-    /// Takes a state at the end of a step that began at `before`.
+    /// Adds a state at the end of a step that began at `before`.
     pub fn take(&mut self, limits: &Limits, before: Option<&Glance>, now: &Glance) {
         self.strain
             .take(Watched::Strain, 1.0, STRAIN, before, now, now.strained);
@@ -274,7 +275,7 @@ impl Range {
         }
     }
 
-    /// Limits that were passed.
+    /// Warnings of the exceeded limits.
     pub fn warnings(&self, limits: &Limits) -> Vec<String> {
         let mut all = limits
             .unphysical

@@ -1,4 +1,4 @@
-//! What a run reads off tip and probes within each step: values at its ends and at thirds, and the cubics through them.
+//! Readings of tip and probes within each step: values at its ends and at thirds, and the cubics through them.
 
 use std::collections::BTreeMap;
 
@@ -14,28 +14,28 @@ use crate::discrete::ledger::Energies;
 use crate::discrete::quantities::{Look, Observable, Read, Row, probes};
 use crate::discrete::{State, System, TimeData};
 
-/// What is read of the tip.
+/// Quantities read at the tip.
 const TIP: [Observable; 3] = [Observable::TipU1, Observable::TipU3, Observable::TipAngle];
 
-/// Names of what is read, with units.
+/// Names of the read quantities, with units.
 pub fn names(system: &System) -> Vec<String> {
     let tip = TIP.iter().map(|one| probes::key(one.name(), one.unit()));
     tip.chain(probes::columns(system).map(|one| probes::key(&one.name, one.unit)))
         .collect()
 }
 
-/// Readings of the step under way.
+/// Readings of the current step.
 #[derive(Clone, Debug, Default)]
 pub struct Readings {
     follows: bool,
-    /// Begin and end of the step [s].
+    /// Start and end of the step [s].
     span: [f64; 2],
-    /// At its begin, its thirds and its end.
+    /// Values at its start, its thirds and its end.
     values: [Vec<f64>; 4],
 }
 
 impl Readings {
-    /// Of a case: there are none without probes and step responses.
+    /// Creates the readings of a case; nothing is read without probes and step responses.
     pub fn new(case: &Case) -> Self {
         Self {
             follows: !case.probes.is_empty() || case.step_response.is_some(),
@@ -43,14 +43,14 @@ impl Readings {
         }
     }
 
-    /// Times [s] within the step at which to read; none where nothing is followed.
+    /// Times [s] within the step at which to read; empty if nothing is read.
     pub fn times(&self) -> impl Iterator<Item = f64> + use<> {
         let [from, to] = self.span;
         let inner = if self.follows && to > from { 1..3 } else { 0..0 };
         inner.map(move |k| from + f64::from(k) / 3.0 * (to - from))
     }
 
-    /// Reads the end of a step [s], from which the next begins; the begin of a smooth stretch where it is `first`.
+    /// Reads the end of a step at `t` [s], which is the start of the next step. `first` marks the start of a smooth interval.
     pub fn arrive(&mut self, t: f64, first: bool, system: &System, now: &TimeData, w: State) {
         if self.follows {
             self.span = [if first { t } else { self.span[1] }, t];
@@ -64,7 +64,7 @@ impl Readings {
         read(system, now, w, &mut self.values[1 + usize::from(second)]);
     }
 
-    /// Begin and end of the step [s], and the cubics over it.
+    /// Start and end of the step [s], and the cubics over it.
     pub fn step(&self) -> ([f64; 2], impl Iterator<Item = Cubic>) {
         let [a, b, c, d] = &self.values;
         let all = a.iter().zip(b).zip(c).zip(d);
@@ -82,7 +82,7 @@ fn read(system: &System, now: &TimeData, w: State, out: &mut Vec<f64>) {
     out.extend(probes::values(&look));
 }
 
-/// Figures of what is recorded at probes.
+/// Figures of the quantities recorded at probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProbeFigures {
     names: Vec<String>,
@@ -90,13 +90,13 @@ pub struct ProbeFigures {
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
     tracks: Vec<Track>,
-    /// Those of ports and accumulators.
+    /// Figures of ports and accumulators.
     #[serde(default, skip_serializing_if = "PortFigures::is_empty")]
     pub ports: PortFigures,
 }
 
 impl ProbeFigures {
-    /// Of a case and its system.
+    /// Creates the figures of a case and its system.
     pub fn new(case: &Case, system: &System) -> Self {
         let names: Vec<String> = probes::columns(system)
             .map(|one| probes::key(&one.name, one.unit))
@@ -110,7 +110,7 @@ impl ProbeFigures {
         }
     }
 
-    /// Takes a sample.
+    /// Adds a sample.
     pub fn take(&mut self, t: f64, row: &Row) {
         let in_window = t >= self.window_start;
         self.ports.take(t, row.at_stations(), in_window);
@@ -120,7 +120,7 @@ impl ProbeFigures {
         }
     }
 
-    /// Takes a step: its ends, turning points between, and the part that lies in the window.
+    /// Adds a step: its ends, the extrema between, and the part that lies in the window.
     pub fn step(&mut self, readings: &Readings) {
         if self.tracks.is_empty() {
             return;
@@ -140,7 +140,7 @@ impl ProbeFigures {
         }
     }
 
-    /// Instants after a time [s] at which largest values were reached.
+    /// Times after `after` [s] at which largest values were reached.
     pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> {
         self.tracks.iter().flat_map(move |track| track.reached(after))
     }

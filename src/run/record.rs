@@ -1,4 +1,4 @@
-//! What a run hands to whoever records it. The run itself prints nothing and writes nothing.
+//! Interface between a run and its recorders. The run itself prints nothing and writes nothing.
 
 use super::checkpoint::Checkpoint;
 pub use crate::discrete::quantities::probes::Column;
@@ -11,7 +11,7 @@ pub struct Axis {
     pub name: &'static str,
     /// Unit.
     pub unit: &'static str,
-    /// One sentence.
+    /// Description in one sentence.
     pub about: &'static str,
     /// Coordinates.
     pub values: Vec<f64>,
@@ -26,13 +26,13 @@ pub struct Field {
     pub unit: &'static str,
     /// Name of its [`Axis`].
     pub axis: &'static str,
-    /// One sentence.
+    /// Description in one sentence.
     pub about: &'static str,
     /// Length along the axis.
     pub len: usize,
 }
 
-/// What will be recorded, known before the first step.
+/// Description of the recorded data, available before the first step.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Header {
     /// Columns of the history; the first is `t [s]`.
@@ -41,13 +41,13 @@ pub struct Header {
     pub axes: Vec<Axis>,
     /// Fields.
     pub fields: Vec<Field>,
-    /// Columns of what is left of output times that are not written, names with units; empty when all are written.
+    /// Columns of the statistics over stretches of thinned outputs, names with units; empty if all outputs are written.
     pub envelope: Vec<String>,
-    /// Columns of derivatives, names with units, the first `t [s]`; empty when none were asked for.
+    /// Columns of derivatives, names with units, the first `t [s]`; empty if none are requested.
     pub sensitivities: Vec<String>,
 }
 
-/// Where the run stands.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
     /// Simulated time [s].
@@ -62,51 +62,51 @@ pub struct Progress {
     pub order: u8,
 }
 
-/// Whether to go on.
+/// Decision to continue or stop a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Control {
-    /// Go on.
+    /// Continue.
     Continue,
-    /// Stop here, with a reason; what is recorded stands.
+    /// Stop here, with a reason; the recorded data remain.
     Stop(String),
 }
 
-/// What became of a sample.
+/// Outcome of a sample.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sampled {
-    /// It is in the figures.
+    /// Part of the figures.
     Taken,
-    /// It is recorded as well.
+    /// Part of the figures, and recorded.
     Written,
-    /// It lies beyond the model, in words, and nothing is kept of it.
+    /// Dropped, because it exceeds a validity limit of the model, which the text describes.
     Beyond(String),
 }
 
-/// Receives what a run produces, in order of time.
+/// Receives the results of a run, in order of time.
 pub trait Recorder {
     /// Called once, before the first row.
     fn begin(&mut self, header: &Header) -> Result<()>;
-    /// One row of the history; length of `header.columns`.
+    /// Receives one row of the history, as long as `header.columns`.
     fn history(&mut self, row: &[f64]) -> Result<()>;
-    /// One row of derivatives, after the row of the history of the same instant; length of `header.sensitivities`.
+    /// Receives one row of derivatives, after the history row of the same instant, as long as `header.sensitivities`.
     fn sensitivities(&mut self, _: &[f64]) -> Result<()> {
         Ok(())
     }
-    /// One stretch of output times; length of `header.envelope`.
+    /// Receives the statistics over one stretch of outputs, as long as `header.envelope`.
     fn envelope(&mut self, _: &[f64]) -> Result<()> {
         Ok(())
     }
-    /// One instant of all fields, in the order of `header.fields`.
+    /// Receives all fields at one instant, in the order of `header.fields`.
     fn fields(&mut self, t: f64, arrays: &[&[f64]]) -> Result<()>;
-    /// Called after every accepted step, and now and then where much is done within one; cheap.
+    /// Called after every accepted step, and occasionally within an expensive one; must be cheap.
     fn progress(&mut self, progress: &Progress) -> Result<Control>;
-    /// Called at every checkpoint time; everything before it must be safe when this returns.
+    /// Called at every checkpoint time; all earlier data must be safely stored when it returns.
     fn checkpoint(&mut self, _: &Checkpoint) -> Result<()> {
         Ok(())
     }
 }
 
-/// Keeps nothing: asks only whether to go on.
+/// Recorder that stores nothing and only decides if the run continues.
 pub struct Unrecorded<F: FnMut(&Progress) -> Control>(pub F);
 
 impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
@@ -124,10 +124,10 @@ impl<F: FnMut(&Progress) -> Control> Recorder for Unrecorded<F> {
     }
 }
 
-/// Keeps everything in memory, for tests and studies.
+/// Recorder that stores everything in memory, for tests and studies.
 #[derive(Clone, Debug, Default)]
 pub struct Memory {
-    /// As begun.
+    /// Header of the run.
     pub header: Header,
     /// Rows of the history.
     pub rows: Vec<Vec<f64>>,
@@ -142,13 +142,13 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// One column of the history by name. Panics in tests when there is none.
+    /// One column of the history by name; `None` if it does not exist.
     pub fn column(&self, name: &str) -> Option<Vec<f64>> {
         let k = self.header.columns.iter().position(|c| c.name == name)?;
         Some(self.rows.iter().map(|r| r[k]).collect())
     }
 
-    /// One column of derivatives by the names of the history's column and of the number: `("tip_u1", "/fluid/viscosity_pa_s")`.
+    /// One column of derivatives, by the history column and the pointer of the number: `("tip_u1", "/fluid/viscosity_pa_s")`.
     pub fn sensitivity(&self, column: &str, pointer: &str) -> Option<Vec<f64>> {
         let start = format!("d {column}/d {pointer} [");
         let k = self

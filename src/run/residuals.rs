@@ -1,4 +1,4 @@
-//! How far the balances of a run stay open.
+//! Residuals of the balances of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,17 +9,16 @@ use crate::discrete::{State, System, TimeData};
 use crate::error::Code;
 use crate::error::numbers::significant;
 
-/// Above this the run warns that a balance does not close.
+/// Relative residual above which the run warns that a balance does not close.
 const OPEN: f64 = 0.01;
 
-/// Last digits of pressures over the tolerance: what an iteration may leave of them, 0.02 in a network that is 10^8 times stiffer
-/// than the paper's. Times the conductance of a port it is a flow
-/// that the law does not tell, however large, while the pressure is right.
+/// Relative error that an iteration may leave in pressures, over the tolerance: 0.02 in a network 10^8 times stiffer than the
+/// paper's. Times the conductance of a port it is an undetermined flow, which may be large although the pressure is accurate.
 const DIGITS: f64 = 0.1;
-/// Share of pressures that counts as last digits at most, however loose the tolerance.
+/// Upper limit of this relative error, however loose the tolerance.
 const MOST_DIGITS: f64 = 1e-6;
 
-/// Largest residuals and references seen.
+/// Largest residuals and reference values of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Residuals {
     energy: f64,
@@ -31,20 +30,20 @@ pub struct Residuals {
     momentum_seen: f64,
     angular: f64,
     angular_seen: f64,
-    /// Of each component: largest difference of the flow through its ports by law and by storage, the volume passed, and
-    /// the one that conductances times pressures would have passed.
+    /// For each component: largest difference between the volumes through its ports by law and by storage, the volume passed, and
+    /// the volume that conductances times pressures would have passed.
     port_flow: Vec<[f64; 3]>,
-    /// Share of conductance times pressure that is noise.
+    /// Fraction of conductance times pressure that is noise.
     digits: f64,
     /// Squares of reactions and of their differences, integrated over time.
     reactions: [f64; 2],
-    /// Sizes that are round-off.
+    /// Rounding scales.
     #[serde(default)]
     floors: Floors,
 }
 
 impl Residuals {
-    /// Of a system of which nothing has been seen, integrated to a relative tolerance; nothing is relative to what is below the floors.
+    /// Creates the residuals of a system in a run with relative tolerance `rtol`. Reference values are limited from below by `floors`.
     pub fn new(system: &System, rtol: f64, floors: Floors) -> Self {
         let network = system.model.wet.as_ref().map(|wet| &wet.network);
         let closed: Vec<bool> = network.map_or(vec![], |n| (0..n.components).map(|c| n.is_closed(c)).collect());
@@ -59,8 +58,7 @@ impl Residuals {
         }
     }
 
-    /// Takes what is known at an instant; `first` are the invariants at the start. Returns what the balance of angular momentum leaves open
-    /// there [N m s].
+    /// Adds the balances at an instant; `first` are the invariants at the start.
     pub fn take(
         &mut self,
         system: &System,
@@ -91,7 +89,7 @@ impl Residuals {
         if !system.layout.inertia {
             return;
         }
-        // The momentum that the largest energy could carry: loads and reactions may cancel all along.
+        // Reference: the momentum that the largest energy could carry. Loads and reactions may cancel throughout.
         let model = &system.model;
         let mass: f64 = system.masses.iter().sum();
         let carried = (2.0 * mass * self.energy_seen).sqrt();
@@ -112,20 +110,20 @@ impl Residuals {
             .max(gained.abs());
     }
 
-    /// Takes the reactions over a step of `dt` [s] that ends in the workspace's state.
+    /// Adds the reactions over a step of `dt` [s] that ends in the state `w`.
     pub fn follow(&mut self, system: &System, now: &TimeData, w: State, dt: f64) {
         for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
             *sum += dt * square;
         }
     }
 
-    /// Root mean square of what reactions told in two ways differ by, over that of the reactions.
+    /// Root mean square of the difference between two evaluations of the reactions, over that of the reactions.
     pub fn reaction_relative(&self) -> f64 {
         let [size, difference] = self.reactions;
         if size > 0.0 { (difference / size).sqrt() } else { 0.0 }
     }
 
-    /// Worst difference of a network's flow through ports, by law and by storage, over the volume passed.
+    /// Largest difference of a network's volume through its ports, by law and by storage, less noise, over the volume passed.
     pub fn port_flow_relative(&self) -> f64 {
         let floor = self.floors.volume;
         let each = self.port_flow.iter().filter(|[_, passed, _]| *passed > floor);
@@ -142,7 +140,7 @@ impl Residuals {
         Self::relative(self.energy, self.energy_seen.max(self.floors.energy))
     }
 
-    /// Worst volume residual over the largest volume displaced in the same network, or passed through its ports.
+    /// Largest volume residual over the largest volume displaced in the same network, or passed through its ports.
     pub fn volume_relative(&self) -> f64 {
         self.volume
             .iter()
@@ -151,7 +149,7 @@ impl Residuals {
             .fold(0.0, f64::max)
     }
 
-    /// The same for networks without ports alone: these close to round-off.
+    /// Largest relative volume residual of the networks without ports, which close to round-off.
     pub fn closed_volume_relative(&self) -> f64 {
         let closed = self
             .volume
@@ -173,7 +171,7 @@ impl Residuals {
         Self::relative(self.angular, self.angular_seen.max(floor))
     }
 
-    /// Balances that stay open.
+    /// Warnings of balances that do not close.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = Vec::new();
         let open = self.energy_relative();
@@ -214,8 +212,8 @@ impl Residuals {
     }
 }
 
-/// Raises the largest volume displaced in each component, `Σ |a1| ds`, or pressed out of it and back in, `Σ a_p |p| ds`:
-/// where pressure is one and the volume is kept, areas are nothing but round-off.
+/// Raises the largest volume of each component: displaced, `Σ |a1| ds`, or exchanged by compliance, `Σ a_p |p| ds`. The latter
+/// counts if pressure is uniform and the volume constant, since area changes are then round-off.
 fn displaced(system: &System, area: &[f64], pressure: &[f64], seen: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;

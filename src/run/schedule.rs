@@ -1,18 +1,18 @@
-//! When a run stops to switch, when it gives output, and where its window begins.
+//! Schedule of a run: stops at switches and checkpoints, output times, and ends of the window.
 
 use std::collections::VecDeque;
 
 use crate::case::schema::Case;
 use crate::model::Model;
 
-/// A time at which the integrator stops and starts afresh.
+/// A time at which the integrator stops and restarts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// When [s].
+    /// Time [s].
     pub t: f64,
-    /// A signal kinks or jumps here.
+    /// True if a signal has a kink or jump here.
     pub switches: bool,
-    /// A checkpoint is due here.
+    /// True if a checkpoint is due here.
     pub checkpoint: bool,
 }
 
@@ -46,40 +46,40 @@ pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
     all
 }
 
-/// Whether any signal changes in time.
+/// True if any signal changes in time.
 pub fn changes(model: &Model) -> bool {
     let mut changes = false;
     model.each_signal(|s| changes |= !s.is_constant());
     changes
 }
 
-/// A time at which the state is taken.
+/// A time at which the state is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Due {
-    /// When [s].
+    /// Time [s].
     pub t: f64,
-    /// Number of the output that is due; none at an end of the window between two of them.
+    /// Number of the output that is due; `None` at an end of the window between two outputs.
     pub output: Option<u64>,
 }
 
-/// Output times `k interval`, the end of the run, whether the interval divides it or not, and the ends of the window.
+/// Output times: multiples of the interval, the end of the run even if it is none of them, and the ends of the window.
 #[derive(Clone, Debug)]
 pub struct Outputs {
     interval: f64,
     end: f64,
     next: u64,
     last: u64,
-    /// Output times of their own in place of these [s].
+    /// Explicit output times that replace the multiples of the interval [s].
     own: Option<Vec<f64>>,
-    /// Ends of the window still to come at which there is no output [s].
+    /// Remaining ends of the window at which there is no output [s].
     marks: VecDeque<f64>,
 }
 
-/// Share of the window by which an output counts as one at its end.
+/// Fraction of the window within which an output coincides with an end of it.
 pub const SAME: f64 = 1e-9;
 
 impl Outputs {
-    /// Times of a case, from zero.
+    /// Output times of a case, from zero.
     pub fn new(case: &Case) -> Self {
         let (interval, end, window) = (case.time.output_interval(), case.time.end_s, case.time.window());
         let last = (end / interval * (1.0 - 1e-12)).ceil();
@@ -97,7 +97,7 @@ impl Outputs {
         }
     }
 
-    /// These instants [s] in place of the times of a case, ascending and none after its end; at least one.
+    /// Explicit output times [s] in place of those of the case: at least one, in ascending order, none after its end.
     pub fn at(case: &Case, instants: &[f64]) -> Self {
         Self {
             last: instants.len().saturating_sub(1) as u64,
@@ -106,7 +106,7 @@ impl Outputs {
         }
     }
 
-    /// Time of the output of a number [s].
+    /// Time of output `number` [s].
     fn time(&self, number: u64) -> f64 {
         let time = match &self.own {
             Some(own) => own.get(number as usize).copied().unwrap_or(self.end),
@@ -115,7 +115,7 @@ impl Outputs {
         time.min(self.end)
     }
 
-    /// Whether they are not those of a case: whoever gave them wants no others.
+    /// True if the output times were given explicitly, so that no others are wanted.
     pub fn are_given(&self) -> bool {
         self.own.is_some()
     }
@@ -125,13 +125,13 @@ impl Outputs {
         self.next
     }
 
-    /// Goes on after a time `t` [s], up to which all has been taken, with the output of this number.
+    /// Continues after time `t` [s], up to which all samples are done, with output `next`.
     pub fn go_on(&mut self, next: u64, t: f64) {
         self.next = next;
         self.marks.retain(|mark| *mark > t);
     }
 
-    /// What is due next, not after `t` [s].
+    /// Next time at which the state is sampled, if not after `t` [s].
     pub fn due(&mut self, t: f64) -> Option<Due> {
         let output = (self.next <= self.last).then(|| self.time(self.next));
         let mark = self.marks.front().copied();

@@ -1,4 +1,4 @@
-//! Fluid that comes to rest later than the run lasts.
+//! Warning about fluid that needs longer to reach equilibrium than the run lasts.
 
 use crate::case::controls;
 use crate::case::schema::{Case, Effect};
@@ -7,23 +7,23 @@ use crate::error::Code;
 use crate::functions::signals::Signal;
 use crate::model::slowest::Slowest;
 
-/// How far the slowest decay may lag behind what acts.
+/// Relative lag of the slowest decay above which the warning is given.
 const LEFT: f64 = 0.05;
 
-/// Time constants after which a change is followed.
+/// Number of time constants after which an earlier change has decayed.
 const FORGOTTEN: f64 = 20.0;
 
-/// Instants within these at which a signal is looked at: a lag is told to a hundredth or so.
+/// Number of instants at which a signal is sampled; the lag is then accurate to about 0.01.
 const LOOKS: u16 = 2000;
 
-/// What is said of a state at rest under the loads of an instant [s] where fluid needs longer than the run has until then, with valves as they stand at
-/// it: how far the slowest decay of a network lags behind.
+/// Warns that an equilibrium under the loads at `at_s` [s] differs from the run, because fluid settles more slowly. States the lag
+/// of the slowest decay of a network, with the valves as they are at this time.
 pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
     let model = &system.model;
     let wet = model.wet.as_ref().filter(|_| model.effects.has(Effect::Flow))?;
     let slowest = Slowest::at(wet, at_s)?;
     let until = if at_s > 0.0 { at_s } else { case.time.end_s };
-    // what is there from the begin on has moved nothing where the run begins at rest under it
+    // loads that act from the start cause no lag if the run begins at equilibrium under them
     let mut share = match case.start.equilibrium {
         None => (-until / slowest.time).exp(),
         Some(_) => 0.0,
@@ -43,7 +43,7 @@ pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
     })
 }
 
-/// How far what follows a signal with a time constant [s] is behind it at an instant [s], over all that the signal has changed by: 1 of a late jump.
+/// Lag of a first-order response behind its signal at time `until` [s], over the range of the signal; 1 after a late jump.
 ///
 /// ```text
 /// T dy/dt = s - y      y(0) = s(0)
@@ -52,11 +52,11 @@ fn lag(signal: &Signal, time_constant: f64, until: f64) -> f64 {
     if signal.is_constant() {
         return 0.0;
     }
-    // what was before is forgotten
+    // earlier changes have decayed
     let begin = (until - FORGOTTEN * time_constant).max(0.0);
     let step = (until - begin) / f64::from(LOOKS);
     let kept = (-step / time_constant).exp();
-    // of s on a straight line between two instants
+    // weight of a change that is linear between two instants
     let mean = (1.0 - kept) * time_constant / step;
     let (mut lag, mut last) = (0.0, signal.value(begin));
     for k in 1..=LOOKS {
@@ -69,7 +69,7 @@ fn lag(signal: &Signal, time_constant: f64, until: f64) -> f64 {
     if reach > 0.0 { (lag / reach).abs() } else { 0.0 }
 }
 
-/// A time with a unit in which it is read.
+/// Formats a time with a readable unit.
 fn span(seconds: f64) -> String {
     let units = [
         (86400.0 * 365.0, "years"),
@@ -79,7 +79,7 @@ fn span(seconds: f64) -> String {
         (1.0, "s"),
         (1e-3, "ms"),
     ];
-    // up to three hundred of a unit in the smaller one
+    // less than three minutes, hours, days or years are given in the next smaller unit
     let (size, unit) = units
         .into_iter()
         .find(|(size, unit)| seconds >= if matches!(*unit, "s" | "ms") { *size } else { 3.0 * size })
@@ -93,7 +93,7 @@ mod tests {
     use super::{lag, span};
     use crate::functions::signals::{Ramp, RampShape, Signal, Sine};
 
-    /// Of a ramp and of a sine there are formulas.
+    /// Compares the lag with closed forms for a ramp and a sine.
     #[test]
     fn what_follows_lags_as_first_order_does() {
         let ramp = Signal::Ramp(Ramp {
@@ -111,7 +111,7 @@ mod tests {
             phase_rad: 0.0,
             ramp_cycles: 0.0,
         });
-        // s - y of amplitude ωT/√(1 + (ωT)²) over a reach of two, ahead by its phase
+        // s - y has the relative amplitude ωT/√(1 + (ωT)²) over a range of two, and leads by its phase
         let turns = std::f64::consts::TAU * 10.0 * 0.01;
         let expected = 0.5 * turns / (1.0 + turns * turns);
         assert!((lag(&sine, 0.01, 3.0) - expected).abs() < 1e-2 * expected);

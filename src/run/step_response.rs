@@ -1,7 +1,7 @@
-//! Step responses: how a value goes from where it was to another.
+//! Step responses: the transition of a value from an initial to a final one.
 //!
-//! Bands and limits are shares of the way from the initial to the final value, which is known at the end alone. What is kept of the
-//! motion until then is what may decide: the stretches that reach farther than all before, and those that reach farther than all after.
+//! Bands and limits are fractions of the change from the initial to the final value, which is known only at the end. Until then
+//! only decisive pieces of the motion are stored: those with values beyond all earlier ones, and beyond all later ones.
 
 use std::collections::BTreeMap;
 
@@ -11,50 +11,50 @@ use super::cubic::Cubic;
 use super::readings::Readings;
 use crate::error::numbers::quantity;
 
-/// Shares of the way between which the rise is timed.
+/// Fractions of the change between which the rise is timed.
 const RISE: [f64; 2] = [0.1, 0.9];
-/// Bands about the final value, as shares of the way.
+/// Bands about the final value, as fractions of the change.
 const BANDS: [f64; 2] = [0.02, 0.05];
-/// Share of the time watched for which a value has to stay in a band to have settled.
+/// Fraction of the observed time for which a value must stay in a band to count as settled.
 const STAYS: f64 = 0.1;
-/// Share of the largest excursion below which two values are one.
+/// Fraction of the largest excursion below which two values count as equal.
 const SAME: f64 = 1e-6;
 
-/// A step response in the usual terms; what cannot be told is null, and `reason` says why.
+/// Step response in the usual terms; an undefined figure is null, and `reason` explains it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepResponse {
-    /// Value at the begin of the step.
+    /// Value at the start of the step.
     pub initial: f64,
     /// Value at the end of the run.
     #[serde(rename = "final")]
     pub last: f64,
-    /// Time from the first passage of 10 % of the way to the first of 90 % [s].
+    /// Time from the first crossing of 10 % of the change to the first of 90 % [s].
     pub rise_time_s: Option<f64>,
-    /// Time from the step until the value stays within 2 % of the way about the final value [s].
+    /// Time from the step until the value stays within 2 % of the change about the final value [s].
     pub settling_time_2_percent_s: Option<f64>,
-    /// The same within 5 % [s].
+    /// Time from the step until the value stays within 5 % of the change about the final value [s].
     pub settling_time_5_percent_s: Option<f64>,
-    /// How far the value goes beyond the final one, over the way [%].
+    /// Largest excursion beyond the final value, over the change [%].
     pub overshoot_percent: Option<f64>,
-    /// How far it goes beyond the initial one, away from the final, over the way [%].
+    /// Largest excursion beyond the initial value, away from the final one, over the change [%].
     pub undershoot_percent: Option<f64>,
-    /// The value that is farthest from the initial one towards the final.
+    /// Extreme value in the direction from the initial to the final value.
     pub peak: Option<f64>,
-    /// Time from the step to it [s].
+    /// Time from the step to the peak [s].
     pub peak_time_s: Option<f64>,
-    /// Why something is null.
+    /// Reason why a figure is null.
     pub reason: Option<String>,
 }
 
-/// The part of a step from place `start` to 1.
+/// The part of a step from relative position `start` to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Piece {
-    /// Begin and length of the step [s].
+    /// Start and length of the step [s].
     t: f64,
     h: f64,
     cubic: Cubic,
     start: f64,
-    /// Largest value, and its place.
+    /// Largest value, and its position.
     most: [f64; 2],
 }
 
@@ -76,7 +76,7 @@ impl Piece {
         piece
     }
 
-    /// Its ends and the turning points between, in order.
+    /// Ends of the piece and extrema between, in order.
     fn places(&self) -> [Option<f64>; 4] {
         let mut turns = self.cubic.turns().filter(|x| *x > self.start);
         let (a, b) = match (turns.next(), turns.next()) {
@@ -90,7 +90,7 @@ impl Piece {
         self.t + x * self.h
     }
 
-    /// When it is above `level` for the first time on the way through places [s]; it is somewhere.
+    /// Time [s] at which the value first exceeds `level` along the given positions, refined between two of them.
     fn above(&self, level: f64, places: impl Iterator<Item = f64>) -> Option<f64> {
         let mut below = None;
         for x in places {
@@ -104,12 +104,12 @@ impl Piece {
     }
 }
 
-/// One value, or its negative, as far as it may decide.
+/// Decisive pieces of one value, or of its negative.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Side {
-    /// Pieces that go above all before.
+    /// Pieces with a value above all before.
     records: Vec<Piece>,
-    /// Pieces that go above all after.
+    /// Pieces with a value above all after.
     lasting: Vec<Piece>,
 }
 
@@ -124,48 +124,48 @@ impl Side {
         self.lasting.push(piece);
     }
 
-    /// When the value first is above a level [s].
+    /// First time at which the value exceeds a level [s].
     fn first_above(&self, level: f64) -> Option<f64> {
         let first = self.records.partition_point(|piece| piece.most[0] <= level);
         let piece = self.records.get(first)?;
         piece.above(level, piece.places().into_iter().flatten())
     }
 
-    /// When it last is [s].
+    /// Last time at which the value exceeds a level [s].
     fn last_above(&self, level: f64) -> Option<f64> {
         let beyond = self.lasting.partition_point(|piece| piece.most[0] > level);
         let piece = self.lasting.get(beyond.checked_sub(1)?)?;
         piece.above(level, piece.places().into_iter().rev().flatten())
     }
 
-    /// Largest value, and when it was reached [s].
+    /// Largest value, and its time [s].
     fn most(&self) -> Option<[f64; 2]> {
         let piece = self.records.last()?;
         Some([piece.most[0], piece.time(piece.most[1])])
     }
 }
 
-/// One value on its way.
+/// Response of one value.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Way {
     initial: f64,
     last: f64,
-    /// As it is, and with the other sign.
+    /// Pieces of the value, and of its negative.
     sides: [Side; 2],
 }
 
-/// Follows values from a step on.
+/// Records the responses of values from a step on.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepResponses {
     names: Vec<String>,
-    /// When the step is, and up to when it has been followed [s].
+    /// Time of the step, and time up to which the responses are recorded [s].
     at: f64,
     end: f64,
     ways: Vec<Way>,
 }
 
 impl StepResponses {
-    /// Of values with such names, from a time [s] on.
+    /// Creates the record of named values from time `at` [s] on.
     pub fn new(names: Vec<String>, at: f64) -> Self {
         Self {
             names,
@@ -175,13 +175,13 @@ impl StepResponses {
         }
     }
 
-    /// Takes a step of the run.
+    /// Adds a step of the run.
     pub fn step(&mut self, readings: &Readings) {
         let (span, cubics) = readings.step();
         self.take(span, cubics);
     }
 
-    /// Takes the cubics of all values between two times [s].
+    /// Adds the cubics of all values between two times [s].
     pub fn take(&mut self, [begin, end]: [f64; 2], cubics: impl Iterator<Item = Cubic>) {
         if end <= self.at {
             return;
@@ -205,7 +205,7 @@ impl StepResponses {
         self.end = end;
     }
 
-    /// What they come to, by name; `finished` when the run has come to its end.
+    /// Evaluates the step responses, by name; `finished` is true if the run reached its end.
     pub fn judge(&self, finished: bool) -> BTreeMap<String, StepResponse> {
         let all = self.names.iter().zip(&self.ways);
         all.map(|(name, way)| (name.clone(), self.one(way, finished))).collect()

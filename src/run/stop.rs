@@ -1,4 +1,4 @@
-//! What asks work to end soon.
+//! Stop request for work in progress.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -7,17 +7,17 @@ use crate::integrate::halt;
 
 pub use crate::integrate::halt::INTERRUPTED;
 
-/// A flag that somebody may raise, to whom work listens on its way; nobody where there is none.
+/// A flag that requests work to stop, checked by the work; without a flag there is never a request.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Option<Arc<AtomicBool>>);
 
 impl Stop {
-    /// Asked by a flag.
+    /// Creates a stop request from a flag.
     pub fn by(flag: Arc<AtomicBool>) -> Self {
         Self(Some(flag))
     }
 
-    /// Whether it is raised; work is taken to end then.
+    /// True if the flag is raised. The work is then expected to end.
     pub fn raised(&self) -> bool {
         self.0.as_ref().is_some_and(|flag| halt::raised(flag))
     }

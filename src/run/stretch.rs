@@ -1,4 +1,4 @@
-//! What is left of output times that are not written: least, greatest and mean value of each column over a stretch of time.
+//! Statistics over thinned outputs: least, greatest and mean value of each column over a stretch of time.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,33 +7,33 @@ use super::schedule::SAME;
 use crate::case::schema::Case;
 use crate::model::characteristic;
 
-/// Stretches of a run at most; beyond, each has several cycles.
+/// Largest number of stretches of a run; in longer runs each stretch has several cycles.
 const MOST: f64 = 2000.0;
-/// Stretches of a run that is not driven at a frequency.
+/// Number of stretches of a run that is not driven at a frequency.
 const PARTS: f64 = 1000.0;
-/// Share of a stretch by which an output counts as one of the next.
+/// Fraction of a stretch within which an output belongs to the next one.
 const EDGE: f64 = 1e-6;
 
-/// Columns before those of the history: first and last output time, and how many there are.
+/// Columns before those of the history: first and last output time, and the number of outputs.
 const OWN: [&str; 3] = ["from [s]", "to [s]", "outputs [1]"];
 
-/// Names of the columns, units included; three a column of the history.
+/// Names of the columns, units included; three for each column of the history.
 pub fn names(columns: &[Column]) -> Vec<String> {
     let of = |c: &Column| ["least", "greatest", "mean"].map(|what| format!("{} {what} [{}]", c.name, c.unit));
     let own = OWN.map(String::from);
     own.into_iter().chain(columns.iter().skip(1).flat_map(of)).collect()
 }
 
-/// What belongs to which stretch.
+/// Division of a run into stretches.
 #[derive(Clone, Copy, Debug)]
 pub struct Stretches {
     length: f64,
-    /// Begin of the window [s], where they end.
+    /// Start of the window [s], where the stretches end.
     end: f64,
 }
 
 impl Stretches {
-    /// Cycles of the drive, whole numbers of them in long runs; parts of a run without a drive.
+    /// Stretches of one drive cycle, or several in long runs; equal parts of a run without a drive.
     pub fn new(case: &Case) -> Self {
         let (end, window) = (case.time.end_s, case.time.window());
         let cycle = characteristic::forcing_period(case).filter(|period| *period > 0.0 && *period < end);
@@ -44,18 +44,18 @@ impl Stretches {
         }
     }
 
-    /// How many there are.
+    /// Number of stretches.
     pub fn count(&self) -> f64 {
         (self.end / self.length).max(0.0).ceil()
     }
 
-    /// Number of the stretch in which an instant [s] lies, none in the window.
+    /// Number of the stretch that contains time `t` [s]; `None` in the window.
     pub fn of(&self, t: f64) -> Option<u64> {
         (t < self.end).then(|| (t / self.length + EDGE).floor() as u64)
     }
 }
 
-/// The stretch that is under way.
+/// Statistics of the current stretch.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     number: u64,
@@ -67,7 +67,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// Takes a row of the history; gives the stretch before, where it is the first of another.
+    /// Adds a row of the history. Returns the row of the previous stretch if this row begins another.
     pub fn take(&mut self, number: Option<u64>, row: &[f64]) -> Option<Vec<f64>> {
         let before = if number == Some(self.number) {
             None
@@ -97,7 +97,7 @@ impl Stretch {
         before
     }
 
-    /// Its row, if it has any outputs; it is empty then.
+    /// Returns the row of the stretch, if it has any outputs, and clears it.
     pub fn close(&mut self) -> Option<Vec<f64>> {
         if self.count == 0 {
             return None;

@@ -1,4 +1,4 @@
-//! The largest steps of a run, stretch by stretch: short where a signal is fast, and nowhere else.
+//! Largest steps of a run on successive intervals: small only where a signal is fast.
 
 use super::schedule;
 use crate::case::schema::Case;
@@ -6,15 +6,15 @@ use crate::discrete::System;
 use crate::functions::bounds::{Stretch, merged};
 use crate::model::Model;
 
-/// Stretches whose largest steps are nearer than this factor share the shorter.
+/// Intervals whose largest steps differ by at most this factor share the smaller one.
 const NEAR: f64 = 4.0;
-/// A stretch that is as long as this many of its neighbour's steps has steps of its own.
+/// An interval at least as long as this many steps of its neighbor has its own largest step.
 const WORTH: f64 = 20.0;
 
-/// Steps up to a time.
+/// Largest step up to a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stride {
-    /// Where the next stretch begins, at which the integrator stops [s].
+    /// Start of the next interval [s], at which the integrator stops.
     pub to: f64,
     /// Largest step [s].
     pub largest: f64,
@@ -25,9 +25,9 @@ pub struct Stride {
 pub struct Strides(Vec<Stride>);
 
 impl Strides {
-    /// Of a case: as given, or a 16th of the shortest time scale that its signals have on a stretch, at most a tenth of the run. More at
-    /// tolerances looser than 1e-3, with the fourth root, so that errors go on to follow the tolerance; a hundredth of the run where
-    /// something changes without inertia: a high order would stride over what the ledger integrates.
+    /// Largest steps of a case: the given one, or a 16th of the shortest time scale of its signals on an interval, at most a tenth
+    /// of the run. At tolerances looser than 1e-3 they grow with its fourth root, so that errors still follow the tolerance. If
+    /// signals change without inertia, at most a hundredth of the run: a high order would step over what the ledger integrates.
     pub fn new(case: &Case, system: &System) -> Self {
         let end = case.time.end_s;
         if let Some(largest) = case.solver.max_step_s {
@@ -46,19 +46,19 @@ impl Strides {
         all
     }
 
-    /// The shortest of the largest steps [s].
+    /// The smallest of the largest steps [s].
     pub fn least(&self) -> f64 {
         self.0.iter().map(|stride| stride.largest).fold(f64::INFINITY, f64::min)
     }
 
-    /// What holds from a time [s] on.
+    /// Largest step that applies from time `t` [s] on.
     pub fn at(&self, t: f64) -> Stride {
         let next = self.0.partition_point(|stride| stride.to <= t);
         let last = self.0.len().saturating_sub(1);
         self.0[next.min(last)]
     }
 
-    /// Adds the next stretch to the last, or as one of its own where that is worth a stop.
+    /// Adds the next interval: merged with the last one, or separate if it is worth a stop.
     fn add(&mut self, next: Stride) {
         let from = self.0.len().checked_sub(2).map_or(0.0, |k| self.0[k].to);
         match self.0.last_mut() {
@@ -83,7 +83,7 @@ impl Strides {
     }
 }
 
-/// Shortest time scales of all signals that no stop marks.
+/// Shortest time scales of all signals on successive intervals, without kinks and jumps, which are stops.
 pub(super) fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
     let mut all = vec![Stretch {
         to: end,

@@ -14,84 +14,84 @@ pub use super::wall::WallTimes;
 use super::waves::GrowingWave;
 pub use crate::integrate::Counters;
 
-/// How a run ended.
+/// Final status of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// Reached the end time.
     Finished,
-    /// Stopped because it was asked to.
+    /// Stopped on request.
     Stopped,
-    /// Ended where the result left what the model describes.
+    /// Ended because the result left the validity limits of the model.
     OutOfRange,
-    /// The solver could not go on.
+    /// The solver failed to continue.
     Failed,
 }
 
-/// Why a ratio has no value.
+/// Reason why a ratio has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Absence {
-    /// What it divides by is below the numerical error of the run.
+    /// Its denominator is below the numerical error of the run.
     BelowNumericalError,
 }
 
 /// A quantity over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quantity {
-    /// At the end.
+    /// Value at the end.
     #[serde(rename = "final", skip_serializing_if = "Option::is_none")]
     pub last: Option<f64>,
-    /// Largest absolute value of the motion, between the output times too.
+    /// Largest absolute value of the motion, also between the output times.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_abs: Option<f64>,
-    /// When it was reached [s].
+    /// Time of the largest absolute value [s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_abs_at_s: Option<f64>,
-    /// The value there, with its sign, where it has one.
+    /// Value at this time with its sign, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extreme: Option<f64>,
     /// Largest absolute value in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window_max_abs: Option<f64>,
-    /// The value there, with its sign, where it has one.
+    /// Value of largest magnitude in the window with its sign, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_extreme: Option<f64>,
     /// Root mean square over the time in the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_rms: Option<f64>,
-    /// Increment (energies) over the window; of an efficiency, what was harvested in it over all that was spent in it.
+    /// Increment over the window; for an efficiency, the energy harvested over all energy spent in the window.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
-    /// Of energies: mean power over the window [W].
+    /// Mean power over the window, for energies [W].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_power_w: Option<f64>,
-    /// Of energies: how far the balance was open over the run, relative to `final`.
+    /// For energies: largest residual of the balance over the run, relative to `final`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub final_error: Option<f64>,
-    /// Of energies: how far the balance was open over the window, relative to `window`.
+    /// For energies: largest residual of the balance over the window, relative to `window`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_error: Option<f64>,
-    /// Why a ratio has no value over the run, where it has none.
+    /// Reason why a ratio has no value over the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub final_absent: Option<Absence>,
-    /// Likewise over the window.
+    /// Reason why a ratio has no value over the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window_absent: Option<Absence>,
 }
 
 impl Quantity {
-    /// Its largest value over the run, with its sign where that is known.
+    /// Largest value over the run, with its sign if known.
     pub fn largest(&self) -> Option<f64> {
         self.extreme.or(self.max_abs)
     }
 
-    /// Its largest figure, without sign.
+    /// Magnitude of the largest figure.
     pub fn size(&self) -> f64 {
         self.figures().fold(0.0, |s, (_, x)| s.max(x.abs()))
     }
 
-    /// What is known of it, by the names in `summary.json`.
+    /// Known figures, by the names in `summary.json`.
     pub fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
         let all = [
             ("final", self.last),
@@ -103,7 +103,7 @@ impl Quantity {
         all.into_iter().filter_map(|(name, value)| Some((name, value?)))
     }
 
-    /// All of them, by the names in `summary.json`.
+    /// Known figures including signed extremes and mean power, by the names in `summary.json`.
     pub fn all_figures(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
         let further = [
             ("extreme", self.extreme),
@@ -114,7 +114,7 @@ impl Quantity {
         self.figures().chain(further)
     }
 
-    /// Those that tell one motion from another of the same kind the least: root mean square and increment over the window.
+    /// Figures that differ least between motions of the same kind: root mean square and increment over the window.
     pub fn statistics(&self) -> impl Iterator<Item = (&'static str, f64)> + use<> {
         self.figures()
             .filter(|(name, _)| matches!(*name, "window_rms" | "window"))
@@ -124,10 +124,10 @@ impl Quantity {
 /// Figures by quantity and name.
 pub type Figures = BTreeMap<String, BTreeMap<String, f64>>;
 
-/// The run beside which the errors of figures are measured: see [`companion`](crate::study::companion).
+/// Companion run from which the errors of figures are measured: see [`companion`](crate::study::companion).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CompanionRun {
-    /// Reason for which there are no errors; absent where there are.
+    /// Reason why there are no errors; absent if there are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
     /// Beam cells per segment.
@@ -136,7 +136,7 @@ pub struct CompanionRun {
     pub cells_per_bladder: usize,
     /// Tolerance.
     pub rtol: f64,
-    /// Effects that the run leaves out and the companion does not.
+    /// Effects that the run neglects and the companion includes.
     pub added_effects: Vec<String>,
     /// Unknowns.
     pub unknowns: usize,
@@ -146,12 +146,12 @@ pub struct CompanionRun {
     pub residual_evaluations: u64,
     /// Wall time [s].
     pub wall_s: f64,
-    /// Its figures.
+    /// Figures of the companion.
     pub figures: Figures,
-    /// Errors of figures by their cause, the JSON pointer of a setting; absent where no error may exceed 5 %.
+    /// Errors of figures by their cause, the JSON pointer of a setting; absent if no error can exceed 5 %.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub causes: BTreeMap<String, Figures>,
-    /// Runs before the run, without effects that their companions showed to matter.
+    /// Earlier runs without effects that their companions found to be significant.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub earlier_runs: Vec<EarlierRun>,
 }
@@ -159,7 +159,7 @@ pub struct CompanionRun {
 /// A run that was repeated with more effects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EarlierRun {
-    /// Effects that it leaves out and the next run does not.
+    /// Effects that it neglects and the next run includes.
     pub added_effects: Vec<String>,
     /// Unknowns.
     pub unknowns: usize,
@@ -167,41 +167,41 @@ pub struct EarlierRun {
     pub steps: u64,
     /// Wall time [s].
     pub wall_s: f64,
-    /// Its figures.
+    /// Figures of the run.
     pub figures: Figures,
 }
 
-/// Whether the balances close.
+/// Residuals of the balances.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balances {
-    /// Largest residual of the energy balance over the largest energy seen.
+    /// Largest residual of the energy balance over the largest energy.
     #[serde(deserialize_with = "null::number")]
     pub energy_residual_relative: f64,
     /// Largest residual of any network's volume balance over the largest volume displaced in it or passed through its
     /// ports.
     #[serde(deserialize_with = "null::number")]
     pub volume_residual_relative: f64,
-    /// The same for networks without ports alone: these close to round-off at any tolerance.
+    /// Largest relative volume residual of networks without ports, which close to round-off at any tolerance.
     #[serde(default, deserialize_with = "null::number")]
     pub closed_volume_residual_relative: f64,
-    /// Largest difference between what left a network by the law of its ports and by what it stores, over the volume passed.
+    /// Largest difference between the volumes that left a network by its ports' law and by its storage, over the volume passed.
     #[serde(default, deserialize_with = "null::number")]
     pub port_flow_residual_relative: f64,
-    /// Root mean square of the difference between reactions of driven ends told by the momentum of half a cell and by the section's
-    /// force at the end, over that of the reactions: the mesh's error.
+    /// Error of the mesh: difference between two evaluations of the reactions of driven ends, over the reactions (root mean square).
+    /// One is from the momentum of half a cell, the other from the section force at the end.
     #[serde(default, deserialize_with = "null::number")]
     pub reaction_difference_relative: f64,
-    /// Largest residual of the momentum balance over the largest momentum or impulse seen.
+    /// Largest residual of the momentum balance over the largest momentum or impulse.
     #[serde(deserialize_with = "null::number")]
     pub momentum_residual_relative: f64,
-    /// Largest residual of the angular momentum balance, likewise.
+    /// Largest residual of the angular momentum balance over the largest angular momentum or angular impulse.
     #[serde(deserialize_with = "null::number")]
     pub angular_momentum_residual_relative: f64,
     /// Energies and works at the end [J].
     pub energy_j: BTreeMap<String, f64>,
 }
 
-/// What was chosen, and why.
+/// A choice of the program and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Chosen {
     /// The choice: `on`, `off`.
@@ -210,17 +210,17 @@ pub struct Chosen {
     pub reason: String,
 }
 
-/// Errors of a quantity, relative to its largest figure; absent where they are not known.
+/// Errors of a quantity, relative to its largest figure; absent if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// Of the time integration.
+    /// Error of the time integration.
     pub time: Option<f64>,
-    /// Of the mesh.
+    /// Error of the mesh.
     pub space: Option<f64>,
-    /// Of the effects that are left out.
+    /// Error of the neglected effects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<f64>,
-    /// Of time, mesh and effects together.
+    /// Error of time, mesh and effects together.
     pub total: Option<f64>,
 }
 
@@ -243,12 +243,12 @@ pub struct Pilot {
     pub wall_s: f64,
 }
 
-/// What an accuracy asked for led to.
+/// Outcome of a requested accuracy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Relative error asked for.
+    /// Requested relative error.
     pub asked: f64,
-    /// Whether every error is known and not above it.
+    /// True if every error is known and at most the requested one.
     pub reached: bool,
     /// Mesh chosen: beam cells per segment.
     pub cells_per_segment: usize,
@@ -259,7 +259,7 @@ pub struct Accuracy {
     pub order: u8,
     /// Tolerance chosen.
     pub rtol: f64,
-    /// Effects that were added, and those that are left out, in words.
+    /// Added and neglected effects, as text.
     #[serde(default)]
     pub effects: String,
     /// Errors by quantity, probe and port.
@@ -268,13 +268,13 @@ pub struct Accuracy {
     pub pilots: Vec<Pilot>,
 }
 
-/// Order of meshes before it was said.
+/// Order of the mesh in files without this key.
 fn second() -> u8 {
     2
 }
 
 impl Accuracy {
-    /// The mesh of the beam in words.
+    /// Describes the mesh of the beam.
     pub fn cells(&self) -> String {
         let order = if self.order == 4 { " of fourth order" } else { "" };
         format!("{} a segment{order}", counted(self.cells_per_segment as u64, "cell"))
@@ -286,9 +286,9 @@ impl Accuracy {
 pub struct Summary {
     /// Name of the case.
     pub case: String,
-    /// How the run ended.
+    /// Final status of the run.
     pub status: Status,
-    /// Why, when it did not finish.
+    /// Reason why the run did not finish.
     pub reason: Option<String>,
     /// Simulated time reached [s].
     pub time_s: f64,
@@ -299,19 +299,19 @@ pub struct Summary {
     /// Absolute errors of figures of quantities, probes and ports, each in the unit of its figure.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub errors: Figures,
-    /// The run beside which they are measured.
+    /// Companion run from which the errors are measured.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub companion: Option<CompanionRun>,
-    /// What is recorded at probes, by name and unit.
+    /// Quantities recorded at probes, by name and unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub probes: BTreeMap<String, Quantity>,
     /// Flows and pressures of ports and pressures in accumulators at the output times, by name and unit.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub ports: BTreeMap<String, Quantity>,
-    /// Step responses of tip and probes, by name and unit, where they are asked for.
+    /// Step responses of tip and probes, by name and unit, if requested.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub step_response: BTreeMap<String, StepResponse>,
-    /// What uncertain numbers leave open of figures, by the names of `uncertainty.json`.
+    /// Spread of figures due to uncertain numbers, by the names of `uncertainty.json`.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,
     /// Balances.
@@ -324,25 +324,25 @@ pub struct Summary {
     pub effects: BTreeMap<String, Chosen>,
     /// Characteristic numbers.
     pub characteristic: BTreeMap<String, f64>,
-    /// Where each coefficient comes from, by its JSON pointer: `case`, `preset ...`, `--set`, `default` or `computed from ...`.
+    /// Origin of each coefficient, by its JSON pointer: `case`, `preset ...`, `--set`, `default` or `computed from ...`.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub origins: BTreeMap<String, String>,
-    /// Growth of the response and what drives it, when it grows.
+    /// Growth of the response and its causes, if it grows.
     #[serde(default)]
     pub growth: Option<Growing>,
-    /// A wave that grows in the equations linearised about states of the run.
+    /// A wave that grows in the equations linearized about states of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growing_wave: Option<GrowingWave>,
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,
-    /// Derivatives of the quantities, by the JSON pointers of the numbers asked for.
+    /// Derivatives of the quantities, by the JSON pointers of the requested numbers.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub sensitivities: BTreeMap<String, Sensitivity>,
     /// CRC-32 of the tables beside the summary, by file; absent where no table was written.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub tables_crc32: BTreeMap<String, u32>,
-    /// Everything the user should know before trusting the result.
+    /// Warnings to read before trusting the result.
     pub warnings: Vec<String>,
 }
 
@@ -351,14 +351,14 @@ pub fn has_unit_of_quantity(figure: &str) -> bool {
     figure != "window_power_w"
 }
 
-/// Largest of the errors of figures in the unit of their quantity.
+/// Largest error of the figures in the unit of their quantity.
 pub fn largest_error(errors: &BTreeMap<String, f64>) -> Option<f64> {
     let alike = errors.iter().filter(|(figure, _)| has_unit_of_quantity(figure));
     alike.map(|(_, error)| *error).reduce(f64::max)
 }
 
 impl Summary {
-    /// Largest error of a quantity or probe over its largest figure; nothing where it is not known.
+    /// Largest error of a quantity or probe over its largest figure; `None` if unknown.
     pub fn relative_error(&self, name: &str) -> Option<f64> {
         if let Some(found) = &self.accuracy {
             return found.quantities.get(name)?.total;
@@ -368,7 +368,7 @@ impl Summary {
         Some(largest / quantity.size()).filter(|e| e.is_finite())
     }
 
-    /// Absolute error of a figure of a quantity or probe, in its unit; nothing where it is not known.
+    /// Absolute error of a figure of a quantity or probe, in its unit; `None` if unknown.
     pub fn error(&self, name: &str, figure: &str) -> Option<f64> {
         self.errors.get(name)?.get(figure).copied()
     }

@@ -1,11 +1,11 @@
-//! One number over a run: its last and largest value, and what happens to it in the window at the end.
+//! Track of one number over a run: last and largest value, and its figures in the window at the end.
 
 use serde::{Deserialize, Serialize};
 
 use super::summary::Quantity;
 
-/// Excess over the largest value seen for which the state at a turning point between two steps is looked at; below it the cubic
-/// through values and rates at the step's ends is as good.
+/// Relative excess over the largest value so far above which the state at an extremum between two steps is evaluated. Below it
+/// the cubic through values and rates at the ends of the step is accurate enough.
 const WORTH: f64 = 1e-3;
 
 /// Largest and last value of one number.
@@ -15,22 +15,22 @@ pub struct Track {
     max_abs: f64,
     /// True if the value was negative there.
     negative: bool,
-    /// When that was first reached [s].
+    /// Time at which the largest value was first reached [s].
     max_abs_at: f64,
     window_max_abs: f64,
     /// True if the value was negative there.
     #[serde(default)]
     window_negative: bool,
-    /// When that was first reached [s]; asked for within its step alone.
+    /// Time at which the largest value was first reached [s]; used only within its step.
     #[serde(skip)]
     window_max_abs_at: f64,
     window_start: Option<f64>,
-    /// Integral of the square over the window, as far as it has been followed.
+    /// Integral of the square over the window so far.
     window_squares: f64,
 }
 
 impl Track {
-    /// Takes the value at an output time, or at an end of the window.
+    /// Adds the value at an output time, or at an end of the window.
     pub fn take(&mut self, value: f64, in_window: bool) {
         self.last = value;
         if in_window {
@@ -38,7 +38,7 @@ impl Track {
         }
     }
 
-    /// Takes a value at any time [s].
+    /// Adds a value at any time [s].
     pub fn see(&mut self, value: f64, t: f64, in_window: bool) {
         let size = value.abs();
         if size > self.max_abs {
@@ -54,13 +54,13 @@ impl Track {
         self.window_squares += integral;
     }
 
-    /// Instants after a time [s] at which the largest values of run and window were reached.
+    /// Times after `after` [s] at which the largest values of run and window were reached.
     pub fn reached(&self, after: f64) -> impl Iterator<Item = f64> + use<> {
         let both = [self.max_abs_at, self.window_max_abs_at];
         both.into_iter().filter(move |t| *t > after)
     }
 
-    /// What was taken last.
+    /// Last value at an output time or an end of the window.
     pub fn last(&self) -> f64 {
         self.last
     }
@@ -70,17 +70,17 @@ impl Track {
         self.last - self.window_start.unwrap_or(self.last)
     }
 
-    /// Whether the window has begun.
+    /// True if the window has begun.
     pub fn in_window(&self) -> bool {
         self.window_start.is_some()
     }
 
-    /// Whether a size between two steps is worth a look.
+    /// True if the state at a magnitude between two steps must be evaluated.
     pub fn worth(&self, size: f64, in_window: bool) -> bool {
         size > (1.0 + WORTH) * self.max_abs || in_window && size > (1.0 + WORTH) * self.window_max_abs
     }
 
-    /// What is told of a value that swings: `reached` when the run has come to its window, which it has followed for so long [s].
+    /// Figures of an oscillating value. `reached` is true if the run has reached its window, of which it covered `window_time` [s].
     pub fn swing(&self, reached: bool, window_time: f64) -> Quantity {
         let signed = |size: f64, negative: bool| if negative { -size } else { size };
         Quantity {

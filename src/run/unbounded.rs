@@ -1,4 +1,4 @@
-//! Largest flows that do not exist: those of ports whose pressure jumps at the open end of a bladder.
+//! Removes unbounded largest flows: those of ports whose pressure jumps at the open end of a bladder.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,15 @@ use crate::discrete::resolution::{self, JumpIntoBladder};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
-/// Removes the largest flows that grow without limit as the mesh is refined from the figures of ports of a run that came to a time [s]. Returns
-/// a warning for each.
+/// Removes largest flows that grow without limit under mesh refinement from the figures of ports. `reached` is the time [s] at
+/// which the run ended. Returns a warning for each.
 pub fn leave_out(case: &Case, system: &System, reached: f64, ports: &mut BTreeMap<String, Quantity>) -> Vec<String> {
     let window_start = case.time.end_s - case.time.window() * (1.0 + SAME);
     let names: Vec<String> = stations::of_fluid(system).map(|(_, name)| name).collect();
     let jumps = resolution::jumps_into_bladders(case, &system.model).into_iter();
     let left_out = |jump: JumpIntoBladder| {
         let [first, last] = jump.times;
-        // of each port its pressure, then its flow
+        // each port has its pressure, then its flow
         let name = names.get(2 * jump.port + 1)?;
         let flow = ports
             .get_mut(name)
@@ -31,7 +31,7 @@ pub fn leave_out(case: &Case, system: &System, reached: f64, ports: &mut BTreeMa
             ..*flow
         };
         if last >= window_start {
-            // the integral of its square has no limit either
+            // the integral of the squared flow has no limit either
             *flow = Quantity {
                 window_max_abs: None,
                 window_extreme: None,

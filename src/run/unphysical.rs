@@ -1,4 +1,4 @@
-//! States that the equations allow and nature does not: a beam that crosses itself, a liquid below its vapor pressure.
+//! Unphysical states that the equations permit: a beam that crosses itself, a liquid below its vapor pressure.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,34 +9,34 @@ use crate::discrete::glance::{Glance, Watched};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
-/// What is known of a case before its run.
+/// Limits of physical states, known before the run of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Unphysical {
-    /// Pressure against ambient below which the liquid boils [Pa]; none of gas.
+    /// Gauge pressure below which the liquid boils [Pa]; `None` for a gas.
     boils_below: Option<f64>,
-    /// True if that is the vapor pressure, else it is a vacuum.
+    /// True if this is the vapor pressure; otherwise it is vacuum.
     known: bool,
     /// Bladders in a row.
     per_row: usize,
-    /// Names of the junctions and, behind them, of the ports that give flow or volume.
+    /// Names of the junctions, followed by those of the ports that prescribe flow or volume.
     places: Vec<String>,
 }
 
-/// Where and when such states were met: the instant or load factor of the first, and of a pressure the lowest.
+/// Unphysical states of a run: the instant or load factor of the first, and the lowest pressure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Met {
-    /// The first crossing: both places along the undeformed beam [m], and when.
+    /// First crossing: both positions along the undeformed beam [m], and its instant or load factor.
     crossing: Option<([f64; 2], f64)>,
-    /// When the liquid first was below its limit.
+    /// Instant or load factor at which the liquid first fell below its limit.
     boiled: Option<f64>,
-    /// Its lowest pressure [Pa], and when.
+    /// Lowest pressure of the liquid [Pa], and its instant or load factor.
     lowest: [f64; 2],
-    /// True if that is in a bladder, and which bladder, junction or port.
+    /// True if the lowest pressure is in a bladder, and the index of the bladder, junction or port.
     place: (bool, usize),
 }
 
 impl Unphysical {
-    /// Of a case.
+    /// Limits of a case.
     pub fn new(case: &Case, system: &System) -> Self {
         let (Some(fluid), Some(wet)) = (&case.fluid, &system.model.wet) else {
             return Self::default();
@@ -58,7 +58,7 @@ impl Unphysical {
         self.places.get(place).cloned().unwrap_or_else(|| "the network".into())
     }
 
-    /// What is to be said; `at` tells an instant or load factor.
+    /// Warnings of unphysical states; `at` formats an instant or load factor.
     pub fn warnings(&self, met: &Met, at: &dyn Fn(f64) -> String) -> Vec<String> {
         let crossing = met.crossing.map(|(places, when)| {
             let [first, second] = places.map(|place| quantity(place, "m", 4));
@@ -86,7 +86,7 @@ impl Unphysical {
 }
 
 impl Met {
-    /// Takes a state, at an instant or load factor.
+    /// Adds a state at an instant or load factor.
     pub fn take(&mut self, of: &Unphysical, glance: &Glance, when: f64) {
         if self.crossing.is_none() {
             self.crossing = glance.crossing.map(|places| (places, when));

@@ -1,17 +1,17 @@
-//! Flows through valves as they shut.
+//! Flows through valves as they close.
 
 use crate::case::schema::Case;
 use crate::discrete::{State, System};
 use crate::model::hammer;
 
-/// Observes the flow through each valve as it shuts, in the order of [`hammer::closings`].
+/// Observes the flow through each valve as it closes, in the order of [`hammer::closings`].
 pub struct ValveFlows {
-    /// Number of the link of the mesh; when the valve begins to fall, and when it is shut [s].
+    /// Index of the link in the mesh; times at which the valve begins to close and is closed [s].
     closings: Vec<(Option<usize>, [f64; 2])>,
 }
 
 impl ValveFlows {
-    /// Of the valves of a case.
+    /// Creates the observer for the valves of a case.
     pub fn new(case: &Case, system: &System) -> Self {
         let links = system.fluid.as_ref().map_or(&[][..], |fluid| &fluid.links);
         let of = |closing: hammer::Closing| {
@@ -23,7 +23,7 @@ impl ValveFlows {
         }
     }
 
-    /// Adds a state at a time [s]: `flows` are the last ones before each valve begins to shut, from then on the largest ones [m^3/s].
+    /// Adds a state at time `t` [s]. Each of `flows` [m^3/s] is the last flow before its valve begins to close, then the largest one.
     pub fn add(&self, t: f64, w: State, flows: &mut Vec<f64>) {
         flows.resize(self.closings.len(), 0.0);
         for ((link, [from, to]), flow) in self.closings.iter().zip(flows) {

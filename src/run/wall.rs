@@ -1,22 +1,22 @@
-//! Where the wall time of a run goes: every moment belongs to one part, and parts add up to the whole.
+//! Wall time of a run by part: every moment belongs to one part, and the parts add up to the total.
 
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-/// Where wall time went [s]; `total` is the sum of all others.
+/// Wall time of each part [s]; `total` is the sum of all others.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WallTimes {
-    /// Everything: of `slcbeam run` from the start of the program until the summary is written for the last time, else from the start of
-    /// the run to its end. A run that is gone on with tells of the going on alone.
+    /// Total: for `slcbeam run` from the start of the program until the summary is written for the last time, else from the start of
+    /// the run to its end. A resumed run counts only the time since it was resumed.
     pub total: f64,
     /// Reading and checking the case, choosing effects.
     #[serde(default)]
     pub start_up: f64,
-    /// System, method, pattern, colours, symbolic analysis.
+    /// System, method, pattern, coloring, symbolic analysis.
     #[serde(default)]
     pub set_up: f64,
-    /// Other runs, by which mesh and tolerance were chosen.
+    /// Other runs that determine mesh and tolerance.
     #[serde(default)]
     pub pilots: f64,
     /// Consistent states, at the start and after switches.
@@ -26,12 +26,12 @@ pub struct WallTimes {
     pub residual: f64,
     /// Jacobians.
     pub jacobian: f64,
-    /// Factorisations and solves.
+    /// Factorizations and solves.
     pub linear_solver: f64,
-    /// What else steps take: predictions, sums and norms of vectors.
+    /// Rest of the steps: predictions, sums and norms of vectors.
     #[serde(default)]
     pub steps: f64,
-    /// What is watched at every step: ledgers, largest values, limits of the model.
+    /// Observation of every step: ledgers, largest values, limits of the model.
     #[serde(default)]
     pub watching: f64,
     /// Samples: rows of the history, instants of the fields; checkpoints.
@@ -45,13 +45,13 @@ pub struct WallTimes {
     /// Samples of uncertain numbers.
     #[serde(default, skip_serializing_if = "none")]
     pub samples: f64,
-    /// The page.
+    /// Report page.
     #[serde(default)]
     pub report: f64,
-    /// Packing arrays, bringing files to the disk.
+    /// Packing of arrays, and writing of files to the disk.
     #[serde(default)]
     pub files: f64,
-    /// None of these.
+    /// Remaining time.
     #[serde(default)]
     pub other: f64,
 }
@@ -61,7 +61,7 @@ fn none(seconds: &f64) -> bool {
 }
 
 impl WallTimes {
-    /// What a run took until its result was known, by names in plain words.
+    /// Wall time of each part until the result was known, with its name in plain words.
     pub fn until_known(&self) -> [(&'static str, f64); 11] {
         [
             ("start-up", self.start_up),
@@ -78,18 +78,18 @@ impl WallTimes {
         ]
     }
 
-    /// Sum of these [s].
+    /// Sum of [`WallTimes::until_known`] [s].
     pub fn known(&self) -> f64 {
         self.until_known().iter().map(|(_, s)| s).sum()
     }
 
-    /// Sets the total [s], and as the rest what no part tells of.
+    /// Sets the total [s], and the remaining time that belongs to no part.
     pub fn close(&mut self, total: f64) {
         self.total = total;
         self.other = total - self.known() - self.samples - self.pictures - self.report - self.files;
     }
 
-    /// Adds what was done before the run.
+    /// Adds the wall time before the run.
     pub fn begin_with(&mut self, before: &Self) {
         self.start_up += before.start_up;
         self.set_up += before.set_up;
@@ -97,7 +97,7 @@ impl WallTimes {
     }
 }
 
-/// A clock that is read wherever one thing ends and another begins.
+/// A stopwatch that is read whenever one part ends and another begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Laps {
     began: Instant,
@@ -105,12 +105,12 @@ pub struct Laps {
 }
 
 impl Laps {
-    /// From an instant on.
+    /// Starts at a given instant.
     pub fn since(began: Instant) -> Self {
         Self { began, last: began }
     }
 
-    /// Wall time since the last lap, or the begin [s].
+    /// Wall time since the last reading, or the start [s].
     pub fn lap(&mut self) -> f64 {
         let now = Instant::now();
         let lap = now - self.last;
@@ -118,7 +118,7 @@ impl Laps {
         lap.as_secs_f64()
     }
 
-    /// Wall time since the begin [s].
+    /// Wall time since the start [s].
     pub fn total(&self) -> f64 {
         self.began.elapsed().as_secs_f64()
     }

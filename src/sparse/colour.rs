@@ -1,4 +1,4 @@
-//! Columns that share no row may be differentiated together.
+//! Column coloring: columns without a common row may be differentiated together.
 
 use super::Pattern;
 

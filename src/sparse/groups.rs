@@ -1,6 +1,6 @@
-//! Things put together by the group that they belong to.
+//! Counting sort of items by their group.
 
-/// What belongs to each group, one after the other in the order in which it comes, and where each group begins: that of group k is
+/// Returns the items sorted by group (stable within a group) and the start of each group: the items of group k are
 /// `all[starts[k]..starts[k + 1]]`.
 pub(super) fn groups<T: Copy + Default>(
     groups: usize,

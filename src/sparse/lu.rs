@@ -1,32 +1,33 @@
-//! LU factors in the cheaper of two ways: small dense blocks along a line, or KLU.
+//! LU factors by the cheaper of two methods: small dense blocks along a line, or KLU.
 
 use super::klu::{Klu, KluError};
 use super::{BlockTridiagonal, Pattern};
 
-/// Products of dense blocks up to which these are chosen, for each entry of the matrix. KLU's factors of a beam have some 1.5 times as many entries as
-/// the matrix; a product of a dense block is worth less than half a sparse one: they stand in order, four go at a time, and none waits for an index.
+/// Largest number of dense block products per matrix entry for which dense blocks are chosen. KLU's factors of a beam have some 1.5 times
+/// as many entries as the matrix. A product within a dense block costs less than half a sparse one: entries are contiguous, four are
+/// processed at once, and no index is read.
 const DENSE: usize = 4;
 
-/// Matrices in a row that blocks may refuse before they are no longer asked.
+/// Consecutive failures of the block factorization after which it is no longer tried.
 const PATIENCE: u32 = 3;
 
-/// Factors of matrices that share a pattern, for one right-hand side after the other.
+/// LU factors of matrices with a common pattern; solves for one right-hand side at a time.
 pub struct Lu {
     pattern: Pattern,
-    /// None where a line of dense blocks would cost more.
+    /// None if dense blocks would be more expensive.
     blocks: Option<Box<BlockTridiagonal>>,
-    /// None before it is needed.
+    /// None until it is needed.
     klu: Option<Klu>,
-    /// Whether the present factors are the blocks.
+    /// True if the present factors are dense blocks.
     in_blocks: bool,
     factorizations: u64,
     refused: u64,
-    /// The last ones in a row.
+    /// Number of consecutive failed block factorizations.
     in_vain: u32,
 }
 
 impl Lu {
-    /// Analyses a square pattern; the way that is chosen depends on it alone.
+    /// Analyzes a square pattern; the choice of the method depends only on the pattern.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         let blocks = BlockTridiagonal::new(pattern, DENSE * pattern.entries()).map(Box::new);
         match blocks {
@@ -35,7 +36,7 @@ impl Lu {
         }
     }
 
-    /// KLU's factors in any case: of these alone the sign of the determinant is known.
+    /// Uses KLU in any case: only KLU's factors provide the sign of the determinant.
     pub fn sparse(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self::of(pattern, None, Some(Klu::new(pattern)?)))
     }
@@ -52,7 +53,7 @@ impl Lu {
         }
     }
 
-    /// Sign of the determinant of KLU's factors: 1, -1, or 0 without any.
+    /// Sign of the determinant from KLU's factors: 1, -1, or 0 without factors.
     pub fn determinant_sign(&self) -> i8 {
         self.klu.as_ref().map_or(0, Klu::determinant_sign)
     }
@@ -62,12 +63,12 @@ impl Lu {
         self.pattern.entries()
     }
 
-    /// Whether the present factors are dense blocks along a line.
+    /// True if the present factors are dense blocks along a line.
     pub fn in_blocks(&self) -> bool {
         self.in_blocks
     }
 
-    /// Bytes of the present factors that a solution reads.
+    /// Number of bytes of the present factors that one solution reads.
     pub fn bytes(&self) -> usize {
         match &self.blocks {
             Some(blocks) if self.in_blocks => blocks.bytes(),
@@ -75,19 +76,20 @@ impl Lu {
         }
     }
 
-    /// Factorisations.
+    /// Number of factorizations.
     pub fn factorizations(&self) -> u64 {
         self.factorizations + self.klu.as_ref().map_or(0, |klu| klu.factorizations)
     }
 
-    /// Factorisations done anew because pivots were bad: old ones of KLU's, or those within blocks.
+    /// Number of repeated factorizations because of bad pivots: stale pivots of KLU, or pivots restricted to blocks.
     pub fn pivot_refreshes(&self) -> u64 {
         self.refused + self.klu.as_ref().map_or(0, |klu| klu.pivot_refreshes)
     }
 
-    /// Factors the matrix whose entries, in the order of the pattern, are `values`. What would need rows exchanged between blocks goes to KLU.
+    /// Factors the matrix with the entries `values`, in the order of the pattern. Matrices that need row exchanges between blocks are
+    /// passed to KLU.
     ///
-    /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
+    /// After an error there are no factors. Panics if the number of values differs from that of the pattern.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), KluError> {
         if let Some(blocks) = self.blocks.as_mut().filter(|_| self.in_vain < PATIENCE) {
             self.factorizations += 1;
@@ -106,13 +108,13 @@ impl Lu {
         klu.factor(values)
     }
 
-    /// Forgets the factors, and what was learnt of them: the next ones get pivots of their own.
+    /// Discards the factors and the pivot history: the next factorization chooses its pivots anew.
     pub fn forget(&mut self) {
         (self.in_blocks, self.in_vain) = (false, 0);
         self.klu.iter_mut().for_each(Klu::forget);
     }
 
-    /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `A x = b`; returns false without factors. Panics if `b` has a wrong length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         match (&mut self.blocks, &mut self.klu) {
             (Some(blocks), _) if self.in_blocks => {

@@ -8,7 +8,7 @@ use super::krylov::{FINITE, Vectors};
 use super::pencil::Shifted;
 use crate::integrate::halt;
 
-/// Eigenvalues and vectors, nearest the shift first.
+/// Eigenvalues and eigenvectors, nearest the shift first.
 pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, SpectralError> {
     let n = shifted.differential.len();
     let mut columns = vec![vec![Complex::default(); n]; n];

@@ -1,25 +1,25 @@
-//! Rows exchanged in pairs so that the diagonal is strong.
+//! Pairwise exchange of rows that makes the diagonal dominant.
 
 use nalgebra::Complex;
 
 use crate::sparse::Pattern;
 
-/// A pattern whose rows have been exchanged in pairs.
+/// Pattern with pairwise exchanged rows.
 ///
-/// At shifts below most eigenvalues the rows `u' = v` and of momentum have their large entries in each other's columns.
-/// KLU orders columns for pivots on the diagonal; with pivots elsewhere the modes of a beam with 3900 unknowns took 33 s
-/// instead of 2.3 s. The measure `|aᵢⱼ aⱼᵢ| > |aᵢᵢ aⱼⱼ|` does not depend on how rows and columns are scaled.
+/// At shifts below most eigenvalues, the rows `u' = v` and of momentum have their large entries in each other's columns. KLU orders
+/// columns for pivots on the diagonal; with pivots elsewhere, the modes of a beam with 3900 unknowns took 33 s instead of 2.3 s. The
+/// criterion `|aᵢⱼ aⱼᵢ| > |aᵢᵢ aⱼⱼ|` is independent of the scaling of rows and columns.
 pub(super) struct Exchanged {
     /// The pattern after the exchange.
     pub pattern: Pattern,
-    /// Which entry of the old pattern each entry was.
+    /// Index of each entry in the old pattern.
     entries: Vec<usize>,
-    /// Row that stands in the place of each; its own inverse.
+    /// Row that replaces each row; its own inverse.
     partner: Vec<usize>,
 }
 
 impl Exchanged {
-    /// Exchanges what a matrix with these entries asks for.
+    /// Selects the exchanges for a matrix with these entries.
     pub fn new(pattern: &Pattern, values: &[Complex<f64>]) -> Self {
         let n = pattern.columns();
         let at = |row: usize, column: usize| {
@@ -62,13 +62,13 @@ impl Exchanged {
         exchanged
     }
 
-    /// Entries in the order of the pattern after the exchange.
+    /// Copies entries to the order of the exchanged pattern.
     pub fn values(&self, old: &[Complex<f64>], new: &mut Vec<Complex<f64>>) {
         new.clear();
         new.extend(self.entries.iter().map(|&entry| old[entry]));
     }
 
-    /// Exchanges the entries of a right-hand side, or back.
+    /// Exchanges the entries of a right-hand side; a second call restores them.
     pub fn rows(&self, b: &mut [Complex<f64>]) {
         for (i, &j) in self.partner.iter().enumerate().filter(|(i, j)| i < *j) {
             b.swap(i, j);

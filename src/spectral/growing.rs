@@ -18,12 +18,11 @@ pub struct Bounds {
     pub count: usize,
 }
 
-/// A real part counts if it exceeds the bound of its error by this factor.
+/// Ratio of a real part to its error bound above which its sign is certain.
 const CERTAIN: f64 = 10.0;
 
-/// Growing oscillations of a pencil, the fastest growth first, one of each pair of conjugates. All eigenvalues are computed with real
-/// arithmetic about a real `shift` [1/s], and those within the bounds are refined. None for more than [`AT_LAST_DENSE`] differential
-/// unknowns.
+/// Growing oscillations of a pencil, fastest growth first, one of each conjugate pair. All eigenvalues are computed in real arithmetic
+/// with a real `shift` [1/s]; those within the bounds are refined. None if there are more than [`AT_LAST_DENSE`] differential unknowns.
 ///
 /// # Errors
 /// [`SpectralError`].

@@ -1,4 +1,4 @@
-//! Krylov-Schur: an Arnoldi basis, restarted with the Schur vectors of its best part.
+//! Krylov-Schur method: an Arnoldi basis, restarted with the Schur vectors of the wanted eigenvalues.
 //!
 //! G. W. Stewart, *A Krylov-Schur algorithm for large eigenproblems*, SIAM J. Matrix Anal. Appl. 23 (2002) 601-614:
 //!
@@ -6,8 +6,8 @@
 //! K U = U T + u bᵀ        kept where |bᵢ| ≤ tolerance |Tᵢᵢ|
 //! ```
 //!
-//! A Krylov space holds one vector of a repeated eigenvalue. Once all wanted ones have converged the basis goes on from a
-//! random vector orthogonal to them; only when that brings nothing nearer the shift are they complete.
+//! A Krylov space contains only one vector of a repeated eigenvalue. Once all wanted eigenvalues have converged, the basis therefore
+//! continues from a random vector orthogonal to them. They are complete if this finds none nearer the shift.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -16,15 +16,15 @@ use super::{Options, SpectralError, schur};
 use crate::integrate::halt;
 
 type C = Complex<f64>;
-/// Eigenvalues with their vectors.
+/// Eigenvalues with their eigenvectors.
 pub(super) type Vectors = Vec<(C, Vec<C>)>;
 
-/// Share of the largest θ below which one is that of an infinite eigenvalue.
+/// Ratio to the largest θ below which θ belongs to an infinite eigenvalue.
 pub(super) const FINITE: f64 = 1e-14;
-/// Change of a θ, relative, by which one that was overlooked is told from round-off.
+/// Relative change of a θ above which it is a new eigenvalue, not a rounding error.
 const NEW: f64 = 1e-7;
 
-/// Eigenvalues and vectors, nearest the shift first, and the number of restarts.
+/// Eigenvalues and eigenvectors, nearest the shift first, and the number of restarts.
 pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> Result<(Vectors, usize), SpectralError> {
     let n = shifted.differential.len();
     let wanted = count.min(n);
@@ -54,7 +54,7 @@ pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> R
         } else if restarts == options.max_restarts {
             return Err(slow(converged));
         } else {
-            // what has converged leaves room for the others
+            // converged vectors leave space for the others
             let kept = (wanted + (size - wanted) / 4 + converged / 4).min(size - 2);
             space.restart(&q, &t, &b, kept, false);
         }
@@ -65,7 +65,7 @@ pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> R
     })
 }
 
-/// `K U = U H`, one vector more in U than columns of H.
+/// `K U = U H`; U has one vector more than H has columns.
 struct Space {
     u: Vec<Vec<C>>,
     h: DMatrix<C>,
@@ -86,7 +86,7 @@ impl Space {
         space
     }
 
-    /// Arnoldi's recursion from where the basis ends.
+    /// Continues Arnoldi's recursion from the end of the basis.
     fn expand(&mut self, shifted: &mut Shifted) -> Result<(), SpectralError> {
         let n = self.u[0].len();
         while self.u.len() <= self.size {
@@ -119,7 +119,7 @@ impl Space {
         Ok(())
     }
 
-    /// Takes the basis out of `w`, twice, and returns its coefficients.
+    /// Orthogonalizes `w` against the basis, twice; returns its coefficients.
     fn orthogonalise(&self, w: &mut [C]) -> Vec<C> {
         let mut all = vec![C::default(); self.u.len()];
         for _ in 0..2 {
@@ -135,7 +135,7 @@ impl Space {
     /// A random vector of unit length, orthogonal to the basis.
     fn random(&mut self, n: usize) -> Vec<C> {
         let mut next = || {
-            // xorshift: the same run gives the same result
+            // xorshift: deterministic, so that runs are reproducible
             self.seed ^= self.seed << 13;
             self.seed ^= self.seed >> 7;
             self.seed ^= self.seed << 17;
@@ -146,7 +146,8 @@ impl Space {
         unit(w)
     }
 
-    /// Keeps the first `kept` Schur vectors; goes on from the last vector of the basis, or `anew` from a random one.
+    /// Keeps the first `kept` Schur vectors; continues from the last vector of the basis, or from a random one
+    /// (`anew`).
     fn restart(&mut self, q: &DMatrix<C>, t: &DMatrix<C>, b: &[C], kept: usize, anew: bool) {
         let last = self.u.pop();
         let n = self.u[0].len();
@@ -170,7 +171,7 @@ impl Space {
         }
     }
 
-    /// Eigenvalues and vectors of the first `wanted` Schur vectors.
+    /// Eigenvalues and eigenvectors from the first `wanted` Schur vectors.
     fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> Vectors {
         let largest = t[(0, 0)].norm();
         let finite = (0..wanted).take_while(|&k| t[(k, k)].norm() > FINITE * largest);
@@ -187,7 +188,7 @@ impl Space {
     }
 }
 
-/// `Σ cᵢ uᵢ` of unit length, over as many vectors as there are coefficients.
+/// `Σ cᵢ uᵢ` scaled to unit length; the sum has as many terms as there are coefficients.
 fn combined(u: &[Vec<C>], c: &[C]) -> Vec<C> {
     let mut sum = vec![C::default(); u[0].len()];
     for (u, c) in u.iter().zip(c) {
@@ -196,14 +197,14 @@ fn combined(u: &[Vec<C>], c: &[C]) -> Vec<C> {
     unit(sum)
 }
 
-/// The vector of unit length.
+/// Scales a vector to unit length.
 pub(super) fn unit(mut x: Vec<C>) -> Vec<C> {
     let size = norm(&x);
     x.iter_mut().for_each(|x| *x /= size);
     x
 }
 
-/// Euclidean length.
+/// Euclidean norm.
 fn norm(x: &[C]) -> f64 {
     x.iter().map(|x| x.norm_sqr()).sum::<f64>().sqrt()
 }

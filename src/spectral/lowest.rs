@@ -1,4 +1,4 @@
-//! The lowest eigenvalues of a static tangent, cheaply.
+//! Lowest eigenvalues of a static tangent, by a short Arnoldi iteration.
 
 use nalgebra::Complex;
 
@@ -6,16 +6,17 @@ use super::{SpectralError, pencil::failure};
 use crate::numerics::krylov;
 use crate::sparse::{Klu, Pattern};
 
-/// Vectors of the space; eigenvalues of a beam lie so far apart (β⁴) that its first ones are found to round-off.
+/// Dimension of the Krylov space; eigenvalues of a beam are so far apart (β⁴) that its first ones are exact to rounding
+/// error.
 const SPACE: usize = 24;
-/// Eigenvalues count as found whose residual is below this part of them.
+/// Relative residual below which an eigenvalue counts as converged.
 const FOUND: f64 = 1e-4;
 
-/// Eigenvalues μ of `K x = μ D x`, D a diagonal without negative entries, of least magnitude first: the first of those that
-/// Arnoldi's method finds on `√D K⁻¹ √D`. Entries of `k` in the order of the pattern.
+/// Eigenvalues μ of `K x = μ D x`, smallest magnitude first; D is a diagonal without negative entries. Returns the first ones, found by
+/// Arnoldi's method for `√D K⁻¹ √D`. Entries of `k` are in the order of the pattern.
 ///
 /// # Errors
-/// [`SpectralError::Singular`] at an eigenvalue of zero, [`SpectralError::NotFinite`].
+/// [`SpectralError::Singular`] for an eigenvalue of zero, [`SpectralError::NotFinite`].
 pub fn lowest(pattern: &Pattern, k: &[f64], d: &[f64]) -> Result<Vec<Complex<f64>>, SpectralError> {
     if k.iter().any(|k| !k.is_finite()) {
         return Err(SpectralError::NotFinite);
@@ -36,7 +37,7 @@ pub fn lowest(pattern: &Pattern, k: &[f64], d: &[f64]) -> Result<Vec<Complex<f64
         return Err(SpectralError::NotFinite);
     }
     let settled = found.iter().filter(|of| of.residual < FOUND * of.value.norm());
-    // of a complex pair one is told
+    // the Krylov method returns one eigenvalue of each complex pair
     let both = settled.flat_map(|of| [Some(of.value), (of.value.im != 0.0).then(|| of.value.conj())]);
     Ok(both.flatten().map(|theta| theta.inv()).collect())
 }

@@ -1,27 +1,27 @@
-//! Eigenvalues of sparse pencils `A + s B` nearest a shift, each with a bound of its error.
+//! Eigenvalues of sparse pencils `A + s B` nearest a shift, each with an error bound.
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
 //! | [`pencil`] | the pencil, its products and its factors at a shift |
-//! | `schur` | Schur form of a small matrix, its order and its vectors |
-//! | `exchange` | rows exchanged so that KLU finds its pivots on the diagonal |
+//! | `schur` | Schur form of a small matrix, its ordering and its eigenvectors |
+//! | `exchange` | exchange of rows, so that KLU finds its pivots on the diagonal |
 //! | `dense` | all finite eigenvalues of a small pencil |
-//! | `krylov` | those nearest a shift, of a large one |
+//! | `krylov` | eigenvalues nearest a shift, for a large pencil |
 //! | `lowest` | lowest eigenvalues of a static tangent |
-//! | `growing` | oscillations that grow, of a pencil that is not large |
-//! | `refine` | each pair improved by itself, with the bound of its error |
+//! | `growing` | growing oscillations of a small or medium pencil |
+//! | `refine` | refinement of single eigenpairs, with error bounds |
 //!
-//! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are
-//! not zero; the others, which would add infinite ones, are eliminated with the factors:
+//! `[E32]` The finite eigenvalues nearest a shift σ are the largest of an operator on the unknowns d whose columns of B are not zero. The
+//! others would add infinite eigenvalues and are eliminated with the factors:
 //!
 //! ```text
 //! K = P (A + σ B)⁻¹ B Pᵀ        K x_d = θ x_d        s = σ - 1/θ        x = (A + σ B)⁻¹ B x/θ
 //! ```
 //!
-//! All eigenvalues of a small K are faer's (`crates/dense`). A large K is only applied: one solve with KLU's factors a step, Krylov-Schur (Stewart
-//! 2002) above. faer's own, `partial_eigen`, does not fit: it stops at an absolute residual, where θ of one beam range over ten powers
-//! of ten, and wants an operator that threads share, where each solve writes into KLU's work space. Debian's ARPACK brings Fortran,
-//! BLAS and LAPACK and keeps no copies of repeated eigenvalues apart.
+//! faer (`crates/dense`) computes all eigenvalues of a small K. A large K is only applied: one solve with KLU's factors per step of the
+//! Krylov-Schur method (Stewart 2002). faer's `partial_eigen` is unsuitable: it stops at an absolute residual, but the θ of one beam
+//! range over ten powers of ten. It also needs an operator shared by threads, but each solve writes to KLU's work space. Debian's ARPACK
+//! depends on Fortran, BLAS and LAPACK and does not separate repeated eigenvalues.
 
 mod dense;
 mod exchange;
@@ -43,22 +43,23 @@ pub use growing::{Bounds, growing};
 pub use lowest::lowest;
 pub use pencil::{Factors, Pencil};
 
-/// Differential unknowns up to which all eigenvalues are computed at once.
+/// Number of differential unknowns up to which all eigenvalues are computed at once.
 pub const DENSE: usize = 120;
-/// Size up to which that is done where the Krylov space does not converge: strongly damped motions in badly scaled unknowns. The
-/// work grows with the third power, a second at about 500.
+/// Number of differential unknowns up to which all eigenvalues are computed if the Krylov space does not converge, e.g. for strongly
+/// damped motions in badly scaled unknowns. The work grows with the third power: a second at about 500.
 pub const AT_LAST_DENSE: usize = 1000;
 
-/// What can be asked.
+/// Options of an eigenvalue computation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Size of the operator up to which it is written out and all its eigenvalues are computed.
+    /// Size of the operator up to which it is assembled and all its eigenvalues are computed.
     pub dense_up_to: usize,
-    /// The same where the Krylov space does not converge.
+    /// Size of the operator up to which this is done if the Krylov space does not converge.
     pub at_last_dense_up_to: usize,
-    /// Residual of a Schur vector, relative to its θ, below which it counts as found; pairs are refined afterwards.
+    /// Residual of a Schur vector, relative to its θ, below which it counts as converged; eigenpairs are refined
+    /// afterwards.
     pub tolerance: f64,
-    /// Restarts allowed.
+    /// Maximum number of restarts.
     pub max_restarts: usize,
 }
 
@@ -67,29 +68,29 @@ impl Default for Options {
         Self {
             dense_up_to: DENSE,
             at_last_dense_up_to: AT_LAST_DENSE,
-            // refinement converges cubically: half of the digits are enough
+            // refinement converges cubically: half of the digits suffice
             tolerance: 1e-9,
             max_restarts: 100,
         }
     }
 }
 
-/// An eigenvalue with its vector.
+/// An eigenvalue with its eigenvectors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
-    /// `s`, in the unit of A over B.
+    /// Eigenvalue `s`, in the unit of A over B.
     pub s: Complex<f64>,
-    /// `x`, of unit length; one entry a column.
+    /// Right eigenvector `x`, of unit length; one entry per column.
     pub x: Vec<Complex<f64>>,
-    /// The left vector y, `yᴴ (A + s B) = 0`; one entry a row.
+    /// Left eigenvector y, `yᴴ (A + s B) = 0`; one entry per row.
     pub left: Vec<Complex<f64>>,
-    /// `|(A + s B) x|` over `|A| |x| + |s| |B| |x|`, entry by entry in absolute values: the backward error.
+    /// Backward error: `|(A + s B) x|` over `|A| |x| + |s| |B| |x|`, with entrywise absolute values.
     pub residual: f64,
-    /// Bound of the error of `s`, to first order, round-off included, [E34].
+    /// First-order error bound of `s`, including rounding errors, [E34].
     pub error: f64,
 }
 
-/// Distance, relative, of a conjugate before it has been refined.
+/// Relative distance up to which an unrefined eigenvalue is the conjugate of another one.
 const CONJUGATE: f64 = 1e-6;
 
 impl Pair {
@@ -103,12 +104,12 @@ impl Pair {
     }
 }
 
-/// Eigenvalues nearest a shift and what they took.
+/// Eigenvalues nearest a shift, and the work of their computation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Found {
-    /// Nearest first.
+    /// Eigenpairs, nearest first.
     pub pairs: Vec<Pair>,
-    /// Finite eigenvalues that there are, at most.
+    /// Upper limit of the number of finite eigenvalues.
     pub finite: usize,
     /// Sparse factorisations.
     pub factorizations: u64,
@@ -116,11 +117,11 @@ pub struct Found {
     pub solves: u64,
     /// Restarts of the Krylov space; 0 when all eigenvalues were computed at once.
     pub restarts: usize,
-    /// Whether all eigenvalues were computed at once.
+    /// True if all eigenvalues were computed at once.
     pub dense: bool,
 }
 
-/// Why no eigenvalues were found.
+/// Error of an eigenvalue computation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectralError {
     /// The pencil is singular at the shift and beside it: `A + s B` has no inverse for any s.
@@ -128,21 +129,21 @@ pub enum SpectralError {
         /// Column without pivot.
         column: usize,
     },
-    /// KLU ran out of memory or indices.
+    /// KLU ran out of memory or indices overflowed.
     Package {
-        /// Its status.
+        /// Status of KLU.
         status: i64,
     },
     /// The iteration did not converge.
     Slow {
-        /// Eigenvalues that did.
+        /// Number of converged eigenvalues.
         converged: usize,
         /// Restarts done.
         restarts: usize,
     },
     /// An entry is not finite.
     NotFinite,
-    /// Somebody asked for the end.
+    /// The computation was interrupted.
     Interrupted,
 }
 
@@ -167,7 +168,8 @@ impl fmt::Display for SpectralError {
 
 impl std::error::Error for SpectralError {}
 
-/// The `count` eigenvalues of a pencil nearest `shift`, or all that there are; every copy of a repeated one counts.
+/// Returns the `count` eigenvalues of a pencil nearest `shift`, or all if there are fewer; every copy of a repeated one
+/// counts.
 ///
 /// # Errors
 /// [`SpectralError`].
@@ -194,7 +196,7 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
     let mut refined: Vec<Pair> = Vec::with_capacity(pairs.len());
     let mut alone: Vec<usize> = vec![];
     for (s, x) in pairs {
-        // A and B are real: the conjugate of a pair is one too, and as good
+        // A and B are real: the conjugate of an eigenpair is an eigenpair of the same accuracy
         let other = |k: &usize| (refined[*k].s.conj() - s).norm() < CONJUGATE * s.norm() && s.im != 0.0;
         if let Some(at) = alone.iter().position(|k| refined[*k].s.im * s.im < 0.0 && other(k)) {
             let conjugate = refined[alone.swap_remove(at)].conjugate();
@@ -216,8 +218,8 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
     })
 }
 
-/// `yᴴ (A' + s B') x / yᴴ B x` of a pair, for entries A' and B' of the pencil's pattern: what changes of the pencil move its
-/// eigenvalue by, with the opposite sign.
+/// `yᴴ (A' + s B') x / yᴴ B x` of an eigenpair, for entries A' and B' of the pencil's pattern: the shift of its eigenvalue by a change A'
+/// + s B' of the pencil, with the opposite sign.
 pub fn quotient(pattern: &crate::sparse::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
     let (mut above, mut below) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
     for (column, x) in pair.x.iter().enumerate() {

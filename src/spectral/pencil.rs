@@ -9,7 +9,7 @@ use crate::sparse::KluError;
 use crate::sparse::Pattern;
 use crate::sparse::klu::complex::ComplexKlu;
 
-/// Two real sparse matrices of one pattern.
+/// Two real sparse matrices with a common pattern.
 #[derive(Clone, Copy, Debug)]
 pub struct Pencil<'a> {
     /// Positions of entries.
@@ -21,7 +21,7 @@ pub struct Pencil<'a> {
 }
 
 impl Pencil<'_> {
-    /// Whether every entry is.
+    /// True if every entry is finite.
     pub fn finite(&self) -> bool {
         self.a.iter().chain(self.b).all(|x| x.is_finite())
     }
@@ -39,7 +39,7 @@ impl Pencil<'_> {
         (ax, bx)
     }
 
-    /// `|A| |x| + |s| |B| |x|`, entry by entry: what round-off of the residual is measured by.
+    /// `|A| |x| + |s| |B| |x|` with entrywise absolute values: reference of the residual's rounding error.
     pub fn magnitude(&self, s: Complex<f64>, x: &[Complex<f64>]) -> Vec<f64> {
         let mut sum = vec![0.0; x.len()];
         let s = s.norm();
@@ -56,7 +56,7 @@ impl Pencil<'_> {
 /// A pencil with the factors of `A + σ B`.
 pub(super) struct Shifted<'a> {
     pub pencil: Pencil<'a>,
-    /// σ, moved a little where it is an eigenvalue.
+    /// σ, shifted slightly if it is an eigenvalue.
     pub shift: Complex<f64>,
     pub klu: ComplexKlu,
     exchanged: Exchanged,
@@ -67,7 +67,7 @@ pub(super) struct Shifted<'a> {
     full: Vec<Complex<f64>>,
 }
 
-/// Relative distances by which a shift is moved when no factors can be made there.
+/// Relative distances by which a shift is moved if there are no factors.
 const MOVES: [f64; 4] = [0.0, 1e-7, 1e-5, 1e-3];
 
 impl<'a> Shifted<'a> {
@@ -94,9 +94,9 @@ impl<'a> Shifted<'a> {
         Ok(shifted)
     }
 
-    /// Makes the factors at `s` or as near to it as there are any; returns where.
+    /// Computes the factors at `s`, or as near to it as possible; returns the shift used.
     pub fn factor(&mut self, s: Complex<f64>) -> Result<Complex<f64>, SpectralError> {
-        // a shift of zero has no size of its own: that of A over B stands for it
+        // a shift of zero has no size; use that of A over B
         let largest = |x: &[f64]| x.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let size = if s.norm() > 0.0 {
             s.norm()
@@ -121,7 +121,7 @@ impl<'a> Shifted<'a> {
         Err(last)
     }
 
-    /// `(A + σ B)⁻¹ B Pᵀ v`, at all unknowns.
+    /// `(A + σ B)⁻¹ B Pᵀ v`, for all unknowns.
     pub fn whole(&mut self, v: &[Complex<f64>]) -> &[Complex<f64>] {
         self.full.fill(Complex::default());
         for (&column, v) in self.differential.iter().zip(v) {
@@ -155,11 +155,11 @@ impl<'a> Shifted<'a> {
     }
 }
 
-/// Factors of `A + s B` at one s after the other.
+/// Factors of `A + s B` for a sequence of s.
 pub struct Factors<'a>(Shifted<'a>);
 
 impl<'a> Factors<'a> {
-    /// Analyses a pencil by its values at `s`.
+    /// Analyzes a pencil by its values at `s`.
     ///
     /// # Errors
     /// The pencil is singular for every s.

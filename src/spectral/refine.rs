@@ -1,4 +1,4 @@
-//! Each pair improved by itself, with the bound of its error.
+//! Refinement of single eigenpairs, with error bounds.
 
 use nalgebra::Complex;
 
@@ -11,20 +11,20 @@ type C = Complex<f64>;
 /// Rounding errors of one row of a residual, in units of the last place.
 const ROUNDINGS: f64 = 4.0;
 
-/// `[E34]` One step of inverse iteration on either side with factors at s, and the two-sided quotient (Ostrowski), which
-/// converges cubically; the bound is what the residual left can move s by, to first order, its round-off included:
+/// `[E34]` One step of inverse iteration on either side with factors at s, followed by the two-sided quotient (Ostrowski), which
+/// converges cubically. The bound is the first-order change of s by the remaining residual, including its rounding error:
 ///
 /// ```text
 /// x ← (A + s B)⁻¹ B x        y = (A + s B)⁻ᴴ x        s ← s - yᴴ (A + s B) x / yᴴ B x
 /// |δs| ≤ Σᵢ |yᵢ| [|(A + s B) x| + 4 ε (|A| |x| + |s| |B| |x|)]ᵢ / |yᴴ B x|
 /// ```
 ///
-/// With x on the right-hand side y is of the eigenvalue's whole left space, so repeated eigenvalues do no harm; where a
-/// vector is missing, as of rigid motions, `yᴴ B x` is small and the bound as large as the error is.
+/// With x on the right-hand side, y belongs to the eigenvalue's whole left space, so repeated eigenvalues are harmless.
+/// For defective eigenvalues, such as those of rigid motions, `yᴴ B x` is small and the bound as large as the error.
 pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
     let pencil = shifted.pencil;
     let first = assess(shifted, s, unit(x))?;
-    // at a nearly singular matrix solutions are huge: right in direction, and in length of no interest
+    // solutions with a nearly singular matrix are huge: only their direction matters
     let (_, mut x) = pencil.products(&first.x);
     shifted.solve(&mut x);
     if x.iter().any(|x| !x.is_finite()) {
@@ -34,7 +34,7 @@ pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Spe
     Ok(if second.error < first.error { second } else { first })
 }
 
-/// The quotient and the bound of a vector.
+/// Computes the quotient and the error bound for a vector.
 fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
     let pencil = shifted.pencil;
     shifted.factor(s)?;

@@ -1,17 +1,17 @@
 //! Schur form of a small complex matrix, `H = Q T Qᴴ`, T upper triangular.
 //!
-//! The single-shift QR iteration of LAPACK's `zlahqr` (Wilkinson's shifts, exceptional ones every ten sweeps), on the Hessenberg form
-//! that the library makes. The library's own Schur form has no exceptional shifts and goes round in circles where eigenvalues are
-//! repeated, as those of many closed networks are; that of faer, which has them, cannot be called from outside (0.24).
+//! Single-shift QR iteration of LAPACK's `zlahqr` (Wilkinson's shifts, exceptional ones every ten sweeps), on nalgebra's Hessenberg form.
+//! nalgebra's own Schur form has no exceptional shifts and never ends for some repeated eigenvalues, such as those of many closed
+//! networks. That of faer has them, but is not public (0.24).
 
 use nalgebra::{Complex, DMatrix, Hessenberg};
 
 type C = Complex<f64>;
 
-/// Sweeps an eigenvalue may take; 30 is what LAPACK allows.
+/// Maximum number of sweeps per eigenvalue; LAPACK allows 30.
 const SWEEPS: usize = 60;
 
-/// `Q` and `T`, the largest eigenvalues first; None when the iteration does not converge.
+/// `Q` and `T`, largest eigenvalues first; None if the iteration does not converge.
 pub(super) fn ordered(h: DMatrix<C>) -> Option<(DMatrix<C>, DMatrix<C>)> {
     let (mut q, mut t) = match h.nrows() {
         0 | 1 => (DMatrix::identity(h.nrows(), h.nrows()), h),
@@ -22,13 +22,13 @@ pub(super) fn ordered(h: DMatrix<C>) -> Option<(DMatrix<C>, DMatrix<C>)> {
     Some((q, t))
 }
 
-/// Makes a Hessenberg matrix triangular by sweeps of rotations, which q collects.
+/// Reduces a Hessenberg matrix to triangular form by sweeps of rotations, accumulated in q.
 fn triangular(q: &mut DMatrix<C>, t: &mut DMatrix<C>) -> Option<()> {
     let size = t.norm();
     let mut end = t.nrows().saturating_sub(1);
     let mut sweep = 0;
     while end > 0 {
-        // what is small beside its neighbours is zero; where sweeps go on, what is small beside the matrix
+        // neglects entries that are small compared with their neighbors; after many sweeps, compared with the matrix
         let small = |t: &DMatrix<C>, k: usize| {
             let beside = t[(k - 1, k - 1)].norm() + t[(k, k)].norm();
             let beside = if sweep > SWEEPS / 2 { size } else { beside };
@@ -56,7 +56,7 @@ fn triangular(q: &mut DMatrix<C>, t: &mut DMatrix<C>) -> Option<()> {
     Some(())
 }
 
-/// The eigenvalue of the last two rows and columns that is nearer the last entry.
+/// Eigenvalue of the last two rows and columns that is nearer the last entry.
 fn wilkinson(t: &DMatrix<C>, end: usize) -> C {
     let (a, b, c, d) = (
         t[(end - 1, end - 1)],
@@ -103,7 +103,7 @@ fn step(q: &mut DMatrix<C>, t: &mut DMatrix<C>, begin: usize, end: usize, shift:
         }
     }
 }
-/// Exchanges neighbours on the diagonal by rotations until their magnitudes descend.
+/// Exchanges neighbors on the diagonal by rotations until their magnitudes descend.
 fn sort(q: &mut DMatrix<C>, t: &mut DMatrix<C>) {
     let n = t.nrows();
     for end in (1..n).rev() {
@@ -120,7 +120,7 @@ fn sort(q: &mut DMatrix<C>, t: &mut DMatrix<C>) {
     }
 }
 
-/// The rotation whose first column is the eigenvector of the second eigenvalue, `(t12, t22 - t11)`.
+/// Applies the rotation whose first column is the eigenvector of the second eigenvalue, `(t12, t22 - t11)`.
 fn swap(q: &mut DMatrix<C>, t: &mut DMatrix<C>, k: usize) {
     let (a, b) = (t[(k, k + 1)], t[(k + 1, k + 1)] - t[(k, k)]);
     let size = a.norm().hypot(b.norm());
@@ -155,7 +155,7 @@ pub(super) fn vector(t: &DMatrix<C>, k: usize) -> Vec<C> {
     for i in (0..k).rev() {
         let sum: C = (i + 1..=k).map(|j| t[(i, j)] * y[j]).sum();
         let mut gap = t[(k, k)] - t[(i, i)];
-        // repeated eigenvalues: the substitution then gives the vector that a change by round-off has
+        // repeated eigenvalues: the substitution gives the eigenvector of a matrix perturbed by rounding errors
         if gap.norm() < least {
             gap = C::new(least, 0.0);
         }

@@ -1,4 +1,4 @@
-//! Which quantities of a run say something.
+//! Quantities of a run that exceed rounding errors.
 
 use crate::discrete::quantities::Interest;
 pub use crate::run::floors::Floors;
@@ -7,8 +7,8 @@ use crate::run::ports::unit;
 use crate::run::summary::{Quantity, Summary};
 use crate::study::sweep::unit as figures;
 
-/// Flows and pressures of ports and accumulators that are more than round-off, by name: beside others of their unit, pressures also beside what the
-/// case is expected to do.
+/// Names of flows and pressures of ports and accumulators that exceed rounding errors. Compares with others of the same unit, and pressures
+/// also with the expected scale of the case.
 pub fn counted_of_ports<'a>(summary: &'a Summary, floors: &Floors) -> impl Iterator<Item = &'a String> {
     let floor = floors.pressure;
     let largest = move |of: &str| {
@@ -23,8 +23,8 @@ pub fn counted_of_ports<'a>(summary: &'a Summary, floors: &Floors) -> impl Itera
     summary.ports.iter().filter(counts).map(|(name, _)| name)
 }
 
-/// Figures of probes that are more than rounding: beside others of their unit, displacements and pressures also beside what the case is
-/// expected to do.
+/// Quantities of probes that exceed rounding errors. Compares with others of the same unit, and displacements, angles and pressures also
+/// with the expected scale of the case.
 pub fn counted_of_probes<'a>(
     summary: &'a Summary,
     floors: &'a Floors,
@@ -44,9 +44,9 @@ pub fn counted_of_probes<'a>(
     summary.probes.iter().filter(counts)
 }
 
-/// The quantities that are more than round-off, by name: beside others of their unit, an angle beside displacements over the
-/// beam's length; beside what the case is expected to do; energies beside the largest one stored or passed. A ratio of
-/// energies counts where both do. Figures that are no numbers always count.
+/// Quantities that exceed rounding errors, with their names. Compares with others of the same unit, angles with displacements over the
+/// beam's length, and energies with the largest one stored or passed. A further limit is the expected scale of the case. A ratio of
+/// energies counts if both energies do. Non-finite figures always count.
 pub fn counted<'a>(summary: &'a Summary, floors: &'a Floors) -> impl Iterator<Item = (&'a String, &'a Quantity)> {
     let energies = summary.balances.energy_j.values();
     let energy = energies.fold(0.0_f64, |largest, e| largest.max(e.abs()));

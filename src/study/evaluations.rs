@@ -1,6 +1,6 @@
-//! Evaluations that outlive the process: a search looks each up before it computes it, and stores it as soon as it is computed.
+//! Persistent evaluations: a search looks up each evaluation before it computes it, and stores it once computed.
 //!
-//! A search that always asks for the same evaluations in the same state is resumed by reading them: nothing else of it is stored.
+//! A deterministic search is resumed by reading its evaluations; no other state is stored.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 /// An evaluation as a line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
-    /// Which one, as JSON.
+    /// Identity of the evaluation, as JSON.
     pub key: String,
     /// Its value.
     pub value: Value,
@@ -24,7 +24,7 @@ pub struct Evaluation {
 /// Stores an evaluation.
 pub type Write = Box<dyn FnMut(&Evaluation) -> Result<()> + Send>;
 
-/// Evaluations of one search, shared by its threads; without a journal each is computed.
+/// Evaluations of one search, shared by its threads. Without a journal, each is computed.
 #[derive(Clone, Default)]
 pub struct Evaluations {
     shared: Arc<Mutex<Shared>>,
@@ -55,14 +55,14 @@ impl fmt::Debug for Evaluations {
 }
 
 impl Evaluations {
-    /// Begins a journal: evaluations of an interrupted search, and the function that stores further ones.
+    /// Begins a journal with the evaluations of an interrupted search and a function that stores further ones.
     pub fn begin(&self, known: impl IntoIterator<Item = Evaluation>, write: Write) {
         let mut shared = self.shared();
         shared.known = known.into_iter().map(|one| (one.key, one.value)).collect();
         shared.write = Some(write);
     }
 
-    /// The same journal with keys of their own, for a part of the search.
+    /// The same journal for a part of the search, with separate keys.
     pub fn scoped(&self, scope: &str) -> Self {
         let shared = Arc::clone(&self.shared);
         let scope = format!("{}{scope} ", self.scope);
@@ -74,12 +74,12 @@ impl Evaluations {
         self.shared().counts
     }
 
-    /// The first fault of writing, after which nothing is stored; once.
+    /// Takes the first write error, after which nothing is stored.
     pub fn fault(&self) -> Option<Error> {
         self.shared().fault.take()
     }
 
-    /// The value under a key, read or computed; values computed while `stop` is raised are not stored.
+    /// Reads or computes the value of a key. Values computed while `stop` is true are not stored.
     pub fn get<T: Serialize + DeserializeOwned + PartialEq>(
         &self,
         key: &impl Serialize,
@@ -94,7 +94,7 @@ impl Evaluations {
         })
     }
 
-    /// The same for what can fail; faults are not stored.
+    /// Reads or computes the value of a key by a function that may fail. Errors are not stored.
     ///
     /// # Errors
     /// Those of `compute`.
@@ -128,7 +128,7 @@ impl Evaluations {
         Some(found)
     }
 
-    /// Stores a value that is something and reads back the same: JSON has no infinity.
+    /// Stores a value if it is not null and JSON reproduces it exactly; JSON has no infinity.
     fn store<T: Serialize + DeserializeOwned + PartialEq>(&self, key: String, value: &T, stop: &dyn Fn() -> bool) {
         if self.shared().write.is_none() || stop() {
             return;
@@ -160,7 +160,7 @@ mod tests {
         false
     }
 
-    /// Goal: values come back bit for bit; what is nothing, what JSON cannot hold and what was cut short is computed again.
+    /// Goal: values are read back bit for bit; null values, values that JSON cannot represent and interrupted ones are computed again.
     #[test]
     fn values_come_back_bit_for_bit() {
         let rows: Arc<Mutex<Vec<Evaluation>>> = Arc::default();

@@ -5,18 +5,18 @@ use crate::run::dynamics::Outcome;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
 
-/// A row: a value of each column, and of each number the derivatives of all columns.
+/// A row: the value of each column, and for each parameter the derivatives of all columns.
 pub type Row = (Vec<f64>, Vec<Vec<f64>>);
 
-/// Keeps chosen columns of a run.
+/// Recorder of chosen columns of a run.
 pub struct Followed<'a> {
     /// Names of the columns.
     names: &'a [String],
-    /// Names of the numbers by which is differentiated.
+    /// Names of the parameters of the derivatives.
     by: &'a [&'a str],
-    /// Rows that are looked for; the run may end with the last.
+    /// Number of rows to record; the run may end after the last.
     count: usize,
-    /// Asked at every step whether to stop.
+    /// Stop request, checked at every step.
     stop: &'a dyn Fn() -> bool,
     places: Vec<usize>,
     slopes: Vec<Vec<usize>>,
@@ -24,7 +24,7 @@ pub struct Followed<'a> {
 }
 
 impl<'a> Followed<'a> {
-    /// So many rows of columns, with derivatives.
+    /// Records `count` rows of columns, with derivatives.
     pub fn new(names: &'a [String], by: &'a [&'a str], count: usize, stop: &'a dyn Fn() -> bool) -> Self {
         Self {
             names,
@@ -37,10 +37,10 @@ impl<'a> Followed<'a> {
         }
     }
 
-    /// The rows of a run that has ended.
+    /// Rows of a completed run.
     ///
     /// # Errors
-    /// It ended before the last of them.
+    /// The run ended before the last row.
     pub fn of(self, outcome: Outcome) -> Result<Vec<Row>> {
         if self.rows.len() == self.count && self.rows.iter().all(|row| row.1.len() == self.by.len()) {
             return Ok(self.rows);

@@ -1,4 +1,4 @@
-//! Studies: many runs to answer one question. Prints nothing.
+//! Studies: many runs that answer one question. This module prints nothing.
 
 pub mod accuracy;
 pub mod analysis;

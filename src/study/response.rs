@@ -1,4 +1,4 @@
-//! Frequency responses over a band: where they are sampled, their peaks and poles, and what the meshes do to them.
+//! Frequency responses over a band: sampling, peaks, poles, and errors by the meshes.
 
 use nalgebra::Complex;
 
@@ -12,38 +12,38 @@ use crate::run::record::Column;
 use crate::run::response::{Frequencies, Response};
 use crate::spectral::{self, Options};
 
-/// Poles looked for in the band.
+/// Largest number of pole pairs to compute in the band.
 const POLES: usize = 48;
-/// Places beside a pole that are sampled, in parts of its decay rate.
+/// Offsets of the samples near a pole, in units of its decay rate.
 const BESIDE: [f64; 7] = [-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0];
-/// Change of a response from sample to sample, relative to the larger of both, above which there is one between.
+/// Change of a response between two samples, relative to the larger one, above which a sample is added between them.
 const CHANGE: f64 = 0.1;
-/// Passes in which samples are added, and samples at most.
+/// Largest number of refinement passes, and of samples.
 const PASSES: usize = 5;
 const MOST: usize = 4000;
-/// Part of the largest amplitude below which a maximum is rounding error.
+/// Part of the largest amplitude below which a local maximum is a rounding error.
 const NOISE: f64 = 1e-6;
-/// Part of an amplitude by which a maximum stands out.
+/// Part of an amplitude by which a peak must exceed its neighbors.
 const FLAT: f64 = 1e-9;
-/// Steps of the search for a peak: each leaves 0.62 of the interval.
+/// Golden-section steps of the search for a peak; each leaves 0.62 of the interval.
 const STEPS: usize = 48;
-/// Error of the run's mesh in the difference to half, or twice, the cells of the beam; of twice the fluid cells.
+/// Error of the run's mesh over its difference to half and to twice the beam cells, and to twice the fluid cells.
 const OF_HALF: f64 = 1.25 / 3.0;
 const OF_TWICE: f64 = 1.25 * 4.0 / 3.0;
 const OF_FLUID: f64 = 2.0;
 
-/// A request for a response.
+/// Request for a response.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
     /// JSON pointer of a signal of the case.
     pub input: String,
     /// Names of outputs.
     pub outputs: Vec<String>,
-    /// Instant of the equilibrium about which [s]; the start of the case without one.
+    /// Instant of the equilibrium to linearize about [s]; the initial state of the case if none.
     pub at: Option<f64>,
     /// First and last frequency [Hz].
     pub band: [f64; 2],
-    /// Samples, equally far apart in the logarithm; more are added where the response changes.
+    /// Number of samples, equally spaced in the logarithm; more are added where the response changes.
     pub points: usize,
 }
 
@@ -60,7 +60,7 @@ impl Request {
 /// A pole in the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
-    /// `s` [1/s], that with positive imaginary part of a pair.
+    /// `s` [1/s]; of a conjugate pair the pole with positive imaginary part.
     pub s: Complex<f64>,
     /// Bound of its numerical error [1/s].
     pub bound: f64,
@@ -84,7 +84,7 @@ pub struct Curve {
     pub output: Column,
     /// Its transfer function at each frequency.
     pub values: Vec<Complex<f64>>,
-    /// Estimated error by the meshes of beam and fluid, absolute; empty where it is not known.
+    /// Estimated absolute error by the meshes of beam and fluid; empty if unknown.
     pub errors: Vec<f64>,
     /// Its peaks.
     pub peaks: Vec<Peak>,
@@ -92,21 +92,21 @@ pub struct Curve {
 
 /// A response over a band.
 pub struct Found {
-    /// The linearisation and its input.
+    /// Linearization and its input.
     pub response: Response,
     /// Frequencies [Hz].
     pub frequencies: Vec<f64>,
-    /// One an output.
+    /// One per output.
     pub curves: Vec<Curve>,
-    /// Poles in the band, the lowest first.
+    /// Poles in the band, in ascending order of frequency.
     pub poles: Vec<Pole>,
-    /// Poles with positive real part.
+    /// Number of poles with positive real part.
     pub growing: usize,
-    /// Why poles or errors are not known.
+    /// Reasons why poles or errors are unknown.
     pub unknown: Vec<String>,
 }
 
-/// Computes the response of a case, [`Request::of`] it, over a band.
+/// Computes the response of a case over a band; `response` is [`Request::of`] the case.
 ///
 /// # Errors
 /// A frequency that is a pole.
@@ -165,7 +165,7 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
     })
 }
 
-/// The case on other meshes, and the error of its own in the difference to each.
+/// The case on other meshes, each with the error of its own mesh over the difference to the other.
 fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
     let mut all = vec![];
     let mut other = case.clone();
@@ -184,8 +184,8 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
     Ok(all)
 }
 
-/// Poles in a band, and how many poles have a positive real part. They are found without the memory of unsteady friction, whose decays crowd
-/// the search, and corrected one by one.
+/// Poles in a band, and the number of poles with positive real part. The search omits the memory of unsteady friction, whose many decay
+/// modes would crowd it; each pole is corrected afterwards.
 fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
@@ -210,7 +210,7 @@ fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> s
             let found = near.iter().min_by(|a, b| (a.s - s).norm().total_cmp(&(b.s - s).norm()));
             (s, bound) = found.map_or((s, bound), |found| (found.s, found.error));
         }
-        // a damping within its error is none
+        // damping below its error bound counts as zero
         if s.re.abs() <= bound {
             s.re = 0.0;
         }
@@ -227,11 +227,11 @@ fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> s
 struct Poles {
     poles: Vec<Pole>,
     growing: usize,
-    /// False if there may be others.
+    /// False if the band may contain further poles.
     whole: bool,
 }
 
-/// The linearisation without the memory of unsteady friction.
+/// Linearization without the memory of unsteady friction.
 fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised, String> {
     let plain = match at {
         Some(at) => modes::at_equilibrium(case, at),
@@ -240,16 +240,16 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
     plain.map_err(|fault| fault.to_string())
 }
 
-/// Poles, or pairs of conjugates, whose real part is positive.
+/// Number of poles, or conjugate pairs, with positive real part.
 fn growing_among(pairs: &[spectral::Pair]) -> usize {
     let growing = pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error);
     growing.count()
 }
 
-/// Poles, or pairs of conjugates, that grow, of those near the frequency of the state.
+/// Number of growing poles, or conjugate pairs, near the characteristic frequency of the state.
 ///
 /// # Errors
-/// None are found.
+/// The poles cannot be computed.
 pub fn growing(case: &Case, at: Option<f64>, response: &Response) -> std::result::Result<usize, String> {
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
@@ -276,7 +276,7 @@ fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f6
 /// Frequencies [Hz], and values of all outputs at each.
 type Samples = (Vec<f64>, Vec<Vec<Complex<f64>>>);
 
-/// Samples: a grid, the neighbourhood of poles, and more where a response changes.
+/// Samples a response on a grid, near poles, and between samples where it changes.
 fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<Samples> {
     let [from, to] = request.band;
     let points = if from < to { request.points } else { 1 };
@@ -316,7 +316,7 @@ fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<Samp
     Ok((frequencies, values))
 }
 
-/// Local maxima of an amplitude, each found between its neighbours by golden sections.
+/// Local maxima of an amplitude, each refined by golden-section search.
 fn peaks(
     solver: &mut Frequencies,
     place: usize,

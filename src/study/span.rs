@@ -1,4 +1,4 @@
-//! `POINTER=LOW:HIGH`: a number of a case and the bounds within which it is sought.
+//! `POINTER=LOW:HIGH`: a parameter of a case and its bounds in a search.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +8,13 @@ use crate::case::{Case, amounts, is_below};
 use crate::error::{Error, Result};
 use crate::numerics::sobol::{self, Sobol};
 
-/// What names a number that is sought.
+/// Option that names a parameter.
 const OPTION: &str = "--vary";
 
-/// Ratio of the bounds from which on a number is sought by its logarithm.
+/// Ratio of the bounds from which on the search uses the logarithm.
 const DECADE: f64 = 10.0;
 
-/// One of two bounds.
+/// One of the two bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
@@ -24,7 +24,7 @@ pub enum Bound {
     High,
 }
 
-/// A number that is sought, and where.
+/// A parameter of a search, with its bounds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Span {
     /// JSON pointer into the case.
@@ -36,10 +36,10 @@ pub struct Span {
 }
 
 impl Span {
-    /// Of `POINTER=LOW:HIGH`.
+    /// Parses `POINTER=LOW:HIGH`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = |what: String| Error::Usage(format!("--vary '{text}': {what}"));
         let wanted = "a JSON pointer and two bounds are wanted, such as /fluid/viscosity_pa_s=1e-4:1e-2";
@@ -66,13 +66,13 @@ impl Span {
         }
     }
 
-    /// Whether it is sought by its logarithm: bounds of one sign, a decade or more apart.
+    /// True for bounds of one sign that differ by a decade or more: the search then uses the logarithm.
     pub fn logarithmic(&self) -> bool {
         let sizes = [self.low.abs(), self.high.abs()];
         self.low * self.high > 0.0 && sizes[0].max(sizes[1]) >= DECADE * sizes[0].min(sizes[1])
     }
 
-    /// The value at a place between the bounds, 0 to 1.
+    /// Value at a place between the bounds, from 0 to 1.
     pub fn value(&self, place: f64) -> f64 {
         match place {
             0.0 => self.low,
@@ -82,7 +82,7 @@ impl Span {
         }
     }
 
-    /// The place of a value between the bounds: 0 at the lower, 1 at the upper.
+    /// Place of a value between the bounds: 0 at the lower, 1 at the upper.
     pub fn place(&self, value: f64) -> f64 {
         if self.logarithmic() {
             (value / self.low).ln() / (self.high / self.low).ln()
@@ -91,7 +91,7 @@ impl Span {
         }
     }
 
-    /// Derivative of the value by its place, at a value.
+    /// Derivative of the value with respect to its place.
     pub fn slope(&self, value: f64) -> f64 {
         if self.logarithmic() {
             value * (self.high / self.low).ln()
@@ -100,13 +100,13 @@ impl Span {
         }
     }
 
-    /// Whether a value is within the bounds.
+    /// True if a value is within the bounds.
     pub fn holds(&self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 }
 
-/// Values at places between the bounds; none is exactly 0, where a number has no size to differ by.
+/// Values at places between the bounds. None is exactly 0, because differences are relative to the value.
 pub fn values(spans: &[Span], places: &[f64]) -> Vec<f64> {
     let value = |(span, place): (&Span, &f64)| {
         let (value, least) = (span.value(*place), 1e-6 * (span.high - span.low));
@@ -119,11 +119,10 @@ pub fn values(spans: &[Span], places: &[f64]) -> Vec<f64> {
     spans.iter().zip(places).map(value).collect()
 }
 
-/// Values to begin with: those of the case, or the middle of the bounds where these do not hold them. `set` are pointers to what is set
-/// besides.
+/// Initial values: those of the case, or the middle of the bounds if these exclude it. `set` are pointers of other settings.
 ///
 /// # Errors
-/// [`Error::Usage`] for what is no number of the model, and for two that would be set at once.
+/// [`Error::Usage`] for a pointer to no number of the model, and for two pointers that overlap.
 pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a str>) -> Result<Vec<f64>> {
     let all: Vec<&str> = spans.iter().map(|span| span.pointer.as_str()).chain(set).collect();
     for (k, pointer) in all.iter().enumerate() {
@@ -140,7 +139,7 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
         let find = |case: &Case| Ok(Parameter::find_as(OPTION, case, &span.pointer)?.value);
         let own = Parameter::number(OPTION, case, &span.pointer)?.value;
         let value = match own == 0.0 {
-            // one that is 0 has no size to differ by, but another value has
+            // 0 gives no size for differences; another value does
             true => {
                 with(case, &[(&span.pointer, span.value(0.5))]).map_or_else(|_| find(case), |middle| find(&middle))?
             }
@@ -151,12 +150,11 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
     spans.iter().map(start).collect()
 }
 
-/// Looks at what a case would be at every bound, with the other numbers at their values to begin with: a bound that the case cannot take is
-/// none. `begin` is the case at these values. Where others may follow (`alone`) faults of the number itself count, not of what else stands in
-/// the case beside it.
+/// Checks the case at every bound, with the other parameters at their initial values. `begin` is the case at these values. With `alone`,
+/// only faults at the parameter itself count, since other settings may still follow.
 ///
 /// # Errors
-/// Those of the case, and of `check`.
+/// Those of the case at a bound, and of `check`.
 pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) -> Result<()>) -> Result<()> {
     check(begin)?;
     for span in spans {
@@ -176,10 +174,10 @@ pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) ->
     Ok(())
 }
 
-/// Places between the bounds from which to search: that of the values to begin with, then those of Sobol's sequence.
+/// Initial places of a search: that of the initial values, then those of a Sobol sequence.
 ///
 /// # Errors
-/// [`Error::Usage`] for several in more directions than the sequence has.
+/// [`Error::Usage`] for several places in more dimensions than the Sobol sequence has.
 pub fn places(spans: &[Span], begin: &[f64], count: usize) -> Result<Vec<Vec<f64>>> {
     let count = count.max(1);
     if count > 1 && spans.len() > sobol::MOST {

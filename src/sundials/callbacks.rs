@@ -1,6 +1,6 @@
-//! What SUNDIALS calls: residual, Jacobian and error weights of a [`Dae`].
+//! Functions called by SUNDIALS: residual, Jacobian and error weights of a [`Dae`].
 //!
-//! Codes: 0 done, +1 try a shorter step, -1 stop. The first fatal fault or panic is kept in the [`Bridge`].
+//! Return codes: 0 success, +1 try a shorter step, -1 stop. The first fatal error or panic is stored in the [`Bridge`].
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
@@ -17,7 +17,7 @@ use crate::dae::{Dae, EvaluationError, Seeds};
 use crate::integrate::not_finite;
 use crate::numerics::kernels;
 
-/// What ended an integration from inside a callback.
+/// Reason why a callback ended an integration.
 pub(super) enum Stop {
     /// [`EvaluationError::Fatal`].
     Fatal(String),
@@ -25,7 +25,7 @@ pub(super) enum Stop {
     Panic(Box<dyn Any + Send>),
 }
 
-/// The system of equations as C sees it: what `user_data` points to.
+/// System of equations that C accesses via `user_data`.
 pub(super) struct Bridge<D> {
     /// The equations.
     pub dae: D,
@@ -33,13 +33,13 @@ pub(super) struct Bridge<D> {
     pub relative: f64,
     /// Absolute tolerances, one for each unknown.
     pub absolute: Vec<f64>,
-    /// Why to stop.
+    /// Reason to stop.
     pub stop: Option<Stop>,
-    /// Last recoverable fault.
+    /// Last recoverable error.
     pub recoverable: Option<String>,
-    /// Residuals evaluated.
+    /// Number of residual evaluations.
     pub residuals: u64,
-    /// Jacobians evaluated.
+    /// Number of Jacobian evaluations.
     pub jacobians: u64,
     /// Wall time of residuals.
     pub residual_wall: Duration,
@@ -47,14 +47,14 @@ pub(super) struct Bridge<D> {
     pub jacobian_wall: Duration,
     /// Wall time of integrands.
     pub integrand_wall: Duration,
-    /// Memory of IDA, to be asked for `c_j` of the step that it tries; null without.
+    /// IDA's memory, which provides `c_j` of the attempted step; null without IDA.
     pub ida: *mut c_void,
     /// Derivatives of the residual by parameters, at the state of the last step.
     pub slopes: Slopes,
 }
 
 impl<D: Dae> Bridge<D> {
-    /// Equations with tolerances; nothing has happened yet.
+    /// Creates a bridge for equations with tolerances.
     pub(super) fn new(dae: D, relative: f64, absolute: Vec<f64>) -> Self {
         Self {
             dae,
@@ -72,7 +72,7 @@ impl<D: Dae> Bridge<D> {
         }
     }
 
-    /// Runs the equations: faults and panics become codes and are kept.
+    /// Evaluates the equations: errors and panics are stored and converted to return codes.
     pub(super) fn call(&mut self, act: impl FnOnce(&mut D) -> Result<(), EvaluationError>) -> c_int {
         let dae = &mut self.dae;
         match catch_unwind(AssertUnwindSafe(|| act(dae))) {
@@ -93,10 +93,10 @@ impl<D: Dae> Bridge<D> {
     }
 }
 
-/// The bridge that user data points to, and two vectors that are only read.
+/// The bridge from the user data, and two read-only vectors.
 ///
 /// # Safety
-/// The bridge is borrowed by nobody else while C runs; the vectors are living serial ones, which nobody writes to meanwhile.
+/// Nobody else borrows the bridge while C runs; the vectors are valid serial ones, which nobody writes to meanwhile.
 pub(super) unsafe fn seen<'v, D>(
     data: *mut c_void,
     y: N_Vector,
@@ -114,11 +114,11 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
     out: N_Vector,
     data: *mut c_void,
 ) -> c_int {
-    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
+    // SAFETY: user data is the bridge, which nobody else borrows while C runs; the vectors are different serial ones.
     let ((bridge, y, yp), out) = unsafe { (seen::<D>(data, y, yp), entries_mut(out)) };
     let begin = Instant::now();
     let mut cj = 0.0;
-    // SAFETY: IDA calls with its memory alive, which is only read; `cj` is a place to write to.
+    // SAFETY: IDA's memory is alive while it calls, and is only read; `cj` is valid for writing.
     if !bridge.ida.is_null() && unsafe { s::IDAGetCurrentCj(bridge.ida, &raw mut cj) } == s::IDA_SUCCESS {
         bridge.dae.approach(cj);
     }
@@ -152,7 +152,7 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
     _: N_Vector,
     _: N_Vector,
 ) -> c_int {
-    // SAFETY: user data is the bridge and the matrix holds the linear system, both borrowed by nobody else while C
+    // SAFETY: user data is the bridge and the matrix contains the linear system; nobody else borrows them while C
     // runs; the vectors are only read.
     let ((bridge, y, yp), system) = unsafe { (seen::<D>(data, y, yp), system_of(matrix)) };
     let begin = Instant::now();
@@ -170,7 +170,7 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
 
 /// `IDAEwtFn` with a [`Bridge`] as user data: `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`.
 pub(super) unsafe extern "C" fn weights<D: Dae>(y: N_Vector, w: N_Vector, data: *mut c_void) -> c_int {
-    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; w is another vector than y.
+    // SAFETY: user data is the bridge, which nobody else borrows while C runs; w is another vector than y.
     let (bridge, y, w) = unsafe { (&*data.cast::<Bridge<D>>(), entries(y), entries_mut(w)) };
     if kernels::error_weights(y, bridge.relative, &bridge.absolute, w) {
         0

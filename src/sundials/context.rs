@@ -1,4 +1,4 @@
-//! SUNDIALS' context, and the messages it would print.
+//! SUNDIALS' context, and the handler of its messages.
 
 use std::cell::RefCell;
 use std::ffi::{CStr, c_char, c_int, c_void};
@@ -6,7 +6,7 @@ use std::ptr;
 
 use sundials_sys::{SUNContext, SUNContext_Create, SUNContext_Free};
 
-/// Version of the SUNDIALS that is loaded.
+/// Version of the loaded SUNDIALS library.
 pub(super) fn loaded() -> [c_int; 3] {
     let (mut major, mut minor, mut patch) = (0, 0, 0);
     let mut label = [0 as c_char; 32];
@@ -19,7 +19,7 @@ pub(super) fn loaded() -> [c_int; 3] {
 pub(super) struct Context(SUNContext);
 
 impl Context {
-    /// A new context; fails when the library at run time is not the one of the headers, or without memory.
+    /// Creates a context; fails if the loaded library differs from the headers, or for lack of memory.
     pub fn new() -> Result<Self, String> {
         let [major, minor, patch] = loaded();
         let built = (
@@ -41,7 +41,7 @@ impl Context {
         Ok(Self(context))
     }
 
-    /// For the creators of C objects.
+    /// Pointer for functions that create C objects.
     pub fn raw(&self) -> SUNContext {
         self.0
     }
@@ -49,23 +49,24 @@ impl Context {
 
 impl Drop for Context {
     fn drop(&mut self) {
-        // SAFETY: created in `new`, freed once; the fields of `Ida` put it behind all objects that use it.
+        // SAFETY: created in `new`, freed once; the fields of `Ida` are ordered so that it outlives all objects that
+        // use it.
         unsafe { SUNContext_Free(&mut self.0) };
     }
 }
 
-/// The last message SUNDIALS wanted to print.
+/// Last message that SUNDIALS would have printed.
 #[derive(Default)]
 pub(super) struct Messages(RefCell<String>);
 
 impl Messages {
-    /// Takes the message out.
+    /// Returns and removes the message.
     pub fn take(&self) -> String {
         self.0.take()
     }
 }
 
-/// Error handler for SUNDIALS: keeps the message instead of printing it. `data` points to [`Messages`].
+/// Error handler for SUNDIALS: stores the message instead of printing it. `data` points to [`Messages`].
 pub(super) unsafe extern "C" fn keep(
     _code: c_int,
     _module: *const c_char,

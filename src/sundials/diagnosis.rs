@@ -1,4 +1,4 @@
-//! What is to be said after the integrator has failed.
+//! Error reports after a failure of the integrator.
 
 use std::ffi::c_int;
 use std::panic::resume_unwind;
@@ -11,7 +11,7 @@ use crate::dae::Dae;
 use crate::integrate::{IntegrationError, Worst};
 
 impl<D: Dae> Ida<D> {
-    /// Lets a panic of the equations or of the linear solver go on.
+    /// Resumes a panic of the equations or of the linear solver.
     pub(super) fn raise_panic(&mut self) {
         if let Some(payload) = self.solver.system_mut().panic.take() {
             resume_unwind(payload);
@@ -22,7 +22,7 @@ impl<D: Dae> Ida<D> {
         }
     }
 
-    /// Everything known about a failure.
+    /// Collects all information about a failure.
     pub(super) fn failure(&mut self, code: c_int) -> Box<IntegrationError> {
         let mut step = 0.0;
         // SAFETY: IDA is alive.
@@ -71,7 +71,7 @@ impl<D: Dae> Ida<D> {
     }
 }
 
-/// What IDA's codes mean.
+/// Meaning of IDA's codes.
 pub(super) fn meaning(code: i32) -> &'static str {
     match code {
         s::IDA_TOO_MUCH_WORK => "too many steps were taken",

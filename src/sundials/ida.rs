@@ -23,13 +23,13 @@ use crate::sparse::Lu;
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
-    /// Time at its end [s].
+    /// Time at the end of the step [s].
     pub time: f64,
-    /// Its size [s].
+    /// Size of the step [s].
     pub size: f64,
-    /// Its order.
+    /// Order of the step.
     pub order: u8,
-    /// True when the stop time is reached; `time` then equals it.
+    /// True if the stop time is reached; `time` then equals it.
     pub stopped: bool,
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Memory(pub *mut c_void);
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        // SAFETY: made by `IDACreate` (or null, which is accepted), freed once.
+        // SAFETY: created by `IDACreate` (or null, which is accepted), freed once.
         unsafe { s::IDAFree(&mut self.0) };
     }
 }
@@ -60,13 +60,14 @@ pub struct Ida<D: Dae> {
     pub(super) context: Context,
     pub(super) time: f64,
     pub(super) stepped: bool,
-    /// Largest step [s]; zero when there is none.
+    /// Largest step [s]; zero if unlimited.
     largest: f64,
     base: Counters,
 }
 
 impl<D: Dae> Ida<D> {
-    /// An integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length `dae.len()`.
+    /// Creates an integrator at time `t0` [s] with consistent values `y0` and derivatives `yp0`, both of length
+    /// `dae.len()`.
     pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &IdaOptions) -> Result<Self, Box<IntegrationError>> {
         let n = dae.len();
         let refuse = |message: String| IntegrationError::request(message, t0);
@@ -149,9 +150,9 @@ impl<D: Dae> Ida<D> {
         })
     }
 
-    /// One accepted step, which does not pass `stop` [s]. A stop closer than round-off counts as reached.
+    /// Performs one accepted step that does not pass `stop` [s]. A stop within the rounding error counts as reached.
     ///
-    /// Panics of the equations go on here.
+    /// Panics of the equations are resumed here.
     pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
         if request::reached(self.time, stop)? {
             self.time = stop;
@@ -163,7 +164,7 @@ impl<D: Dae> Ida<D> {
             });
         }
         let memory = self.memory.0;
-        // the next step has been chosen, perhaps before the largest became shorter
+        // IDA has already chosen the next step, possibly before the largest step was reduced
         let limited = self.largest > 0.0 && self.next_step() > self.largest * (1.0 + 1e-9);
         let until = if limited {
             stop.min(self.time + self.largest)
@@ -216,14 +217,14 @@ impl<D: Dae> Ida<D> {
         self.y.entries()
     }
 
-    /// Their derivatives at the present time [1/s].
+    /// Derivatives of the unknowns at the present time [1/s].
     pub fn yp(&self) -> &[f64] {
         self.yp.entries()
     }
 
-    /// Derivative number `k` of the unknowns at a time [s] within the last step, from IDA's own polynomial.
+    /// Derivative of order `k` of the unknowns at a time [s] within the last step, from IDA's own polynomial.
     ///
-    /// `k` is at most the order of the last step; panics when `out` has another length than the unknowns.
+    /// `k` is at most the order of the last step; panics if `out` and the unknowns differ in length.
     pub fn interpolate(&mut self, time: f64, k: u8, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         if !self.stepped {
             let message = "nothing can be interpolated before the first step".to_owned();
@@ -238,18 +239,18 @@ impl<D: Dae> Ida<D> {
         Ok(())
     }
 
-    /// What the last step is estimated to have added to the errors of the unknowns; empty where IDA does not tell.
+    /// Estimated contribution of the last step to the errors of the unknowns; empty if IDA has no estimate.
     pub fn local_errors(&mut self) -> &[f64] {
         // SAFETY: IDA and the vector, to which it copies, are alive.
         let flag = unsafe { s::IDAGetEstLocalErrors(self.memory.0, self.scratch.raw()) };
         if flag < 0 { &[] } else { self.scratch.entries() }
     }
 
-    /// Goes on from consistent values at time `t` [s], forgetting the past, factors and pivots included, so that a new
-    /// integrator from the same values would do the same bit for bit. Integrals start at zero. Costs about a dozen
-    /// short steps.
+    /// Restarts from consistent values at time `t` [s]. History, factors and pivots are discarded: a new integrator
+    /// from the same values would give bitwise identical results. Integrals start at zero. Costs about a dozen short
+    /// steps.
     ///
-    /// Panics when a slice has another length than the unknowns.
+    /// Panics if a slice and the unknowns differ in length.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Box<IntegrationError>> {
         let counters = self.counters();
         self.solver.system_mut().lu.forget();
@@ -264,7 +265,7 @@ impl<D: Dae> Ida<D> {
         if flag < 0 {
             return Err(self.failure(flag));
         }
-        // IDA's counters stand at zero now, ours go on
+        // IDA resets its counters to zero, ours continue
         self.base = Counters {
             restarts: counters.restarts + 1,
             ..counters
@@ -274,7 +275,7 @@ impl<D: Dae> Ida<D> {
         Ok(())
     }
 
-    /// Largest step [s] from now on; order and past are kept.
+    /// Sets the largest step size [s] from now on; order and history are kept.
     pub fn limit(&mut self, largest: f64) -> Result<(), Box<IntegrationError>> {
         if largest == self.largest {
             return Ok(());
@@ -288,7 +289,7 @@ impl<D: Dae> Ida<D> {
         Ok(())
     }
 
-    /// First step [s] after the next restart; IDA's guess when absent.
+    /// Sets the first step [s] after the next restart; IDA chooses it if absent.
     pub fn set_initial_step(&mut self, step: Option<f64>) -> Result<(), Box<IntegrationError>> {
         // SAFETY: IDA is alive.
         let flag = unsafe { s::IDASetInitStep(self.memory.0, step.unwrap_or(0.0)) };
@@ -333,19 +334,19 @@ impl<D: Dae> Ida<D> {
         &self.bridge.get().dae
     }
 
-    /// The equations; after changing what they mean, [`Ida::restart`].
+    /// Mutable access to the equations; call [`Ida::restart`] after a change of their meaning.
     pub fn dae_mut(&mut self) -> &mut D {
         &mut self.bridge.get_mut().dae
     }
 
-    /// Gives the equations back.
+    /// Returns the equations.
     pub fn into_dae(self) -> D {
         let Self { memory, bridge, .. } = self;
         drop(memory);
         bridge.into_inner().dae
     }
 
-    /// One of IDA's counters; zero when IDA does not tell.
+    /// Reads one of IDA's counters; zero if IDA fails to return it.
     fn number(&self, get: unsafe extern "C" fn(*mut c_void, *mut c_long) -> c_int) -> u64 {
         let mut number: c_long = 0;
         // SAFETY: IDA is alive, and all functions passed write one number.
@@ -360,7 +361,7 @@ impl<D: Dae> Ida<D> {
         u8::try_from(order).unwrap_or(0)
     }
 
-    /// Size of the step to try next [s]; zero before the first.
+    /// Size of the next step [s]; zero before the first.
     fn next_step(&self) -> f64 {
         let mut step = 0.0;
         if self.stepped {

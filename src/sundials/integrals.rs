@@ -1,16 +1,17 @@
-//! Integrals carried along by IDA's own formula (IDAS' quadratures): no feedback, no error control.
+//! Integrals computed along with the solution by IDA's own formula (IDAS' quadratures): no feedback, no error control.
 //!
-//! A sum by that formula satisfies the linear balances of the equations exactly, as volumes and momenta need. Powers are quadratic in the state:
-//! where the state is linear in time, the formula of order 1 follows it exactly in steps of any length `h`, and its sum of a power `g` is off by
-//! `h² g'/2`. Steps of order 1 therefore add a limited correction to integrals of powers, as slope limiters do in finite-volume schemes:
+//! A sum by that formula satisfies the linear balances of the equations exactly, as volumes and momenta require. Powers are quadratic in
+//! the state. If the state is linear in time, the formula of order 1 follows it exactly in steps of any length `h`, but the error of its
+//! sum of a power `g` is `h² g'/2`. Steps of order 1 therefore add a limited correction to integrals of powers, like slope limiters in
+//! finite-volume schemes:
 //!
 //! ```text
 //! ∫ g dt over a step = h g_1 - h² s/2        s = minmod(slope of g in this step, slope in the step before)
 //! ```
 //!
-//! It is exact for linear powers, and zero where a power jumps. Where the state is not linear, rates are means over the step and not those at
-//! its end: the correction fades out where the local error of the state is more than what Newton's iteration leaves,
-//! since the tolerance of the state then limits the step.
+//! The correction is exact for linear powers, and zero if a power jumps. If the state is not linear, rates are means over the step and
+//! not those at its end. The correction is therefore reduced to zero if the local error of the state exceeds the remaining error of
+//! Newton's iteration: the tolerance of the state then limits the step.
 
 use std::ffi::{c_int, c_void};
 use std::ops::Range;
@@ -31,7 +32,7 @@ pub(super) unsafe extern "C" fn integrands<D: Dae>(
     out: s::N_Vector,
     data: *mut c_void,
 ) -> c_int {
-    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the vectors are different serial ones.
+    // SAFETY: user data is the bridge, which nobody else borrows while C runs; the vectors are different serial ones.
     let ((bridge, y, yp), out) = unsafe { (seen::<D>(data, y, yp), entries_mut(out)) };
     let begin = std::time::Instant::now();
     let code = bridge.call(|dae| dae.integrands(t, y, yp, out));
@@ -39,7 +40,7 @@ pub(super) unsafe extern "C" fn integrands<D: Dae>(
     code
 }
 
-/// A limited slope: none, that of the step, or that of the step before.
+/// Choice of a limited slope: zero, that of the step, or that of the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Limit {
     None,
@@ -48,7 +49,7 @@ enum Limit {
 }
 
 impl Limit {
-    /// `minmod`: the smaller of two slopes of one sign.
+    /// `minmod`: the smaller of two slopes of equal sign, zero for opposite signs.
     fn minmod(now: f64, before: f64) -> Self {
         if now * before <= 0.0 {
             Self::None
@@ -68,20 +69,22 @@ impl Limit {
     }
 }
 
-/// Corrector of the state in its tolerances, root mean square: below the first the correction is full, above the second there is none.
+/// Root mean square of the corrector of the state, in units of its tolerances: full correction below the first limit, none above the
+/// second.
 const LINEAR: [f64; 2] = [0.005, 0.02];
 
 /// Correction of the sums of powers in steps of order 1.
 pub(super) struct Correction {
     range: Range<usize>,
-    /// Up to the begin of the last step.
+    /// Sum of corrections up to the beginning of the last step.
     total: Vec<f64>,
-    /// Integrands at the end of the last step, where they are known.
+    /// Integrands at the end of the last step, if known.
     integrand: Option<Vec<f64>>,
-    /// Slopes of the integrands in the last step, and limited by the step before; the latter are zero above order 1.
+    /// Slopes of the integrands in the last step, and slopes limited by the step before; the latter are zero above
+    /// order 1.
     slope: Vec<f64>,
     limited: Vec<f64>,
-    /// The slope that each limited one is.
+    /// Choice of each limited slope.
     limits: Vec<Limit>,
     /// End and size of the last step [s].
     end: f64,
@@ -89,7 +92,7 @@ pub(super) struct Correction {
 }
 
 impl Correction {
-    /// No correction yet; `range` are the integrals of powers.
+    /// Creates an empty correction; `range` contains the integrals of powers.
     pub fn new(range: Range<usize>) -> Self {
         let zeros = vec![0.0; range.len()];
         Self {
@@ -104,8 +107,8 @@ impl Correction {
         }
     }
 
-    /// Follows a step [s], with the integrands at its end; `weight` of the correction, 0 above order 1. Sensitivities have the limits of what
-    /// they belong to, so that they are its derivatives.
+    /// Updates the correction after a step [s], from the integrands at its end; `weight` of the correction is 0 above order 1.
+    /// Sensitivities use the limits of their integrals, so that they are exact derivatives.
     fn follow(&mut self, [end, size]: [f64; 2], weight: f64, integrands: &[f64], limits: Option<&[Limit]>) {
         let finished = 0.5 * self.size * self.size;
         let now = &integrands[self.range.clone()];
@@ -140,13 +143,13 @@ impl Correction {
         }
     }
 
-    /// Starts at zero.
+    /// Resets the correction to zero.
     pub fn restart(&mut self) {
         *self = Self::new(self.range.clone());
     }
 }
 
-/// Starts the integrals of a new integrator at zero; `none` when the system has none.
+/// Initializes the integrals of a new integrator with `zeros`, if the system has any.
 pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_int {
     match zeros {
         None => s::IDA_SUCCESS,
@@ -160,8 +163,8 @@ pub(super) fn begin<D: Dae>(memory: *mut c_void, zeros: Option<&Vector>) -> c_in
 }
 
 impl<D: Dae> Ida<D> {
-    /// The integrals `∫ g dt` since the last restart: at the present time, or at a time [s] within the last
-    /// step. `out` has length `dae.integrals()`.
+    /// Integrals `∫ g dt` since the last restart, at the present time or at a time [s] within the last step. `out` has
+    /// length `dae.integrals()`.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Some(quadratures) = &mut self.quadratures else {
             return Ok(());
@@ -225,7 +228,7 @@ impl<D: Dae> Ida<D> {
         ((none - size) / (none - full)).clamp(0.0, 1.0)
     }
 
-    /// Sets the integrals back to zero at a restart.
+    /// Resets the integrals to zero at a restart.
     pub(super) fn reset_integrals(&mut self) -> c_int {
         let Some(quadratures) = &mut self.quadratures else {
             return s::IDA_SUCCESS;

@@ -21,11 +21,11 @@ use crate::sparse::Lu;
 /// Settings of [`Kinsol::solve`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KinsolOptions {
-    /// Last correction, largest relative to 1 + |unknown|, with which values count as a solution.
+    /// Largest accepted last correction of a solution, relative to 1 + |unknown|.
     pub tolerance: f64,
-    /// Newton steps allowed.
+    /// Maximum number of Newton steps.
     pub max_iterations: u32,
-    /// Largest Newton step, a norm of the scaled unknowns; none: KINSOL's, 1000 times the norm of the guess.
+    /// Norm of the largest Newton step, in scaled unknowns; none: KINSOL's default, 1000 times the norm of the guess.
     pub max_step: Option<f64>,
 }
 
@@ -39,21 +39,21 @@ impl Default for KinsolOptions {
     }
 }
 
-/// How a solution was found.
+/// Work and accuracy of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
-    /// Newton steps, the last correction included.
+    /// Number of Newton steps, including the last correction.
     pub iterations: u64,
-    /// Residuals evaluated.
+    /// Number of residual evaluations.
     pub residual_evaluations: u64,
-    /// Matrices factored.
+    /// Number of factorizations.
     pub factorizations: u64,
-    /// Last correction, largest relative to 1 + |unknown|: the error that is left, or more.
+    /// Last correction, largest relative to 1 + |unknown|: an upper estimate of the remaining error.
     pub correction: f64,
 }
 
 impl Solution {
-    /// Adds the work of another one; keeps the larger correction.
+    /// Adds the work of another solution; keeps the larger correction.
     pub fn add(&mut self, other: &Self) {
         self.iterations += other.iterations;
         self.residual_evaluations += other.residual_evaluations;
@@ -62,19 +62,19 @@ impl Solution {
     }
 }
 
-/// Why there is no solution.
+/// Error of a solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KinsolError {
-    /// KINSOL's code, negative; 0 when the failure is not KINSOL's.
+    /// KINSOL's error code, negative; 0 if the error is not from KINSOL.
     pub code: i32,
-    /// What happened, in words.
+    /// Description of the failure.
     pub what: String,
-    /// The unknown that is worst, or has no equation left.
+    /// Unknown with the largest error, or without an equation.
     pub worst: Option<String>,
 }
 
 impl KinsolError {
-    /// One that is not KINSOL's, of no unknown.
+    /// Error that is not from KINSOL and concerns no particular unknown.
     pub fn own(what: impl Into<String>) -> Self {
         let (code, what, worst) = (0, what.into(), None);
         Self { code, what, worst }
@@ -98,12 +98,12 @@ struct Memory(*mut c_void);
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        // SAFETY: made by `KINCreate` (or null, which is accepted), freed once.
+        // SAFETY: created by `KINCreate` (or null, which is accepted), freed once.
         unsafe { s::KINFree(&mut self.0) };
     }
 }
 
-/// What `user_data` points to: the equations and the time at which they are solved.
+/// User data: the equations and the time at which they are solved.
 struct Fixed<D> {
     bridge: Bridge<D>,
     t: f64,
@@ -123,12 +123,12 @@ pub struct Kinsol<D: Dae> {
     _context: Context,
 }
 
-/// A residual this small, in units of each equation's scale, ends KINSOL's own iteration; what round-off leaves is larger as a rule,
-/// and the correction that follows decides.
+/// Residual, in units of each equation's scale, at which KINSOL's own iteration ends. Rounding errors are usually larger, and the
+/// subsequent correction decides.
 const RESIDUAL: f64 = 1e-13;
 
 impl<D: Dae> Kinsol<D> {
-    /// A solver of these equations.
+    /// Creates a solver of these equations.
     pub fn new(dae: D) -> Result<Self, KinsolError> {
         let n = dae.len();
         let refuse = KinsolError::own;
@@ -187,16 +187,16 @@ impl<D: Dae> Kinsol<D> {
         &self.fixed.get().bridge.dae
     }
 
-    /// The equations.
+    /// Mutable access to the equations.
     pub fn dae_mut(&mut self) -> &mut D {
         &mut self.fixed.get_mut().bridge.dae
     }
 
-    /// Solves at `t` from the guess in `y`, which the solution replaces; on failure `y` is the last iterate. Panics when `y` has
-    /// another length than the equations.
+    /// Solves the equations at `t` from the guess in `y`, which is replaced by the solution, or by the last iterate after an error.
+    /// Panics if the length of `y` is wrong.
     ///
-    /// KINSOL stops when the residual is at round-off, or when its line search sees no decrease, which round-off brings about just
-    /// as well; what decides is one more correction: it must be below the tolerance, and it is taken.
+    /// KINSOL stops if the residual is at rounding error, or if its line search finds no decrease, which may also be due to rounding
+    /// errors. One more correction is therefore applied and must be below the tolerance.
     pub fn solve(&mut self, t: f64, y: &mut [f64], options: &KinsolOptions) -> Result<Solution, KinsolError> {
         let fixed = self.fixed.get_mut();
         fixed.t = t;
@@ -204,7 +204,7 @@ impl<D: Dae> Kinsol<D> {
         self.y.entries_mut().copy_from_slice(y);
         let factored = self.solver.system().lu.factorizations();
         let raw = self.memory.0;
-        // SAFETY: memory and vectors are alive; the callbacks reach what they need through user data, which nobody borrows.
+        // SAFETY: memory and vectors are alive; the callbacks access user data only, which nobody borrows.
         let code = unsafe {
             s::KINSetNumMaxIters(raw, c_long::from(options.max_iterations));
             s::KINSetMaxNewtonStep(raw, options.max_step.unwrap_or(0.0));
@@ -218,7 +218,7 @@ impl<D: Dae> Kinsol<D> {
             )
         };
         let mut iterations: c_long = 0;
-        // SAFETY: memory is alive and the place can be written to.
+        // SAFETY: memory is alive and the destination is valid for writing.
         unsafe { s::KINGetNumNonlinSolvIters(raw, &mut iterations) };
         y.copy_from_slice(self.y.entries());
         self.raise()?;
@@ -247,17 +247,17 @@ impl<D: Dae> Kinsol<D> {
         })
     }
 
-    /// Solves `∂F/∂y x = b` with the matrix last factored: that of the solution. Panics when `b` has another length.
+    /// Solves `∂F/∂y x = b` with the last factored matrix: that of the solution. Panics if `b` has a wrong length.
     pub fn apply_inverse(&mut self, b: &mut [f64]) -> bool {
         self.solver.system_mut().lu.solve(b)
     }
 
-    /// Sign of the determinant of the matrix last factored.
+    /// Sign of the determinant of the last factored matrix.
     pub fn determinant_sign(&self) -> i8 {
         self.solver.system().lu.determinant_sign()
     }
 
-    /// One Newton step from `y`, taken: the correction, largest relative to 1 + |unknown|, and where.
+    /// Applies one Newton step to `y`; returns the largest correction relative to 1 + |unknown|, and its unknown.
     fn correct(&mut self, t: f64, y: &mut [f64]) -> Result<(f64, usize), KinsolError> {
         let fixed = self.fixed.get_mut();
         let (bridge, zeros) = (&mut fixed.bridge, &fixed.zeros);
@@ -289,7 +289,7 @@ impl<D: Dae> Kinsol<D> {
         Ok(largest)
     }
 
-    /// Raises what ended the iteration from inside a callback.
+    /// Resumes a panic, or returns a fatal error, of a callback.
     fn raise(&mut self) -> Result<(), KinsolError> {
         if let Some(panic) = self.solver.system_mut().panic.take() {
             std::panic::resume_unwind(panic);
@@ -317,7 +317,7 @@ impl<D: Dae> Kinsol<D> {
     }
 }
 
-/// What KINSOL's codes mean.
+/// Meaning of KINSOL's codes.
 fn meaning(code: i32) -> &'static str {
     match code {
         s::KIN_SUCCESS | s::KIN_INITIAL_GUESS_OK | s::KIN_STEP_LT_STPTOL => "Newton's iteration has stopped",
@@ -339,7 +339,7 @@ fn meaning(code: i32) -> &'static str {
 
 /// `KINSysFn` with a [`Fixed`] as user data.
 unsafe extern "C" fn residual<D: Dae>(y: N_Vector, out: N_Vector, data: *mut c_void) -> c_int {
-    // SAFETY: user data is a `Fixed`, borrowed by nobody else while C runs; the vectors are different serial ones.
+    // SAFETY: user data is a `Fixed`, which nobody else borrows while C runs; the vectors are different serial ones.
     let (fixed, y, out) = unsafe { (&mut *data.cast::<Fixed<D>>(), entries(y), entries_mut(out)) };
     let (bridge, zeros, t) = (&mut fixed.bridge, &fixed.zeros, fixed.t);
     bridge.residuals += 1;
@@ -368,7 +368,7 @@ unsafe extern "C" fn jacobian<D: Dae>(
     _: N_Vector,
     _: N_Vector,
 ) -> c_int {
-    // SAFETY: user data is a `Fixed` and the matrix holds the linear system, both borrowed by nobody else while C runs.
+    // SAFETY: user data is a `Fixed` and the matrix contains the linear system; nobody else borrows them while C runs.
     let (fixed, y, system) = unsafe { (&mut *data.cast::<Fixed<D>>(), entries(y), system_of(matrix)) };
     let (bridge, zeros, t) = (&mut fixed.bridge, &fixed.zeros, fixed.t);
     bridge.jacobians += 1;

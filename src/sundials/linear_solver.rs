@@ -1,7 +1,7 @@
-//! LU factors as a linear solver for SUNDIALS, with a matrix that SUNDIALS only passes on.
+//! LU factors as a linear solver for SUNDIALS, with a matrix handle that SUNDIALS only passes on.
 //!
-//! SUNDIALS' sparse matrix would be zeroed, indices included, before each Jacobian, and its KLU interface does not
-//! notice stale pivots. Here the matrix is a handle to values owned by Rust; nothing in the library touches them.
+//! SUNDIALS would zero its own sparse matrix, including the indices, before each Jacobian, and its KLU interface does
+//! not detect stale pivots. Here the matrix is a handle to values owned by Rust; nothing in the library accesses them.
 
 use std::any::Any;
 use std::ffi::{c_int, c_long};
@@ -16,19 +16,19 @@ use super::vector::{entries, entries_mut};
 use crate::numerics::kernels;
 use crate::sparse::{KluError, Lu};
 
-/// Matrix values, factors, and what happened to them.
+/// Matrix values, factors and their status.
 pub(super) struct LinearSystem {
     /// Values of the matrix, in the order of the pattern.
     pub values: Vec<f64>,
     /// Factors.
     pub lu: Lu,
-    /// Column of the last matrix that was singular; cleared by the next that is not.
+    /// Column in which the last matrix was singular; cleared by the next regular matrix.
     pub singular: Option<usize>,
-    /// Linear solves.
+    /// Number of linear solves.
     pub solves: u64,
-    /// Wall time of factorisations and solves.
+    /// Wall time of factorizations and solves.
     pub wall: Duration,
-    /// A panic, to be raised again after C has returned.
+    /// A panic, to be resumed after C has returned.
     pub panic: Option<Box<dyn Any + Send>>,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct LinearSolver {
 }
 
 impl LinearSolver {
-    /// Solver of systems with the pattern that `lu` was made for.
+    /// Creates a solver of systems with the pattern of `lu`.
     pub fn new(lu: Lu, context: SUNContext) -> Result<Self, String> {
         let system = Shared::new(LinearSystem {
             values: vec![0.0; lu.entries()],
@@ -56,7 +56,7 @@ impl LinearSolver {
         if solver.is_null() || matrix.is_null() {
             return Err("no memory for a linear solver".to_owned());
         }
-        // SAFETY: both were created empty, with tables of operations of their own.
+        // SAFETY: both were created empty, each with its own table of operations.
         unsafe {
             (*solver).content = this.system.pointer().cast();
             let ops = &mut *(*solver).ops;
@@ -75,22 +75,22 @@ impl LinearSolver {
         Ok(this)
     }
 
-    /// For C.
+    /// Solver handle for C.
     pub fn solver(&self) -> SUNLinearSolver {
         self.solver
     }
 
-    /// For C.
+    /// Matrix handle for C.
     pub fn matrix(&self) -> SUNMatrix {
         self.matrix
     }
 
-    /// The system.
+    /// Access to the linear system.
     pub fn system(&self) -> &LinearSystem {
         self.system.get()
     }
 
-    /// The system.
+    /// Mutable access to the linear system.
     pub fn system_mut(&mut self) -> &mut LinearSystem {
         self.system.get_mut()
     }
@@ -98,7 +98,8 @@ impl LinearSolver {
 
 impl Drop for LinearSolver {
     fn drop(&mut self) {
-        // SAFETY: created empty by SUNDIALS, freed once; both functions accept null. The content is ours and follows.
+        // SAFETY: created empty by SUNDIALS, freed once; both functions accept null. The content is ours and is freed
+        // afterwards.
         unsafe {
             s::SUNLinSolFreeEmpty(self.solver);
             s::SUNMatFreeEmpty(self.matrix);
@@ -106,19 +107,20 @@ impl Drop for LinearSolver {
     }
 }
 
-/// System behind a matrix handle.
+/// Linear system of a matrix handle.
 ///
 /// # Safety
-/// The matrix is a living one of this file, and the system is not borrowed elsewhere.
+/// The matrix is a valid one of this file, and the system is not borrowed elsewhere.
 pub(super) unsafe fn system_of<'m>(matrix: SUNMatrix) -> &'m mut LinearSystem {
     // SAFETY: by contract; the content was set in `LinearSolver::new`.
     unsafe { &mut *(*matrix).content.cast::<LinearSystem>() }
 }
 
-/// Runs `act` on the system behind a solver, timed; a panic is kept and becomes a failure that ends the integration.
+/// Runs `act` on the linear system of a solver and measures the time. A panic is stored and returned as an
+/// unrecoverable failure.
 ///
 /// # Safety
-/// The solver is a living one of this file, and the system is not borrowed elsewhere.
+/// The solver is a valid one of this file, and the system is not borrowed elsewhere.
 unsafe fn with_system(solver: SUNLinearSolver, act: impl FnOnce(&mut LinearSystem) -> c_int) -> c_int {
     // SAFETY: by contract; the content was set in `LinearSolver::new`.
     let system = unsafe { &mut *(*solver).content.cast::<LinearSystem>() };
@@ -131,7 +133,7 @@ unsafe fn with_system(solver: SUNLinearSolver, act: impl FnOnce(&mut LinearSyste
     code
 }
 
-/// Factors the matrix. A singular one is recoverable, the first one too: a shorter step may help.
+/// Factors the matrix. A singular matrix, even the first one, is a recoverable failure: a shorter step may help.
 unsafe extern "C" fn setup(solver: SUNLinearSolver, _: SUNMatrix) -> c_int {
     let factor = |system: &mut LinearSystem| match system.lu.factor(&system.values) {
         Ok(()) => {
@@ -150,7 +152,7 @@ unsafe extern "C" fn setup(solver: SUNLinearSolver, _: SUNMatrix) -> c_int {
 
 /// Solves `A x = b`.
 unsafe extern "C" fn solve(solver: SUNLinearSolver, _: SUNMatrix, x: N_Vector, b: N_Vector, _: f64) -> c_int {
-    // SAFETY: SUNDIALS passes two living serial vectors of one length; x is another than b.
+    // SAFETY: SUNDIALS passes two valid serial vectors of equal length; x and b are different.
     let (x, b) = unsafe { (entries_mut(x), entries(b)) };
     let solve = |system: &mut LinearSystem| {
         system.solves += 1;
@@ -174,9 +176,9 @@ unsafe extern "C" fn solver_id(_: SUNLinearSolver) -> s::SUNLinearSolver_ID {
     s::SUNLinearSolver_ID_SUNLINEARSOLVER_CUSTOM
 }
 
-/// Memory is not accounted for.
+/// Memory is not counted.
 unsafe extern "C" fn solver_space(_: SUNLinearSolver, reals: *mut c_long, integers: *mut c_long) -> c_int {
-    // SAFETY: SUNDIALS passes two places to write to.
+    // SAFETY: SUNDIALS passes two valid destinations.
     unsafe {
         *reals = 0;
         *integers = 0;
@@ -188,14 +190,14 @@ unsafe extern "C" fn matrix_id(_: SUNMatrix) -> s::SUNMatrix_ID {
     s::SUNMatrix_ID_SUNMATRIX_CUSTOM
 }
 
-/// Nothing to do: a Jacobian writes all its entries.
+/// No operation: a Jacobian writes all its entries.
 unsafe extern "C" fn zero(_: SUNMatrix) -> c_int {
     0
 }
 
-/// Memory is not accounted for.
+/// Memory is not counted.
 unsafe extern "C" fn matrix_space(_: SUNMatrix, reals: *mut c_long, integers: *mut c_long) -> c_int {
-    // SAFETY: SUNDIALS passes two places to write to.
+    // SAFETY: SUNDIALS passes two valid destinations.
     unsafe {
         *reals = 0;
         *integers = 0;

@@ -1,22 +1,22 @@
-//! SUNDIALS behind safe types: the integrator IDA and the solver of nonlinear equations KINSOL.
+//! Safe interface to SUNDIALS: the integrator IDA and the nonlinear solver KINSOL.
 //!
-//! Unsafe code stands here and in [`crate::sparse`] alone; this room knows of a problem no more than [`crate::dae::Dae`] tells.
+//! Unsafe code is restricted to this module and [`crate::sparse`]. This module accesses a problem only through [`crate::dae::Dae`].
 //!
-//! | file | what stands there |
+//! | file | content |
 //! |---|---|
-//! | [`ida`] | the integrator: one accepted step at a time |
-//! | [`kinsol`] | solutions of `F(t, y, 0) = 0` |
-//! | `integrals` | integrals carried along: the ledgers |
-//! | [`sensitivities`] | derivatives by parameters carried along |
-//! | [`options`] | what can be asked of it |
-//! | `diagnosis` | why it could not go on, in words |
-//! | `linear_solver` | KLU as SUNDIALS' linear solver, with a matrix that SUNDIALS cannot touch |
-//! | `callbacks` | from C to [`crate::dae::Dae`] and back |
-//! | `vector`, `operations` | SUNDIALS' vectors with operations of our own |
-//! | `context`, `shared` | what everything else hangs on |
+//! | [`ida`] | integrator, one accepted step at a time |
+//! | [`kinsol`] | solver of `F(t, y, 0) = 0` |
+//! | `integrals` | integrals computed along with the solution, for balances |
+//! | [`sensitivities`] | derivatives by parameters, computed along with the solution |
+//! | [`options`] | settings of IDA |
+//! | `diagnosis` | error reports |
+//! | `linear_solver` | LU factors as SUNDIALS' linear solver, with a matrix that SUNDIALS does not access |
+//! | `callbacks` | callbacks from C to [`crate::dae::Dae`] |
+//! | `vector`, `operations` | SUNDIALS' vectors with own operations |
+//! | `context`, `shared` | context of SUNDIALS, and values shared with C |
 //!
-//! Rules of the boundary: whatever C keeps a pointer to lives in a `Shared` and outlives the C object; no
-//! Rust reference into it is held while C runs; panics and fatal faults are kept and raised again after C has returned.
+//! Rules of the interface: each value to which C has a pointer is in a `Shared` and outlives the C object. No Rust
+//! reference into it exists while C runs. Panics and fatal errors are stored and resumed after C has returned.
 
 #![allow(unsafe_code)]
 
@@ -37,7 +37,7 @@ pub use ida::{Ida, Step};
 pub use kinsol::{Kinsol, KinsolError, KinsolOptions, Solution};
 pub use options::IdaOptions;
 
-/// Version of SUNDIALS as it is loaded.
+/// Version of the loaded SUNDIALS library.
 pub fn sundials_version() -> String {
     context::loaded().map(|number| number.to_string()).join(".")
 }

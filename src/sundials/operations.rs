@@ -1,9 +1,9 @@
 //! Our own operations for SUNDIALS' serial vectors.
 //!
-//! Clones inherit the table of operations, so all vectors an integrator makes for itself use it too. Replaced is what
-//! IDA and KINSOL call while they iterate; vector-array operations fall back to loops over these inside SUNDIALS.
-//! SUNDIALS may pass one vector for several arguments, and then they are the same vector whole: the data pointers
-//! are equal or the data are disjoint. Each operation tells these cases apart before it makes slices.
+//! Clones inherit the table of operations, so all vectors that an integrator creates use it too. The table replaces the
+//! functions that IDA and KINSOL call while they iterate; SUNDIALS' vector-array operations use loops over these.
+//! SUNDIALS may pass one vector for several arguments: the data pointers are either equal, or the data are disjoint.
+//! Each operation distinguishes these cases before it creates slices.
 
 use std::ffi::c_int;
 use std::slice;
@@ -13,7 +13,7 @@ use sundials_sys::{_generic_N_Vector_Ops, N_VClone_Serial, N_Vector};
 use super::vector::{entries, entries_mut, parts};
 use crate::numerics::kernels;
 
-/// Puts our operations into the table of a serial vector.
+/// Enters our operations into the table of a serial vector.
 pub(super) fn replace(ops: &mut _generic_N_Vector_Ops) {
     ops.nvclone = Some(clone);
     ops.nvlinearsum = Some(linear_sum);
@@ -34,9 +34,10 @@ pub(super) fn replace(ops: &mut _generic_N_Vector_Ops) {
     ops.nvwrmsnormmask = Some(weighted_rms_norm_masked);
 }
 
-/// A vector like `w`. Zero, because the library's has undefined entries, which must not become a slice.
+/// Creates a vector like `w`, filled with zeros: the library leaves its entries undefined, which must not become a
+/// slice.
 unsafe extern "C" fn clone(w: N_Vector) -> N_Vector {
-    // SAFETY: SUNDIALS passes a living vector; the new one has just been made, null is checked.
+    // SAFETY: SUNDIALS passes a valid vector; the new one has just been created, null is checked.
     unsafe {
         let v = N_VClone_Serial(w);
         if !v.is_null() {
@@ -50,7 +51,7 @@ unsafe extern "C" fn clone(w: N_Vector) -> N_Vector {
 /// `zᵢ = f(xᵢ)`; z may be x.
 ///
 /// # Safety
-/// Living serial vectors of one length.
+/// Valid serial vectors of equal length.
 #[inline(always)]
 unsafe fn map(x: N_Vector, z: N_Vector, f: impl Fn(f64) -> f64) {
     // SAFETY: by contract; the same data are borrowed once, different data are disjoint.
@@ -66,7 +67,7 @@ unsafe fn map(x: N_Vector, z: N_Vector, f: impl Fn(f64) -> f64) {
 /// `zᵢ = f(xᵢ, yᵢ)`; any of them may be the same vector.
 ///
 /// # Safety
-/// Living serial vectors of one length.
+/// Valid serial vectors of equal length.
 #[inline(always)]
 unsafe fn map2(x: N_Vector, y: N_Vector, z: N_Vector, f: impl Fn(f64, f64) -> f64) {
     // SAFETY: by contract; the written data are borrowed once, different data are disjoint.
@@ -94,19 +95,19 @@ unsafe fn map2(x: N_Vector, y: N_Vector, z: N_Vector, f: impl Fn(f64, f64) -> f6
     }
 }
 
-/// `z = a x + b y`. Factors of one need no cases of their own: multiplying by them is exact and costs nothing here.
+/// `z = a x + b y`. Factors of one need no special case: multiplying by them is exact and free.
 unsafe extern "C" fn linear_sum(a: f64, x: N_Vector, b: f64, y: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map2(x, y, z, |x, y| a * x + b * y) }
 }
 
-/// `z = Σ cⱼ xⱼ`, block by block; z may be any of the xⱼ, because a block is read from all of them before it is written.
+/// `z = Σ cⱼ xⱼ`, block by block; z may be any of the xⱼ, because each block is read from all of them before it is written.
 unsafe extern "C" fn linear_combination(count: c_int, c: *mut f64, x: *mut N_Vector, z: N_Vector) -> c_int {
     const BLOCK: usize = 64;
     if count < 1 {
         return -1;
     }
-    // SAFETY: SUNDIALS passes `count` factors and living vectors of one length.
+    // SAFETY: SUNDIALS passes `count` factors and valid vectors of equal length.
     unsafe {
         let (c, x) = (
             slice::from_raw_parts(c, count as usize),
@@ -131,25 +132,25 @@ unsafe extern "C" fn linear_combination(count: c_int, c: *mut f64, x: *mut N_Vec
 
 /// `zᵢ = c`.
 unsafe extern "C" fn fill(c: f64, z: N_Vector) {
-    // SAFETY: SUNDIALS passes a living vector.
+    // SAFETY: SUNDIALS passes a valid vector.
     unsafe { entries_mut(z) }.fill(c);
 }
 
 /// `zᵢ = xᵢ yᵢ`.
 unsafe extern "C" fn product(x: N_Vector, y: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map2(x, y, z, |x, y| x * y) }
 }
 
 /// `zᵢ = xᵢ / yᵢ`.
 unsafe extern "C" fn quotient(x: N_Vector, y: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map2(x, y, z, |x, y| x / y) }
 }
 
 /// `zᵢ = c xᵢ`.
 unsafe extern "C" fn scale(c: f64, x: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length; `copy` allows equal data.
+    // SAFETY: SUNDIALS passes valid vectors of equal length; `copy` allows equal data.
     unsafe {
         if c == 1.0 {
             let ((n, from), (_, to)) = (parts(x), parts(z));
@@ -162,62 +163,62 @@ unsafe extern "C" fn scale(c: f64, x: N_Vector, z: N_Vector) {
 
 /// `zᵢ = |xᵢ|`.
 unsafe extern "C" fn abs(x: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map(x, z, f64::abs) }
 }
 
 /// `zᵢ = 1 / xᵢ`.
 unsafe extern "C" fn inverse(x: N_Vector, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map(x, z, |x| 1.0 / x) }
 }
 
 /// `zᵢ = xᵢ + b`.
 unsafe extern "C" fn add_constant(x: N_Vector, b: f64, z: N_Vector) {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { map(x, z, |x| x + b) }
 }
 
 /// `Σ xᵢ yᵢ`.
 unsafe extern "C" fn dot(x: N_Vector, y: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { kernels::dot(entries(x), entries(y)) }
 }
 
 /// `max |xᵢ|`.
 unsafe extern "C" fn max_norm(x: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes a living vector.
+    // SAFETY: SUNDIALS passes a valid vector.
     kernels::max_abs(unsafe { entries(x) })
 }
 
 /// `min xᵢ`.
 unsafe extern "C" fn min(x: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes a living vector.
+    // SAFETY: SUNDIALS passes a valid vector.
     kernels::min(unsafe { entries(x) })
 }
 
 /// `Σ |xᵢ|`.
 unsafe extern "C" fn l1_norm(x: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes a living vector.
+    // SAFETY: SUNDIALS passes a valid vector.
     kernels::sum_abs(unsafe { entries(x) })
 }
 
 /// `√Σ (xᵢ wᵢ)²`.
 unsafe extern "C" fn weighted_l2_norm(x: N_Vector, w: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     unsafe { kernels::weighted_square(entries(x), entries(w)) }.sqrt()
 }
 
 /// `√(Σ (xᵢ wᵢ)² / n)`.
 unsafe extern "C" fn weighted_rms_norm(x: N_Vector, w: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     let (x, w) = unsafe { (entries(x), entries(w)) };
     (kernels::weighted_square(x, w) / x.len() as f64).sqrt()
 }
 
 /// `√(Σ (xᵢ wᵢ)² / n)`, the sum over entries with `idᵢ > 0`.
 unsafe extern "C" fn weighted_rms_norm_masked(x: N_Vector, w: N_Vector, id: N_Vector) -> f64 {
-    // SAFETY: SUNDIALS passes living vectors of one length.
+    // SAFETY: SUNDIALS passes valid vectors of equal length.
     let (x, w, id) = unsafe { (entries(x), entries(w), entries(id)) };
     (kernels::weighted_square_masked(x, w, id) / x.len() as f64).sqrt()
 }
@@ -230,7 +231,7 @@ mod tests {
     use crate::sundials::context::Context;
     use crate::sundials::vector::Vector;
 
-    /// x, y, w: of order one, none zero.
+    /// Vectors x, y, w of order one, without zeros.
     fn trio(n: usize, context: &Context, stock: bool) -> [Vector; 3] {
         [0.3, 1.7, 2.9].map(|phase| {
             let entries: Vec<f64> = (0..n).map(|i| 1.5 + (phase + 0.7 * i as f64).sin()).collect();
@@ -249,7 +250,7 @@ mod tests {
     fn operations_equal_the_library_under_all_aliasing() {
         let context = Context::new().unwrap();
         for n in [1, 5, 8, 63, 64, 65, 200] {
-            // (x, y, z) as positions in the trio: distinct, z = x, z = y, x = y, all the same
+            // (x, y, z) as indices into the trio: distinct, z = x, z = y, x = y, all equal
             for [x, y, z] in [[0, 1, 2], [0, 1, 0], [0, 1, 1], [0, 0, 2], [0, 0, 0]] {
                 let fills: [&dyn Fn([N_Vector; 3]); 12] = [
                     &|[x, y, z]| unsafe { s::N_VLinearSum(0.7, x, -1.3, y, z) },
@@ -272,7 +273,7 @@ mod tests {
                     &|[x, y, _]| unsafe { s::N_VWL2Norm(x, y) },
                     &|[x, _, _]| unsafe { s::N_VMaxNorm(x) + s::N_VL1Norm(x) + s::N_VMin(x) },
                     &|[x, y, z]| unsafe {
-                        // z as a summand comes first and once, as SUNDIALS asks
+                        // z as a summand comes first and only once, as SUNDIALS requires
                         let mut vectors = if z == y { [y, x] } else { [x, y] };
                         let count = if x == y { 1 } else { 2 };
                         s::N_VLinearCombination(count, [0.3, 0.9].as_mut_ptr(), vectors.as_mut_ptr(), z).into()
@@ -306,7 +307,7 @@ mod tests {
         }
     }
 
-    /// A clone works with our operations, and long combinations equal the plain sum (five roundings of order ten).
+    /// A clone uses our operations, and long combinations equal the plain sum (five rounding errors of order ten).
     #[test]
     fn clones_inherit_operations() {
         let context = Context::new().unwrap();

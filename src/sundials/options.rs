@@ -1,4 +1,4 @@
-//! What can be asked of IDA.
+//! Settings of IDA.
 
 use crate::integrate::Absolute;
 
@@ -9,27 +9,29 @@ pub struct IdaOptions {
     pub relative: f64,
     /// Absolute tolerances, > 0.
     pub absolute: Absolute,
-    /// Highest order of the backward differentiation formula, 1 to 5. From 3 on it is unstable for undamped waves.
+    /// Highest order of the backward differentiation formula, 1 to 5. Orders of 3 and above are unstable for undamped
+    /// waves.
     pub max_order: u8,
-    /// Safety factor of Newton's convergence test; IDA's own is 0.33.
+    /// Safety factor of Newton's convergence test; IDA's default is 0.33.
     pub nonlinear_coefficient: f64,
-    /// Relative change of `c_j` that asks for a new Jacobian; IDA's own is 0.25.
+    /// Relative change of `c_j` that requires a new Jacobian; IDA's default is 0.25.
     pub delta_cj_setup: f64,
-    /// First step [s]; IDA's guess when absent.
+    /// First step [s]; chosen by IDA if absent.
     pub initial_step: Option<f64>,
     /// Largest step [s].
     pub max_step: Option<f64>,
-    /// Newton failures allowed in one step; IDA's own is 10.
+    /// Maximum number of Newton failures in one step; IDA's default is 10.
     pub max_newton_failures: u16,
-    /// Newton iterations allowed in one solve; IDA's own is 4.
+    /// Maximum number of Newton iterations in one solve; IDA's default is 4.
     pub max_newton_iterations: u16,
-    /// Error-test failures allowed in one step; IDA's own is 10. Each but the first makes it a quarter, and a first step may have to become that of algebraic
-    /// unknowns which move and have no rates yet.
+    /// Maximum number of error-test failures in one step; IDA's default is 10. Each failure after the first divides the step by four. A
+    /// first step may have to become very short if algebraic unknowns move, because their rates are not yet known.
     pub max_error_test_failures: u16,
-    /// Leaves algebraic unknowns out of the error test.
+    /// Excludes algebraic unknowns from the error test.
     ///
-    /// Worth a try where algebraic unknowns are rates of differential ones (currents, reactions): their error is of one
-    /// order less and jumps with each change of step, which can keep IDA at order 1, every other attempt rejected.
+    /// May help if algebraic unknowns are rates of differential ones (currents, reactions). Their error is one order
+    /// lower and jumps with each change of the step size. IDA may then remain at order 1 and reject every other
+    /// attempt.
     pub suppress_algebraic: bool,
 }
 
@@ -52,7 +54,7 @@ impl Default for IdaOptions {
 }
 
 impl IdaOptions {
-    /// Checks the settings for a system of `n` unknowns; the error names the first that cannot be.
+    /// Checks the settings for a system of `n` unknowns; the error names the first invalid one.
     pub fn check(&self, n: usize) -> Result<(), String> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         self.absolute.check(self.relative, n)?;

@@ -1,4 +1,4 @@
-//! Sensitivities to parameters carried along by IDA's own formula (IDAS), and those of the integrals.
+//! Sensitivities to parameters, computed along with the solution by IDA's own formula (IDAS), also of the integrals.
 
 use std::ffi::{c_int, c_void};
 
@@ -12,7 +12,7 @@ use crate::dae::{Dae, EvaluationError};
 use crate::integrate::IntegrationError;
 use crate::numerics::kernels;
 
-/// `∂F/∂σₖ` at one state, kept because a corrector asks for it again and again.
+/// Derivatives `∂F/∂σₖ` at one state, stored because a corrector needs them repeatedly.
 #[derive(Default)]
 pub(super) struct Slopes {
     t: f64,
@@ -22,7 +22,7 @@ pub(super) struct Slopes {
 }
 
 impl Slopes {
-    /// Evaluates them unless they are those of this state.
+    /// Evaluates the derivatives unless they belong to this state.
     fn look<D: Dae>(&mut self, dae: &mut D, t: f64, y: &[f64], yp: &[f64]) -> Result<(), EvaluationError> {
         if self.t == t && self.y == y && self.yp == yp {
             return Ok(());
@@ -39,14 +39,14 @@ impl Slopes {
         Ok(())
     }
 
-    /// The equations are others now.
+    /// Discards the derivatives after a change of the equations.
     fn forget(&mut self) {
         self.y.clear();
         self.yp.clear();
     }
 }
 
-/// What an integrator keeps for its sensitivities.
+/// Vectors of an integrator for its sensitivities.
 pub(super) struct Carried {
     s: Vec<Vector>,
     sp: Vec<Vector>,
@@ -61,16 +61,16 @@ fn raws(vectors: &[Vector]) -> Vec<s::N_Vector> {
 /// Slices of `count` vectors that C passes as an array.
 ///
 /// # Safety
-/// The array holds as many living serial vectors, which nobody writes to while the slices are used.
+/// The array contains `count` valid serial vectors, which nobody writes to while the slices are used.
 unsafe fn slices<'v>(array: *mut s::N_Vector, count: usize) -> Vec<&'v [f64]> {
     // SAFETY: by contract.
     (0..count).map(|k| unsafe { entries(*array.add(k)) }).collect()
 }
 
-/// Slices of `count` vectors that C passes as an array, to be written to.
+/// Mutable slices of `count` vectors that C passes as an array.
 ///
 /// # Safety
-/// The array holds as many different living serial vectors, which nobody else touches while the slices are used.
+/// The array contains `count` different valid serial vectors, which nobody else accesses while the slices are used.
 unsafe fn slices_mut<'v>(array: *mut s::N_Vector, count: usize) -> Vec<&'v mut [f64]> {
     // SAFETY: by contract.
     (0..count).map(|k| unsafe { entries_mut(*array.add(k)) }).collect()
@@ -93,8 +93,8 @@ unsafe extern "C" fn residuals<D: Dae>(
     _: s::N_Vector,
 ) -> c_int {
     let count = count as usize;
-    // SAFETY: user data is the bridge, borrowed by nobody else while C runs; the arrays hold `count` vectors each, and those
-    // of `out` are other ones than all that are read.
+    // SAFETY: user data is the bridge, which nobody else borrows while C runs; the arrays contain `count` vectors each, and
+    // those of `out` differ from all that are read.
     let (bridge, y, yp) = unsafe { seen::<D>(data, y, yp) };
     // SAFETY: as above.
     let (along, along_rates) = unsafe { (slices(along, count), slices(along_rates, count)) };
@@ -154,21 +154,21 @@ unsafe extern "C" fn integrands<D: Dae>(
 }
 
 impl<D: Dae> Ida<D> {
-    /// `[E41]` Of `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
+    /// `[E41]` For `F(t, y, y', σ) = 0` with integrals `I' = g(t, y, y', σ)`, every `s = ∂y/∂σ` satisfies
     ///
     /// ```text
     /// F_y s + F_y' s' + ∂F/∂σ = 0        (∂I/∂σ)' = g_y s + g_y' s' + ∂g/∂σ
     /// ```
     ///
-    /// Staggered: sensitivities are solved for after a step's state has converged and passed its error test, so that a step refused
-    /// costs none, the state is that of a run without them but for the steps, and ∂F/∂σ is evaluated once a step. Their own error
-    /// test takes part in the choice of steps.
+    /// Staggered method: sensitivities are solved for after a step's state has converged and passed its error test. A rejected step
+    /// therefore needs no sensitivities, ∂F/∂σ is evaluated once per step, and the state differs from a run without sensitivities only by
+    /// the steps. The sensitivities' own error test affects the choice of steps.
     ///
-    /// Carries sensitivities along from the present time on, `sₖ` and `sₖ'` for each of the equations' parameters, consistent
-    /// with [`super::consistent_sensitivities`]. Their tolerances are those of the unknowns, relative one and smallest absolute one.
-    /// Those of the integrals go along where they are wanted. To be called before the first step.
+    /// Starts to compute sensitivities from the present time, from `sₖ` and `sₖ'` for each of the equations' parameters. These must be
+    /// consistent, see [`super::consistent_sensitivities`]. Tolerances are the relative one and the smallest absolute one of the
+    /// unknowns. `integrals` adds the sensitivities of the integrals. Must be called before the first step.
     ///
-    /// Panics when a sensitivity has another length than the unknowns.
+    /// Panics if a sensitivity and the unknowns differ in length.
     pub fn carry(
         &mut self,
         from: &[Vec<f64>],
@@ -230,9 +230,9 @@ impl<D: Dae> Ida<D> {
         }
     }
 
-    /// Goes on with other sensitivities after [`Ida::restart`]; those of the integrals start at zero.
+    /// Continues with new sensitivities after [`Ida::restart`]; those of the integrals start at zero.
     ///
-    /// Panics when a sensitivity has another length than the unknowns.
+    /// Panics if a sensitivity and the unknowns differ in length.
     pub fn carry_on(&mut self, from: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Box<IntegrationError>> {
         self.bridge.get_mut().slopes.forget();
         let Some(carried) = &mut self.sensitivities else {
@@ -247,7 +247,7 @@ impl<D: Dae> Ida<D> {
             .for_each(|zeros| zeros.entries_mut().fill(0.0));
         carried.corrections.iter_mut().for_each(Correction::restart);
         let (mut from, mut rates, mut zeros) = (raws(&carried.s), raws(&carried.sp), raws(&carried.integrals));
-        // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry a parameter.
+        // SAFETY: IDA and the vectors, which it copies, are alive; the arrays have one entry per parameter.
         let flag = unsafe {
             match s::IDASensReInit(self.memory.0, s::IDA_STAGGERED, from.as_mut_ptr(), rates.as_mut_ptr()) {
                 s::IDA_SUCCESS if !zeros.is_empty() => s::IDAQuadSensReInit(self.memory.0, zeros.as_mut_ptr()),
@@ -257,9 +257,9 @@ impl<D: Dae> Ida<D> {
         if flag < 0 { Err(self.failure(flag)) } else { Ok(()) }
     }
 
-    /// Sensitivity to parameter k and its rate, at a time [s] within the last step; the first ones before the first step.
+    /// Sensitivity to parameter k and its rate, at a time [s] within the last step; the initial ones before the first step.
     ///
-    /// Panics when a slice has another length than the unknowns.
+    /// Panics if a slice and the unknowns differ in length.
     pub fn sensitivity(&mut self, k: usize, time: f64, out: [&mut [f64]; 2]) -> Result<(), Box<IntegrationError>> {
         let Some(carried) = &self.sensitivities else {
             return Ok(());
@@ -281,7 +281,7 @@ impl<D: Dae> Ida<D> {
 
     /// Sensitivities of the integrals since the last restart to parameter k, at a time [s] within the last step.
     ///
-    /// Panics when `out` has another length than the integrals.
+    /// Panics if the length of `out` differs from the number of integrals.
     pub fn integral_sensitivity(&mut self, k: usize, time: f64, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
         let Some(vector) = self.sensitivities.as_ref().and_then(|carried| carried.integrals.get(k)) else {
             return Ok(());

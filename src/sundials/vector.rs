@@ -10,44 +10,44 @@ use super::operations;
 pub(super) struct Vector(N_Vector);
 
 impl Vector {
-    /// A vector with these entries.
+    /// Creates a vector with these entries.
     pub fn new(entries: &[f64], context: SUNContext) -> Result<Self, String> {
         let vector = Self::with_stock_operations(entries, context)?;
-        // SAFETY: a serial vector has its own table of operations, freed with it.
+        // SAFETY: a serial vector has its own table of operations, which is freed with it.
         operations::replace(unsafe { &mut *(*vector.0).ops });
         Ok(vector)
     }
 
-    /// A vector with SUNDIALS' own operations.
+    /// Creates a vector with SUNDIALS' own operations.
     pub fn with_stock_operations(entries: &[f64], context: SUNContext) -> Result<Self, String> {
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { N_VNew_Serial(entries.len() as i64, context) };
         if raw.is_null() {
             return Err("no memory for a vector".to_owned());
         }
-        // SAFETY: the new vector has as many entries, undefined as yet, and overlaps nothing.
+        // SAFETY: the new vector has as many entries, still undefined, and does not overlap `entries`.
         unsafe { std::ptr::copy_nonoverlapping(entries.as_ptr(), parts(raw).1, entries.len()) };
         Ok(Self(raw))
     }
 
-    /// A vector made by SUNDIALS, to be destroyed with this owner.
+    /// Adopts a vector created by SUNDIALS, which is destroyed with this owner.
     #[cfg(test)]
     pub fn adopt(raw: N_Vector) -> Self {
         Self(raw)
     }
 
-    /// For C.
+    /// Vector handle for C.
     pub fn raw(&self) -> N_Vector {
         self.0
     }
 
-    /// Entries.
+    /// Entries of the vector.
     pub fn entries(&self) -> &[f64] {
         // SAFETY: a serial vector; C does not run while the borrow lasts, because calls into C take `&mut` of the owner.
         unsafe { entries(self.0) }
     }
 
-    /// Entries.
+    /// Mutable entries of the vector.
     pub fn entries_mut(&mut self) -> &mut [f64] {
         // SAFETY: as in `entries`, borrowed mutably.
         unsafe { entries_mut(self.0) }
@@ -64,7 +64,7 @@ impl Drop for Vector {
 /// Length and data of a serial vector.
 ///
 /// # Safety
-/// `v` is a living serial vector.
+/// `v` is a valid serial vector.
 #[inline(always)]
 pub(super) unsafe fn parts(v: N_Vector) -> (usize, *mut f64) {
     // SAFETY: by contract; the content of a serial vector is this structure.
@@ -79,7 +79,7 @@ pub(super) unsafe fn parts(v: N_Vector) -> (usize, *mut f64) {
 /// Entries of a serial vector.
 ///
 /// # Safety
-/// `v` is a living serial vector, and nobody writes to it while the slice is used.
+/// `v` is a valid serial vector, and nobody writes to it while the slice is used.
 #[inline(always)]
 pub(super) unsafe fn entries<'v>(v: N_Vector) -> &'v [f64] {
     // SAFETY: by contract.
@@ -89,10 +89,10 @@ pub(super) unsafe fn entries<'v>(v: N_Vector) -> &'v [f64] {
     }
 }
 
-/// Entries of a serial vector.
+/// Mutable entries of a serial vector.
 ///
 /// # Safety
-/// `v` is a living serial vector, and nobody else touches it while the slice is used.
+/// `v` is a valid serial vector, and nobody else accesses it while the slice is used.
 #[inline(always)]
 pub(super) unsafe fn entries_mut<'v>(v: N_Vector) -> &'v mut [f64] {
     // SAFETY: by contract.

@@ -1,4 +1,4 @@
-//! The command from outside.
+//! `slcbeam equilibrium` from outside.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn slcbeam(arguments: &[&str], out: &Path) -> std::process::Output {
     command.output().expect("it runs")
 }
 
-/// Goal: the command leaves table, shapes, numbers and picture, and says on standard output what happened.
+/// Goal: the command writes table, shapes, numbers and diagram, and reports the path on standard output.
 #[test]
 fn command_fills_its_folder() {
     let out = tempfile::tempdir().expect("a folder");
@@ -54,8 +54,8 @@ fn command_fills_its_folder() {
     assert_eq!(table.lines().next(), Some(head));
 }
 
-/// Goal: a figure that is next to nothing beside others of its kind is judged beside these. Under suction the largest pressure of a cell tends
-/// to zero beside an open port as cells are added, and no mesh would do.
+/// Goal: a figure that is nearly zero compared with others of its kind is judged relative to them. Under suction, the largest cell pressure
+/// beside an open port tends to zero with more cells, so that no mesh would suffice.
 #[test]
 fn next_to_nothing_is_judged_beside_its_kind() {
     let out = tempfile::tempdir().expect("a folder");
@@ -79,7 +79,7 @@ fn next_to_nothing_is_judged_beside_its_kind() {
     }
 }
 
-/// Goal: files, words and page know of stages.
+/// Goal: files, text and page include the stages.
 #[test]
 fn command_tells_stages() {
     let out = tempfile::tempdir().expect("a folder");
@@ -107,7 +107,7 @@ fn command_tells_stages() {
     assert!(read("path.svg").contains("loads at t = -2 s, -1 s, 0 s, 1 s, one after the other"));
 }
 
-/// Goal: an accuracy is reached on a mesh of its own, and its estimates stand in the file and in the words.
+/// Goal: an accuracy is reached on a mesh of its own; file and text contain the estimates.
 #[test]
 fn command_refines_until_it_is_accurate() {
     let out = tempfile::tempdir().expect("a folder");
@@ -128,8 +128,8 @@ fn command_refines_until_it_is_accurate() {
     );
 }
 
-/// Goal: fluid that comes to rest later than the run lasts is told by every command of states at rest, with its time constant, which is that of the
-/// slowest mode: 5.54 s with valves open, 1e7 times that nearly shut. A longer run needs no word.
+/// Goal: if fluid settles later than the run ends, every command for states at rest warns with its time constant, that of the slowest mode:
+/// 5.54 s with open valves, 1e7 times that almost closed. A longer run needs no warning.
 #[test]
 fn fluid_that_comes_to_rest_late_is_told() {
     let dir = tempfile::tempdir().expect("a folder");
@@ -162,7 +162,7 @@ fn fluid_that_comes_to_rest_late_is_told() {
             "{told}"
         );
         assert!(say(command, &[]).contains("W037 fluid comes to rest with a time constant of 5.54 s"));
-        // ten seconds leave a sixth, twenty next to nothing; a pressure that rises all along is followed with a lag
+        // ten seconds leave a sixth, twenty almost nothing; a steadily rising pressure is followed with a lag
         let ten = say(command, &["--set", "/time/end_s=10"]);
         assert!(ten.contains("lags behind by 17 % at 10 s"), "{ten}");
         let slow = [
@@ -189,7 +189,7 @@ fn fluid_that_comes_to_rest_late_is_told() {
     assert_eq!(late, [true, false], "{table}");
 }
 
-/// Goal: mistakes get one message and the house's exit codes; a path that ends early keeps its states.
+/// Goal: an error gives one message and the usual exit code; a path that ends early keeps its states.
 #[test]
 fn command_says_what_cannot_be() {
     let out = tempfile::tempdir().expect("a folder");
@@ -279,8 +279,8 @@ fn command_says_what_cannot_be() {
     }
 }
 
-/// Goal: round-off is told as zero, a state in which nothing acts is told as such, and while a pump fills what nothing empties the command says
-/// when to ask; then there is no table without states, and no place of files that are none.
+/// Goal: rounding errors are printed as zero, and a state without loads is reported as such. While a pump fills a closed network, the
+/// command names an instant to use; then there is neither a table of states nor a list of files.
 #[test]
 fn command_tells_what_is_nothing() {
     let out = tempfile::tempdir().expect("a folder");
@@ -313,7 +313,7 @@ fn command_tells_what_is_nothing() {
     assert!(words.contains("nothing acts at t = 1.00000 s"), "{words}");
 }
 
-/// Goal: an angle of a ten-thousandth of what the beam moves by over its length, which is what a mesh leaves of zero, is no figure to warn of.
+/// Goal: an angle of a ten-thousandth of the motion over the beam's length, which is the mesh error of zero, causes no warning.
 #[test]
 fn an_angle_counts_beside_the_deflection() {
     let out = tempfile::tempdir().expect("a folder");

@@ -1,4 +1,4 @@
-//! Cases and paths that the tests share.
+//! Shared cases and paths of the tests.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub fn path_of(case: &Case, options: &Options) -> equilibrium::Path {
     follow(case, options, &mut |_| Control::Continue).unwrap()
 }
 
-/// A path that arrives, and a reader of its last state.
+/// A path that reaches its end, and a reader of its last state.
 pub fn solved(case: &Case) -> (equilibrium::Path, impl Fn(&str) -> f64 + use<>) {
     let at = case.time.end_s;
     let path = path_of(case, &Options::at(at));

@@ -1,12 +1,12 @@
-//! Derivatives by numbers of the case.
+//! Derivatives with respect to numbers of the case.
 
 use slcbeam::case::parameter::Parameter;
 use slcbeam::run::equilibrium::{Options, columns, differentiate, system};
 
 use crate::common::{path_of, shipped};
 
-/// Goal: derivatives by numbers of the case are those of complete solutions. Fourth-order differences of solutions whose
-/// corrections are below 1e-10, over steps of 1e-3 and 2e-3: 1e-6 of the derivative.
+/// Goal: derivatives agree with differences of complete solutions. Fourth-order differences over steps of 1e-3 and 2e-3, of solutions with
+/// corrections below 1e-10: 1e-6 of the derivative.
 #[test]
 fn sensitivities_are_those_of_differences() {
     let columns_and_case = [
@@ -50,12 +50,12 @@ fn sensitivities_are_those_of_differences() {
                 path_of(&changed, &options).last().row.clone()
             };
             let rows = [at(1.0), at(-1.0), at(2.0), at(-2.0)];
-            // what holds a beam that nothing but pressure bends is round-off
+            // reactions of a beam bent only by pressure are rounding errors
             let round_off = |k: usize| names[k].name.starts_with("reaction_") && base.last().row[k].abs() < 1e-9;
             for k in (0..base.last().row.len()).filter(|k| !round_off(*k)) {
                 let difference =
                     (8.0 * (rows[0][k] - rows[1][k]) - (rows[2][k] - rows[3][k])) / (12e-3 * s.parameter.value);
-                // Round-off is that of the largest of its unit: of a vented bladder's pressure the pressures of the others.
+                // Rounding errors scale with the largest value of the unit: for a vented bladder's pressure, with the other pressures.
                 let alike = |j: &usize| names[*j].unit == names[k].unit && names[*j].name != "load_factor";
                 let largest = (0..names.len())
                     .filter(alike)
@@ -74,7 +74,7 @@ fn sensitivities_are_those_of_differences() {
     }
 }
 
-/// Goal: what cannot be differentiated by is refused in one sentence.
+/// Goal: a number without a derivative is rejected with one sentence.
 #[test]
 fn parameters_that_are_none_are_refused() {
     let case = shipped("curl", &[]);

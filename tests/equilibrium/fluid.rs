@@ -1,4 +1,4 @@
-//! Equilibria with fluid, and runs that start in them.
+//! Equilibria with fluid, and runs that start from them.
 
 use std::f64::consts::PI;
 
@@ -12,8 +12,7 @@ use slcbeam::run::{dynamics, summary::Status};
 
 use crate::common::{path_of, shipped, solved};
 
-/// Goal: the exact tangent. The static Jacobian, volumes of closed networks included, against differences of
-/// fourth order.
+/// Goal: the exact tangent. The static Jacobian, including volumes of closed networks, agrees with fourth-order differences.
 #[test]
 fn static_jacobian_is_that_of_differences() {
     for name in [
@@ -52,7 +51,7 @@ fn static_jacobian_is_that_of_differences() {
             for row in 0..n {
                 let [before, below, above, beyond] = at.each_ref().map(|r| r[row]);
                 let difference = (8.0 * (above - below) - (beyond - before)) / (12.0 * step);
-                // Round-off of the residuals, 1e-16 of their size, over a step; the fifth derivative is less.
+                // rounding errors of the residuals, 1e-16 of their size, over a step; the fifth derivative is smaller
                 assert!(
                     (difference - exact[row]).abs() < 1e-6 * size.max(1.0),
                     "{name}: {row}, {column}: {difference:e} instead of {:e}",
@@ -63,8 +62,8 @@ fn static_jacobian_is_that_of_differences() {
     }
 }
 
-/// Goal: a steady flow is an equilibrium too. Ports of different pressures drive fluid through the chain; the pressures
-/// are those of Kirchhoff's equations, linear along equal resistances.
+/// Goal: a steady flow is an equilibrium, too. Ports of different pressures drive fluid through the chain; the pressures satisfy
+/// Kirchhoff's equations, linear along equal resistances.
 #[test]
 fn steady_streaming_is_an_equilibrium() {
     let case = shipped(
@@ -76,7 +75,7 @@ fn steady_streaming_is_an_equilibrium() {
         ],
     );
     let (path, last) = solved(&case);
-    // The first cell lies half of half a bladder's resistance behind the port: 1/4 of 19 resistances.
+    // The center of the first cell is a quarter of a bladder's resistance behind the port: 1/4 of 19 resistances.
     let resistances = 10.0 + 9.0 * (0.020 / 6.72e-13) / (0.046 / 1.55e-12);
     let first = 1000.0 * (1.0 - 0.25 / resistances);
     assert!(
@@ -111,7 +110,7 @@ fn four_hundred_bladders_take_few_newton_steps() {
     assert!(path.work.factorizations < 60, "{:?}", path.work);
 }
 
-/// Goal: an actuator curls up by more than half a turn from rest under pressure.
+/// Goal: pressure curls an actuator by more than half a turn from rest.
 #[test]
 fn actuator_curls_beyond_half_a_turn() {
     let (path, last) = solved(&shipped("curl", &[]));
@@ -119,8 +118,8 @@ fn actuator_curls_beyond_half_a_turn() {
     assert!(path.events.is_empty());
 }
 
-/// Goal: a run that starts in equilibrium stays there, whatever it leaves out: velocities at round-off of the solution,
-/// 1e-10 of the deflection times the first frequencies.
+/// Goal: a run that starts in equilibrium remains there, whatever effects it omits: velocities are rounding errors of the solution, 1e-10
+/// of the deflection times the first frequencies.
 #[test]
 fn run_stays_in_its_equilibrium() {
     for effects in [
@@ -151,7 +150,7 @@ fn run_stays_in_its_equilibrium() {
     }
 }
 
-/// Goal: what was held is let go. The run begins bent as the force before t = 0 has it and with the energy of that state.
+/// Goal: a held beam is released. The run begins bent by the force before t = 0, with the energy of that state.
 #[test]
 fn plucked_beam_is_let_go() {
     let case = shipped("pluck", &["/time/end_s=0.1"]);
@@ -166,7 +165,7 @@ fn plucked_beam_is_let_go() {
     assert!(tip.iter().any(|u| u * last < 0.0), "it swings through");
 }
 
-/// Goal: fluid that goes in and cannot get out leaves no equilibrium; as much out as in does.
+/// Goal: fluid that only enters leaves no equilibrium; equal inflow and outflow do.
 #[test]
 fn closed_network_that_is_fed_is_refused() {
     let with = |outlet: &str| {
@@ -180,8 +179,8 @@ fn closed_network_that_is_fed_is_refused() {
     assert!(with("{\"pressure_pa\":0}").fault.is_none());
 }
 
-/// Goal: a flow at the zero of its sine is none, though round-off leaves 1e-16 of its size: what went in before is there, that of half a period
-/// a/(pi f), as a port prescribes it. Before, the equilibrium was refused, as the network took in 1.2e-22 m^3/s.
+/// Goal: a flow at the zero of its sine counts as none, though rounding leaves 1e-16 of its size. The fluid that entered before remains:
+/// that of half a period, a/(pi f), as if a port prescribed it. Before, the equilibrium was rejected, as the network took in 1.2e-22 m^3/s.
 #[test]
 fn a_flow_at_its_zero_is_none() {
     let at = |port: serde_json::Value, at: f64| {
@@ -200,7 +199,7 @@ fn a_flow_at_its_zero_is_none() {
     }
 }
 
-/// An actuator behind a check valve that opens at once, with an outlet that is nearly shut; `more` changes it.
+/// An actuator behind a check valve that opens at once, with an almost closed outlet; `more` changes it.
 fn behind_check_valve(smoothing_pa: f64, reverse: f64, more: &[&str]) -> Case {
     let circle = |radius: f64| json!({"circle": {"radius_m": radius}});
     let case = json!({
@@ -232,8 +231,8 @@ fn behind_check_valve(smoothing_pa: f64, reverse: f64, more: &[&str]) -> Case {
     slcbeam::case::parse(&case.to_string(), path, std::path::Path::new(""), &sets).expect("a valid case")
 }
 
-/// Goal: a valve that opens over a pressure far below those that act, beside conductances of any size: the path is found, and the pressure behind
-/// the valve is that of tube, valve and outlet in series, `p - p_a = q/G_t + sqrt(2 w q/G_f)` with `q = G_o p_a`.
+/// Goal: for a valve that opens over a pressure far below the acting ones, with conductances of any size, the path is found. The pressure
+/// behind the valve is that of tube, valve and outlet in series, `p - p_a = q/G_t + sqrt(2 w q/G_f)` with `q = G_o p_a`.
 #[test]
 fn a_valve_opens_over_a_small_part_of_the_pressure() {
     let poiseuille = |radius: f64, length: f64| PI * radius.powi(4) / (8.0 * 0.01 * length);
@@ -257,7 +256,7 @@ fn a_valve_opens_over_a_small_part_of_the_pressure() {
     }
 }
 
-/// Goal: a pump before the valve presses as its port would.
+/// Goal: a pump before the valve gives the same pressure as its port.
 #[test]
 fn a_pump_opens_a_valve_over_a_small_part_of_its_pressure() {
     let pump = "/network/tubes/1/pump={\"pressure_pa\": 4e4, \"resistance_pa_s_m3\": 1e3}";

@@ -8,8 +8,8 @@ use slcbeam::run::equilibrium::{self, Kind, Options};
 
 use crate::common::{parse, path_of, shipped, solved, unit};
 
-/// Goal: roll-up to a closed ring and to two turns converges from rest and closes to 1e-6 (here 1e-9: the mesh's chords
-/// close exactly, Newton leaves 1e-10), whether the beam stretches easily or hardly.
+/// Goal: roll-up to a closed ring and to two turns converges from rest and closes to 1e-6 (here 1e-9: the chords of the mesh close exactly,
+/// Newton's error is 1e-10), for stretchable and almost inextensible beams.
 #[test]
 fn beam_rolls_up_to_two_turns() {
     for factor in [1.0, 1000.0] {
@@ -20,7 +20,7 @@ fn beam_rolls_up_to_two_turns() {
             assert!((last("tip_angle") - 2.0 * PI * turns).abs() < 1e-8);
             assert!(path.events.is_empty());
             assert!(path.states.iter().all(|s| s.stability.is_some_and(|s| s.unstable == 0)));
-            // 22 to 37 Newton steps measured: angles are proportional to the moment, which predictions know.
+            // 22 to 37 Newton steps measured: angles are proportional to the moment, so predictions are accurate.
             assert!(path.work.iterations < 80, "{:?}", path.work);
         }
     }
@@ -44,8 +44,8 @@ fn large_loads_converge_from_rest() {
     }
 }
 
-/// Goal: a perfect column leaves the straight path at Euler's load on its mesh, is stable on the branch, and bends to
-/// 160 degrees; kept on the straight path it is unstable.
+/// Goal: a perfect column leaves the straight path at Euler's load of its mesh, is stable on the branch, and bends to 160 degrees; on the
+/// straight path it is unstable.
 #[test]
 fn column_buckles_onto_the_stable_branch() {
     let euler = PI * PI / 4.0;
@@ -71,9 +71,9 @@ fn column_buckles_onto_the_stable_branch() {
     assert_eq!(straight.last().stability.expect("eigenvalues").unstable, 1);
 }
 
-/// Goal: a path is followed over limit points (Magnusson, Ristinmaa & Ljung 2001, the extensible elastica): a column so stubby
-/// that it is squeezed by a quarter before it buckles, at `P (1 - P/EA) = π² EI/4 L²`, loses load as it bends, and carries
-/// more again when it is bent far.
+/// Goal: a path is followed through limit points (Magnusson, Ristinmaa & Ljung 2001, the extensible elastica). A column so stubby that it
+/// is compressed by a quarter before it buckles, at `P (1 - P/EA) = π² EI/4 L²`, loses load as it bends, and bears more again at large
+/// bending.
 #[test]
 fn stubby_column_loses_load_as_it_buckles() {
     let column = parse(&unit(64, 1.05e-4, json!({"force_z_n": -8.0})));
@@ -82,7 +82,7 @@ fn stubby_column_loses_load_as_it_buckles() {
     assert_eq!(kinds, [Kind::Bifurcation, Kind::LimitPoint]);
     let stiffness = 12.6;
     let exact = 0.5 * stiffness * (1.0 - (1.0 - PI * PI / stiffness).sqrt());
-    // The chain of links, (pi h/2)²/12 = 5e-5, enlarged where load and squeeze nearly balance.
+    // The chain of links, (pi h/2)²/12 = 5e-5, amplified where load and compression almost balance.
     assert!(
         (8.0 * path.events[0].share / exact - 1.0).abs() < 2e-4,
         "{:?} {exact}",
@@ -93,7 +93,7 @@ fn stubby_column_loses_load_as_it_buckles() {
     assert!(last("tip_u1") > 0.6 && path.last().stability.is_some_and(|s| s.unstable == 0));
 }
 
-/// Goal: what cannot be is said. Nothing holds a beam that is free at both ends.
+/// Goal: impossible cases are reported: a beam free at both ends has no support.
 #[test]
 fn beam_that_nothing_holds_is_refused() {
     let mut free = unit(8, 1.0, json!({"force_x_n": 1.0}));
@@ -101,13 +101,13 @@ fn beam_that_nothing_holds_is_refused() {
     let path = path_of(&parse(&free), &Options::at(1.0));
     let fault = path.fault.expect("no equilibrium");
     assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
-    // an equilibrium has no time of its own, and what it has is not told as one
+    // an equilibrium has no time, so the error reports none
     assert_eq!((fault.at, fault.at.time_s()), (At::LoadFactor(0.0), None));
     assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
 }
 
-/// Goal: a path ends at the share that is asked for, though a step passes it that was predicted to stay before: an arch in the shape that it has at
-/// rest, from where loads beyond push it through.
+/// Goal: a path ends at the requested share, even if a step passes it that was predicted to remain below: an arch starts in its rest shape,
+/// and larger loads would make it snap through.
 #[test]
 fn a_path_stops_where_a_step_passes_its_end() {
     let path = path_of(&shipped("snap-arch", &[]), &Options::at(0.0));
@@ -115,8 +115,8 @@ fn a_path_stops_where_a_step_passes_its_end() {
     assert!(path.states.iter().all(|state| state.share <= 1.0) && path.last().share == 1.0);
 }
 
-/// Goal: a neo-Hookean section with 60 kPa in both rows leaves the range of its energy at 0.3 to 0.5 of them, and the load turns back at 0.86: the path ends
-/// there and says where. It went on through 1435 states, to -1.7 times the load.
+/// Goal: a neo-Hookean section with 60 kPa in both rows leaves the range of its energy at 0.3 to 0.5 of the load, with a turning point at
+/// 0.86: the path ends there and reports the position. Before, it continued through 1435 states, to -1.7 times the load.
 #[test]
 fn a_path_that_turns_back_beyond_the_range_ends() {
     let row = |sign: i32| {
@@ -148,8 +148,8 @@ fn a_path_that_turns_back_beyond_the_range_ends() {
     assert!(shares.clone().all(|share| share >= 0.0) && path.last().share < shares.fold(0.0, f64::max));
 }
 
-/// Source: nothing loads a beam whose root stands at 1 mm, so that its tip stands there too. Goal: whatever opposes a velocity is no load of a
-/// state at rest: dashpots, drag that goes with the square of the velocity, a fluid around the beam, damping of a wall.
+/// Source: a beam without loads, with its root at 1 mm, has its tip at 1 mm. Goal: forces that oppose a velocity do not act on a state at
+/// rest: dashpots, quadratic drag, a surrounding fluid, wall damping.
 #[test]
 fn what_opposes_a_velocity_loads_nothing_at_rest() {
     let held = |at: f64, key: &str, opposes: Value| {

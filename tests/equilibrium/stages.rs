@@ -1,4 +1,4 @@
-//! Loads that follow one another: preload, then push.
+//! Loads in sequence: preload, then push.
 
 use std::f64::consts::PI;
 
@@ -11,15 +11,15 @@ use slcbeam::run::{dynamics, summary::Status};
 
 use crate::common::{parse, path_of, shipped};
 
-/// Area, second moment times modulus, length of the strip.
+/// Axial stiffness, bending stiffness and length of the strip.
 const EA: f64 = 1e4;
 const EI: f64 = 1e4 * 1e-6 / 12.0;
 const LENGTH: f64 = 0.1;
-/// By how much its ends are moved together.
+/// Displacement of its ends towards each other.
 const CLOSER: f64 = 1e-4;
 
-/// A pinned strip whose ends come together and which a force pushes across in its middle, both signals; at rest it is curved by up to
-/// `curved` [1/m], one half against the other.
+/// A pinned strip whose ends approach and whose middle is pushed transversely by a force, both signals; the rest curvature is up to
+/// `curved` [1/m], with opposite signs of the halves.
 fn strip(cells: usize, curved: f64, closer: &Value, push: &Value) -> Case {
     parse(&strip_json(cells, curved, closer, push))
 }
@@ -42,7 +42,7 @@ fn at_seconds(first: i32, values: &[f64]) -> Value {
     json!({"table": {"times_s": times, "values": values, "interpolation": "linear"}})
 }
 
-/// Loads at t = 1, 2, .. one after the other.
+/// Path through the loads at t = 1, 2, .. in sequence.
 fn by_seconds(case: &Case, count: usize) -> Path {
     let via_s = (1..count).map(|k| k as f64).collect();
     let options = Options {
@@ -65,18 +65,18 @@ fn stable(path: &Path) -> bool {
     path.last().stability.is_some_and(|s| s.unstable == 0)
 }
 
-/// Source: derived for small rotations. A pinned column of length l whose ends came closer by Δ bears the thrust `P = EI k²` and, pushed
-/// by F in the middle, the shape `w' = (F/2P) (1 - cos kx/cos κ)` up to there, `κ = kl/2`. What bending shortens is `Δ - P l/EA`:
+/// Source: derived for small rotations. A pinned column of length l whose ends approached by Δ bears the thrust `P = EI k²` and, pushed by
+/// F in the middle, has the shape `w' = (F/2P) (1 - cos kx/cos κ)` up to there, `κ = kl/2`. Bending shortens it by `Δ - P l/EA`:
 ///
 /// ```text
 /// ∫ w'² dx/2 over the length = (F/2P)² (l/2) (1 - 2 tan κ/κ + (1 + sin 2κ/2κ)/(2 cos² κ)) = Δ - P l/EA
 /// ```
 ///
-/// From F = 0 at κ = π/2 on the thrust grows with the push, until at κ = π it is Euler's second load and the column gives way sideways:
-/// there the bracket is 3/2, and `F = 16 π²/√3 EI/l² √(Δ/l - 4 π² EI/(EA l²))`.
+/// From F = 0 at κ = π/2 on the thrust grows with the push, until at κ = π it is Euler's second load and the column buckles sideways: there
+/// the bracket is 3/2, and `F = 16 π²/√3 EI/l² √(Δ/l - 4 π² EI/(EA l²))`.
 ///
-/// Goal: both bifurcations, that of the first stage at Euler's load, within 0.2 % at 80 cells. Cells make the first one (π h/2)²/12, the second one
-/// four times that, 5e-4, of the thrust, and rotations of up to 0.06 rad leave 1e-3 of small ones.
+/// Goal: both bifurcations, that of the first stage at Euler's load, within 0.2 % at 80 cells. The mesh error of the thrust is (π h/2)²/12
+/// for the first and four times that, 5e-4, for the second; rotations of up to 0.06 rad differ by 1e-3 from small ones.
 #[test]
 fn pushed_column_gives_way_at_its_exact_load() {
     let full = 0.5;
@@ -105,8 +105,8 @@ fn pushed_column_gives_way_at_its_exact_load() {
     );
 }
 
-/// Goal: a strip that is not quite straight at rest snaps through at less than the load at which a perfect one gives way, and lies on the other side
-/// then. Both stages end at their loads, and load factors go on.
+/// Goal: a strip that is not quite straight at rest snaps through below the bifurcation load of a perfect one, and is then on the other
+/// side. Both stages end at their loads, and load factors continue.
 #[test]
 fn strip_snaps_through_in_its_second_stage() {
     let case = strip(40, 0.05, &at_seconds(0, &[0.0, -CLOSER]), &at_seconds(1, &[0.0, -0.5]));
@@ -128,10 +128,10 @@ fn strip_snaps_through_in_its_second_stage() {
     assert!(middle(&path) < -0.0015 && stable(&path));
 }
 
-/// Goal: `snap-strip` is followed through its snap on any mesh and at any longest step. Nearly symmetric, its path turns sharply where a perfect strip
-/// gives way sideways, and another path passes close by, onto which a step too long leads. Its load lies below that of a perfect one, by no more than a
-/// tenth for this rest curvature, and is the same on all meshes to 4e-3, what 40 cells leave. Going back it turns at the opposite push, by symmetry,
-/// to what is between two states there.
+/// Goal: `snap-strip` is followed through its snap on any mesh and at any maximum step. The strip is almost symmetric, so its path turns
+/// sharply at the bifurcation of a perfect strip, close to another path onto which too long a step leads. Its load is below that of a
+/// perfect one, by at most a tenth for this rest curvature, and equal on all meshes to 4e-3, the error of 40 cells. On the way back it
+/// turns at the opposite push, by symmetry, to the error of states in between.
 #[test]
 fn strip_snaps_through_on_any_mesh() {
     let (ei, ea) = (2.4e9 * 1e-9 * 0.01 / 12.0, 2.4e9 * 1e-5);
@@ -157,8 +157,8 @@ fn strip_snaps_through_on_any_mesh() {
     }
 }
 
-/// Goal: where the state is unique the order of the loads does not matter: the push that no strip on the near side bears. Two Newton
-/// iterations that leave 1e-10 of a length.
+/// Goal: if the state is unique, the order of the loads does not matter: a push that no strip on the near side bears. Two Newton
+/// iterations, each to 1e-10 of a length.
 #[test]
 fn order_does_not_matter_where_the_state_is_unique() {
     let closer = |values: &[f64]| at_seconds(0, values);
@@ -181,7 +181,8 @@ fn order_does_not_matter_where_the_state_is_unique() {
     assert!(early.events.is_empty(), "{:?}", early.events);
 }
 
-/// Goal: where two states bear the same loads the order decides. A push too small to snap the bent strip lays the straight one to its own side.
+/// Goal: if two states bear the same loads, their order decides. A push too small to snap the bent strip bends the straight one to its own
+/// side.
 #[test]
 fn order_decides_between_branches() {
     let push = -0.03;
@@ -198,7 +199,7 @@ fn order_decides_between_branches() {
     );
 }
 
-/// Goal: a run begins in the branch to which a nudge has led that is gone when the run begins, and stays there.
+/// Goal: a nudge that has ended before the run selects the branch; the run begins on it and remains there.
 #[test]
 fn run_starts_on_the_side_of_the_nudge() {
     for nudge in [0.02, -0.02] {
@@ -216,8 +217,8 @@ fn run_starts_on_the_side_of_the_nudge() {
     }
 }
 
-/// The wet beam of `pluck` whose rows are filled together through a tube with a valve, which shuts between t = 1 s and 2 s; then the lower
-/// row is let out and a force bends the tip.
+/// The wet beam of `pluck`: both rows are filled through a tube with a valve, which closes between t = 1 s and 2 s; then the lower row is
+/// vented and a force bends the tip.
 fn trapped() -> Case {
     let chains = json!([
         {"bladders": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10], "ends": ["connected", "sealed"]},
@@ -240,8 +241,8 @@ fn trapped() -> Case {
     shipped("pluck", &sets.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Goal: a valve that shuts between two stages keeps what is behind it, to what Newton's iteration leaves, while pressures there rise and the
-/// other row is let out. Without the first stage the valve is shut before anything flows.
+/// Goal: a valve that closes between two stages traps the fluid behind it, to the error of Newton's iteration, while pressures there rise
+/// and the other row is vented. Without the first stage the valve is closed before any flow.
 #[test]
 fn a_valve_that_shuts_traps_its_volume() {
     let case = trapped();
@@ -262,7 +263,8 @@ fn a_valve_that_shuts_traps_its_volume() {
     assert!(empty.last().row[pressure] < 0.9 * path.last().row[pressure]);
 }
 
-/// Goal: a valve that opens lets pressures even out with the loads held, and the path goes on from there: the state is that of an open valve all along.
+/// Goal: a valve that opens equalizes pressures under constant loads, and the path continues from there: the final state is that of a valve
+/// that was always open.
 #[test]
 fn a_valve_that_opens_lets_pressures_even_out() {
     let mut shut = trapped();
@@ -289,7 +291,8 @@ fn a_valve_that_opens_lets_pressures_even_out() {
     }
 }
 
-/// Goal: what a port of flow has pumped into a closed network is there when it has stopped: as a port that prescribes the volume, 2e-7 m^3 here.
+/// Goal: the volume pumped by a flow port into a closed network remains after the flow has stopped, as with a port that prescribes the
+/// volume, 2e-7 m^3 here.
 #[test]
 fn what_was_pumped_counts() {
     let with = |port: Value| {
@@ -315,8 +318,8 @@ fn what_was_pumped_counts() {
     }
 }
 
-/// Goal: pressures of all bladders are among the figures and have derivatives: all ten of the row that is pumped full rest at one pressure, which goes
-/// in proportion to what is pumped where the couplings are linear, to 1e-6 for the fourth-order effect of strains on areas; the others keep none.
+/// Goal: pressures of all bladders are figures and have derivatives. All ten of the pumped row have one pressure, which is proportional to
+/// the pumped volume for linear couplings, to 1e-6 for the fourth-order effect of strains on areas; the others have zero.
 #[test]
 fn bladders_have_pressures_and_derivatives() {
     let port =
@@ -350,8 +353,8 @@ fn bladders_have_pressures_and_derivatives() {
     }
 }
 
-/// Goal: derivatives of a state that was reached in stages, what is trapped among it, are those of complete solutions: differences of fourth order over 1e-3
-/// of the parameter, of states to 1e-10.
+/// Goal: derivatives of a state reached in stages, including trapped fluid, agree with differences of complete solutions: fourth order over
+/// 1e-3 of the parameter, of states to 1e-10.
 #[test]
 fn derivatives_go_through_the_stages() {
     let case = trapped();

@@ -1,4 +1,4 @@
-//! Valves that have shut before the instant of the loads: what a port had filled stays.
+//! Valves that closed before the instant of the loads: the fluid filled by a port remains trapped.
 
 use serde_json::{Value, json};
 use slcbeam::case::Case;
@@ -16,7 +16,7 @@ fn ramp(from: f64, to: f64, start: f64, duration: f64) -> Value {
     json!({"ramp": {"from": from, "to": to, "start_s": start, "duration_s": duration}})
 }
 
-/// The published beam in thick oil; a port fills the upper row through a tube whose valve moves, and then the tip is pushed.
+/// The published beam in thick oil; a port fills the upper row through a tube with a moving valve, then the tip is pushed.
 fn filled(opening: &Value, pressure: &Value, more: &Value) -> Case {
     let mut case = json!({
         "name": "filled", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.01},
@@ -46,8 +46,8 @@ fn last(case: &Case, options: &Options, name: &str) -> f64 {
     path.last().row[columns.iter().position(|c| c.name == name).expect("a column")]
 }
 
-/// Goal: the equilibrium is where a run comes to rest. The valve shuts at 2.1 s under 3 kPa; the run has had four seconds since the push, and what is
-/// left of its motion is a few thousandths. Without what is trapped the pressure would be 440 Pa, not 3440.
+/// Goal: the equilibrium is the final state of a run. The valve closes at 2.1 s at 3 kPa; the run continues for four seconds after the
+/// push, with a residual motion of a few thousandths. Without trapped fluid the pressure would be 440 Pa, not 3440.
 #[test]
 fn what_a_port_had_filled_stays_behind_its_valve() {
     let case = filled(&ramp(1.0, 0.0, 2.0, 0.1), &ramp(0.0, 3000.0, 0.0, 0.2), &json!({}));
@@ -74,7 +74,7 @@ fn what_a_port_had_filled_stays_behind_its_valve() {
     assert_eq!(path.last().stage, 1);
 }
 
-/// The push, 0.3 N, out of the pressures that the run ends with: it came after the valve had shut, and is felt behind it.
+/// Estimates the push, 0.3 N, from the final pressures of the run. It acts after the closing of the valve, on the trapped fluid.
 fn sensed(case: &Case, record: &Memory) {
     let mut without = case.clone();
     without.ends.tip = serde_json::from_value(json!("free")).expect("an end");
@@ -102,7 +102,7 @@ fn sensed(case: &Case, record: &Memory) {
     assert_eq!((trapped.count(), found.warnings.len()), (1, 1), "{:?}", found.warnings);
 }
 
-/// Goal: what jumps at the very instant at which a valve shuts does so behind it; and what it trapped depends on nothing later.
+/// Goal: a jump at the instant at which a valve closes acts after the closing; the trapped volume does not depend on anything later.
 #[test]
 fn what_jumps_as_a_valve_shuts_comes_after() {
     let step = ramp(1.0, 0.0, 1.0, 0.0);
@@ -112,8 +112,8 @@ fn what_jumps_as_a_valve_shuts_comes_after() {
     assert!(stays > 3000.0 && (jumps / stays - 1.0).abs() < 1e-9, "{jumps} {stays}");
 }
 
-/// Goal: a run that starts in equilibrium has the fluid of that state, with valves as they stood in it: whatever signals would have done before t = 0 it
-/// never sees. Both rest where a case does in which 3 kPa stood behind the valve when it shut.
+/// Goal: a run that starts in equilibrium has the fluid of that state, with the valves of that state; signals before t = 0 have no effect.
+/// Both rest where a case does with 3 kPa behind the valve when it closed.
 #[test]
 fn a_start_in_equilibrium_has_shut_valves_too() {
     let stays = filled(&ramp(1.0, 0.0, 1.0, 0.0), &json!(3000), &json!({}));
@@ -142,8 +142,8 @@ fn a_start_in_equilibrium_has_shut_valves_too() {
     }
 }
 
-/// Goal: valves that have moved and are open have nothing to tell of the past, nor has one that opens in the end, one that was never open,
-/// or one on the way from a port to a junction that holds nothing.
+/// Goal: no history matters for valves that moved but are open, a valve that opens in the end, one that was never open, or one between a
+/// port and a junction without volume.
 #[test]
 fn valves_that_trap_nothing_add_no_stages() {
     let table = json!({"table": {"times_s": [0, 1, 2, 3], "values": [1, 0.2, 0.7, 0.4]}});
@@ -154,7 +154,7 @@ fn valves_that_trap_nothing_add_no_stages() {
         assert_eq!(resolved, Options::at(6.0), "{opening}");
         assert_eq!(path_of(&case, &resolved).trapped, None);
     }
-    // shut off from a second port that the row is open to anyhow
+    // closed towards a second port while the row is open to the first
     let shut = filled(&ramp(1.0, 0.0, 2.0, 0.1), &json!(1000), &json!({}));
     let mut open = shut.clone();
     open.network.as_mut().expect("a network").chains[0].ends[1] =
@@ -170,8 +170,9 @@ fn valves_that_trap_nothing_add_no_stages() {
     assert_eq!(Options::at(6.0).resolved(&shut).expect("stages").via_s.len(), 1);
 }
 
-/// Goal: a pump of two valves. A vessel takes from a port of 2 kPa while the one is open, and gives to the closed row while the other is; after n strokes
-/// the row holds what n mixings leave, p_n = p_(n-1) + (p - p_(n-1)) C/(C + C_row), to what the beam's own motion makes of the row's compliance (measured once).
+/// Goal: a pump of two valves. A vessel fills from a port of 2 kPa while the one is open, and empties into the closed row while the other
+/// is. After n strokes the row pressure is that of n mixings, p_n = p_(n-1) + (p - p_(n-1)) C/(C + C_row), with a row compliance that
+/// includes the motion of the beam (measured once).
 #[test]
 fn strokes_of_a_pump_add_up() {
     let square = |first: f64| {
@@ -219,7 +220,7 @@ fn strokes_of_a_pump_add_up() {
     );
 }
 
-/// Goal: where fluid is fed as a valve shuts, nothing at rest tells how much is behind it: an error, not a number.
+/// Goal: if fluid is fed while a valve closes, a state at rest does not determine the trapped volume: an error, not a number.
 #[test]
 fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
     let chains = json!([
@@ -233,7 +234,7 @@ fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
     let fault = path_of(&fed(2.0), &Options::at(4.0)).fault.expect("no equilibrium");
     assert!(fault.what.starts_with("a valve shuts at t = 1.1 s"), "{}", fault.what);
     assert!(fault.hint.expect("a hint").contains("slcbeam run"));
-    // nine valves shut, each keeps its share of what went in before: as where they stay open, until the push at 2.2 s
+    // nine valves close, each traps its share of the earlier inflow: as with open valves, until the push at 2.2 s
     let case = fed(0.5);
     let mut open = case.clone();
     open.network.as_mut().expect("a network").chains[0].opening = slcbeam::functions::Signal::Constant(1.0);
@@ -244,7 +245,7 @@ fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
     }
 }
 
-/// Goal: derivatives know what is trapped, the instant of shutting included: against differences of fourth order, as those of stages.
+/// Goal: derivatives include the trapped volume and the instant of closing: compared with fourth-order differences, as for stages.
 #[test]
 fn derivatives_know_when_a_valve_shuts() {
     let case = filled(&ramp(1.0, 0.0, 1.0, 0.5), &ramp(0.0, 3000.0, 0.0, 2.0), &json!({}));
@@ -276,10 +277,11 @@ fn derivatives_know_when_a_valve_shuts() {
     }
 }
 
-/// Goal: an opening that swings shuts many times; the stages are those since it last mattered, and too many are refused in words.
+/// Goal: an oscillating opening closes many times; the stages are those since the last relevant closing, and too many are rejected with a
+/// message.
 #[test]
 fn too_many_strokes_are_refused() {
-    // every 40 ms open for less than 20
+    // every 40 ms open for less than 20 ms
     let every = |open: usize| {
         let times: Vec<f64> = (0..=600).map(|k| 0.01 * f64::from(k)).collect();
         let values: Vec<usize> = (0..=600).map(|k| usize::from(k % 4 == open)).collect();
@@ -296,7 +298,7 @@ fn too_many_strokes_are_refused() {
     let case = filled(&json!(1), &json!(0), &json!({"network": network}));
     let error = follow(&case, &Options::at(6.0), &mut |_| Control::Continue).expect_err("too many stages");
     assert!(error.to_string().contains("valves shut off fluid"), "{error}");
-    // one valve to a port alone shuts as often, but only the last time counts
+    // a single valve to a port closes as often, but only the last closing counts
     let case = filled(&swinging, &json!(1000), &json!({}));
     let resolved = Options::at(5.965).resolved(&case).expect("stages");
     assert_eq!(resolved.via_s.len(), 0, "open then");

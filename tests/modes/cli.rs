@@ -59,8 +59,8 @@ fn a_folder_is_filled_and_a_table_printed() {
     }
 }
 
-/// Goal: what swings stands first, then what decays, and what closed networks keep is one line; of one kind there are as many as asked for, the
-/// same as among all.
+/// Goal: oscillations come first, then decays, and quantities conserved by closed networks take one line. A kind has as many modes as
+/// requested, the same as among all.
 #[test]
 fn modes_stand_by_kind() {
     let dir = TempDir::new().unwrap();
@@ -92,7 +92,7 @@ fn modes_stand_by_kind() {
     let all = rows(&said);
     assert_eq!(all.len(), 6, "{said}");
     let kinds: Vec<&str> = all.iter().map(|row| row[1].as_str()).collect();
-    // oscillations come first, however slow the decays are
+    // oscillations come first, even if decays are slower
     assert_eq!(kinds, ["oscillation"; 6], "{said}");
     let csv = fs::read_to_string(dir.path().join("modes.csv")).unwrap();
     assert!(
@@ -118,7 +118,7 @@ fn modes_stand_by_kind() {
     assert_eq!((&json["of_kind"], &json["stable"]), (&"growth".into(), &true.into()));
 }
 
-/// Goal: modes that swing are numbered from slow to fast, as sweeps number them: where one is damped strongly, too.
+/// Goal: oscillating modes are numbered from slow to fast, as in sweeps, even if one is strongly damped.
 #[test]
 fn modes_are_numbered_by_frequency() {
     let dir = TempDir::new().unwrap();
@@ -136,7 +136,7 @@ fn modes_are_numbered_by_frequency() {
     let frequencies: Vec<f64> = all.iter().filter_map(|mode| mode["frequency_hz"].as_f64()).collect();
     assert!(code == 0 && frequencies.len() > 4, "{said}");
     assert!(frequencies.is_sorted(), "{frequencies:?}");
-    // by the distance from zero they are in another order
+    // sorted by the distance from zero, their order differs
     let size = |mode: &Value| {
         mode["growth_per_s"]
             .as_f64()
@@ -151,8 +151,8 @@ fn modes_are_numbered_by_frequency() {
     assert!(!sizes.is_sorted(), "{sizes:?}");
 }
 
-/// Goal: a beam with material damping on many cells, whose overdamped vibrations have nearly one rate, has its oscillations, and a warning says that
-/// others are not listed. Source: the same beam on a fourth of the cells, of which all eigenvalues are computed.
+/// Goal: a beam with material damping on many cells, whose overdamped vibrations have nearly equal rates, lists its oscillations, and a
+/// warning states that others are not listed. Source: the same beam on a fourth of the cells, with all eigenvalues computed.
 #[test]
 fn oscillations_beside_a_cluster_are_found() {
     let dir = TempDir::new().unwrap();
@@ -221,12 +221,12 @@ fn bad_input_is_told() {
         assert_eq!(said.0, code, "{arguments:?}: {}", said.2);
         assert!(said.2.contains(words) && said.1.is_empty(), "{arguments:?}: {}", said.2);
     }
-    // what cannot be written is told as such
+    // a folder that cannot be written has its own message
     let said = modes(&[SMALL, "--count", "1", "--out", "/dev/null/modes"]);
     assert_eq!(said.0, 5, "{}", said.2);
 }
 
-/// An accuracy of frequencies and rates is reached on a mesh of its own; the words and the file have the estimates.
+/// Goal: an accuracy of frequencies and rates is reached on a mesh of its own; text and file contain the estimates.
 #[test]
 fn an_accuracy_is_reached_or_not() {
     let dir = TempDir::new().unwrap();
@@ -255,7 +255,7 @@ fn an_accuracy_is_reached_or_not() {
     );
 }
 
-/// Goal: where the cells of the beam cannot be halved the table says that the mesh's error is not known, and has none.
+/// Goal: if the beam cells cannot be halved, the table has no mesh error and states that it is unknown.
 #[test]
 fn an_error_that_is_not_known_is_not_told() {
     let dir = TempDir::new().unwrap();
@@ -284,7 +284,8 @@ fn an_error_that_is_not_known_is_not_told() {
     );
 }
 
-/// Goal: `slcbeam response` fills a folder with a table, a picture and a page, and prints peaks; `export --state-space` writes the matrices.
+/// Goal: `slcbeam response` fills a folder with a table, a diagram and a page, and prints peaks; `export --state-space` writes the
+/// matrices.
 #[test]
 fn responses_have_files_and_a_model() {
     let dir = TempDir::new().unwrap();
@@ -348,7 +349,7 @@ fn responses_have_files_and_a_model() {
             .iter()
             .all(|name| npz.by_name(&format!("{name}.npy")).is_ok())
     );
-    // where nothing flows an opening changes nothing, and rounding makes no peaks
+    // at zero flow an opening has no effect, and rounding errors give no peaks
     let nothing = dir.path().join("nothing");
     let (code, said, _) = run(&[
         "response",

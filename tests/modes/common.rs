@@ -1,4 +1,4 @@
-//! Cases that the tests share.
+//! Shared cases of the tests.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub fn checked(case: &Value) -> Case {
         .unwrap()
 }
 
-/// Its slowest modes, with the fluid held and freed too.
+/// The slowest modes of a case, with the fluid held and freed, too.
 pub fn slowest(case: &Value, count: usize) -> Modes {
     modes::modes(&checked(case), &plan(count)).unwrap()
 }
@@ -27,9 +27,8 @@ pub fn plan(count: usize) -> Plan {
     }
 }
 
-/// The paper's beam with `per_row` bladders in each row, together as large as ten of the paper's, and one slope `am`
-/// [m^2/(N m)] (of ten) for both signs of the moment; areas do not see the normal force. Passive up to `am` = 1.9e-5. The
-/// network is still to be given.
+/// The paper's beam with `per_row` bladders in each row, with the total size of the paper's ten. One slope `am` [m^2/(N m)] (of ten) is
+/// that of both signs of the moment; areas do not depend on the normal force. Passive up to `am` = 1.9e-5. The network is a placeholder.
 pub fn wet(per_row: usize, viscosity: f64, am: f64) -> Value {
     json!({
         "name": "wet",
@@ -52,7 +51,7 @@ pub fn wet(per_row: usize, viscosity: f64, am: f64) -> Value {
     })
 }
 
-/// Each bladder of the upper row joined to that below it: what bending presses out of one row flows into the other.
+/// Each upper bladder joined to the lower one below it: bending drives fluid from one row into the other.
 pub fn across(per_row: usize, viscosity: f64, am: f64) -> Value {
     let mut case = wet(per_row, viscosity, am);
     let tube = |j: usize| {
@@ -63,7 +62,7 @@ pub fn across(per_row: usize, viscosity: f64, am: f64) -> Value {
     case
 }
 
-/// Each row a chain of its own, sealed at its ends.
+/// Each row is a separate chain, sealed at its ends.
 pub fn chains(per_row: usize, viscosity: f64, am: f64) -> Value {
     let mut case = wet(per_row, viscosity, am);
     let row = |sign: i64| (1..=per_row as i64).map(|j| sign * j).collect::<Vec<_>>();

@@ -1,7 +1,8 @@
-//! Source: frequencies of straight beams (Timoshenko), of columns under a load, and large deflections (Bisshopp & Drucker 1945, Rohde 1953).
-//! Goal: `"order": 4` leaves out what is of fourth order, with every kind of end, for small and for large motions, along and across.
-//! Tolerance: an observed order above 3.4 on the worst of three frequencies, the coarsest mesh at four cells a half-wave or more; errors with
-//! twenty cells a tenth above those measured.
+//! Source: frequencies of straight beams (Timoshenko), of columns under a load, and large deflections (Bisshopp & Drucker 1945, Rohde
+//! 1953).
+//! Goal: errors of `"order": 4` are of fourth order, with every kind of end, for small and for large motions, axial and transverse.
+//! Tolerance: an observed order above 3.4 on the worst of three frequencies, with the coarsest mesh at four or more cells per half-wave;
+//! errors with twenty cells a tenth above the measured ones.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -28,7 +29,7 @@ fn beam(cells: usize, order: u8) -> Value {
     })
 }
 
-/// Errors of the first frequencies across, each relative to `exact`, those of rigid motions left out.
+/// Relative errors of the first transverse frequencies against `exact`, without rigid motions.
 fn errors(case: &Value, exact: &[f64]) -> Vec<f64> {
     let found = slowest(case, exact.len() + 3);
     let swings = found
@@ -47,7 +48,8 @@ fn worst(errors: &[f64]) -> f64 {
     errors.iter().fold(0.0, |most, e| most.max(e.abs()))
 }
 
-/// `[E77]` `[E78]` The first three frequencies of beams with all pairs of ends: 20 cells leave out less than a third of what 40 of second order do.
+/// `[E77]` `[E78]` Goal: the first three frequencies of beams with all pairs of ends: errors with 20 cells are less than a third of those
+/// with 40 cells of second order.
 #[test]
 fn frequencies_are_of_fourth_order() {
     let free = json!({"free": {}});
@@ -92,7 +94,7 @@ fn frequencies_are_of_fourth_order() {
     }
 }
 
-/// Along, sealed and clamped to free: the first two frequencies of a bar.
+/// Goal: the first two frequencies of a bar, sealed and clamped to free.
 #[test]
 fn waves_along_are_of_fourth_order() {
     let of = |cells| {
@@ -106,7 +108,7 @@ fn waves_along_are_of_fourth_order() {
     assert!(coarse < 4e-4 && (coarse / fine).log2() > 3.7, "{coarse} {fine}");
 }
 
-/// Pinned at both ends and stretched, of fourth order.
+/// Pinned at both ends and stretched, on a mesh of fourth order.
 fn stretched(cells: usize, stiffness: f64, strain: f64, kinematics: &str) -> Value {
     let mut case = beam(cells, 4);
     case["beam"]["axial_stiffness_factor"] = json!(stiffness / 1.2e5);
@@ -118,10 +120,11 @@ fn stretched(cells: usize, stiffness: f64, strain: f64, kinematics: &str) -> Val
     case
 }
 
-/// `[E79]` A beam under tension, pinned at both ends: `ω² = β⁴ EI/m + N β²/m`; what the arc of a cell is longer than its chord is of second order there.
+/// `[E79]` A beam under tension, pinned at both ends: `ω² = β⁴ EI/m + N β²/m`. Goal: includes the difference of a cell's arc and chord,
+/// which is of second order there.
 #[test]
 fn tension_is_of_fourth_order() {
-    // N = 12 N, of the size of Euler's load, in a beam that hardly stretches
+    // N = 12 N, about Euler's load, in an almost inextensible beam
     let (stiffness, strain) = (1.2e8, 1e-7);
     let exact = [1.0, 2.0, 3.0].map(|k: f64| {
         let beta = k * PI;
@@ -139,8 +142,8 @@ fn tension_is_of_fourth_order() {
     }
 }
 
-/// `[E79]` The same where sections shear: `m ω² = k² (N + kGA q)/(1 + ε + q)`, `q = EI k²/(kGA (1 + ε) - N)`, with the force along the section, and
-/// `m ω² = N k² + EI k⁴/(1 + EI k²/kGA)` for small rotations. Tolerance: an observed order above 3.7; errors a tenth above those measured.
+/// `[E79]` Beams with shear: `m ω² = k² (N + kGA q)/(1 + ε + q)`, `q = EI k²/(kGA (1 + ε) - N)`, with the force along the section, and `m
+/// ω² = N k² + EI k⁴/(1 + EI k²/kGA)` for small rotations. Tolerance: an observed order above 3.7; errors a tenth above the measured ones.
 #[test]
 fn tension_of_what_shears_is_of_fourth_order() {
     let (stiffness, strain, shear) = (1.2e3, 1e-2, 300.0);
@@ -174,7 +177,7 @@ fn tension_of_what_shears_is_of_fourth_order() {
     }
 }
 
-/// Shortening, deflection and angle of the tip at rest under all of the load.
+/// Shortening, deflection and angle of the tip at rest under the full load.
 fn at_rest(case: &Value) -> [f64; 3] {
     let case = checked(case);
     let path = equilibrium::follow(&case, &equilibrium::Options::at(1.0), &mut |_| Control::Continue).unwrap();
@@ -183,7 +186,7 @@ fn at_rest(case: &Value) -> [f64; 3] {
     [-last("tip_u3"), last("tip_u1"), last("tip_angle")]
 }
 
-/// `[E77]` `[E78]` `[E79]` Cantilevers that bend far under a force, a uniform load and a moment at the tip.
+/// `[E77]` `[E78]` `[E79]` Goal: large deflections of cantilevers under a force, a uniform load and a moment at the tip.
 #[test]
 fn large_deflections_are_of_fourth_order() {
     let growing = |rate: f64| json!({"polynomial": {"coefficients": [0.0, rate]}});
@@ -228,8 +231,8 @@ fn large_deflections_are_of_fourth_order() {
     }
 }
 
-/// Goal: moment, shear, curvature and strain are read where they are said to be, at ends too, not as the means that the equations have; so they are
-/// where sections shear.
+/// Goal: moment, shear, curvature and strain are evaluated at their stated positions, including ends, instead of as the means of the
+/// equations, also with shear.
 /// Tolerance: a hundredth of the square of a cell; of second order M and κ are exact at nodes, V in the middle of cells.
 #[test]
 fn what_is_read_is_at_its_place() {
@@ -261,8 +264,8 @@ fn what_is_read_is_at_its_place() {
     }
 }
 
-/// Goal: N of a beam that is bent by a force F across it, `F sin φ`, nothing at the clamp, is read with second order there too. Before, strains of the first cells told a
-/// fifth too much on every mesh: N turns into V there, where loads alone were counted on.
+/// Goal: the normal force of a beam bent by a transverse force F, `F sin φ`, zero at the clamp, is accurate with second order, too. Before,
+/// strains of the first cells were a fifth too large on every mesh, because N changes into V there and only loads were considered.
 #[test]
 fn normal_forces_beside_a_clamp_are_of_second_order() {
     let at = |cells: usize| {
@@ -282,7 +285,7 @@ fn normal_forces_beside_a_clamp_are_of_second_order() {
     );
 }
 
-/// What fourth order does not go with is refused, in one sentence each.
+/// Goal: combinations that fourth order does not support are rejected, each with one sentence.
 #[test]
 fn what_is_of_second_order_is_refused() {
     let refused = |change: &dyn Fn(&mut Value)| {

@@ -1,4 +1,4 @@
-//! Modes of small motions: eigenvalues of pencils, what they say of beams and bladders, and the command that prints them.
+//! Modes of small motions: eigenvalues of pencils, physics of beams and bladders, and the command that prints them.
 
 mod cli;
 mod common;

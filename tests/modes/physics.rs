@@ -1,7 +1,7 @@
-//! What modes say of beams and bladders.
+//! Modes of beams with bladders.
 //!
-//! Sources: runs in time of the same equations; models with effects left out; mirror symmetry; Rayleigh's theorem for the
-//! undrained and drained limits; rigid motions. Goal: the linearisation is that of the model, limits and kinds included.
+//! Sources: runs in time of the same equations; models with effects left out; mirror symmetry; Rayleigh's theorem for the undrained and
+//! drained limits; rigid motions. Goal: the linearization is that of the model, including limits and kinds of modes.
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
@@ -30,7 +30,7 @@ fn oscillation(x: &[f64], interval: f64) -> (f64, f64) {
 
 #[test]
 fn a_run_swings_and_decays_as_its_mode() {
-    // Resistance such that pressure lags by about an eighth of a period: 2 to 10 % of damping.
+    // resistance such that pressure lags by about an eighth of a period: 2 to 10 % of damping
     let mut case = across(2, 0.01, 1e-5);
     let found = slowest(&case, 4);
     let mode = swinging(&found)[0];
@@ -39,7 +39,7 @@ fn a_run_swings_and_decays_as_its_mode() {
         mode.shape.transverse() > 0.999 && (0.01..0.3).contains(&ratio),
         "{ratio}"
     );
-    // Started in the mode, 1e-5 of the length large: what is not linear is 1e-10 of it.
+    // starts in the mode with 1e-5 of the length: nonlinear terms are 1e-10 of it
     let size = 1e-6 / mode.shape.displacement();
     let nodes = mode.shape.u1.len();
     let table = |f: &dyn Fn(&Complex<f64>) -> f64| {
@@ -89,7 +89,7 @@ fn limits_bracket_and_are_those_of_the_reduced_models() {
     let (sealed, uniform) = (with("flow"), with("network_pressure_differences"));
     let mode = swinging(&found)[0];
     let (undrained, drained) = (mode.undrained.unwrap(), mode.drained.unwrap());
-    // sealed: the same equations. Freed: pressure differences of 1e-9 are left
+    // sealed: the same equations; freed: remaining pressure differences of 1e-9
     assert!(
         (undrained.frequency_hz / sealed - 1.0).abs() < 1e-9,
         "{sealed} {undrained:?}"
@@ -99,7 +99,7 @@ fn limits_bracket_and_are_those_of_the_reduced_models() {
         "{uniform} {drained:?}"
     );
     assert!(undrained.likeness > 0.99 && drained.likeness > 0.99);
-    // |s| of the coupled mode lies between, and not near either: the limits differ by a tenth
+    // |s| of the coupled mode is between both limits, which differ by a tenth, and near neither
     let between = mode.s.norm() / std::f64::consts::TAU;
     let gap = undrained.frequency_hz - drained.frequency_hz;
     assert!(gap > 0.03 * drained.frequency_hz);
@@ -114,7 +114,7 @@ fn a_mirrored_case_moves_across_or_along() {
     let (mut across, mut along) = (0, 0);
     for mode in swinging(&found) {
         let share = mode.shape.transverse();
-        // round-off in an eigenvector, over the distance to the next eigenvalue, squared
+        // rounding error of an eigenvector over the distance to the next eigenvalue, squared
         assert!(!(1e-12..=1.0 - 1e-12).contains(&share), "{share:e}");
         if share > 0.5 {
             across += 1
@@ -132,7 +132,7 @@ fn a_mirrored_case_moves_across_or_along() {
         );
     }
     assert!(across > 2 && along > 1);
-    // two closed chains keep two volumes
+    // two closed chains conserve two volumes
     assert_eq!(found.modes.iter().filter(|m| m.kind == Kind::Volume).count(), 2);
 }
 
@@ -157,7 +157,7 @@ fn a_free_beam_has_rigid_motions() {
 
 #[test]
 fn a_column_beyond_its_load_diverges() {
-    // P/Pcr = 1.2, dead, straight: x'' grows with sqrt(0.2) of its own; exact only that it grows
+    // P/Pcr = 1.2, dead load, straight: x'' grows with sqrt(0.2) of its own; exact only in the sign
     let mut case = wet(2, 8.68e-4, 5e-6);
     for name in ["fluid", "bladders", "tubes", "network"] {
         case.as_object_mut().unwrap().remove(name);
@@ -172,8 +172,8 @@ fn a_column_beyond_its_load_diverges() {
     assert!(growing[0].s.re > 10.0 && growing[0].damping_ratio().is_none());
 }
 
-/// Source: Euler's column, `f/f0` of the straight one and `P = Pcr` as its zero; the buckled branch is stable (Born 1906).
-/// Goal: modes about the equilibrium under the loads at an instant, straight below the load and bent beyond it.
+/// Source: Euler's column, `f/f0` of the straight one and `P = Pcr` as its zero; the buckled branch is stable (Born 1906). Goal: modes
+/// about the equilibrium under the loads at an instant, straight below the load and bent above it.
 #[test]
 fn the_buckled_column_swings() {
     let case = case::load(
@@ -219,8 +219,8 @@ fn shapes_are_alike_or_orthogonal() {
     assert!((likeness(&sine(1.0), &half) - 0.5).abs() < 1e-14);
 }
 
-/// Source: derivation at [E35]. Goal: with mean slopes the least eigenvalue is `1 - √(2 EI φ_b l_b am²/a_p)` or that of the
-/// force, which is what [E21] asks to be positive; a published coupling has the defect of its two sides.
+/// Source: derivation at [E35]. Goal: with mean slopes the smallest eigenvalue is `1 - √(2 EI φ_b l_b am²/a_p)` or that of the force, which
+/// [E21] requires to be positive; a published coupling has the defect of its two sides.
 #[test]
 fn passive_as_the_audit_has_it() {
     let mut case = wet(10, 8.68e-4, 5e-6);
@@ -248,9 +248,9 @@ fn passive_as_the_audit_has_it() {
     assert!(!found.passive() && found.least > 0.0);
 }
 
-/// Goal: derivatives of eigenvalues are those of complete solutions, about the start and about an equilibrium, [E44]: growth and
-/// frequency of the slowest modes of a damped wet beam. Differences over steps of 1e-3 and 2e-3 of fourth order leave
-/// 1e-11 of s, over 1e-3 of it.
+/// Goal: derivatives of eigenvalues agree with differences of complete solutions, about the start and about an equilibrium, [E44]: growth
+/// and frequency of the slowest modes of a damped wet beam. Fourth-order differences over steps of 1e-3 and 2e-3 leave 1e-11 of s, divided
+/// by 1e-3 of it.
 #[test]
 fn eigenvalues_move_as_differences_say() {
     let mut case = across(2, 0.01, 1e-5);
@@ -278,7 +278,7 @@ fn eigenvalues_move_as_differences_say() {
                 let by_difference =
                     ((s(1.0, k) - s(-1.0, k)) * 8.0 - (s(2.0, k) - s(-2.0, k))) / (12e-3 * parameter.value);
                 let error = (found[0].s[k] - by_difference).norm();
-                // The bound of the eigenvalues themselves, over the step.
+                // error bound of the eigenvalues themselves, over the step
                 let bound = 1e-6 * by_difference.norm()
                     + 10.0 * (mode.error + 1e-9 * mode.s.norm()) / (1e-3 * parameter.value.abs());
                 assert!(
@@ -291,8 +291,8 @@ fn eigenvalues_move_as_differences_say() {
     }
 }
 
-/// Goal: the first four frequencies of a cantilever to 3e-3 with 64 cells: from 32 and 64 they point within 1e-4 of the exact
-/// ones, (βh)⁴ for the fourth 9e-4 over ten; and the error told for the mesh is the one there is, within a tenth.
+/// Goal: the first four frequencies of a cantilever to 3e-3 with 64 cells. From 32 and 64 cells they extrapolate to within 1e-4 of the
+/// exact ones: (βh)⁴ for the fourth is 9e-4 over ten. The reported mesh error agrees with the true one within a tenth.
 #[test]
 fn half_the_cells_tell_the_error_of_the_mesh() {
     let case = checked(&json!({
@@ -312,7 +312,8 @@ fn half_the_cells_tell_the_error_of_the_mesh() {
     }
 }
 
-/// Goal: where the cells of the beam cannot be halved its part of the error is not known, and none is told: that of the bladders alone was nil.
+/// Goal: if the beam cells cannot be halved, no mesh error is reported, since its beam part is unknown; before, that of the bladders alone
+/// was reported as zero.
 #[test]
 fn no_error_is_told_of_half_a_mesh() {
     let mut case = across(2, 8.68e-4, 5e-6);
@@ -331,7 +332,7 @@ fn no_error_is_told_of_half_a_mesh() {
 
 #[test]
 fn as_many_networks_as_bladders_keep_as_many_volumes() {
-    // Ten pairs: an eigenvalue of zero ten times over, beside those that pencils of algebraic unknowns have at infinity.
+    // ten pairs: a tenfold eigenvalue of zero, besides the infinite ones by algebraic unknowns
     let found = slowest(&across(10, 0.1, 5e-6), 4);
     let kept = found.modes.iter().filter(|m| m.kind == Kind::Volume).count();
     assert_eq!(kept, 10);
@@ -340,12 +341,12 @@ fn as_many_networks_as_bladders_keep_as_many_volumes() {
 
 #[test]
 fn strongly_damped_motions_are_found_too() {
-    // Four cells a segment more and damping in proportion to stiffness: the Krylov space alone finds four of the eight asked for.
+    // four more cells per segment, and stiffness-proportional damping: the Krylov space alone finds four of the eight requested modes
     let mut case = wet(10, 8.68e-4, 5e-6);
     case["beam"]["damping"] = json!({"bending_time_s": 2e-3, "axial_time_s": 2e-3});
     case["mesh"] = json!({"cells_per_segment": 8});
     let first = |count: usize| swinging(&slowest(&case, count))[0].s;
-    // Asked for twelve, all eigenvalues are computed at once.
+    // for twelve requested modes, all eigenvalues are computed at once
     let (few, all) = (first(2), first(12));
     assert!((few - all).norm() < 1e-9 * all.norm() && few.re < 0.0, "{few} {all}");
 }

@@ -1,5 +1,5 @@
 //! Sources: closed forms of Euler-Bernoulli cantilevers and bars; steady cycles of small amplitude of the same equations.
-//! Goal: the frequency response is that of the linearised equations for inputs that move an end, that load it and that press on bladders.
+//! Goal: the frequency response is that of the linearized equations, for inputs that move an end, load it, or press on bladders.
 //! Tolerance: 1e-6 after extrapolation to fine meshes of fourth order; 1e-4 beside cycles, whose amplitude is small but finite.
 
 use nalgebra::Complex;
@@ -28,7 +28,7 @@ fn at(case: &Value, input: &str, output: &str, hz: f64) -> Complex<f64> {
     response.solver().unwrap().at(hz).unwrap()[0]
 }
 
-/// The limit of meshes of fourth order, with 64 and 128 cells.
+/// Extrapolated limit of meshes of fourth order, from 64 and 128 cells.
 fn limit(case: impl Fn(usize) -> Value, input: &str, output: &str, hz: f64) -> Complex<f64> {
     let [coarse, fine] = [64, 128].map(|cells| at(&case(cells), input, output, hz));
     fine + (fine - coarse) / 15.0
@@ -38,7 +38,7 @@ fn close(found: Complex<f64>, exact: f64) {
     assert!((found - exact).norm() < 1e-6 * exact.abs(), "{found} for {exact}");
 }
 
-/// Source: with L^4 = m w^2 l^4/EI, a root that is shaken across moves the tip by (cos L + cosh L)/(1 + cos L cosh L), a force at the tip by
+/// Source: with L^4 = m w^2 l^4/EI, a transversely shaken root moves the tip by (cos L + cosh L)/(1 + cos L cosh L), a force at the tip by
 /// (sin L cosh L - cos L sinh L)/(1 + cos L cosh L)/L^3.
 #[test]
 fn a_cantilever_answers_as_its_closed_form() {
@@ -56,7 +56,7 @@ fn a_cantilever_answers_as_its_closed_form() {
     }
 }
 
-/// Source: a bar that is shaken along at one end moves the other by 1/cos(w l sqrt(m/EA)).
+/// Source: a bar axially shaken at one end moves the other by 1/cos(w l sqrt(m/EA)).
 #[test]
 fn a_bar_answers_as_its_closed_form() {
     for hz in [10.0, 60.0, 200.0] {
@@ -66,7 +66,7 @@ fn a_bar_answers_as_its_closed_form() {
     }
 }
 
-/// The paper's beam with bladders that are sealed, or joined in pairs across the beam; no rotary inertia, no inertia of fluid.
+/// The paper's beam with bladders sealed, or joined in pairs across the beam; without rotary inertia and inertia of the fluid.
 fn papers(pairs: bool, [cells, along]: [usize; 2]) -> Value {
     let ends = json!(["sealed", "sealed"]);
     let both = |k: i64| match pairs {
@@ -87,7 +87,7 @@ fn papers(pairs: bool, [cells, along]: [usize; 2]) -> Value {
 }
 
 /// Source: transfer matrices of an Euler-Bernoulli line whose mean curvature in a segment drives a diffusion line of pressure, in extended
-/// precision. Tolerance: 1e-6 where bladders are sealed; 3e-5 where fluid flows, whose mesh is of first order.
+/// precision. Tolerance: 1e-6 with sealed bladders; 3e-5 with flow, whose mesh is of first order.
 #[test]
 fn the_papers_beam_answers_as_its_transfer_matrix() {
     let input = "/ends/root/clamped/u1_m";
@@ -112,7 +112,7 @@ fn the_papers_beam_answers_as_its_transfer_matrix() {
     }
 }
 
-/// Source: [E37], cycles of an amplitude of a millionth of the length. Goal: fluid that flows between bladders damps both alike.
+/// Source: [E37], cycles with an amplitude of a millionth of the length. Goal: flow between bladders damps both equally.
 #[test]
 fn a_small_cycle_has_the_amplitude_of_the_response() {
     for (hz, chains) in [(9.0, 1), (14.0, 1), (31.0, 10)] {
@@ -144,7 +144,7 @@ fn a_small_cycle_has_the_amplitude_of_the_response() {
     }
 }
 
-/// Goal: check valves, whose slope has a kink where nothing flows, pass a pressure on in the end, at any pressure.
+/// Goal: check valves, whose characteristic has a kink at zero flow, transmit a static pressure, at any pressure.
 #[test]
 fn check_valves_pass_a_slow_pressure_on() {
     let file = std::fs::read_to_string("cases/bladder-pump.json").unwrap();
@@ -158,8 +158,8 @@ fn check_valves_pass_a_slow_pressure_on() {
     }
 }
 
-/// Source: statics. Goal: a force along a beam that is bent, or loaded, is in balance with its root, on any mesh: differences over the force had
-/// no digits there.
+/// Source: statics. Goal: an axial force on a bent or loaded beam balances the reaction of its root, on any mesh; differences relative to
+/// the force had no digits there.
 #[test]
 fn a_force_on_a_loaded_beam_is_carried_by_its_root() {
     let file = std::fs::read_to_string("cases/elastica.json").unwrap();
@@ -175,7 +175,8 @@ fn a_force_on_a_loaded_beam_is_carried_by_its_root() {
     assert!((straight + 1.0).norm() < 1e-5, "{straight}");
 }
 
-/// Source: Womersley, Y = π a² (1 - 2 J₁(z)/(z J₀(z)))/(i ω ρ l) with z = a sqrt(-i ω ρ/μ), in extended precision. Goal: unsteady friction belongs to a response. Tolerance: 1 %, that of its memory [E52].
+/// Source: Womersley, Y = π a² (1 - 2 J₁(z)/(z J₀(z)))/(i ω ρ l) with z = a sqrt(-i ω ρ/μ), in extended precision. Goal: a response
+/// includes unsteady friction. Tolerance: 1 %, that of its memory [E52].
 #[test]
 fn a_tube_has_unsteady_friction() {
     let sealed = |bladder: i64| json!({"bladders": [bladder], "ends": ["sealed", "sealed"]});
@@ -192,7 +193,7 @@ fn a_tube_has_unsteady_friction() {
     assert!((flow - exact).norm() < 0.01 * exact.norm(), "{flow}");
 }
 
-/// Source: equilibria of 1e-8 m³ more and less. Goal: an input may be a number that the case leaves out, or a volume that begins at nothing.
+/// Source: equilibria of 1e-8 m³ more and less. Goal: an input may be a number absent from the case, or a volume that begins at zero.
 #[test]
 fn inputs_begin_anywhere() {
     let case = json!({
@@ -209,7 +210,7 @@ fn inputs_begin_anywhere() {
     );
 }
 
-/// Goal: names that do not exist are refused with the nearest that does.
+/// Goal: unknown names are rejected with the nearest known one.
 #[test]
 fn inputs_and_outputs_are_named() {
     let case = checked(&beam(4, &json!({"clamped": {"u1_m": 0.0}}), &json!("free")));
@@ -229,7 +230,8 @@ fn inputs_and_outputs_are_named() {
     assert!(error.to_string().contains("no such linear output"), "{error}");
 }
 
-/// Source: [E81]. Goal: `C (s - A)⁻¹ B + D` of a state-space model is the response, of an input that moves an end over s², and of one that does not.
+/// Source: [E81]. Goal: `C (s - A)⁻¹ B + D` of a state-space model is the response: of an input that moves an end, over s², and of another
+/// input.
 #[test]
 fn a_state_space_model_has_the_same_response() {
     let chain = json!({"bladders": [1, 2, -1, -2], "ends": ["sealed", {"pressure_pa": 100.0}]});

@@ -1,11 +1,11 @@
-//! Twelve modes of twenty thousand unknowns, counted in work.
+//! Work of computing twelve modes of twenty thousand unknowns.
 
 use slcbeam::run::modes::{self, Kind};
 
 use crate::common::{chains, checked, plan};
 
-/// Source: work of shift-invert Krylov methods. Goal: a handful of solves a mode whatever the size. One factorisation for
-/// the shift and two for the bound of each eigenvalue; a solve a Krylov vector, three for the bound.
+/// Source: work of shift-invert Krylov methods. Goal: a handful of solutions per mode, independent of the size. One factorization for the
+/// shift and two for the bound of each eigenvalue; a solution per Krylov vector, three for the bound.
 #[test]
 fn work_does_not_grow_with_the_unknowns() {
     let mut work = vec![];
@@ -29,13 +29,13 @@ fn work_does_not_grow_with_the_unknowns() {
         work[1].0
     );
     for (unknowns, factorizations, solves, _) in &work {
-        // 28 eigenvalues with conjugates: 57 factorisations; 2 restarts of 76 vectors and 3 each for the bounds
+        // 28 eigenvalues with conjugates: 57 factorizations; 2 restarts of 76 vectors, and 3 solutions each for the bounds
         assert!(
             *factorizations < 70 && *solves < 400,
             "{unknowns}: {factorizations}, {solves}"
         );
     }
-    // finer volumes move decay rates by their square, bending hardly
+    // finer volumes change decay rates by their square, and bending hardly
     for (coarse, fine) in work[0].3.iter().zip(&work[1].3).filter(|p| p.0.kind.swings()) {
         assert!((coarse.s - fine.s).norm() < 1e-3 * fine.s.norm());
     }

@@ -1,7 +1,7 @@
 //! Eigenvalues of sparse pencils.
 //!
-//! Sources: second differences with fixed ends, `4 sin²(kπ/2(n + 1))`; the pencils of shipped cases. Goal: dense and sparse
-//! ways agree, every copy of a repeated eigenvalue is found, and the error of each is within the bound that comes with it.
+//! Sources: second differences with fixed ends, `4 sin²(kπ/2(n + 1))`; the pencils of shipped cases. Goal: dense and sparse methods agree,
+//! every copy of a repeated eigenvalue is found, and each error is within its bound.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use slcbeam_dense::eigen;
 
 use crate::common::{chains, checked};
 
-/// `copies` times the second differences of n points, side by side, and their exact eigenvalues, ascending.
+/// `copies` times the second differences of n points, as diagonal blocks, and their exact eigenvalues, ascending.
 fn differences(n: usize, copies: usize) -> (Pattern, Vec<f64>, Vec<f64>) {
     let near = |j: usize| {
         let first = j / n * n;
@@ -33,7 +33,7 @@ fn differences(n: usize, copies: usize) -> (Pattern, Vec<f64>, Vec<f64>) {
 
 #[test]
 fn errors_are_within_their_bounds() {
-    // 3 times over: a Krylov space from one vector holds one copy
+    // three copies: a Krylov space from one vector contains only one
     let (pattern, k, exact) = differences(300, 3);
     let on_diagonal = |j: usize| {
         pattern.rows[pattern.column(j)]
@@ -52,7 +52,7 @@ fn errors_are_within_their_bounds() {
     computed.sort_by(f64::total_cmp);
     for (pair, (s, exact)) in found.pairs.iter().zip(computed.iter().zip(&exact)) {
         assert!((s - exact).abs() <= pair.error, "{s:e} {exact:e} {:e}", pair.error);
-        // the bound is no larger than round-off of a row over the smallest eigenvalue allows
+        // the bound is no larger than the rounding error of a row over the smallest eigenvalue
         assert!(pair.error < 1e-14 && pair.s.im.abs() <= pair.error);
         assert!(pair.residual < 1e-14, "{:e}", pair.residual);
     }
@@ -69,13 +69,13 @@ fn a_negative_eigenvalue_tells_an_unstable_tangent() {
     }
     let found = spectral::lowest(&pattern, &k, &[1.0; 300]).unwrap();
     assert_eq!(found.iter().filter(|mu| mu.re < 0.0).count(), 2);
-    // The residual of what counts as found is below 1e-4, the error of a symmetric one its square.
+    // The residual of an accepted pair is below 1e-4; the error of a symmetric one is its square.
     let least = found.iter().map(|mu| mu.re).fold(f64::INFINITY, f64::min);
     assert!((least / (exact[0] - by) - 1.0).abs() < 1e-8);
 }
 
-/// Forty times the turn of three axes into each other: each cube root of 1, forty times. Copies keep no iteration going round in
-/// circles. Tolerance: round-off of a hundred rotations.
+/// Goal: forty cyclic permutations of three axes have each cube root of 1 forty times. Copies do not make an iteration loop forever.
+/// Tolerance: rounding of a hundred rotations.
 #[test]
 fn copies_come_at_once() {
     let turn = |i: usize, j: usize| i / 3 == j / 3 && i % 3 == (j + 1) % 3;
@@ -84,7 +84,7 @@ fn copies_come_at_once() {
     for (s, x) in &found {
         assert!((s * s * s - 1.0).norm() < 1e-13, "{s}");
         for block in x.chunks(3) {
-            // the axis i goes to the axis i + 1
+            // axis i maps to axis i + 1
             let left = (0..3)
                 .map(|i| (block[(i + 2) % 3] - s * block[i]).norm())
                 .fold(0.0, f64::max);
@@ -93,7 +93,7 @@ fn copies_come_at_once() {
     }
 }
 
-/// Largest distance of an eigenvalue of one to the nearest of the other.
+/// Largest distance from an eigenvalue of one set to the nearest of the other.
 fn apart(a: &Found, b: &Found) -> f64 {
     let nearest = |s: Complex<f64>| b.pairs.iter().map(|p| (p.s - s).norm()).fold(f64::INFINITY, f64::min);
     a.pairs.iter().map(|p| nearest(p.s)).fold(0.0, f64::max)
@@ -101,7 +101,7 @@ fn apart(a: &Found, b: &Found) -> f64 {
 
 #[test]
 fn dense_and_sparse_agree() {
-    // Two equal chains: volumes, and the decay rates that bending does not see, come twice.
+    // two equal chains: volumes, and decay rates independent of bending, occur twice
     let case = checked(&chains(10, 8.68e-4, 5e-6));
     let about = linearise(&case, 0.0, None).unwrap();
     let pencil = about.pencil();
@@ -114,7 +114,7 @@ fn dense_and_sparse_agree() {
         let sparse = spectral::nearest(&pencil, shift, 24, &options(0)).unwrap();
         assert!(dense.dense && !sparse.dense);
         assert_eq!((dense.pairs.len(), sparse.pairs.len()), (24, 24));
-        // what stands last may be one of two conjugates, or of two copies, at the same distance
+        // the last one may be one of two conjugates, or of two copies, at the same distance
         for (a, b) in dense.pairs.iter().zip(&sparse.pairs) {
             let (da, db) = ((a.s - shift).norm(), (b.s - shift).norm());
             assert!((da - db).abs() <= 2.0 * (a.error + b.error) + 1e-12 * da, "{da} {db}");
@@ -143,7 +143,7 @@ fn all_finite_eigenvalues_and_no_other() {
 
 #[test]
 fn a_singular_pencil_is_told() {
-    // Two columns that are the same in A and absent in B.
+    // two columns that are equal in A and absent in B
     let pattern = Pattern::from_columns(&[vec![0, 1], vec![0, 1]]);
     let pencil = Pencil {
         pattern: &pattern,

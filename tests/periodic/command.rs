@@ -1,4 +1,4 @@
-//! `slcbeam floquet` and `slcbeam periodic` from outside: exit codes, streams, files. Meshes are coarse: the tests are about the
+//! `slcbeam floquet` and `slcbeam periodic` from outside: exit codes, streams, files. Meshes are coarse, since the tests concern the
 //! command line.
 
 use std::path::Path;
@@ -61,7 +61,7 @@ fn floquet_tells_whether_a_cycle_is_stable() {
     );
 }
 
-/// An accuracy is reached or said not to be, in the words and in the file; one that makes no sense is refused.
+/// Goal: an accuracy is reached, or reported as not reached, in the text and in the file; an invalid one is rejected.
 #[test]
 fn multipliers_and_cycles_know_an_accuracy() {
     let dir = TempDir::new().unwrap();
@@ -112,7 +112,7 @@ fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
     );
 }
 
-/// Words with quotes and commas come back from a table as they were written.
+/// Goal: names with quotes and commas are read back from a table as written.
 #[test]
 fn words_in_a_table_read_back_as_they_are() {
     let words = "no cycle: a \"tooth\" jumps, twice";
@@ -180,7 +180,8 @@ fn periodic_leaves_a_result_folder_and_a_sweep_a_table() {
     );
 }
 
-/// Goal: one cycle, cycles along a number and the table of designs tell harvested energy, mean power and efficiency alike, each with its error.
+/// Goal: one cycle, cycles along a number and the table of designs report harvested energy, mean power and efficiency alike, each with its
+/// error.
 #[test]
 fn cycles_of_a_harvester_tell_energy_power_and_efficiency() {
     let dir = TempDir::new().unwrap();
@@ -211,7 +212,7 @@ fn cycles_of_a_harvester_tell_energy_power_and_efficiency() {
         let period = member["floquet"]["period_s"].as_f64().unwrap();
         assert_eq!(number("harvested_power_w.mean"), energy / period);
         assert!(energy > 0.0 && number("efficiency.window") > 0.0);
-        // no figure is told that its balance does not carry: a tenth of it, as for one cycle
+        // no figure is reported with an error above a tenth by its balance, as for one cycle
         for name in [
             "harvested_energy_j.window",
             "harvested_power_w.mean",
@@ -286,7 +287,7 @@ fn what_makes_no_sense_is_a_usage_error() {
     assert_eq!(said.code, 3, "{}", said.err);
 }
 
-/// Goal: a number of periods that makes no sense, or not there, gets one message.
+/// Goal: an invalid or missing number of periods gives one message.
 #[test]
 fn periods_that_cannot_be_are_refused() {
     let dir = TempDir::new().unwrap();

@@ -1,4 +1,4 @@
-//! Floquet multipliers: the derivative of the period map, Mathieu's equation, modes of what nothing drives.
+//! Floquet multipliers: the derivative of the period map, Mathieu's equation, modes of undriven cases.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -28,7 +28,7 @@ fn stability(case: &Case, period: Option<f64>, count: usize) -> (Scene, Floquet)
     (scene, found)
 }
 
-/// A dry cantilever of length, mass and bending stiffness one, stiff along its axis.
+/// A dry cantilever with length, mass and bending stiffness of one, axially stiff.
 fn dry(cells: usize, damping_s: f64, u3: Value) -> Value {
     json!({
         "name": "dry",
@@ -46,7 +46,7 @@ fn dry(cells: usize, damping_s: f64, u3: Value) -> Value {
 
 const FIRST: f64 = 1.875_104_068_712;
 
-/// Shaken at `ratio` of twice the first frequency, with a modulation `epsilon` of the square of that frequency.
+/// Shaken at `ratio` of twice the first frequency, so that the squared frequency is modulated by `epsilon`.
 fn shaken(cells: usize, damping_s: f64, ratio: f64, epsilon: f64) -> Value {
     let omega = 2.0 * FIRST * FIRST * ratio;
     let amplitude = epsilon * FIRST.powi(4) / MATHIEU_COUPLING / (omega * omega);
@@ -57,11 +57,11 @@ fn shaken(cells: usize, damping_s: f64, ratio: f64, epsilon: f64) -> Value {
     )
 }
 
-/// Goal: the derivative is that of the map. Central differences of a step d err by d² times third derivatives and by
-/// round-off over d: 1e-6 of the largest at d = 1e-5 for a map that is smooth on the scale of its unknowns.
+/// Goal: the derivative is that of the map. Central differences with a step d have errors of d² times third derivatives, and of rounding
+/// over d: 1e-6 of the largest at d = 1e-5 for a map that is smooth on the scale of its unknowns.
 #[test]
 fn carried_disturbances_are_differences_of_the_period_map() {
-    // the kinks of the area laws are sharp in the published coupling; here they are none
+    // the published coupling has sharp kinks in the area laws; here there are none
     let case = shipped(
         "wiring-2",
         &["/mesh/cells_per_segment=2", "/bladders/coupling=\"reciprocal\""],
@@ -100,7 +100,7 @@ fn carried_disturbances_are_differences_of_the_period_map() {
     }
 }
 
-/// Closed volumes are conserved: left vectors of M with multiplier one, and what `admit` takes out.
+/// Goal: closed volumes are conserved: left vectors of M with multiplier one, removed by `admit`.
 #[test]
 fn conserved_volumes_are_multipliers_of_one() {
     let case = shipped("wiring-2", &["/mesh/cells_per_segment=2"]);
@@ -114,15 +114,14 @@ fn conserved_volumes_are_multipliers_of_one() {
     let mut d: Vec<f64> = (0..y.len()).map(|k| (2.0 + 1.3 * k as f64).cos()).collect();
     let before = dot(&d);
     march.propagate(&mut d);
-    // round-off of some hundred solves
+    // rounding errors of some hundred solutions
     assert!((dot(&d) - before).abs() < 1e-9 * before.abs(), "{} {before}", dot(&d));
     assert!((dot(&y) - dot(&scene.guess)).abs() < 1e-10);
 }
 
-/// Source: single-mode Mathieu equation with modal damping ζ, whose growth is that of the undamped one with
-/// `ω²(1 - ζ²)`, less ζ ω. Goal: growth in the tongue. Tolerance: a mesh of 24 cells has the frequency to (β h)²/3 = 2e-3,
-/// of which the growth in the middle of the tongue takes the same share, and beside the middle, at 0.02 of a half width of 0.05,
-/// ten times as much; the second mode adds (ε ω1/ω2)² = 1e-3.
+/// Source: single-mode Mathieu equation with modal damping ζ: its growth is that of the undamped one with `ω²(1 - ζ²)`, less ζ ω. Goal:
+/// growth in the tongue. Tolerance: a mesh of 24 cells has the frequency to (β h)²/3 = 2e-3. The growth in the middle of the tongue has the
+/// same relative error; off the middle, at 0.02 of a half width of 0.05, ten times as much. The second mode adds (ε ω1/ω2)² = 1e-3.
 #[test]
 fn growth_in_the_tongue_is_mathieus() {
     let (zeta, epsilon, w) = (0.01, 0.2, FIRST * FIRST);
@@ -145,12 +144,12 @@ fn growth_in_the_tongue_is_mathieus() {
             "{}",
             found.verdict.words
         );
-        // the steps' own damping is nothing beside it
+        // numerical damping of the steps is negligible
         assert!(first.numerical_damping_per_s < 1e-4 * exact);
     }
 }
 
-/// Beside the tongue the damped beam is stable, and decays as its damping says: ζ ω to the square of the modulation.
+/// Goal: outside the tongue the damped beam is stable and decays at ζ ω, to the square of the modulation.
 #[test]
 fn beside_the_tongue_disturbances_decay() {
     let (zeta, w) = (0.01, FIRST * FIRST);
@@ -166,9 +165,9 @@ fn beside_the_tongue_disturbances_decay() {
     assert_eq!(found.verdict.stability, Stability::Neutral, "{}", found.verdict.words);
 }
 
-/// Source: `exp(s T)` of the modes of the linearised equations, an eigenvalue problem that knows no steps. Tolerance: the error
-/// that steps of order four leave in a phase of ω T, which the error test bounds for the motion alone: it is compared for what
-/// turns by less than half a radian a step.
+/// Source: `exp(s T)` of the modes of the linearized equations, an eigenvalue problem without steps. Tolerance: the error of steps of order
+/// four in a phase of ω T, which the error test bounds only for the motion: the comparison includes modes that turn by less than half a
+/// radian per step.
 #[test]
 fn multipliers_of_what_nothing_drives_are_those_of_its_modes() {
     let mut value = serde_json::to_value(shipped("wiring-2", &["/mesh/cells_per_segment=2"])).unwrap();
@@ -198,7 +197,7 @@ fn multipliers_of_what_nothing_drives_are_those_of_its_modes() {
     assert!(compared >= 3, "{compared}");
 }
 
-/// What has no period is refused, with the reason.
+/// Goal: a case without a period is rejected, with the reason.
 #[test]
 fn what_has_no_period_is_refused() {
     let refusal = |u3: Value, period| match Scene::new(&case_of(&dry(10, 0.0, u3)), period) {
@@ -211,15 +210,15 @@ fn what_has_no_period_is_refused() {
     assert!(refusal(json!({"sum": [sine(1.0), sine(std::f64::consts::SQRT_2)]}), None).contains("common period"));
     assert!(refusal(sine(1.0), Some(0.3)).contains("a period of its own"));
     assert!(refusal(json!(0.0), Some(-1.0)).contains("> 0"));
-    // a start that is smooth, a ramp that ends: both come to rest
+    // a smooth start and a ramp that ends both come to rest
     let ramp = json!({"sum": [{"ramp": {"to": 0.01, "duration_s": 2.0}}, sine(4.0)]});
     let scene = Scene::new(&case_of(&dry(10, 0.0, ramp)), None).unwrap();
     assert_eq!(scene.drive.period, 0.25);
 }
 
-/// Goal: the motion along the beam has its own frequency whatever the drive is, not another that differs by a multiple of it. Sealed bladders
-/// stiffen the beam along its axis by a third above the dry one; `modes` knows the frequency about the state at rest. Shaken by half a
-/// millimetre it is the same to 1 %.
+/// Goal: the axial motion has its own frequency for any drive, not one shifted by a multiple of the drive's. Sealed bladders stiffen the
+/// beam axially by a third compared with the dry one; `modes` gives the frequency at rest. Shaken by half a millimeter the frequency agrees
+/// to 1 %.
 #[test]
 fn the_motion_along_the_beam_keeps_its_frequency() {
     let at_rest = shipped("shaken-sealed", &["/ends/root/clamped/u3_m=0"]);
@@ -253,8 +252,8 @@ fn the_motion_along_the_beam_keeps_its_frequency() {
     }
 }
 
-/// Goal: mode 1 keeps its name at resonance, where the beam bends far: by stretch along its straight axis instead of its tangents it was called motion along
-/// the beam (92 %), and its frequency folded beside it.
+/// Goal: mode 1 keeps its name at resonance with large bending. Before, with the stretch along the straight axis instead of the tangents,
+/// it was called axial motion (92 %), with an aliased frequency.
 #[test]
 fn a_mode_of_a_bent_beam_keeps_its_name() {
     for frequency in ["12.3", "13.25"] {
@@ -266,7 +265,7 @@ fn a_mode_of_a_bent_beam_keeps_its_name() {
             first.part == Part::Bending(1) && first.share > 0.9,
             "{frequency}: {first:?}"
         );
-        // about a mode of 12.4 Hz, within what a drive as strong as this makes of it
+        // near a mode of 12.4 Hz, within the shift by a drive of this strength
         assert!((first.frequency_hz - 12.4).abs() < 0.4, "{frequency}: {first:?}");
     }
 }

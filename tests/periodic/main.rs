@@ -1,4 +1,4 @@
-//! Steady cycles: found by shooting, whether they hold, those of several periods, and the commands that look for them.
+//! Steady cycles: shooting, stability, cycles of several periods, and their commands.
 
 mod command;
 mod floquet;

@@ -1,4 +1,4 @@
-//! Steady cycles found by shooting.
+//! Steady cycles by shooting.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,10 +22,9 @@ fn shipped(name: &str, sets: &[&str]) -> Case {
     case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap()
 }
 
-/// Source: a run into which the shaking grows over 40 of its 44 cycles. Nothing but the fluid damps the first mode, at 0.003 1/s:
-/// after a start at once the run would have to be an hour long. So smooth a start excites it by some 1/(ω t)³ = 3e-7 of the
-/// forces. Goal: the last cycle of the run is the cycle. Tolerance: the run's own error, its tolerance of 1e-5 gathered over 44
-/// cycles, of the largest value.
+/// Source: a run whose shaking grows over 40 of its 44 cycles. Only the fluid damps the first mode, at 0.003 1/s: after an abrupt start the
+/// run would need an hour. So smooth a start excites it by some 1/(ω t)³ = 3e-7 of the forces. Goal: the last cycle of the run is the
+/// cycle. Tolerance: the error of the run, its tolerance of 1e-5 accumulated over 44 cycles, of the largest value.
 #[test]
 fn the_cycle_is_the_tail_of_a_long_run() {
     let sets = [
@@ -67,7 +66,7 @@ fn the_cycle_is_the_tail_of_a_long_run() {
     }
 }
 
-/// A cycle comes back: the run over one period ends where it began.
+/// Goal: the run over one period ends in its initial state.
 #[test]
 fn a_cycle_comes_back() {
     let case = shipped("wiring-1", &["/mesh/cells_per_segment=2"]);
@@ -88,8 +87,8 @@ fn a_cycle_comes_back() {
     }
 }
 
-/// Source: the paper's Fig. 4, within a Mathieu tongue. Goal: the cycle is found although no run would stay on it, and said to be
-/// unstable; with a smaller amplitude it is stable.
+/// Source: the paper's Fig. 4, within a Mathieu tongue. Goal: the cycle is found and reported as unstable, although no run would remain on
+/// it; with a smaller amplitude it is stable.
 #[test]
 fn an_unstable_cycle_is_recognised() {
     let mesh = "/mesh/cells_per_segment=2";
@@ -112,7 +111,7 @@ fn an_unstable_cycle_is_recognised() {
     }
 }
 
-/// What a sweep takes over from one value to the next is a state of the same volumes.
+/// Goal: the state that a sweep passes from one value to the next has the same volumes.
 #[test]
 fn a_warm_start_keeps_the_volume_of_the_start() {
     let first = shipped("wiring-1", &["/mesh/cells_per_segment=1"]);
@@ -130,18 +129,17 @@ fn a_warm_start_keeps_the_volume_of_the_start() {
     let cold = shoot(&b, None).unwrap();
     for w in &b.conserved {
         let volume = |y: &[f64]| w.iter().zip(y).map(|(w, y)| w * y).sum::<f64>();
-        // Newton's steps keep a linear sum to round-off
+        // Newton's steps conserve a linear sum to rounding errors
         assert!((volume(&warm.y) - volume(&b.guess)).abs() < 1e-9 * (1.0 + volume(&b.guess).abs()));
     }
     let gap: Vec<f64> = warm.y.iter().zip(&cold.y).map(|(a, b)| a - b).collect();
-    // both are found to a part of the tolerance, on grids of their own
+    // both are accurate to a part of the tolerance, on their own grids
     assert!(b.size(&gap, &cold.y) < 10.0, "{}", b.size(&gap, &cold.y));
 }
 
 /// Source: Fig. 6 of Matia & Gat, the wave, reciprocal and conservative: 17.49 % at rtol 1e-8 on the default mesh (18.6 % with a load
-/// that is looked at in nodes alone). Goal: at the case's own tolerance what
-/// goes in over the cycle and what comes out differ by a fifth, and the quotient was 23.2 %; the cycle is found again until they do
-/// not, that is said, and the efficiency is right within the error beside it.
+/// sampled at nodes only). Goal: at the case's own tolerance, energy input and output over the cycle differ by a fifth, and the quotient
+/// was 23.2 %. The cycle is computed again until they agree, with a message, and the efficiency is right within its error.
 #[test]
 fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
     let case = shipped(
@@ -175,8 +173,8 @@ fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
     );
 }
 
-/// Prints what docs/stability-maps.md says of the work: 25 permeabilities, each cycle found from the one before, beside a run of
-/// 2 s from rest. Run with `cargo test --release --test periodic saving -- --ignored --nocapture`.
+/// Prints the figures of docs/stability-maps.md on work: 25 permeabilities, each cycle starting from the one before, and a run of 2 s from
+/// rest. Run with `cargo test --release --test periodic saving -- --ignored --nocapture`.
 #[test]
 #[ignore = "a minute of figures for the documentation"]
 fn saving_over_transients() {
@@ -228,7 +226,7 @@ fn saving_over_transients() {
     );
 }
 
-/// The published beam at rest but for its fluid and a tip that is pushed to and fro, its upper row behind a valve; a port at the other side of it.
+/// The published beam at rest, except for its fluid and an oscillating force at the tip; a port feeds the upper row through a valve.
 fn pushed(port: &str, opening: &str) -> Case {
     let text = format!(
         r#"{{"name": "pushed", "preset": "matia-gat-beam", "fluid": {{"viscosity_pa_s": 0.001}}, "bladders": {{"coupling": "reciprocal"}},
@@ -242,7 +240,7 @@ fn pushed(port: &str, opening: &str) -> Case {
     case::parse(&text, "pushed.json".as_ref(), "".as_ref(), &[]).unwrap()
 }
 
-/// Least and largest value of the largest pressure over the cycle [Pa], and what is warned of.
+/// Smallest and largest value of the largest pressure over the cycle [Pa], and the warnings.
 fn pressures(case: &Case) -> ([f64; 2], String) {
     let scene = Scene::new(case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
@@ -254,8 +252,8 @@ fn pressures(case: &Case) -> ([f64; 2], String) {
     ([least, most], outcome.summary.warnings.join("\n"))
 }
 
-/// Goal: a cycle has the fluid that a run of its case comes to. A volume V in the row makes V/(10 l_b a_p) where no moment and no force acts on it, and
-/// the tip's push swings about that; so does V/2 s of a flow for half a second. Tolerance: what the swing is not symmetric by.
+/// Goal: a cycle has the fluid volume that a run of its case reaches. A volume V in the row gives V/(10 l_b a_p) without moment and force,
+/// and the pressure oscillates about it; a flow of V/2 s for half a second gives the same. Tolerance: asymmetry of the oscillation.
 #[test]
 fn a_cycle_has_what_ports_have_let_in() {
     let volume = r#""volume_m3": {"ramp": {"from": 0, "to": 1e-6, "start_s": 0.5, "duration_s": 0.5}}"#;
@@ -273,7 +271,7 @@ fn a_cycle_has_what_ports_have_let_in() {
         );
         assert!(most - least > 100.0 && most - least < 1000.0, "{least} {most}");
     }
-    // the derivative knows the volume: what swings does not change with it
+    // the derivative includes the volume, which does not change the oscillation
     let parameter = Parameter::find(&case, "/network/ports/0/volume_m3/ramp/to").unwrap();
     let scene = Scene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
@@ -284,8 +282,8 @@ fn a_cycle_has_what_ports_have_let_in() {
     assert!((slope * 1e-6 / rests - 1.0).abs() < 0.01, "{slope}");
 }
 
-/// Goal: what a valve has trapped stays in the cycle: it shuts at once under 3 kPa when no force acts, and the pressure swings about that. Without what is
-/// trapped it would about 80 Pa. W030 says of what kind the amount is.
+/// Goal: a cycle keeps the fluid trapped by a valve: it closes at once at 3 kPa while no force acts, and the pressure oscillates about
+/// that; without trapped fluid, about 80 Pa. W030 states the origin of the volume.
 #[test]
 fn a_cycle_has_what_valves_have_trapped() {
     let port = r#""pressure_pa": {"ramp": {"from": 3000, "to": 0, "start_s": 3, "duration_s": 1}}"#;
@@ -299,7 +297,7 @@ fn a_cycle_has_what_valves_have_trapped() {
     );
 }
 
-/// Goal: where more goes in than comes out each period there is no cycle, and the command says why.
+/// Goal: if net fluid enters in each period there is no cycle, and the command states the reason.
 #[test]
 fn fluid_that_gathers_has_no_cycle() {
     let flow = |mean: &str| {
@@ -311,7 +309,7 @@ fn fluid_that_gathers_has_no_cycle() {
     assert!(flow("0").is_ok());
 }
 
-/// Goal: who asks for the end gets what there is: of cycles along a parameter those before, of one that is sought nothing.
+/// Goal: an interrupted command returns partial results: the completed cycles along a parameter, but no unfinished cycle.
 #[test]
 fn searches_end_when_they_are_asked_to() {
     let flag = Arc::new(AtomicBool::new(false));

@@ -1,7 +1,7 @@
-//! Cycles that come back after several periods of what drives them.
+//! Cycles with a period of several drive periods.
 //!
-//! A cantilever whose root is shaken along it at twice its first frequency: the straight beam is a cycle of one period, which does not hold,
-//! and swings across in two, as far as drag lets it.
+//! A cantilever axially shaken at its root at twice its first frequency. The straight beam is an unstable cycle of one period; the beam
+//! oscillates transversely over two, with an amplitude limited by drag.
 
 use std::f64::consts::{PI, TAU};
 
@@ -23,7 +23,7 @@ const DENSITY: f64 = 2700.0;
 const DAMPING: f64 = 0.004;
 const DRAG: f64 = 1.2;
 
-/// The beam, shaken at a frequency [Hz] so that its stiffness is modulated by ε.
+/// The beam, shaken at a frequency [Hz] with a stiffness modulation ε.
 fn shaken(frequency: f64, first: f64, epsilon: f64, start: f64) -> Case {
     // ε = κ U Ω²/(l ω²), [E39]
     let amplitude = epsilon * LENGTH * (first / frequency).powi(2) / 1.57087818999;
@@ -66,15 +66,16 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// Source: Mathieu's equation with damping ζ and drag, `q'' + 2 ζ ω q' + δ |q'| q' + ω² (1 - ε cos 2pt) q = 0`, averaged over a period (Nayfeh &
-/// Mook 1979, chapter 5): what drag takes is that of a damping rate `4 δ a p/3π`, and at rest it and ζω fill what shaking feeds,
+/// Source: Mathieu's equation with damping ζ and drag, `q'' + 2 ζ ω q' + δ |q'| q' + ω² (1 - ε cos 2pt) q = 0`, averaged over a period
+/// (Nayfeh & Mook 1979, chapter 5). Drag acts like a damping rate `4 δ a p/3π`; in the steady state it and ζω balance the energy input by
+/// shaking:
 ///
 /// ```text
 /// (ζ ω + 4 δ a p/3π)² + ((ω² - p²)/2p)² = (ε ω²/4p)²        δ = (c₂/m) ∫φ³/∫φ², φ = 1 at the tip
 /// ```
 ///
-/// Goal: at p = ω and beside it the cycle of two periods has that amplitude. Tolerance 2 %: averaging leaves what is of the order of ε = 0.06 beside
-/// one, halved here as harmonics of the motion do not meet its base at first order.
+/// Goal: at p = ω and beside it the cycle of two periods has that amplitude. Tolerance 2 %: averaging neglects terms of the order of ε =
+/// 0.06 relative to one, halved here as harmonics of the motion do not meet its base at first order.
 #[test]
 fn doubled_period_has_the_averaged_amplitude() {
     let f = first();
@@ -111,8 +112,8 @@ fn doubled_period_has_the_averaged_amplitude() {
     }
 }
 
-/// Goal: a run ends on that cycle. What is left of its beginning decays at (ε/4 - ζ) ω = 1.4 1/s, over 6 s to 2e-4; the swing is sampled to 1e-4; steps of
-/// the run at rtol 1e-8, those at 1e-6 damp the swing by 1.8e-3: 1e-3 of the swing.
+/// Goal: a run ends on that cycle. The transient decays at (ε/4 - ζ) ω = 1.4 1/s, over 6 s to 2e-4; the amplitude is sampled to 1e-4; the
+/// run has rtol 1e-8, since steps at 1e-6 damp the oscillation by 1.8e-3. Tolerance: 1e-3 of the amplitude.
 #[test]
 fn a_long_run_ends_on_the_doubled_period() {
     let f = first();
@@ -131,8 +132,8 @@ fn a_long_run_ends_on_the_doubled_period() {
     assert!((found / exact - 1.0).abs() < 1e-3, "{found:e} {exact:e}");
 }
 
-/// Goal: where the cycle of one period holds, and the motion from the start of the case comes to it, that is what is found and told; a number of
-/// periods that is none is refused.
+/// Goal: if the cycle of one period is stable and attracts the start of the case, the command finds and reports it; an invalid number of
+/// periods is rejected.
 #[test]
 fn a_cycle_of_one_period_is_told_as_one() {
     let f = first();

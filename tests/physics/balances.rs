@@ -1,6 +1,6 @@
 //! Source: `docs/model.md` section 8: the balances are exact in the semi-discrete system.
-//! Goal: what does not close is the integrator's error: it shrinks with the tolerance, for every shipped case, both
-//! formulations and both couplings, their named defects included.
+//! Goal: the residual of each balance is the integrator's error: it shrinks with the tolerance for every shipped case, both formulations
+//! and both couplings, with their named defects included.
 //! Tolerances: 1e-3 of the largest energy at rtol 1e-6, likewise of momentum and angular momentum; volumes of closed
 //! networks to round-off, 1e-12 of the volume displaced.
 
@@ -31,10 +31,10 @@ fn of(name: &str, formulation: &str, coupling: Option<&str>, end: f64) -> Vec<Ba
 fn closes(name: &str, end: f64) {
     let case = shipped::<&str>(name, &[]);
     let (bladders, curved) = (case.bladders, case.loads.iter().any(Load::is_rest));
-    // an energy at finite strain has one coupling and one formulation, curvature at rest too
+    // a strain energy allows only one coupling and one formulation; so does rest curvature
     let nonlinear = bladders.as_ref().is_some_and(|b| b.strain_energy.is_some());
     let couplings: &[Option<&str>] = match bladders {
-        // the published slopes are another beam's: with them its bladders close within milliseconds
+        // the published slopes belong to another beam and would close these bladders within milliseconds
         Some(_) if nonlinear || name == "ecoflex-actuator" => &[Some(RECIPROCAL)],
         Some(_) => &[Some(PUBLISHED), Some(RECIPROCAL)],
         None => &[None],
@@ -80,7 +80,7 @@ fn closes(name: &str, end: f64) {
     }
 }
 
-/// Fig. 4, shaken along its axis from rest at once: waves of every length the mesh carries. Half a period.
+/// Fig. 4, shaken axially with an abrupt start: waves of every length on the mesh. Half a period.
 #[test]
 fn balances_of_beams_with_valves_close() {
     for name in ["valves-open", "valves-half", "valves-hundredth", "shaken-sealed"] {
@@ -88,7 +88,7 @@ fn balances_of_beams_with_valves_close() {
     }
 }
 
-/// Fig. 5, likewise.
+/// Fig. 5, with an abrupt start, too.
 #[test]
 fn balances_of_wired_beams_close() {
     for name in ["wiring-1", "wiring-2", "wiring-3"] {
@@ -96,7 +96,7 @@ fn balances_of_wired_beams_close() {
     }
 }
 
-/// Under loads that grow within 0.1 s or oscillate at 1 Hz; moved across; let go; rolled up.
+/// Loads that grow within 0.1 s or oscillate at 1 Hz; a transverse motion; a release; a roll-up.
 #[test]
 fn balances_of_loaded_beams_close() {
     for (name, end) in [
@@ -140,7 +140,7 @@ fn balances_of_loaded_beams_close() {
     }
 }
 
-/// Bladders that equalise, a ring, and everything a network may be made of.
+/// Bladders that equalize, a ring, and all elements of networks.
 #[test]
 fn balances_of_networks_close() {
     for (name, end) in [
@@ -154,7 +154,7 @@ fn balances_of_networks_close() {
     }
 }
 
-/// No shipped case is left out.
+/// Goal: every shipped case is covered.
 #[test]
 fn every_shipped_case_is_balanced() {
     let tests = include_str!("balances.rs");

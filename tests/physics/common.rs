@@ -1,4 +1,4 @@
-//! Cases, runs and how to read them.
+//! Cases, runs, and readers of their results.
 
 use std::path::Path;
 
@@ -10,17 +10,17 @@ use slcbeam::run::summary::{Status, Summary};
 /// The paper's coupling, `--set` argument.
 pub const PUBLISHED: &str =
     r#"/bladders/coupling={"published":{"slope_per_pressure_rad":0.00381467,"length_per_pressure_m":0.01}}"#;
-/// Strains and areas from one potential, `--set` argument.
+/// Strains and areas from one potential: the reciprocal coupling, `--set` argument.
 pub const RECIPROCAL: &str = r#"/bladders/coupling="reciprocal""#;
-/// The same with the kinked slopes, `--set` argument.
+/// The reciprocal coupling with kinked slopes, `--set` argument.
 pub const KINKED: &str = r#"/bladders/coupling="reciprocal_kinked""#;
 /// The conservative form of the momentum balance, `--set` argument.
 pub const CONSERVATIVE: &str = r#"/formulation="conservative""#;
 /// The paper's form, `--set` argument.
 pub const AS_PUBLISHED: &str = r#"/formulation="published""#;
-/// Flow in tubes creeps, as in the paper, `--set` argument.
+/// Creeping flow in tubes, as in the paper, `--set` argument.
 pub const CREEPING: &str = r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#;
-/// Fluid does not swing along bladders, which coarse meshes would see as one mass, `--set` argument.
+/// No inertia of fluid along bladders, which coarse meshes would treat as one mass, `--set` argument.
 pub const STEADY: &str = r#"/effects={"bladder_inertia":"off"}"#;
 /// Young's modulus of the paper's beam [Pa].
 pub const E: f64 = 2e6;
@@ -29,7 +29,7 @@ pub const LENGTH: f64 = 0.1;
 /// Bending stiffness of the paper's beam [N m^2].
 pub const EI: f64 = 0.0503885;
 
-/// Five segments, every element of a network, every load, all damping; ends to be filled in.
+/// Five segments with every network element, load and damping; ends are placeholders.
 pub const EVERYTHING: &str = r#"{
   "name": "everything",
   "beam": {"length_m": 0.1, "height_m": 0.0216, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950,
@@ -134,7 +134,7 @@ impl Run {
         *self.column(name).last().unwrap()
     }
 
-    /// What a column gained over the last `window` seconds.
+    /// Increment of a column over the last `window` seconds.
     pub fn gained(&self, name: &str, window: f64) -> f64 {
         let (t, values) = (self.column("t"), self.column(name));
         let end = *t.last().unwrap();
@@ -178,7 +178,7 @@ pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
-/// Numbers with three digits each.
+/// Formats numbers with three digits each.
 pub fn listed(values: &[f64]) -> String {
     let texts: Vec<String> = values.iter().map(|v| format!("{v:.2e}")).collect();
     texts.join(" ")

@@ -1,8 +1,8 @@
 //! Source: `docs/model.md` section 7 (second order in space in all end combinations), BDF of order 2 in time.
-//! Goal: observed orders 2 for tip deflection and pressure, in space and in time, on problems whose solution is smooth:
-//! motions that start with a ramp, mean slopes instead of kinks.
-//! Tolerance: 0.1 on an observed order. In space all meshes take the same steps, so that the error in time is the same
-//! and drops out of differences; in time one mesh is used throughout.
+//! Goal: observed orders of 2 for tip deflection and pressure, in space and in time, on problems with smooth solutions: motions that start
+//! with a ramp, mean slopes instead of kinks.
+//! Tolerance: 0.1 on an observed order. In space, all meshes use the same steps, so that the error in time cancels in differences; in time,
+//! one mesh is used throughout.
 
 use super::common::{AS_PUBLISHED, CONSERVATIVE, RECIPROCAL, Run, STEADY, difference, listed, run_shipped};
 
@@ -17,8 +17,8 @@ fn series(run: &Run) -> [Vec<f64>; 4] {
     ]
 }
 
-/// Root shaken across at 8 Hz for two cycles or along at 20 Hz for two, steps of at most `step` and hardly ever less,
-/// Newton's error far below the step's.
+/// A root shaken for two cycles, transversely at 8 Hz or axially at 20 Hz. Steps are at most `step`, and rarely shorter; Newton's error is
+/// far below that of the step.
 fn smooth(case: &str, formulation: &str, step: f64, more: &[String]) -> Run {
     let (signal, end) = match case {
         "shake-wet" => ("u1_m", 0.25),
@@ -74,8 +74,8 @@ fn second_order_in_space_shaken_along() {
     second_order_in_space("wiring-2", AS_PUBLISHED);
 }
 
-/// Steps halved from 1 ms to 1/16 ms at order 2 against steps of 1/128 ms. Where IDA went down to order 1 by its own
-/// choice the error belongs to that order: such runs are printed and left out.
+/// Goal: steps halved from 1 ms to 1/16 ms at order 2 are compared with steps of 1/128 ms. Runs in which IDA chose order 1 have the error
+/// of that order; they are printed and excluded.
 #[test]
 fn second_order_in_time_shaken_across() {
     let reference = series(&smooth("shake-wet", CONSERVATIVE, 1.0 / 128e3, &[]));
@@ -104,8 +104,8 @@ fn second_order_in_time_shaken_across() {
     }
 }
 
-/// Error control: the error falls with the tolerance, as the second power of the number of steps with IDA and the fourth with
-/// ESDIRK46, on the whole. Choices of the step scatter single pairs, so the slope is taken from the loosest to the tightest.
+/// Goal: the error falls with the tolerance: as the second power of the number of steps with IDA, as the fourth with ESDIRK46. Step choices
+/// scatter single pairs, so the slope is that from the loosest to the tightest tolerance.
 #[test]
 fn the_error_follows_the_tolerance() {
     follows_the_tolerance("ida", 2.0);

@@ -1,7 +1,8 @@
 //! Source: mechanics of a free body; `docs/model.md` section 2: the published form conserves neither momentum nor energy.
-//! Goal: a beam thrown with nothing to hold it keeps its momentum and angular momentum in the conservative form,
-//! whatever the bladders do, and loses them by the published form's named defect.
-//! Tolerances: momentum is a linear invariant, which BDF keeps up to Newton's residual, so no digits of the step's error
+//! Goal: a freely thrown beam keeps its momentum and angular momentum in the conservative form, for any motion of the bladders, and loses
+//! them by the named defect of the published form.
+//! Tolerances: momentum is a linear invariant, which BDF keeps up to Newton's residual, without the error of the steps: 1e-12 of the
+//! momentum (measured: 1e-15). Angular momentum and energy are quadratic: they follow the tolerance.
 //! enter: 1e-12 of the momentum (measured: 1e-15). Angular momentum and energy are quadratic: they follow the tolerance.
 
 use slcbeam::model::Model;
@@ -65,13 +66,13 @@ fn a_thrown_beam_keeps_its_momentum() {
             assert!(drift < 1e-12);
             angular.push(b.angular_momentum_residual_relative);
         }
-        // No torque acts, so that the residual is the drift.
+        // no torque acts, so the residual is the drift
         assert!(angular[1] < 1e-5 && angular[1] < 0.2 * angular[0]);
     }
 }
 
-/// The same with the published form: its force `(kappa - alpha_e)(V e_t - N e_n)` has no reaction. The ledger counts it,
-/// so that the balance closes while the momentum goes.
+/// Goal: in the published form the force `(kappa - alpha_e)(V e_t - N e_n)` has no reaction. The ledger counts it, so that the balance
+/// closes while momentum is lost.
 #[test]
 fn the_published_form_loses_momentum_and_says_so() {
     let case = written(THROWN, &[AS_PUBLISHED, RECIPROCAL, "/solver/rtol=1e-6"]);
@@ -86,9 +87,9 @@ fn the_published_form_loses_momentum_and_says_so() {
     assert!(b.momentum_residual_relative < 1e-6 && b.energy_residual_relative < 1e-4);
 }
 
-/// Source: `m v' = m g - c₂ v²` from rest, `u = (v_t²/g) ln cosh(g t/v_t)`, `v_t = √(m g/c₂)`. Goal: a beam that falls flat, and one that falls
-/// upright, which nothing holds back; a plate that is let go, with inertia and without, closes its balances. Tolerances: the drag is
-/// linear below a millionth of the velocity that the case expects: 1e-4 of the way; 1e-3 of what is lost; 1e-3 of balances at 1e-6.
+/// Source: `m v' = m g - c₂ v²` from rest, `u = (v_t²/g) ln cosh(g t/v_t)`, `v_t = √(m g/c₂)`. Goal: the fall of a flat beam with drag, and
+/// of an upright one without; a released plate closes its balances with and without inertia. Tolerances: drag is linear below a millionth
+/// of the expected velocity, 1e-4 of the distance; 1e-3 of the lost energy; 1e-3 of balances at 1e-6.
 #[test]
 fn a_falling_beam_reaches_the_velocity_of_its_drag() {
     let dry = |sets: &[&str]| {

@@ -1,15 +1,15 @@
 //! Source: Fig. 6 of Matia & Gat; energies and shares of `docs/exact-results.md` sections 4 and 5.
-//! Goal: parallel wiring harvests under a uniform load and crossover wiring under the wave, the energy of a steady cycle
-//! is accounted for, and the published coupling returns `l_b am E/psi'` = 124.08 times what it takes.
-//! What makes the cycle steady: a drag of 10 N s/m^2, which lets the free vibration of the start decay with 4.7 1/s, or
-//! material damping; the slowest fluid mode takes 0.16 s. The last of four seconds is one period of the load.
+//! Goal: parallel wiring harvests under a uniform load and crossover wiring under the wave; the energy of a steady cycle is accounted for;
+//! the published coupling returns `l_b am E/psi'` = 124.08 times the energy it receives.
+//! The cycle becomes steady by a drag of 10 N s/m^2, with which the free vibration of the start decays at 4.7 1/s, or by material damping;
+//! the slowest fluid mode takes 0.16 s. The last of four seconds is one period of the load.
 
 use slcbeam::model::characteristic::numbers;
 use slcbeam::model::{Model, audit};
 
 use super::common::{AS_PUBLISHED, CONSERVATIVE, CREEPING, PUBLISHED, RECIPROCAL, Run, run_shipped, shipped, within};
 
-/// Gains over the last period [J].
+/// Energy increments over the last period [J].
 struct Period {
     input: f64,
     harvested: f64,
@@ -57,12 +57,12 @@ const WIRINGS: [&str; 4] = [
     "crossover-wave",
 ];
 
-/// Bands of 15 % around 10.9 mJ, 1.1 mJ, 2.15 uJ and 193 uJ, harvested in two periods of the steady cycle; the shares
-/// 0.955, 0.77 to 0.9, 0.170 and 0.943 are the efficiency, damping set aside.
+/// Goal: bands of 15 % around 10.9 mJ, 1.1 mJ, 2.15 uJ and 193 uJ, harvested in two periods of the steady cycle. The shares 0.955, 0.77 to
+/// 0.9, 0.170 and 0.943 are the efficiency without damping.
 ///
-/// Harvested and dissipated equal the input up to the error in time. Tolerances are relative to what a uniform load would
-/// do, so that the wave, which does a thirtieth of it and dissipates a thousandth, needs a tighter one: 1e-3 of what is
-/// spent at rtol 1e-8 (uniform) and 1e-10 (wave).
+/// Harvested and dissipated energy equal the input up to the error in time. Tolerances are relative to the energies of a uniform load. The
+/// wave has a thirtieth of that work and a thousandth of that dissipation, so it needs a tighter one: 1e-3 of the spent energy at rtol 1e-8
+/// (uniform) and 1e-10 (wave).
 fn harvests(formulation: &str) {
     let mut energies = vec![];
     for (wiring, harvest, share, rtol) in [
@@ -131,8 +131,8 @@ fn wiring_that_matches_the_load_harvests_most_published() {
 /// With the published coupling, mean slopes and small motion, a steady cycle returns exactly `r_M` times the turbine's
 /// share of what the fluid dissipates, `r_M = l_b am E/psi'`: `W_turbine = r_M share (W_input - W_damping)`.
 ///
-/// `W_input - W_damping` is a hundredth of what the fluid dissipates, so the residual of the ledger (4e-9 to 6e-7 of
-/// the largest energy at rtol 1e-9) counts a hundredfold: 1e-3.
+/// `W_input - W_damping` is a hundredth of the fluid dissipation, so the residual of the ledger (4e-9 to 6e-7 of the largest energy at rtol
+/// 1e-9) is amplified a hundredfold: 1e-3.
 #[test]
 fn the_published_coupling_returns_124_times_what_it_takes() {
     for wiring in WIRINGS {
@@ -163,7 +163,7 @@ fn the_published_coupling_returns_124_times_what_it_takes() {
     }
 }
 
-/// Every case with the published coupling says so before it runs, and names both ratios.
+/// Goal: every case with the published coupling is warned of before it runs, with both ratios.
 #[test]
 fn the_audit_names_the_published_coupling() {
     for wiring in WIRINGS {

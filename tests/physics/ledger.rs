@@ -1,12 +1,12 @@
 //! Source: `docs/model.md` section 8: the energy balance is exact in the semi-discrete system.
-//! Goal: no term of the balances is missing or wrong: with everything acting at once the energy residual goes to zero
-//! with the tolerance, in all four combinations of formulation and coupling.
-//! Tolerance: 3e-8 of the largest energy (measured: 3e-11 to 1.2e-8) at rtol 1e-11 over 4 ms, BDF up to order 5 (unstable waves do not grow in so
-//! short a time). A term left out shows as its own share of all work done, here 1e-6 or more (the least is printed).
+//! Goal: no term of the balances is missing or wrong. With all effects acting at once, the energy residual converges to zero with the
+//! tolerance, in all four combinations of formulation and coupling.
+//! Tolerance: 3e-8 of the largest energy (measured: 3e-11 to 1.2e-8) at rtol 1e-11 over 4 ms, BDF up to order 5 (unstable waves do not grow
+//! in so short a time). A missing term would show as its share of all work done, here 1e-6 or more (the smallest is printed).
 
 use super::common::{AS_PUBLISHED, CONSERVATIVE, EVERYTHING, KINKED, PUBLISHED, RECIPROCAL, run, written};
 
-/// Root and tip; every kind of condition occurs.
+/// Conditions at root and tip; every kind of condition occurs.
 const ENDS: [(&str, &str); 5] = [
     (
         "driven root with a slope rate, dead forces and a moment with a rate at the tip",
@@ -109,8 +109,8 @@ fn the_ledger_closes_for_a_quasi_static_solid() {
     all_combinations(r#"{"solid_inertia":"off"}"#, 0..3);
 }
 
-/// `[E77]` `[E79]` Goal: the same on meshes of fourth order, both formulations, finite and small rotations, with and without stretch, sections
-/// that shear and do not.
+/// `[E77]` `[E79]` Goal: balances close on meshes of fourth order, too: both formulations, finite and small rotations, with and without
+/// stretch and shear.
 #[test]
 fn the_ledger_closes_of_fourth_order() {
     let order = "/mesh/order=4";
@@ -152,7 +152,7 @@ fn the_ledger_closes_of_fourth_order() {
     closes(ENDS[1].0, &[ENDS[1].1, RECIPROCAL, stiff, inextensible]);
 }
 
-/// Goal: the same where sections shear, with fluid, whatever they turn against and however small rotations are.
+/// Goal: balances close with shear and fluid, for any rotary inertia and for small rotations.
 #[test]
 fn the_ledger_closes_with_shear() {
     let small = r#"{"shear":"on","finite_rotation":"off","rotary_inertia":"on"}"#;

@@ -1,6 +1,6 @@
 //! Source: issue: "total force and moment are right on every mesh"; statics of beams.
-//! Goal: loads along the beam, and the start, reach the mesh by their integrals and not by samples at nodes.
-//! Tolerance: round-off where a sum must be right on every mesh; a few per cent of the finest mesh where cells bend.
+//! Goal: loads along the beam, and the start, enter the mesh by their integrals and not by samples at nodes.
+//! Tolerance: rounding errors if a sum is exact on every mesh; a few per cent of the finest mesh if cells bend.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,7 +16,7 @@ pub fn profile(text: &str) -> Profile {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{text}: {e}"))
 }
 
-/// A quasi-static cantilever under a load of the given profile, grown within 1 s.
+/// A quasi-static cantilever under a load of the given profile that grows within 1 s.
 pub fn pressed(profile: &str, cells: usize, more: &[&str]) -> Case {
     let load =
         format!(r#"/loads=[{{"force_x_n_m":{{"signal":{{"ramp":{{"to":1,"duration_s":1}}}},"profile":{profile}}}}}]"#);
@@ -34,7 +34,7 @@ pub fn pressed(profile: &str, cells: usize, more: &[&str]) -> Case {
     shipped("dry-cantilever", &sets)
 }
 
-/// A pad of the given value over 1 % of the length. Its edges are steep, not sudden.
+/// A pad of the given value over 1 % of the length, with steep but continuous edges.
 pub fn pad(middle: f64, value: f64) -> String {
     let (a, b) = (middle - 0.005, middle + 0.005);
     let places = [0.0, a - 1e-6, a, b, b + 1e-6, 1.0];
@@ -71,7 +71,7 @@ fn a_narrow_pad_is_right_on_every_mesh() {
     }
 }
 
-/// Force and its moment about the root, as the mesh has them.
+/// Resultant force on the mesh, and its moment about the root.
 fn resultants(case: &Case) -> (f64, f64) {
     let system = System::new(case).unwrap();
     let shape = &system.loads[0].shape;
@@ -133,7 +133,7 @@ pub fn profiles() -> impl Strategy<Value = Profile> {
     some.prop_map(|text| profile(&text))
 }
 
-/// `∫ f`, `∫ f x` and `∫ |f|` over [0, 1], by Simpson's rule on so many parts between knots that it is as good as exact.
+/// `∫ f`, `∫ f x` and `∫ |f|` over [0, 1], by Simpson's rule with enough parts between knots to be practically exact.
 fn by_simpson(f: &Profile) -> [f64; 3] {
     let integrals = Integrals::of(f);
     let mut knots = vec![0.0];
@@ -174,14 +174,14 @@ proptest! {
         for (what, found, exact) in [("force", total, force), ("moment", turning, moment), ("couple", couples, force), ("momentum", momentum, force)] {
             prop_assert!((found - exact).abs() <= 1e-9 * size + 1e-300, "{what} on {cells} cells: {found}, exact {exact}, size {size}");
         }
-        // One mesh agrees with another to round-off, whatever Simpson's rule leaves.
+        // meshes agree with each other to rounding errors, independent of the error of Simpson's rule
         let one = shapes::at_nodes(&f, 1);
         prop_assert!((total - 0.5 * (one[0] + one[1])).abs() <= 1e-13 * size.max(1e-300) * cells as f64);
         prop_assert!((turning - 0.5 * one[1]).abs() <= 1e-13 * size.max(1e-300) * cells as f64);
     }
 }
 
-/// [E46]: a shape's force and moment are those of its integrals, on one cell as on many.
+/// [E46]: force and moment of a shape equal those of its integrals, on one cell and on many.
 #[test]
 fn a_load_has_its_force_and_moment_on_every_mesh() {
     let text = r#"{"product":[{"polynomial":{"coefficients":[0,0,1]}},{"polynomial":{"coefficients":[0,1]}}]}"#;
@@ -192,7 +192,7 @@ fn a_load_has_its_force_and_moment_on_every_mesh() {
     }
 }
 
-/// A billion waves cost no more than one, alone or in a product.
+/// Goal: a billion waves cost no more than one, alone or in a product.
 #[test]
 fn very_many_waves_are_integrated_in_closed_form() {
     for waves in [1e3, 12_345.25, 1e7 + 0.25] {
@@ -240,7 +240,7 @@ fn straight_velocities_stay_straight_and_jumps_do_not_overshoot() {
     assert!(errors[2] / errors[3] > 3.5 && errors[3] / errors[4] > 3.5);
 }
 
-/// Start velocity on the mesh: its momentum.
+/// Goal: a start velocity has the same momentum on the mesh.
 #[test]
 fn a_start_has_its_momentum_on_every_mesh() {
     let velocity = format!("/start={{\"u1_rate_m_s\":{}}}", pad(0.61, 1.0));
@@ -260,7 +260,7 @@ fn a_start_has_its_momentum_on_every_mesh() {
     }
 }
 
-/// Start pressure along a bladder: its volume is that of its mean.
+/// Goal: a start pressure along a bladder gives the volume of its mean.
 #[test]
 fn a_start_has_its_volume_on_any_number_of_cells() {
     let areas = |pressure: &str, cells: usize| {

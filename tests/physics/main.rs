@@ -1,6 +1,6 @@
-//! Physics: what the model must do, against closed forms, conserved quantities, and the numbers of `docs/exact-results.md`.
+//! Physics tests: the model against closed forms, conserved quantities, and the numbers of `docs/exact-results.md`.
 //!
-//! Every test prints what it measures; `cargo test --release --test physics -- --nocapture` reprints the numbers.
+//! Every test prints its measurements; `cargo test --release --test physics -- --nocapture` shows the numbers.
 
 mod balances;
 mod common;

@@ -1,7 +1,7 @@
 //! Source: Matia & Gat, tables A.1 and A.2, as in `tests/data/mapping`.
-//! Goal: bladder by bladder, the maps between the beam's and the network's coordinate come out as printed.
-//! Tolerance: none. The tables print six significant digits; the library's numbers must round to the printed ones, and
-//! the command must print the same text.
+//! Goal: the maps between the beam's and the network's coordinate agree with the printed ones, bladder by bladder.
+//! Tolerance: none. The tables print six significant digits; the library's numbers must round to the printed ones, and the command must
+//! print the same text.
 
 use assert_cmd::Command;
 use slcbeam::model::Model;
@@ -9,7 +9,7 @@ use slcbeam::model::mapping::network_coordinate;
 
 use super::common::shipped;
 
-/// Printed table, case that has its wiring.
+/// Printed table, and the case with its wiring.
 const WIRINGS: [(&str, &str); 3] = [
     ("upper-serpentine", "valves-open"),
     ("parallel-serpentine", "wiring-1"),

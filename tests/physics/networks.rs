@@ -1,7 +1,7 @@
 //! Source: heat equation on chains and rings, Kirchhoff's laws (`docs/exact-results.md` section 3).
 //! Goal: exact decay rates of networks of equal bladders C and tubes R; steady networks against a dense solve.
-//! The bladders' area depends on pressure alone here, so that the beam stays at rest; one cell a bladder makes C and R
-//! exact: C = a_p l_b, R = one tube and two half bladders. What is left is the error in time: at rtol 1e-9, 1e-6.
+//! The area of bladders depends on pressure alone here, so that the beam stays at rest. With one cell per bladder, C and R are exact: C =
+//! a_p l_b, R = one tube and two half bladders. The remaining error is that in time: at rtol 1e-9, 1e-6.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -44,7 +44,7 @@ fn still(per_row: usize, network: &str, pressures: &[(i64, f64)], end: f64) -> s
     written::<&str>(&text, &[])
 }
 
-/// Bladders 1 to `n` start as a mode and keep its shape; the rate at which all of them decay [1/s], and the work lost.
+/// Bladders 1 to `n` start in the shape of a mode; asserts that it persists, and checks its decay rate [1/s] and the dissipated energy.
 fn decay(what: &str, n: usize, network: &str, mode: impl Fn(usize) -> f64, rate: f64) {
     let pressures: Vec<(i64, f64)> = (1..=n).map(|j| (j as i64, 1000.0 * mode(j))).collect();
     let case = still(n, network, &pressures, 2.0 / rate);
@@ -90,8 +90,8 @@ fn a_closed_chain_decays_as_its_modes() {
     }
 }
 
-/// `(4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))`, open at the end of bladder 10: half a bladder and a tube that makes up a
-/// whole R lead to a junction at zero pressure.
+/// `(4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))`, open at the end of bladder 10: half a bladder and a tube, together one R, lead to a junction
+/// at zero pressure.
 #[test]
 fn a_chain_with_one_open_end_decays_as_its_modes() {
     let length = 0.02 * (TUBE + 0.5 * BLADDER) / TUBE;
@@ -121,7 +121,7 @@ fn a_ring_decays_as_its_modes() {
     }
 }
 
-/// A point of the resistor network: a bladder's middle, inlet and outlet, or one of two junctions.
+/// Node of the resistor network: a bladder's middle, inlet and outlet, or one of two junctions.
 #[derive(Clone, Copy)]
 enum Point {
     Middle(usize),
@@ -142,7 +142,7 @@ impl Point {
         }
     }
 
-    /// As the case writes it; bladders 4 to 6 are the lower row's 1 to 3.
+    /// JSON form in a case; bladders 4 to 6 are the lower row's 1 to 3.
     fn json(self) -> String {
         let label = |b: usize| if b <= 3 { b as i64 } else { -(b as i64 - 3) };
         match self {
@@ -154,9 +154,9 @@ impl Point {
     }
 }
 
-/// Six bladders, two junctions, nine tubes (three of them meet at one bladder's end, one is half closed), a turbine, two
-/// ports of pressure and one of flow, against Kirchhoff's equations written down point by point and solved directly.
-/// After fifteen of the slowest times the state is steady to 1e-6.
+/// Goal: six bladders, two junctions, nine tubes (three of them meet at one bladder's end, one is half closed), a turbine, two pressure
+/// ports and a flow port agree with a direct solution of Kirchhoff's equations at all nodes. After fifteen times the slowest time constant,
+/// the state is steady to 1e-6.
 #[test]
 fn a_steady_network_obeys_kirchhoff() {
     use Point::{Inlet, Middle, Outlet, Tee};
@@ -199,7 +199,7 @@ fn a_steady_network_obeys_kirchhoff() {
     );
     let run = run(&still(3, &network, &[], 0.02));
 
-    // Every conductance, and what it belongs to: 0 bladders, 1 tubes, 2 turbine.
+    // all conductances with their kind: 0 bladders, 1 tubes, 2 turbine
     let mut branches: Vec<(Point, Point, f64, usize)> = vec![];
     for b in 1..=Point::BLADDERS {
         branches.push((Inlet(b), Middle(b), 2.0 / BLADDER, 0));
@@ -254,8 +254,8 @@ fn a_steady_network_obeys_kirchhoff() {
     );
 }
 
-/// Goal: what a pump lets into a network that has no other port is what its bladders hold: the flow's integral, to the error of the
-/// integration; and so it is in the history.
+/// Goal: the bladders of a network without other ports contain exactly the volume that a pump injects, the integral of its flow to the
+/// integration error. The history agrees.
 #[test]
 fn what_ports_let_in_is_told_and_stored() {
     let network = r#"{"chains":[{"bladders":[1,2,3],"ends":["connected","sealed"]}],"ports":[{"at":{"bladder":1,"end":"inlet"},

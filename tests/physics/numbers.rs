@@ -1,5 +1,5 @@
 //! Source: `docs/exact-results.md` section 4, derived from the paper's data and printed there to the digits used here.
-//! Goal: every characteristic number that a user sees before a run.
+//! Goal: every characteristic number that the program shows before a run.
 //! Tolerance: half a unit of the last printed digit.
 
 use std::collections::BTreeMap;
@@ -85,8 +85,8 @@ fn the_empty_beam() {
     assert_eq!((1000.0 * f_m).floor(), 481.0);
 }
 
-/// `EI/l_s^3` is the paper's `b_x* = 46.189` N/m only with f_i = 0.55; the compression by inertia in Fig. 4 exceeds the
-/// load at which a column buckles under its own weight.
+/// `EI/l_s^3` is the paper's `b_x* = 46.189` N/m only with f_i = 0.55. The compression by inertia in Fig. 4 exceeds the load of a column
+/// that buckles under its own weight.
 #[test]
 fn loads_of_the_shaken_beam() {
     let other = of("valves-open", &["/beam/bending_stiffness_factor=0.55"]);
@@ -96,8 +96,8 @@ fn loads_of_the_shaken_beam() {
     as_printed("self-weight buckling", shaken["self_weight_buckling_load_n_m"], "395");
 }
 
-/// `q'' + [w1^2 - kappa_1 a(t)/l_s] q = 0`, `a(t) = U3 l_s (2 pi f)^2 sin(2 pi f t)`: where it starts to grow at 18 Hz,
-/// how fast at Fig. 4's amplitude, and that Fig. 5 is out of it.
+/// `q'' + [w1^2 - kappa_1 a(t)/l_s] q = 0`, `a(t) = U3 l_s (2 pi f)^2 sin(2 pi f t)`. Goal: the stability limit at 18 Hz, the growth rate
+/// at Fig. 4's amplitude, and that Fig. 5 is stable.
 #[test]
 fn the_mathieu_tongue_of_figure_4() {
     let growth = |sets: &[&str]| of("valves-open", sets)["mathieu_growth_rate_per_s"];
@@ -122,9 +122,9 @@ fn the_mathieu_tongue_of_figure_4() {
     as_printed("onset U3", unstable, "0.313");
 }
 
-/// Goal: the warning errs on the safe side. The drained beam grows from 0.2928 of its length at 18 Hz on (conservative balance of
-/// momentum: `slcbeam verify floquet-drained`), where a single mode of an axis that does not stretch says 0.313: the bound begins
-/// below, but not by more than the margin of 2 % and what it leaves out, 1 %.
+/// Goal: the warning errs on the safe side. The drained beam grows from 0.2928 of its length at 18 Hz on (conservative balance of momentum:
+/// `slcbeam verify floquet-drained`); a single mode of an inextensible axis gives 0.313. The bound begins below, but by no more than the
+/// margin of 2 % and the 1 % of neglected effects.
 #[test]
 fn the_bound_of_the_tongue_begins_before_the_beam_grows() {
     let all = |amplitude: f64| {
@@ -187,7 +187,7 @@ fn the_slowest_mode_of_a_closed_chain() {
     );
 }
 
-/// Reciprocity 124.08 and 0.458, asymmetries 0.271 and 0.268, and the passivity and solvability that hold.
+/// Reciprocity 124.08 and 0.458, asymmetries 0.271 and 0.268; passivity and solvability are satisfied.
 #[test]
 fn the_audit_of_the_published_coupling() {
     let case = shipped::<&str>("valves-open", &[]);

@@ -1,6 +1,6 @@
 //! Source: statics of beams; the same loads on finer meshes.
-//! Goal: what a mesh leaves out of loads and of the start is told where it matters, and only there.
-//! Tolerance: 5 % of the deflection is what is told; closed forms to round-off.
+//! Goal: the part of loads and of the start that a mesh omits is warned of if it matters, and only then.
+//! Tolerance: warnings from 5 % of the deflection; closed forms to rounding errors.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -16,8 +16,8 @@ use slcbeam::run::record::Memory;
 use super::common::{EI, Run, run, shipped, within, written};
 use super::loads::{beside, pad, pressed, profiles};
 
-/// Random loads on a coarse mesh, against the same on a fine one at the nodes of both: what is off by more than 6 % of the largest
-/// deflection is told.
+/// Goal: random loads on a coarse mesh are compared with a fine one at common nodes; errors above 6 % of the largest deflection are warned
+/// of.
 #[test]
 fn what_is_wrong_is_told() {
     let mut runner = TestRunner::deterministic();
@@ -63,7 +63,7 @@ fn left_out(case: &Case) -> Vec<f64> {
 #[test]
 fn what_the_mesh_leaves_out_is_told() {
     let code = "W016";
-    // All of a wave that is as long as two cells, or as one.
+    // A wave as long as one or two cells is lost completely.
     for cells in [1, 2] {
         let run = run(&pressed(r#"{"cosine":{"waves":20,"amplitude":100}}"#, cells, &[]));
         assert!(
@@ -82,7 +82,7 @@ fn what_the_mesh_leaves_out_is_told() {
         1e-3,
     );
     assert!(resolution::unresolved(&wave, &System::new(&wave).unwrap()).is_empty());
-    // A narrow pad is a force, but for one close to what holds the beam.
+    // A narrow pad acts as a force, except close to a support.
     for cells in [1, 2, 4] {
         for middle in [0.3, 0.5, 0.5125, 0.99] {
             let case = pressed(&beside(middle), cells, &[]);
@@ -107,7 +107,7 @@ fn what_the_mesh_leaves_out_is_told() {
     within("tip with what it asks for", finer(wanted), finer(64), 0.05);
 }
 
-/// Uniform loads leave out what the trapezoidal rule does, whatever holds the beam.
+/// Goal: uniform loads omit as much as the trapezoidal rule does, for all supports.
 #[test]
 fn the_share_is_that_of_closed_forms() {
     // ∫ M over h²/12 p each cell; cantilever 1/6, simply supported 1/12, clamped at both ends ∫|M| up to the first zero.
@@ -127,7 +127,7 @@ fn the_share_is_that_of_closed_forms() {
     assert_eq!(free, [0.0]);
 }
 
-/// A beam that nothing damps, with one shape at its start.
+/// An undamped beam with one shape at its start.
 fn begun(key: &str, profile: &str, tip: &str, cells: usize, end: f64) -> Case {
     let text = format!(
         r#"{{"name": "begun", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.05, "young_modulus_pa": 2e9,
@@ -144,8 +144,8 @@ fn triangle(middle: f64, half: f64, height: f64) -> String {
     )
 }
 
-/// A triangle along the beam whose knots are nodes has its energy on every mesh, and breaks up into waves that each run at another
-/// speed: the displacement where it comes together again is a quarter too small.
+/// Goal: a triangle along the beam with knots at nodes has its energy on every mesh, but disperses into waves of different speeds. Where
+/// they meet again, the displacement is a quarter too small.
 #[test]
 fn waves_that_a_mesh_slows_down_are_told() {
     let case = |cells| begun("u3_m", &triangle(0.5, 0.1, 1e-4), r#""free""#, cells, 0.003);
@@ -160,10 +160,10 @@ fn waves_that_a_mesh_slows_down_are_told() {
     println!("{found:?}");
     assert_eq!(found.len(), 1);
     assert!(found[0].left_out > 1.0 - coarse / fine && found[0].wanted.is_some_and(|cells| cells > 16));
-    // Ten times slower, as it is with another modulus or so much earlier: nothing has lost its phase yet.
+    // early end: no phase error yet
     let early = begun("u3_m", &triangle(0.5, 0.1, 1e-4), r#""free""#, 16, 1e-5);
     assert!(resolution::unresolved(&early, &System::new(&early).unwrap()).is_empty());
-    // The first vibration loses its phase in the long run, which is told by the run itself.
+    // the first vibration has a phase error in the long run, which the run itself reports
     let first = begun(
         "u3_m",
         r#"{"sine":{"waves":0.25,"amplitude":1e-4}}"#,
@@ -174,7 +174,7 @@ fn waves_that_a_mesh_slows_down_are_told() {
     assert!(resolution::unresolved(&first, &System::new(&first).unwrap()).is_empty());
 }
 
-/// A narrow velocity keeps its energy by chance on some meshes: what lies between the lines is judged, not the sum.
+/// Goal: a narrow velocity may keep its energy by chance; the judgement uses the spectrum, not the sum.
 #[test]
 fn velocities_between_nodes_are_told_on_every_coarse_mesh() {
     for cells in [1, 2, 4, 5, 8] {
@@ -191,7 +191,7 @@ fn velocities_between_nodes_are_told_on_every_coarse_mesh() {
     assert!(resolution::unresolved(&fine, &System::new(&fine).unwrap()).is_empty());
 }
 
-/// Random triangles, at rest or moving, across or along: energy at the beginning against that of a mesh eight times finer.
+/// Goal: random triangles, at rest or moving, transverse or axial: initial energy against that of a mesh eight times finer.
 #[test]
 fn energy_that_is_wrong_at_the_start_is_told() {
     let energy = |case: &Case| -> f64 {
@@ -225,8 +225,8 @@ fn energy_that_is_wrong_at_the_start_is_told() {
     println!("40 starts: {wrong} off by more than 5 %, {told} told");
 }
 
-/// A flow through few bladders has its largest pressure in the middle of a cell, half a cell below that of its port; in a row of ten
-/// that is little.
+/// Goal: the largest pressure of a flow through few bladders is at a cell center, half a cell below that of its port; in a row of ten the
+/// error is small.
 #[test]
 fn pressures_that_fall_along_a_cell_are_told() {
     let case = |bladders: &str, cells: usize, end: f64| {
@@ -255,7 +255,7 @@ fn pressures_that_fall_along_a_cell_are_told() {
     }
 }
 
-/// The same of a flow that is pumped in at one end and out at the other.
+/// Goal: the error of a flow pumped in at one end and out at the other is reported in the same way.
 #[test]
 fn flows_through_few_bladders_are_told() {
     let case = |bladders: &str, cells: usize| {
@@ -295,7 +295,7 @@ fn no_shipped_case_is_warned() {
     }
 }
 
-/// Goal: a finding says whether a state at rest has it too: the shape of a load does, a pressure that goes to and fro in a bladder does not.
+/// Goal: a finding states if it also applies at rest: the shape of a load does, an oscillating pressure in a bladder does not.
 #[test]
 fn findings_say_whether_states_at_rest_have_them() {
     let load = pressed(&pad(0.03, 50.0), 1, &[]);
@@ -319,9 +319,9 @@ fn findings_say_whether_states_at_rest_have_them() {
     }
 }
 
-/// Goal: the largest flow of a port whose pressure jumps at the open end of a bladder grows without limit with the cells, so that the run has no such
-/// figure, and warns with the remedy; its pressure keeps its figures, and so does the flow of a ramp, behind a tube, and with inertia of the fluid.
-/// It doubled with each refinement, and was reported.
+/// Goal: the largest flow of a port whose pressure jumps at the open end of a bladder diverges with the cells, so that the run omits this
+/// figure and warns with a remedy. Its pressure keeps its figures, and so does the flow of a ramp, behind a tube, and with inertia of the
+/// fluid. Before, the reported flow doubled with each refinement.
 #[test]
 fn a_flow_that_grows_with_the_mesh_is_no_figure() {
     const FLOW: &str = "port_p_flow_m3_s";

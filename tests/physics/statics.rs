@@ -1,14 +1,15 @@
-//! Source: linear rod theory; Bisshopp & Drucker's problem under a uniform dead load (`docs/exact-results.md` section 1); the elastica
-//! with stretch, solved here by shooting.
-//! Goal: where the dynamics comes to rest. Material damping stops the beam; inertia is left out where only rest matters.
+//! Source: linear rod theory; Bisshopp & Drucker's problem under a uniform dead load (`docs/exact-results.md` section 1); the elastica with
+//! stretch, solved here by shooting.
+//! Goal: the dynamics converges to the static solution. Material damping stops the beam; inertia is omitted if only the final state
+//! matters.
 //! Tolerances: the stretched rod is exact on any mesh; bending is second order in the mesh, observed on three.
 
 use slcbeam::model::Model;
 
 use super::common::{AS_PUBLISHED, CONSERVATIVE, Run, run_shipped, shipped, within};
 
-/// Fig. A.6: 3000 N/m along the dry rod stretch it by `q l^2/2EA` = 13.1 mm. The law is linear in the stretch, so that
-/// nothing but time separates the two: S(0.3 s) = 1 - 1e-7, and rtol 1e-6.
+/// Fig. A.6: 3000 N/m along the dry rod stretch it by `q l^2/2EA` = 13.1 mm. The law is linear in the stretch, so that the only errors are
+/// those of time: S(0.3 s) = 1 - 1e-7, and rtol 1e-6.
 #[test]
 fn the_pulled_rod_comes_to_rest_at_13_1_mm() {
     for formulation in [AS_PUBLISHED, CONSERVATIVE] {
@@ -20,7 +21,7 @@ fn the_pulled_rod_comes_to_rest_at_13_1_mm() {
     }
 }
 
-/// Uniform dead load `q` on the clamped beam, grown slowly; no inertia.
+/// Clamped beam under a slowly growing uniform dead load `q`, without inertia.
 fn bent(q: f64, cells: usize, formulation: &str, more: &[&str]) -> Run {
     let load = format!(r#"/loads=[{{"force_x_n_m":{{"signal":{{"ramp":{{"to":{q},"duration_s":1}}}}}}}}]"#);
     let mesh = format!("/mesh/cells_per_segment={cells}");
@@ -38,7 +39,7 @@ fn bent(q: f64, cells: usize, formulation: &str, more: &[&str]) -> Run {
     run_shipped("bend-dry", &sets)
 }
 
-/// Tip: shortening, deflection and angle, over l.
+/// Shortening, deflection and angle of the tip, lengths over l.
 fn tip(run: &Run) -> [f64; 3] {
     let l = 0.1;
     [-run.last("tip_u3") / l, run.last("tip_u1") / l, run.last("tip_angle")]
@@ -49,7 +50,7 @@ fn stiffness(more: &[&str]) -> (f64, f64) {
     (section.bending_stiffness, section.axial_stiffness)
 }
 
-/// Second order: errors on 20, 40 and 80 cells fall by four.
+/// Asserts second order: errors on 20, 40 and 80 cells fall by four.
 fn second_order(what: &str, exact: [f64; 3], on: impl Fn(usize) -> Run) {
     let errors: Vec<[f64; 3]> = [2, 4, 8]
         .into_iter()
@@ -70,8 +71,8 @@ fn second_order(what: &str, exact: [f64; 3], on: impl Fn(usize) -> Run) {
     }
 }
 
-/// Inextensible, `q L^3/EI` = 1, 4, 10. A beam that is a thousand times softer in bending and stiffer in stretch
-/// stretches by less than 1e-7.
+/// Goal: the inextensible beam, `q L^3/EI` = 1, 4, 10. A bending stiffness a thousand times lower and an axial one a thousand times higher
+/// reduce the stretch below 1e-7.
 #[test]
 fn the_elastica_under_a_uniform_dead_load() {
     let soft = [
@@ -130,7 +131,7 @@ fn shoot(q: f64, ei: f64, ea: f64, l: f64) -> [f64; 3] {
     [1.0 - z / l, x / l, phi]
 }
 
-/// Fig. A.7: 100 N/m, `q l^3/EI` = 1.98. The published form comes to rest elsewhere: printed, with no oracle.
+/// Fig. A.7: 100 N/m, `q l^3/EI` = 1.98. The published form has another equilibrium, which is printed: there is no reference.
 #[test]
 fn the_bent_beam_comes_to_rest_on_the_extensible_elastica() {
     let (ei, ea) = stiffness(&[]);

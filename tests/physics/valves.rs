@@ -1,6 +1,6 @@
-//! Source: Fig. 4 of Matia & Gat: valves that close turn bending off; `docs/exact-results.md` section 4: at U3 = 0.25, where no
-//! Mathieu tongue is near, and psi' = 0.474 the deflection falls monotonically with the permeability.
-//! Goal: that order, and that hardly anything is left at a hundredth; for both formulations.
+//! Source: Fig. 4 of Matia & Gat: closing valves suppress bending; `docs/exact-results.md` section 4: at U3 = 0.25, where no Mathieu tongue
+//! is near, and psi' = 0.474 the deflection falls monotonically with the permeability.
+//! Goal: this order, and almost no deflection at a hundredth, for both formulations.
 //! The sizes depend on the start (here: a ramp of one cycle) and are printed, not asserted.
 
 use super::common::{AS_PUBLISHED, CONSERVATIVE, CREEPING, LENGTH, listed, run_shipped};

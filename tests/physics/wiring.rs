@@ -1,7 +1,7 @@
 //! Source: Fig. 5 of Matia & Gat (U3 = 0.12 at 20 Hz) and the sizes of `docs/exact-results.md` section 4.
-//! Goal: wiring I keeps the beam straight, II bends it to one side at a time, III to both; sizes of pressure and
-//! deflection, impulsive and ramped.
-//! Tolerances: 15 % on sizes, which a prototype measured; the straight beam and the signs are exact.
+//! Goal: wiring I keeps the beam straight, II bends it to one side at a time, III to both; magnitudes of pressure and deflection, with
+//! impulsive and ramped start.
+//! Tolerances: 15 % on magnitudes, which were measured with a prototype; the straight beam and the signs are exact.
 
 use nalgebra::Complex;
 use slcbeam::model::Model;
@@ -15,8 +15,8 @@ fn ramp(cycles: u32) -> String {
     format!("/ends/root/clamped/u3_m/sine/ramp_cycles={cycles}")
 }
 
-/// Both rows alike: nothing distinguishes left from right, and no discretisation may invent it. 1e-10 l_s is asked;
-/// round-off stays eight orders below.
+/// Goal: with equal rows, the discretization keeps the symmetry of left and right: the limit is 1e-10 l_s, and rounding errors are eight
+/// orders smaller.
 #[test]
 fn wiring_1_keeps_the_beam_straight() {
     for (formulation, coupling, end) in [
@@ -35,7 +35,7 @@ fn wiring_1_keeps_the_beam_straight() {
     }
 }
 
-/// The peaks of the impulsive start (the paper's): P 1.2e-2 to 1.4e-2, U1 9.8e-5 (II) and 5.6e-5 (III).
+/// Goal: peaks of the impulsive start (as in the paper): P 1.2e-2 to 1.4e-2, U1 9.8e-5 (II) and 5.6e-5 (III).
 #[test]
 fn sizes_of_the_impulsive_start() {
     for (case, u1) in [("wiring-2", 9.8e-5), ("wiring-3", 5.6e-5)] {
@@ -48,8 +48,8 @@ fn sizes_of_the_impulsive_start() {
     }
 }
 
-/// The steady cycle after a one-cycle ramp, conservative: P 2.4e-3, U1 1.7e-5 (II) and 8e-6 (III). The published form
-/// leaves a larger free vibration behind its ramp; its pressure is the same.
+/// Goal: the steady cycle after a one-cycle ramp, conservative: P 2.4e-3, U1 1.7e-5 (II) and 8e-6 (III). The published form has a larger
+/// free vibration after its ramp, and the same pressure.
 #[test]
 fn sizes_of_the_ramped_start() {
     for (case, u1) in [("wiring-2", 1.7e-5), ("wiring-3", 8e-6)] {
@@ -77,8 +77,8 @@ fn sizes_of_the_ramped_start() {
     }
 }
 
-/// Over the last cycle: the smaller of the two sides' largest curvatures over the larger, at every instant at which the
-/// larger exceeds a fifth of the cycle's largest.
+/// Ratio of the smaller to the larger of the largest curvatures of both sides, at every instant of the last cycle at which the larger one
+/// exceeds a fifth of the largest of the cycle.
 fn mixing(curvatures: &[Vec<f64>]) -> Vec<f64> {
     let most = curvatures.iter().map(|k| largest(k)).fold(0.0, f64::max);
     let sides = |k: &Vec<f64>| {
@@ -94,7 +94,7 @@ fn mixing(curvatures: &[Vec<f64>]) -> Vec<f64> {
         .collect()
 }
 
-/// Curvature, and its part due to pressure, over the last cycle.
+/// Curvature, and its pressure part, over the last cycle.
 fn last_cycle(run: &Run) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let (kappa, moment) = (run.field("curvature_1_m"), run.field("moment_n_m"));
     let first = kappa.len() - 101;
@@ -122,12 +122,11 @@ fn shaken(case: &str, coupling: &str, hertz: f64, cycles: f64, more: &[&str]) ->
     run_shipped(case, &sets)
 }
 
-/// Well below the first bending frequency (2 Hz against 12.2 Hz) the beam takes the curvature that pressure asks for:
-/// one sign at every instant (II), two (III). "One sign" means 3 % at most of the other: measured is none at all.
+/// Goal: well below the first bending frequency (2 Hz against 12.2 Hz) the beam follows the curvature imposed by pressure: one sign at
+/// every instant (II), two (III). "One sign" allows 3 % of the other; the measured value is zero.
 #[test]
 fn slowly_shaken_wiring_2_bends_to_one_side_and_wiring_3_to_both() {
-    // A bound on the step: error control alone takes tiny steps here (the velocities of stiff waves jump with each
-    // change of step).
+    // bound on the step: error control alone uses tiny steps here, since velocities of stiff waves jump with each change of step
     let slow = ["/solver/max_step_s=5e-4"];
     for coupling in [PUBLISHED, RECIPROCAL] {
         for (case, one_sign) in [("wiring-2", true), ("wiring-3", false)] {
@@ -149,12 +148,12 @@ fn slowly_shaken_wiring_2_bends_to_one_side_and_wiring_3_to_both() {
     }
 }
 
-/// At 20 Hz the pressures still ask for one sign (II) or two (III) except while they change sign, when the leaking row
-/// lags behind. Damping removes what is left of the start, so that the cycle is steady: it repeats within 1 %.
+/// Goal: at 20 Hz pressures still impose one sign (II) or two (III), except during their change of sign, when the leaking row lags. Damping
+/// removes the transient, so that the cycle repeats within 1 %.
 ///
-/// The beam itself does not follow: above its first frequency it answers with
-/// `kappa(0)/kappa(l) = (cosh b + cos b)/(1 + cosh b cos b)`, `b = 1.8751 sqrt(20/12.235)`: -1.56, two signs, to any
-/// uniform pressure (next test). The paper's "all of the beam experiences negative curvature" is about slow shaking.
+/// The beam itself does not follow. Above its first frequency its response to any uniform pressure has two signs (next test):
+/// `kappa(0)/kappa(l) = (cosh b + cos b)/(1 + cosh b cos b)`, `b = 1.8751 sqrt(20/12.235)`: -1.56. The paper's "all of the beam experiences
+/// negative curvature" is about slow shaking.
 #[test]
 fn pressures_of_wiring_2_ask_for_one_sign_and_of_wiring_3_for_two() {
     let damped = [
@@ -180,16 +179,16 @@ fn pressures_of_wiring_2_ask_for_one_sign_and_of_wiring_3_for_two() {
     }
 }
 
-/// Amplitude and phase of a signal's component that repeats once over the samples.
+/// Amplitude and phase of the component of a signal with one period over the samples.
 fn fourier(samples: impl ExactSizeIterator<Item = f64>) -> Complex<f64> {
     let n = samples.len() as f64;
     let turn = |k: usize| Complex::from_polar(2.0 / n, -std::f64::consts::TAU * k as f64 / n);
     samples.enumerate().map(|(k, x)| turn(k) * x).sum()
 }
 
-/// The closed form just quoted, measured: one pressure oscillating in the whole upper row of a beam that does not act
-/// back, a drag that ends the free vibration, `b^4 = (m w^2 - i w c) l^4/EI`. 40 cells shift the first frequency by
-/// 1e-3, which counts threefold at 1.6 times the first frequency: 1 %.
+/// Goal: the closed form above, measured. One pressure oscillates in the whole upper row of a beam that does not act back, with drag that
+/// ends the free vibration: `b^4 = (m w^2 - i w c) l^4/EI`. 40 cells shift the first frequency by 1e-3, amplified threefold at 1.6 times
+/// the first frequency: 1 %.
 #[test]
 fn above_its_first_frequency_a_beam_answers_uniform_pressure_with_two_signs() {
     let pressure = r#"{"pressure_pa":{"sine":{"amplitude":100,"frequency_hz":20,"ramp_cycles":3}}}"#;

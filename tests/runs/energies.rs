@@ -1,4 +1,4 @@
-//! Figures of energy and what their balance says of them.
+//! Figures of energy, and the verdict of their balance.
 
 use slcbeam::run::summary::Summary;
 
@@ -8,9 +8,9 @@ fn warned(summary: &Summary, code: &str) -> bool {
     summary.warnings.iter().any(|w| w.starts_with(code))
 }
 
-/// Source: Fig. 6 of Matia & Gat. Goal: `run` printed 193 % in the window of the reciprocal, conservative beam, which had put energy
-/// in before; of what was spent in it the turbine has 59 % (70 % where flow in tubes creeps), of a passive beam never more than all. With the published coupling a
-/// quotient above one says whose energy that is.
+/// Source: Fig. 6 of Matia & Gat. Goal: for the reciprocal, conservative beam with earlier energy input, `run` printed 193 % in the window.
+/// Of the energy spent in it the turbine has 59 % (70 % with creeping tube flow), and never more than all for a passive beam. With the
+/// published coupling, the origin of an efficiency above one is named.
 #[test]
 fn an_efficiency_counts_what_was_spent() {
     let passive = [r#"/bladders/coupling="reciprocal""#, r#"/formulation="conservative""#];
@@ -29,9 +29,9 @@ fn an_efficiency_counts_what_was_spent() {
     );
 }
 
-/// Goal: the same beam under a wave, which does a thirtieth of the work: at the default tolerance the balance is open by a good part
-/// of the energy put in while it is closed to 2e-3 of what is stored, and that is said beside the figures. The efficiency in the
-/// window is that of a tighter run to a fifth all the same.
+/// Goal: under a wave, the same beam does a thirtieth of the work. At the default tolerance the balance is open by a large part of the
+/// energy input, though closed to 2e-3 of the stored energy; a message beside the figures states it. The efficiency in the window still
+/// agrees with that of a tighter run to a fifth.
 #[test]
 fn open_balances_are_told_beside_their_figures() {
     let wave = |rtol: &str| {

@@ -1,4 +1,4 @@
-//! Error bars of a run beside its true errors, which a run on finer meshes at a tighter tolerance shows.
+//! Error bars of a run compared with its true errors, from a run on finer meshes at a tighter tolerance.
 
 use std::path::Path;
 
@@ -12,9 +12,9 @@ use slcbeam::study::companion;
 
 use super::{run, shipped};
 
-/// Smallest bar over true error.
+/// Smallest accepted ratio of error bar to true error.
 const COVERED: f64 = 1.0 / 3.0;
-/// Error relative to the largest value of a quantity below which nothing is judged.
+/// Errors relative to the largest value of a quantity below which bars are not judged.
 const JUDGED: f64 = 1e-3;
 
 fn outcome(case: &Case) -> Outcome {
@@ -40,7 +40,7 @@ fn warning<'a>(summary: &'a Summary, code: &str) -> Option<&'a str> {
     first
 }
 
-/// Asserts that the bars of quantities cover their errors beside a reference; returns the largest true error, relative to its quantity.
+/// Asserts that error bars cover the errors against a reference; returns the largest true relative error.
 fn assert_covered(scene: &str, summary: &Summary, exact: &Summary, names: &[&str]) -> f64 {
     let mut worst = 0.0_f64;
     for name in names {
@@ -66,7 +66,7 @@ fn assert_covered(scene: &str, summary: &Summary, exact: &Summary, names: &[&str
     worst
 }
 
-/// A cantilever of so many segments under a load across.
+/// Cantilever with `segments` segments under a transverse load.
 fn cantilever(load: &str, segments: usize, end: f64, more: &[&str]) -> Case {
     let text = format!(
         r#"{{"name": "cantilever",
@@ -92,8 +92,8 @@ fn bars_cover_the_stiff_beam() {
     assert_covered("stiff beam", &usual, &exact, &TIP);
 }
 
-/// Free vibration on coarse meshes loses its phase; a loose tolerance does the same. Beyond 5 % the warning names what is wrong, its cause and
-/// a remedy that brings all bars below 5 %.
+/// Goal: free vibration on coarse meshes, or with a loose tolerance, has a phase error. Beyond 5 % the warning names the quantity, the
+/// cause and a remedy that reduces all bars below 5 %.
 #[test]
 fn bars_cover_phases_that_mesh_and_steps_shift() {
     let fine = run(&cantilever("0.5", 24, 4.0, &["/solver/rtol=1e-8"]));
@@ -120,7 +120,7 @@ fn bars_cover_phases_that_mesh_and_steps_shift() {
     assert_eq!(warning(&usual, "W021"), None);
 }
 
-/// A load that comes and goes slowly has no phase to lose on the same coarse mesh.
+/// Goal: a slowly varying load has no phase error on the same coarse mesh.
 #[test]
 fn slow_motion_on_a_coarse_mesh_is_not_warned_of() {
     let load = r#"{"sine": {"amplitude": 0.5, "frequency_hz": 0.1, "ramp_cycles": 1}}"#;
@@ -130,8 +130,8 @@ fn slow_motion_on_a_coarse_mesh_is_not_warned_of() {
     assert_covered("slow", &slow, &exact, &TIP);
 }
 
-/// Scenes that predictions from one run missed: short waves, waves that grow under a push, a drive near a mode that the mesh misplaces, work
-/// that comes back, a couple beside a rotational spring, a beam that spins up, strikes on a stop.
+/// Goal: covers cases in which predictions from one run failed: short waves, waves that grow under a push, a drive near a mode that the
+/// mesh shifts, work that returns, a couple beside a rotational spring, a beam that spins up and hits a stop.
 #[test]
 fn bars_cover_what_predictions_missed() {
     let slender =
@@ -204,7 +204,7 @@ fn bars_cover_what_predictions_missed() {
     }
 }
 
-/// Pressure at a port of a viscous fluid does not get far into the bladder: two cells miss a third of it, and the bar says so.
+/// Goal: the port pressure of a viscous fluid penetrates a bladder only slightly: two cells miss a third of it, and the bar covers that.
 #[test]
 fn bars_cover_the_mesh_of_the_fluid() {
     let on = |cells: usize, viscosity: f64| {
@@ -229,7 +229,7 @@ fn bars_cover_the_mesh_of_the_fluid() {
     assert!(after < 0.3 * before);
 }
 
-/// Forty waves of a load that the mesh sees as nothing: the companion has a mesh that sees it.
+/// Goal: a load of forty waves vanishes on the mesh of the run, but not on that of the companion.
 #[test]
 fn bars_cover_a_load_that_the_mesh_does_not_see() {
     let aliased = cantilever(
@@ -247,8 +247,8 @@ fn bars_cover_a_load_that_the_mesh_does_not_see() {
     assert!(warning(&summary, "W008").is_none() && warning(&summary, "W020").is_none());
 }
 
-/// Source: a run with 16 cells a segment and a bladder at rtol 1e-7: -40.0 um. Goal: changes of the two meshes cancel in the companion; each by itself
-/// shows the error.
+/// Source: a run with 16 cells per segment and per bladder at rtol 1e-7: -40.0 um. Goal: refinements of the two meshes cancel in the
+/// companion; each of them alone shows the error.
 #[test]
 fn bars_cover_changes_that_cancel() {
     let summary = with_errors(&shipped("pluck", &["/fluid/viscosity_pa_s=0.001"]));
@@ -258,8 +258,8 @@ fn bars_cover_changes_that_cancel() {
     assert!(3.0 * bar > (value + 4.0e-5).abs());
 }
 
-/// Source: runs with 16, 64 and 256 cells a bladder: 1.36, 1.87 and 1.88 uJ harvested in place of 32 nJ. Goal: an energy that is next to nothing is named
-/// where its error is not.
+/// Source: runs with 16, 64 and 256 cells per bladder: 1.36, 1.87 and 1.88 uJ harvested instead of 32 nJ. Goal: the warning names an energy
+/// that is nearly zero but has an unknown error.
 #[test]
 fn a_small_harvest_with_a_large_error_is_named() {
     let summary = with_errors(&shipped("tip-mass", &["/fluid/viscosity_pa_s=100"]));
@@ -267,8 +267,8 @@ fn a_small_harvest_with_a_large_error_is_named() {
     assert!(told.contains("harvested_energy_j"), "{told}");
 }
 
-/// Source: a run at rtol 1e-8, 25.27 J. Goal: the companion's looser tolerance puts its energy off by hundreds of joules; the runs that differ in one setting
-/// show that the run is right to a few per cent.
+/// Source: a run at rtol 1e-8, 25.27 J. Goal: the looser tolerance of the companion changes its energy by hundreds of joules; runs that
+/// differ in one setting show that the run is right to a few per cent.
 #[test]
 fn an_error_of_the_companion_alone_is_not_reported() {
     let summary = with_errors(&shipped("hard/quasi-static-buckling", &[]));
@@ -280,7 +280,7 @@ fn an_error_of_the_companion_alone_is_not_reported() {
     assert!((value - 25.27).abs() < 0.05 && bar < 5.0, "{value:e} ± {bar:e}");
 }
 
-/// Effects that the run leaves out are in the companion. `"companion": "off"` gives the same figures without errors.
+/// Goal: effects that the run omits are part of the companion. `"companion": "off"` gives the same figures without errors.
 #[test]
 fn a_companion_has_all_effects_and_changes_no_figure() {
     let case = shipped("two-bladders", &["/effects=\"auto\""]);
@@ -301,7 +301,7 @@ fn a_companion_has_all_effects_and_changes_no_figure() {
     assert!(without.errors.is_empty() && without.companion.is_none());
 }
 
-/// A companion that costs much more than the run is ended by its work, so that two runs agree bit for bit.
+/// Goal: a companion that costs much more than the run is limited by its work, so that two runs agree bit for bit.
 #[test]
 fn error_bars_do_not_depend_on_the_machine() {
     for name in ["ecoflex-actuator", "tour-sensor"] {
@@ -315,7 +315,7 @@ fn error_bars_do_not_depend_on_the_machine() {
     }
 }
 
-/// A run that is stopped has no errors, and says why.
+/// Goal: a stopped run has no errors, and gives the reason.
 #[test]
 fn a_stopped_run_has_no_error_bars() {
     let case = cantilever("0.5", 10, 4.0, &[]);

@@ -1,4 +1,4 @@
-//! What a run watches and says of itself, beside what it computes.
+//! Monitoring of a run: its warnings, error bars and extrema, apart from its results.
 
 mod energies;
 mod error_bars;

@@ -1,4 +1,4 @@
-//! Probes: columns of the history at places that a case names.
+//! Probes: history columns at positions given by the case.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ fn parse(value: &Value) -> Result<Case, Error> {
     case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[])
 }
 
-/// A cantilever with EI = 1 and l = 1, probes at places, a force or a moment at its tip, `cells` cells.
+/// Cantilever with EI = 1 and l = 1, probes, a force or a moment at its tip, and `cells` cells.
 fn cantilever(tip: &Value, probes: &Value, cells: usize) -> Case {
     let height = 3.5e-4_f64;
     parse(&json!({
@@ -46,7 +46,7 @@ fn at_rest(case: &Case) -> impl Fn(&str) -> f64 + use<> {
 }
 
 /// Source: the linear cantilever, `u = P x² (3 l - x)/6EI`, `κ = -P (l - x)/EI`, `V = -M'`. Goal: probes between nodes and at the ends are
-/// of second order in the mesh: a ninth of the error on three times as many cells.
+/// second order in the mesh: three times the cells give a ninth of the error.
 #[test]
 fn probes_of_a_cantilever_are_of_second_order() {
     let (p, places) = (1e-3, [0.0, 0.031, 0.4, 0.77, 0.985, 1.0]);
@@ -78,8 +78,8 @@ fn probes_of_a_cantilever_are_of_second_order() {
     );
 }
 
-/// Source: a moment M at the tip, a pull F. Goal: strains of the surfaces are `F/EA ± M h/2EI`, and the tip's own columns are those of a
-/// probe there, through full turns.
+/// Source: a moment M and a pull F at the tip. Goal: surface strains are `F/EA ± M h/2EI`, and the tip's own columns equal those of a probe
+/// there, through full turns.
 #[test]
 fn surfaces_and_the_tip() {
     let tip = json!({"moment_n_m": 15.0, "force_z_n": 0.0});
@@ -104,8 +104,8 @@ fn surfaces_and_the_tip() {
     assert!((at("middle_angle") - 0.43 * at("tip_angle")).abs() < 1e-6 * at("tip_angle").abs());
 }
 
-/// Source: the linear cantilever with a force P on its tip, `σ = ∓ P (l - x) h/2I` at the surfaces, `6 P l/(b h²)` at the root. Goal: meshes of
-/// second order meet it to 5e-3, of fourth order to 1e-4, at the root, within and at the tip.
+/// Source: the linear cantilever with a force P on its tip, `σ = ∓ P (l - x) h/2I` at the surfaces, `6 P l/(b h²)` at the root. Goal:
+/// meshes of second order agree to 5e-3, of fourth order to 1e-4, at the root, within and at the tip.
 #[test]
 fn stresses_of_a_cantilever_are_those_of_its_moment() {
     let height = 3.5e-4_f64;
@@ -141,8 +141,8 @@ fn stresses_of_a_cantilever_are_those_of_its_moment() {
     }
 }
 
-/// Source: a solid that creeps under a load carries it by the same stress, `σ = M h/2I`, while its strain grows. Goal: stresses include those of the
-/// Maxwell branches; the strain times Young's modulus alone is less by half in the beginning.
+/// Source: a creeping solid carries its load by the same stress, `σ = M h/2I`, while its strain grows. Goal: stresses include those of the
+/// Maxwell branches; strain times Young's modulus alone is half as large at the beginning.
 #[test]
 fn stresses_of_a_solid_that_relaxes_carry_its_moment() {
     let height = 0.01;
@@ -185,7 +185,7 @@ fn stresses_of_a_solid_that_relaxes_carry_its_moment() {
     assert!(carried(5) < 0.6 && last > 0.7, "{} {last}", carried(5));
 }
 
-/// Goal: in a run with bladders the columns are those of the fields at the place, and a run is the same with probes as without.
+/// Goal: with bladders, probe columns equal the fields at the same position, and probes do not change the run.
 #[test]
 fn columns_of_a_run_are_its_fields() {
     let with = |sets: &[&str]| {
@@ -224,7 +224,7 @@ fn columns_of_a_run_are_its_fields() {
     }
 }
 
-/// Goal: a name that is there twice, one that makes no column, and the tip's are refused, all at once.
+/// Goal: duplicate names, names that make no column, and the tip's names are rejected in one error.
 #[test]
 fn names_that_are_taken_are_refused() {
     let mut case = json!({
@@ -240,7 +240,7 @@ fn names_that_are_taken_are_refused() {
     assert!(parse(&case).is_err());
 }
 
-/// A wet beam that is shaken, with a probe.
+/// A shaken wet beam with a probe.
 fn shaken(sets: &[&str]) -> Case {
     let own = [
         r#"/time={"end_s": 0.06, "output_interval_s": 1e-4, "window_s": 0.02}"#,
@@ -250,8 +250,8 @@ fn shaken(sets: &[&str]) -> Case {
     case::load(Path::new("cases/tour-harvester.json"), &sets).unwrap()
 }
 
-/// Goal: figures of the summary are those of the motion: of a history that is fine, also where only the ends of the run are written, and
-/// of the tip those that it has by itself.
+/// Goal: summary figures of a probe are those of the motion. They agree with a fine history even if only the ends of the run are written,
+/// and at the tip with the tip's own figures.
 #[test]
 fn figures_at_probes_are_those_of_the_motion() {
     let mut memory = Memory::default();
@@ -302,8 +302,8 @@ fn figures_at_probes_are_those_of_the_motion() {
     }
 }
 
-/// Source: the history of the same run, a motion that creeps for seconds. Goal: on a mesh of fourth order, whose forces and strains are read off by
-/// [E77], figures of the window are those of the history too. Tolerance: the history's trapezoids, and the cubics over long steps.
+/// Source: the history of the same run, a motion that creeps for seconds. Goal: on a mesh of fourth order, with forces and strains by
+/// [E77], window figures also agree with the history. Tolerance: trapezoidal rule of the history, and cubics over long steps.
 #[test]
 fn figures_on_a_mesh_of_fourth_order_are_those_of_the_motion() {
     let sets = ["/mesh/order=4", "/time/output_interval_s=0.001"].map(String::from);
@@ -330,7 +330,7 @@ fn figures_on_a_mesh_of_fourth_order_are_those_of_the_motion() {
     }
 }
 
-/// Goal: derivatives of probes, of their columns and figures, are differences of runs.
+/// Goal: derivatives of probe columns and figures agree with differences of runs.
 #[test]
 fn derivatives_at_probes_are_differences_of_runs() {
     let tight = "/solver/rtol=1e-9";
@@ -363,7 +363,7 @@ fn derivatives_at_probes_are_differences_of_runs() {
             let difference = (more - less) / (2.0 * step * value);
             let scale = with.summary.probes[name].size() / value;
             println!("{name} {key}: {:.6} {:.6}", slope / scale, difference / scale);
-            // largest values of derivatives are those at output times
+            // largest values of derivatives are taken at output times
             assert!(
                 (slope - difference).abs() < 5e-3 * scale,
                 "{name} {key}: {slope:e} {difference:e}"

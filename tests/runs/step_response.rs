@@ -10,7 +10,7 @@ use slcbeam::run::step_response::StepResponse;
 const EA: f64 = 1e6 * 0.02 * 0.004;
 const FORCE: f64 = 0.08;
 
-/// A bar pulled at its tip by a force that comes at 0.1 s.
+/// A bar pulled at its tip by a force that starts at 0.1 s.
 fn bar(sets: &Value) -> Value {
     let mut case = json!({
         "name": "bar",
@@ -40,8 +40,8 @@ fn close(told: Option<f64>, exact: f64, part: f64) {
     );
 }
 
-/// Source: `u = (F l/EA) (1 - e^(-t/τ))` of a bar of Kelvin and Voigt: rise in τ ln 9, within 2 % after τ ln 50, within 5 % after τ ln 20. Goal: to
-/// 1e-4, whatever the output times.
+/// Source: `u = (F l/EA) (1 - e^(-t/τ))` of a Kelvin-Voigt bar: rise in τ ln 9, within 2 % after τ ln 50, within 5 % after τ ln 20. Goal:
+/// to 1e-4, for any output times.
 #[test]
 fn an_exponential_rises_and_settles() {
     let found = told(&bar(&json!({})));
@@ -52,8 +52,8 @@ fn an_exponential_rises_and_settles() {
     assert!(found.overshoot_percent.unwrap().abs() < 1e-4 && found.reason.is_none());
 }
 
-/// Source: the oscillator `M u'' + (EA/l) (u + τ u') = F`: overshoot `e^(-π ζ/√(1 - ζ²))` at `π/(ω √(1 - ζ²))`, ζ = ω τ/2. Goal: to 1e-3, the mass
-/// of the bar being 1e-4 of that at its tip.
+/// Source: the oscillator `M u'' + (EA/l) (u + τ u') = F`: overshoot `e^(-π ζ/√(1 - ζ²))` at `π/(ω √(1 - ζ²))`, ζ = ω τ/2. Goal: to 1e-3;
+/// the mass of the bar is 1e-4 of the mass at its tip.
 #[test]
 fn an_oscillator_overshoots() {
     let mass = 0.08;
@@ -75,7 +75,7 @@ fn an_oscillator_overshoots() {
     assert!(found.settling_time_5_percent_s.unwrap() > found.peak_time_s.unwrap());
 }
 
-/// Goal: what has not settled, and what ends where it began, is told with a reason and without numbers; a step after the end is refused.
+/// Goal: a response that has not settled, or that ends where it began, gives a reason instead of numbers; a step after the end is rejected.
 #[test]
 fn what_has_no_final_value_is_told() {
     let early = told(&bar(

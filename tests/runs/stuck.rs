@@ -1,4 +1,4 @@
-//! A run of IDA whose error test fails again and again.
+//! A run of IDA whose error test fails repeatedly.
 
 use std::path::Path;
 
@@ -11,8 +11,8 @@ fn told<'a>(summary: &'a Summary, code: &str) -> Option<&'a String> {
     summary.warnings.iter().find(|w| w.starts_with(code))
 }
 
-/// Goal: IDA whose error test fails beside nearly every step takes 10 000 steps of order 1 where the method that the program chooses takes
-/// some tens, and said nothing.
+/// Goal: IDA, whose error test fails at nearly every step, needs 10 000 steps of order 1 where the program's chosen method needs some tens.
+/// A warning states it; before, there was none.
 #[test]
 fn steps_that_are_rejected_again_and_again_are_told() {
     let scene = r#"{"name": "stuck", "preset": "matia-gat-beam", "beam": {"damping": {"bending_time_s": 1e-3, "axial_time_s": 1e-3}},

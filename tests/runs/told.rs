@@ -1,5 +1,5 @@
-//! What every command tells of a case and of its meshes. Source: the same cases on finer meshes. Goal: no figure of a default mesh is off by
-//! more than 5 % without a word, and the word is about what it is off by.
+//! Warnings of every command about a case and its meshes. Source: the same cases on finer meshes. Goal: an error above 5 % in a figure of a
+//! default mesh is always warned of, with the affected figure.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use assert_cmd::Command;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-/// Two bladders of the paper's beam in a row, filled with something thick: pressures do not get through a cell in time.
+/// Two bladders of the paper's beam in a row with a thick fluid: pressure does not cross a cell in time.
 fn thick(ends: [Value; 2]) -> Value {
     json!({
         "name": "thick", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 1.0},
@@ -26,7 +26,7 @@ fn to_and_fro() -> Value {
     thick([json!({"pressure_pa": sine}), json!("sealed")])
 }
 
-/// What a command prints, and its answer with `--json`.
+/// Output of a command, and its answer with `--json`.
 struct Said {
     out: String,
     json: Value,
@@ -70,7 +70,7 @@ fn written(folder: &Path, name: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(folder.join("result").join(name)).unwrap()).unwrap()
 }
 
-/// A case whose coefficients follow to another shape of section is told so whatever is done with it, on the screen, as JSON, in the folder.
+/// Goal: coefficients of another section shape are warned of by every command, on the screen, as JSON and in the folder.
 #[test]
 fn every_command_tells_what_is_known_of_a_case() {
     let mut case = to_and_fro();
@@ -94,8 +94,8 @@ fn every_command_tells_what_is_known_of_a_case() {
     assert!(warned(&say("periodic", &case, &swept), "W017").is_some());
 }
 
-/// Decay rates on two cells a bladder are off by 5 to 60 %: told, with the mode, and no smaller than they are; where the meshes point is
-/// nearer.
+/// Goal: decay rates on two cells per bladder have errors of 5 to 60 %. The warning names the mode, and the estimate is no smaller than the
+/// error; the extrapolated limit is closer.
 #[test]
 fn modes_tell_what_cells_along_bladders_do_to_rates() {
     let said = say("modes", &through(), &["--count", "2", "--kind", "decay"]);
@@ -123,7 +123,7 @@ fn modes_tell_what_cells_along_bladders_do_to_rates() {
     assert!(warned(&fine, "W021").is_none(), "{}", fine.out);
 }
 
-/// The largest pressure of a flow through is that of the first cell's middle, a sixth of a bladder below that of the port.
+/// Goal: the largest pressure of a flow through bladders is at the center of the first cell, a sixth of a bladder below that of the port.
 #[test]
 fn equilibria_and_cycles_tell_what_meshes_do() {
     let said = say("equilibrium", &through(), &[]);
@@ -164,7 +164,7 @@ fn equilibria_and_cycles_tell_what_meshes_do() {
     assert!(off > 0.1 && share > 0.8 * off, "{off} {share}");
 }
 
-/// Coarse meshes do not have as many modes as are asked for.
+/// Coarse meshes have fewer modes than requested.
 #[test]
 fn modes_are_refined_where_coarse_meshes_have_fewer() {
     let said = say("modes", &through(), &["--count", "4", "--accuracy", "0.1"]);
@@ -173,7 +173,7 @@ fn modes_are_refined_where_coarse_meshes_have_fewer() {
     assert!(accuracy["cells_per_bladder"].as_u64().unwrap() >= 4, "{accuracy:#}");
 }
 
-/// What a thick fluid does within its bladders asks for cells there, not along the beam.
+/// Goal: for a thick fluid, the warning suggests more cells in the bladders, not along the beam.
 #[test]
 fn cells_are_refined_where_it_helps() {
     let said = say("periodic", &to_and_fro(), &["--accuracy", "0.1"]);
@@ -186,7 +186,7 @@ fn cells_are_refined_where_it_helps() {
     );
 }
 
-/// The paper's beam with a chain that ports join to the outside.
+/// The paper's beam with a chain between two ports.
 fn joined(fluid: Value, ends: [Value; 2], effects: Value) -> Value {
     json!({
         "name": "joined", "preset": "matia-gat-beam", "fluid": fluid,
@@ -195,8 +195,8 @@ fn joined(fluid: Value, ends: [Value; 2], effects: Value) -> Value {
     })
 }
 
-/// Goal: fluid at rest has no flow, and a beam that pressure bends no forces: what is left of them is round-off, of which no mesh is
-/// told to be coarse, and no flow to be fast. Before, a Reynolds number of 6767 and mesh errors of 1e286 were told of air at rest.
+/// Goal: fluid at rest has no flow, and a beam bent by pressure no forces. What remains is rounding error and causes no warning of a coarse
+/// mesh or a fast flow. Before, air at rest gave a Reynolds number of 6767 and mesh errors of 1e286.
 #[test]
 fn rest_is_told_nothing_of_flows() {
     let at = json!({"pressure_pa": 4e4});
@@ -208,15 +208,15 @@ fn rest_is_told_nothing_of_flows() {
                 let found = warned(&said, code);
                 assert!(found.is_none(), "{fluid}: {found:?}");
             }
-            // what swings about rest does so by as little as one likes
+            // small oscillations about rest have no definite amplitude
             let modes = say("modes", &case, &["--at", "0.5", "--count", "2"]);
             assert!(!modes.out.contains("Reynolds number expected"), "{}", modes.out);
         }
     }
 }
 
-/// Source: Kirchhoff's equations of equal resistances. Goal: an equilibrium with a steady flow tells the Reynolds number of that flow, where the
-/// model has not what comes of it.
+/// Source: Kirchhoff's equations of equal resistances. Goal: an equilibrium with a steady flow reports the Reynolds number of that flow if
+/// the model does not include its consequences.
 #[test]
 fn steady_flow_is_told_when_fast() {
     let ends = [json!({"pressure_pa": 1000}), json!({"pressure_pa": 0})];
@@ -234,7 +234,7 @@ fn steady_flow_is_told_when_fast() {
     assert!(warned(&said, "W003").is_none());
 }
 
-/// Goal: `check` sees flows that ports prescribe: no less than the largest of them in a network with tubes, and none where no tube takes it.
+/// Goal: `check` reports prescribed port flows: at least the largest of them in a network with tubes, and none if no tube carries it.
 #[test]
 fn prescribed_flows_have_a_reynolds_number() {
     let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
@@ -257,8 +257,8 @@ fn prescribed_flows_have_a_reynolds_number() {
     assert!(found < 0.1 * wanted, "{found:.1}");
 }
 
-/// Goal: effects by name that contradict each other, or for which nothing is given, are refused at their place with what to do, and not
-/// passed over; what the program itself leaves out takes along what needs it.
+/// Goal: named effects that contradict each other or lack data are rejected with their pointer and a remedy. If the program itself omits an
+/// effect, it also omits those that need it.
 #[test]
 fn effects_that_contradict_are_refused() {
     let water = json!({"density_kg_m3": 1000, "viscosity_pa_s": 8.68e-4});
@@ -310,7 +310,8 @@ fn effects_that_contradict_are_refused() {
     }
 }
 
-/// Goal: a pump that starts within a millisecond, as a spline, says that it swings beyond its points; a table alone stays within them.
+/// Goal: a pump that starts within a millisecond as a spline is warned of for overshoot beyond its points; a linear table stays within
+/// them.
 #[test]
 fn a_spline_beyond_its_points_is_told() {
     let told = |interpolation: &[(&str, &str)]| {
@@ -330,7 +331,7 @@ fn a_spline_beyond_its_points_is_told() {
     assert!(told(&[]).is_empty());
 }
 
-/// Goal: numbers that are seldom meant are told before anything is computed, by their places; usual ones are not.
+/// Goal: implausible numbers are warned of with their pointers before any computation; usual ones are not.
 #[test]
 fn what_is_seldom_meant_is_told() {
     let told = |sets: &[(&str, Value)]| {

@@ -1,4 +1,4 @@
-//! States that equations allow and nature does not, told with place and time.
+//! States that satisfy the equations but are unphysical: reported with place and time.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn told<'a>(all: &'a [String], code: &str) -> Option<&'a String> {
     all.iter().find(|warning| warning.starts_with(code))
 }
 
-/// A strip whose rest curvature grows to a value in a second.
+/// A strip whose rest curvature grows to a value within a second.
 fn curled(curvature: f64) -> Value {
     json!({
         "name": "curled",
@@ -34,8 +34,8 @@ fn curled(curvature: f64) -> Value {
     })
 }
 
-/// Source: a circle of length 2π/κ closes on the strip. Goal: what bends by more than a turn is told to cross itself, at equilibrium from
-/// the load factor 2π/(κ l) on, and what bends by less, far beyond half a turn, is not.
+/// Source: a circle of length 2π/κ closes on the strip. Goal: bending beyond a full turn is reported as self-intersection, at equilibrium
+/// from the load factor 2π/(κ l) on. Bending by less, even far beyond half a turn, is not.
 #[test]
 fn a_beam_that_crosses_itself_is_told() {
     let summary = run(&curled(26.0));
@@ -66,7 +66,7 @@ fn a_beam_that_crosses_itself_is_told() {
     assert_eq!(told(&of_path(20.0), "W023"), None);
 }
 
-/// Two bladders of the paper's beam, and a port that takes fluid out of them.
+/// Two bladders of the paper's beam, and a port that sucks fluid out of them.
 fn sucked(port: Value, junctions: Value, tube: Option<Value>, fluid: Value) -> Value {
     let mut tubes = vec![json!({"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": -1, "end": "inlet"}})];
     tubes.extend(tube);
@@ -87,8 +87,8 @@ fn by_pressure(pressure: f64, fluid: Value) -> Value {
     sucked(port, json!([]), None, fluid)
 }
 
-/// Source: the vapor pressure of water at 20 C, 2.34 kPa, and an ambient pressure of 101.325 kPa: -98.99 kPa gauge. Goal: below that, and of other
-/// liquids below a vacuum, it is told where and when; above it is not. The largest pressure keeps its sign.
+/// Source: the vapor pressure of water at 20 C, 2.34 kPa, and an ambient pressure of 101.325 kPa: -98.99 kPa gauge. Goal: pressures below
+/// it, and below vacuum for other liquids, are reported with place and time; higher ones are not. The largest pressure keeps its sign.
 #[test]
 fn a_liquid_below_its_vapor_pressure_is_told() {
     let summary = run(&by_pressure(-150e3, json!({"kind": "liquid"})));
@@ -118,7 +118,7 @@ fn a_liquid_below_its_vapor_pressure_is_told() {
     }
 }
 
-/// Goal: a flow that a port forces back through a check valve is told with the junction or port at which the liquid is torn.
+/// Goal: a port flow forced back through a check valve is reported with the junction or port at which the liquid column breaks.
 #[test]
 fn a_junction_below_vacuum_is_told() {
     let valve = json!({"cracking_pressure_pa": 100, "forward_conductance_m3_s_pa": 1e-9, "reverse_conductance_m3_s_pa": 1e-15, "smoothing_pa": 50});
@@ -129,10 +129,10 @@ fn a_junction_below_vacuum_is_told() {
     assert!(warning.contains("in junction \"j\" at t = "), "{warning}");
 }
 
-/// What the warning about a cross term begins with.
+/// Beginning of the warning about a cross term.
 const CROSS_TERM: &str = "W022 The model leaves out the area";
 
-/// Goal: the cross term of a section is told with its size where walls between the rows are thin, and not of the shipped section.
+/// Goal: the size of a section's cross term is reported if walls between the rows are thin, but not for the shipped section.
 #[test]
 fn a_cross_term_that_is_left_out_is_told() {
     let told_of = |sets: &[String]| {

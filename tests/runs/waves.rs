@@ -1,4 +1,4 @@
-//! Growth: of waves that the equations feed and steps damp, and of deflections that grow.
+//! Growth: of waves fed by the equations but damped by steps, and of deflections.
 
 use std::path::Path;
 
@@ -13,9 +13,10 @@ fn warned(summary: &Summary) -> Vec<&String> {
     summary.warnings.iter().filter(|w| w.starts_with("W007")).collect()
 }
 
-/// Source: the run itself with small steps, 12 cells and rtol 1e-7, whose largest pressure is 27 kPa and grows, where the usual steps give 16.9
-/// kPa. Goal: a wave that a coupling without reciprocity feeds is found although the steps damp it, on two meshes within 25 % of the growth rate
-/// and 4 % of the frequency (8 cells of order 4 differ by 20 % and 3 % from 4 of order 2), with its cause; and none with the reciprocal coupling.
+/// Source: the same run with small steps, 12 cells and rtol 1e-7: its largest pressure is 27 kPa and grows; the usual steps give 16.9 kPa.
+/// Goal: a wave fed by a coupling without reciprocity is detected although the steps damp it, with its cause. Two meshes agree within 25 %
+/// of the growth rate and 4 % of the frequency (8 cells of order 4 differ by 20 % and 3 % from 4 of order 2). The reciprocal coupling has
+/// none.
 #[test]
 fn a_wave_that_steps_damp_is_found() {
     let usual = run(&shipped("bend-wet", &[]));
@@ -41,7 +42,7 @@ fn a_wave_that_steps_damp_is_found() {
     assert!(dry.growing_wave.is_none() && warned(&dry).is_empty());
 }
 
-/// Goal: a run that goes on from a state in which waves grow ends with the same wave, whatever the checkpoint.
+/// Goal: a run continued from a state with growing waves ends with the same wave, at any checkpoint.
 #[test]
 fn waves_before_a_checkpoint_are_kept() {
     let case = shipped("bend-wet", &["/time/checkpoint_interval_s=0.2"]);
@@ -54,8 +55,8 @@ fn waves_before_a_checkpoint_are_kept() {
     assert!(whole.growing_wave.is_some());
 }
 
-/// Goal: a beam whose load falls passes through its straight state and bends the other way: monotone, and no growth. It was called growth, driven
-/// by the integrator, with a bending energy that rose by 2e-296 pJ. A force at the tip that falls does the same.
+/// Goal: a beam whose load falls passes monotonically through its straight state and bends the other way, without growth. It was reported
+/// as growth driven by the integrator, with a bending energy that rose by 2e-296 pJ. A falling force at the tip behaves alike.
 #[test]
 fn a_load_that_falls_is_no_growth() {
     let falls = r#"{"polynomial": {"coefficients": [26115, -2000]}}"#;

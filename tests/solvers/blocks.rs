@@ -1,17 +1,17 @@
-//! Factors in dense blocks along a line.
+//! Factorization in dense blocks along a line.
 
 use slcbeam::sparse::{BlockTridiagonal, KluError, Lu, Pattern};
 
 use super::sundials::chance::Random;
 
-/// A matrix by columns: a pattern and its values.
+/// A matrix by columns: pattern and values.
 struct Matrix {
     pattern: Pattern,
     values: Vec<f64>,
 }
 
 impl Matrix {
-    /// Of entries (row, column, value), no place twice.
+    /// From entries (row, column, value) without duplicates.
     fn new(n: usize, entries: &[(usize, usize, f64)]) -> Self {
         let mut columns = vec![vec![]; n];
         entries.iter().for_each(|(row, column, _)| columns[*column].push(*row));
@@ -44,8 +44,8 @@ impl Matrix {
     }
 }
 
-/// Cells along a line, each with displacements `u`, velocities `v = u'` and a few unknowns more, touching `reach` cells to both sides; a ring
-/// where the last touches the first. Rows outweigh their neighbours.
+/// Cells along a line, each with displacements `u`, velocities `v = u'` and a few more unknowns, coupled to `reach` cells on both sides; in
+/// a ring the last is coupled to the first. Rows are diagonally dominant.
 fn cells(count: usize, kinds: usize, reach: usize, ring: bool, cj: f64) -> Matrix {
     let mut random = Random(7 + count as u64);
     let mut entries = vec![];
@@ -78,9 +78,10 @@ fn cells(count: usize, kinds: usize, reach: usize, ring: bool, cj: f64) -> Matri
     Matrix::new(n, &entries)
 }
 
-/// Chains and rings of several widths, in blocks and through the choice.
+/// Chains and rings of several widths, in blocks and by the automatic choice.
 ///
-/// Goal: solutions of known matrices, blocks of all remainders of a vector's length among them. Tolerance: rounding times a condition below 1e4.
+/// Goal: solutions of known matrices, including all remainders of block sizes over the vector length. Tolerance: rounding times a condition
+/// below 1e4.
 #[test]
 fn chains_and_rings_are_solved() {
     for kinds in 1..8 {
@@ -108,9 +109,9 @@ fn chains_and_rings_are_solved() {
     }
 }
 
-/// A line so long that two threads share it.
+/// A line long enough for two threads.
 ///
-/// Goal: the solution of a known matrix, and the same one again. Tolerance: as above.
+/// Goal: the solution of a known matrix, twice the same. Tolerance: as above.
 #[test]
 fn a_long_line_is_solved_by_two_threads() {
     let matrix = cells(50_000, 3, 1, false, 1.0);
@@ -126,7 +127,7 @@ fn a_long_line_is_solved_by_two_threads() {
     assert_eq!(solution(), solution());
 }
 
-/// Factors do not remember the ones before: what was factored between leaves no trace, bit for bit.
+/// Goal: factors do not depend on earlier factorizations, bit for bit.
 #[test]
 fn factors_have_no_past() {
     let (one, other) = (cells(50, 4, 1, false, 1.0), cells(50, 4, 1, false, 1e3));
@@ -142,7 +143,8 @@ fn factors_have_no_past() {
     assert_eq!(solution(&one.values), first);
 }
 
-/// Long lines are cut into blocks; where unknowns touch any others by chance KLU's few entries are cheaper. A star needs neither: its tips are given by its centre.
+/// Goal: long lines are cut into blocks; for random couplings, KLU's few entries are cheaper. A star needs neither: its center determines
+/// its tips.
 #[test]
 fn the_cheaper_way_is_chosen() {
     let chosen = |matrix: &Matrix| {
@@ -174,9 +176,9 @@ fn the_cheaper_way_is_chosen() {
     )));
 }
 
-/// A block without an inverse, in a matrix that has one: rows would have to go from block to block, and KLU does it.
+/// A singular block in a regular matrix would need pivots from other blocks, so KLU factors the matrix.
 ///
-/// Goal: refused, counted, solved. A matrix without an inverse names a column, as KLU does. Tolerance: rounding.
+/// Goal: rejected, counted, solved. A singular matrix names a column, as KLU does. Tolerance: rounding.
 #[test]
 fn what_blocks_cannot_do_goes_to_klu() {
     let (count, kinds) = (30, 6);
@@ -185,7 +187,7 @@ fn what_blocks_cannot_do_goes_to_klu() {
     let mut lu = Lu::new(&sound.pattern).unwrap();
     lu.factor(&sound.values).unwrap();
     assert!(lu.in_blocks());
-    // a row that touches the next cell alone is a row of zeros where its cell is the last of its block
+    // a row coupled only to the next cell is zero in its block if its cell is the last one
     let emptied = |row: usize, kept: std::ops::Range<usize>| {
         let mut values = sound.values.clone();
         for column in (0..n).filter(|column| !kept.contains(column)) {
@@ -213,7 +215,7 @@ fn what_blocks_cannot_do_goes_to_klu() {
     }
     assert!(refused > 0, "no cell was the last of its block");
     assert!(lu.pivot_refreshes() >= refused);
-    // asked in vain some times, blocks are asked no more, until all is forgotten
+    // after some failures blocks are no longer tried, until the state is reset
     let last = (0..count - 1).map(|cell| (cell + 1) * (kinds + 1));
     let refusing = last.map(|next| emptied(next - 2, next..next + kinds)).find(|values| {
         lu.forget();

@@ -1,4 +1,4 @@
-//! Bounds of functions of time: nothing exceeds them, and they are not wide.
+//! Bounds of signals: rigorous and tight.
 
 use proptest::prelude::*;
 use slcbeam::functions::{Clock, Signal};
@@ -9,7 +9,7 @@ fn signal(json: &str) -> Signal {
     serde_json::from_str(json).unwrap()
 }
 
-/// One of the named forms; durations down to 1e-5 of the span, anywhere.
+/// One of the named signals; durations down to 1e-5 of the span, at any time.
 fn simple() -> BoxedStrategy<Signal> {
     let short = (-5.0..0.0).prop_map(|e: f64| END * 10f64.powf(e));
     let json = prop_oneof![
@@ -53,7 +53,7 @@ fn simple() -> BoxedStrategy<Signal> {
     json.prop_map(|json| signal(&json)).boxed()
 }
 
-/// A pulse: up here, down a little later.
+/// A pulse: a step up, and shortly afterwards down.
 fn pulse() -> impl Strategy<Value = Signal> {
     (0.0..1.9, -5.0..-1.0, any::<bool>()).prop_map(|(t, e, smooth): (f64, f64, bool)| {
         let d = END * 10f64.powf(e);
@@ -83,7 +83,7 @@ fn nested() -> impl Strategy<Value = Signal> {
     })
 }
 
-/// Knots, crests of the fastest sines and what lies about them.
+/// Knots, crests of the fastest sines, and their neighborhoods.
 fn places(signal: &Signal, out: &mut Vec<f64>) {
     match signal {
         Signal::Table(table) => out.extend(&table.times_s),
@@ -104,7 +104,7 @@ fn places(signal: &Signal, out: &mut Vec<f64>) {
     }
 }
 
-/// Largest magnitudes of value, rate and acceleration that dense sampling finds, and least and largest value.
+/// Largest magnitudes of value, rate and acceleration by dense sampling, and smallest and largest value.
 fn sampled(signal: &Signal) -> ([f64; 3], [f64; 2]) {
     let mut at: Vec<f64> = (0..=4000).map(|k| END * f64::from(k) / 4000.0).collect();
     places(signal, &mut at);
@@ -134,7 +134,7 @@ fn sampled(signal: &Signal) -> ([f64; 3], [f64; 2]) {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, ..ProptestConfig::default() })]
 
-    /// Round-off of sums of large terms is let pass.
+    /// Rounding errors of sums of large terms are tolerated.
     #[test]
     fn nothing_exceeds_the_bounds_and_they_are_not_wide(signal in nested()) {
         let bounds = signal.largest(END);
@@ -151,8 +151,8 @@ proptest! {
         prop_assert!(bounds.limited || (range.low >= low - wide && range.high <= high + wide), "{range:?}: {low} {high}");
     }
 
-    /// An oscillator at rest that a signal acts on, solved exactly between many instants: it never departs further from the signal
-    /// than the bound.
+    /// Goal: an oscillator at rest, driven by a signal and solved exactly between many instants, never differs from the signal by more than
+    /// the bound.
     #[test]
     fn oscillators_stay_within_what_excites(signal in nested(), w in 5.0..300.0f64, part in 0.2..1.0f64, held in -1.0..1.0f64) {
         let bound = signal.excitation(END, held).above(part * w);
@@ -179,7 +179,7 @@ fn departure(signal: &Signal, w: f64, held: f64) -> f64 {
         let value = |t: f64| signal.jet(Clock { t, within }).value;
         let (s0, sm, s1) = (value(a), value(within), value(pair[1]));
         // s = s0 + b x + c x², q = s - 2 c/w² + A cos w x + B sin w x
-        // a very short piece is straight: the difference of its values would be round-off
+        // a very short piece is treated as straight: the difference of its values would be a rounding error
         let c = if w * h < 1e-4 {
             0.0
         } else {
@@ -225,7 +225,7 @@ fn exact_bounds_of_single_forms() {
     assert!(range.low > -0.01 && range.low <= 0.0 && range.high < 1.01, "{range:?}");
 }
 
-/// Both signs of a pulse within a hundred-thousandth of the run, which samples do not see.
+/// Goal: bounds include both signs of a pulse within a hundred-thousandth of the run, which samples miss.
 #[test]
 fn a_polynomial_pulse_is_seen_and_shortens_steps() {
     let bump =
@@ -234,7 +234,7 @@ fn a_polynomial_pulse_is_seen_and_shortens_steps() {
     assert!(scale < 0.3, "{scale}");
 }
 
-/// An opening that leaves its range for a hundred-thousandth of the run, and ones that touch its ends.
+/// Goal: an opening that leaves its range for a hundred-thousandth of the run is detected; openings that touch the ends are accepted.
 #[test]
 fn what_leaves_a_range_is_found_and_what_touches_it_is_not() {
     for k in 0..40 {
@@ -257,7 +257,7 @@ fn what_leaves_a_range_is_found_and_what_touches_it_is_not() {
     }
 }
 
-/// Simple signals in microseconds, long tables in linear time, many cycles no slower.
+/// Goal: simple signals need microseconds, long tables linear time, and many cycles no more than few.
 #[test]
 fn bounds_cost_little() {
     let time = |json: &str, end: f64, most: f64| {
@@ -299,8 +299,8 @@ fn bounds_cost_little() {
     }
 }
 
-/// Goal: where no stretch has a time scale of its own, the signal keeps its value to the last digit; the least of the scales is that
-/// of the whole run, as without stretches.
+/// Goal: if no interval has a time scale of its own, the signal keeps its value to the last digit; the smallest scale is that of the whole
+/// run, as without intervals.
 #[test]
 fn nothing_happens_between_stretches() {
     let pulse = r#"{"product": [{"sigmoid": {"amplitude": 2, "steepness_per_s": 1e5, "midpoint_s": 3}},
@@ -336,8 +336,8 @@ fn nothing_happens_between_stretches() {
     }
 }
 
-/// Goal: how long a sine lasts is `∫ |s| dt = 2/π` of the time, however many whole cycles it has: evenly spaced places meet whole cycles
-/// in their zeros. Tolerance: of 32 places in a cycle, 0.2 %.
+/// Goal: the duration of a sine is `∫ |s| dt = 2/π` of the time, for any number of whole cycles: evenly spaced points would hit the zeros
+/// of whole cycles. Tolerance: of 32 points per cycle, 0.2 %.
 #[test]
 fn sines_of_whole_cycles_last() {
     for cycles in [1, 4, 8, 32, 36, 64, 72, 500, 2048, 32_768, 65_536, 131_072, 1_000_000] {

@@ -1,6 +1,7 @@
-//! Newton's matrix, carried along by a beam that turns.
+//! Newton's matrix, rotated with a turning beam.
 //!
-//! Source: forces of a beam turn with it. Goal: the matrix of a beam that is turned as a whole is the old one turned; runs that turn need few new ones.
+//! Source: internal forces rotate with a beam. Goal: the matrix of a rotated beam is the rotated matrix, so runs with large rotations need
+//! few new ones.
 
 use std::path::Path;
 
@@ -36,7 +37,7 @@ fn beam(form: &Value) -> BeamDae {
     BeamDae::new(System::new(&case).unwrap())
 }
 
-/// Vectors of a scaled state, each turned by an angle; places counted from the root where `along` tells how far along nodes stand.
+/// Rotates the vectors of a scaled state by an angle; adds `along`, the axial position of each node, to convert displacements to positions.
 fn turned(of: &Vectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(usize) -> f64) {
     let (sin, cos) = angle.sin_cos();
     for k in 0..of.across.len() {
@@ -47,8 +48,9 @@ fn turned(of: &Vectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(us
     }
 }
 
-/// `[E80]` A pinned beam, bent, stretched, filled and moving at random, then turned about its pin: its residual is the old one turned, and
-/// solutions with the old matrix, carried along, solve with its own. Tolerance: round-off. Published and conservative form, second and fourth order, with rotary inertia, without any inertia, and with shear.
+/// `[E80]` Goal: a pinned beam, bent, stretched, filled and in random motion, is rotated about its pin. Its residual is the rotated
+/// residual, and solutions with the old matrix, rotated, agree with those of its own. Tolerance: rounding errors. Published and
+/// conservative form, second and fourth order, with rotary inertia, without any inertia, and with shear.
 #[test]
 fn a_matrix_turns_with_the_beam() {
     let forms = [
@@ -123,8 +125,8 @@ fn a_matrix_turns_with_the_beam() {
     }
 }
 
-/// Beams that are not turned with their forces have no vectors: of small rotations, with inertia across alone, and with an end that keeps momentum in one
-/// direction. One that nothing holds turns as one.
+/// Goal: beams whose forces do not rotate with them have no vectors: with small rotations, with only transverse inertia, or with an end
+/// that keeps momentum in one direction. A free beam rotates as a whole.
 #[test]
 fn what_does_not_turn_has_no_vectors() {
     let guided = json!({"root": "guided", "tip": "free"});
@@ -139,7 +141,7 @@ fn what_does_not_turn_has_no_vectors() {
     assert!(free.len() == 2 && free.iter().all(|vectors| vectors.free));
 }
 
-/// What a run took: steps, times that Newton's iteration failed, matrices.
+/// Work of a run: steps, failures of Newton's iteration, matrices.
 fn work(name: &str, sets: &[&str]) -> [u64; 3] {
     let sets: Vec<String> = sets.iter().map(|&set| set.to_owned()).collect();
     let case = case::load(Path::new(&format!("cases/{name}.json")), &sets).unwrap();
@@ -157,8 +159,8 @@ fn work(name: &str, sets: &[&str]) -> [u64; 3] {
     [done.steps, done.newton_failures, done.jacobian_evaluations]
 }
 
-/// An arm that turns by 78 rad: matrices fail it in less than one of twenty steps, and are made anew in less than one of five; without being carried along
-/// `esdirk46` took more than one for each of 3462 steps, and 970 times it failed.
+/// Goal: an arm that turns by 78 rad: Newton's iteration fails in less than one of twenty steps, and less than one of five needs a new
+/// matrix. Without rotated matrices, `esdirk46` needed more than one for each of 3462 steps, and failed 970 times.
 #[test]
 fn what_turns_needs_few_matrices() {
     for method in ["trbdf2", "esdirk46", "esdirk57"] {

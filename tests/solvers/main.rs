@@ -1,4 +1,4 @@
-//! Mathematics and solvers that know nothing of beams, and the beam through them.
+//! Numerical methods and solvers: alone, and with the beam.
 
 mod blocks;
 mod bounds;

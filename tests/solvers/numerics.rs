@@ -1,9 +1,9 @@
-//! Mathematics that knows nothing of beams: kernels, Krylov spaces, cubics, fits.
+//! Numerical kernels without beams: vectors, Krylov spaces, cubics, fits.
 
 mod kernels {
     use slcbeam::numerics::kernels::*;
 
-    /// Numbers without pattern, of order one and of both signs.
+    /// Pseudo-random numbers of order one and of both signs.
     fn numbers(n: usize, seed: u64) -> Vec<f64> {
         let mut state = seed;
         let mut next = || {
@@ -39,7 +39,7 @@ mod kernels {
         }
     }
 
-    /// Every place of a bad entry is found, in whole chunks and in the rest, and large finite numbers are none.
+    /// Goal: a bad entry is found at every index, in whole chunks and in the remainder; large finite numbers are accepted.
     #[test]
     fn non_finite_entries_are_found() {
         for n in [1, 8, 19] {
@@ -55,7 +55,7 @@ mod kernels {
         }
     }
 
-    /// Weights follow their formula, and infinite or undefined unknowns are refused.
+    /// Goal: weights follow their formula; infinite or undefined unknowns are rejected.
     #[test]
     fn error_weights_follow_their_formula() {
         let mut w = [0.0; 2];
@@ -71,7 +71,7 @@ mod krylov {
     use slcbeam::numerics::krylov::{everything, largest, solve};
 
     fn matrix() -> DMatrix<f64> {
-        // a rotation by 1 rad that grows by 1.3, and shrinking rest, in a skew basis
+        // a rotation by 1 rad that grows by 1.3, and a decaying remainder, in a skew basis
         let n = 12;
         let mut block = DMatrix::from_fn(n, n, |i, j| if i == j { 0.8_f64.powi(i as i32) * 0.7 } else { 0.0 });
         let (s, c) = 1.0_f64.sin_cos();
@@ -153,15 +153,15 @@ mod fits {
     use slcbeam::run::fit::{exponential, is_exponential};
 
     fn series(law: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
-        // ripples of a few per cent, as the largest values in windows have them
+        // ripples of a few per cent, as in largest values over windows
         let ripple = |k: usize| 1.0 + 0.04 * ((k * 7919) as f64).sin();
         (4..16)
             .map(|k| (k as f64 + 0.5, law(k as f64 + 0.5) * ripple(k)))
             .collect()
     }
 
-    /// Goal: ramps, beats that rise in proportion to time and accelerated motion are no exponentials; exponentials are, from a
-    /// factor of 3 over the span on.
+    /// Goal: ramps, beats that rise in proportion to time and accelerated motion are not exponentials; exponentials are, from a factor of 3
+    /// over the span on.
     #[test]
     fn ramps_and_powers_are_no_exponentials() {
         for power in [0.5, 1.0, 1.5, 2.0, 3.0] {
@@ -177,7 +177,7 @@ mod fits {
     }
 }
 
-/// Sums of vectors, tile after tile, are those of their entries in the order of the terms. Goal: equal bits, with lengths around those of tiles.
+/// Goal: tiled sums of vectors equal sums of their entries in the order of the terms, bit for bit, for lengths around those of tiles.
 #[test]
 fn sums_of_vectors_are_those_of_their_entries() {
     use slcbeam::numerics::kernels::combine;
@@ -204,8 +204,8 @@ fn sums_of_vectors_are_those_of_their_entries() {
 mod angles {
     use slcbeam::numerics::angle::atan2;
 
-    /// Goal: the angle of a vector, as the C library has it within 2 units in the last place (one of them its own), in all octants, on their borders,
-    /// next to the axes, for sizes from 1e-140 to 1e140, and with the signs of zeros; not a number stays that.
+    /// Goal: the angle of a vector agrees with the C library within 2 units in the last place (one of them its own): in all octants, on
+    /// their borders, near the axes, for sizes from 1e-140 to 1e140, with signs of zeros, and for NaN.
     #[test]
     fn angles_equal_those_of_the_c_library() {
         let mut worst = 0.0_f64;

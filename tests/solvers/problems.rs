@@ -1,4 +1,4 @@
-//! Small systems with known answers, Jacobians by central differences on a dense pattern.
+//! Small systems with known answers, and Jacobians by central differences on a dense pattern.
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::sparse::Pattern;
@@ -65,7 +65,7 @@ impl Dae for Plain {
                     continue;
                 }
                 let at = if rates { yp[j] } else { y[j] };
-                // third root of the rounding: the best of central differences
+                // cube root of the rounding error: optimal for central differences
                 let h = 6e-6 * at.abs().max(1e-6);
                 for (shift, out) in [(h, &mut plus), (-h, &mut minus)] {
                     if rates {

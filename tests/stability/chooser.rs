@@ -1,4 +1,4 @@
-//! The automatic choice of effects over random scenes: what it leaves out changes less than it says.
+//! The automatic choice of effects in random scenes: omitted effects change the results by less than the estimate.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,7 +14,7 @@ use slcbeam::run::summary::{Status, Summary};
 use crate::fuzz_case;
 use crate::harness::Budget;
 
-/// Error level that choices are made for.
+/// Error level of the choices.
 const TOLERANCE: f64 = 0.01;
 /// Steps and seconds of one run.
 const STEPS: u64 = 20_000;
@@ -34,7 +34,7 @@ fn run(case: &Case) -> Option<Summary> {
     (summary.status == Status::Finished).then_some(summary)
 }
 
-/// Largest change of a quantity that is more than round-off beside others of its unit, with its name.
+/// Largest relative change of a quantity that exceeds rounding errors, with its name.
 fn change(a: &Summary, b: &Summary) -> (f64, String) {
     let size = |name: &str| a.quantities[name].figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
     let unit = |name: &str| name.rsplit('_').next().map(str::to_owned);
@@ -42,14 +42,14 @@ fn change(a: &Summary, b: &Summary) -> (f64, String) {
     for (name, of_a) in &a.quantities {
         let Some(of_b) = b.quantities.get(name) else { continue };
         let alike = a.quantities.keys().filter(|n| unit(n) == unit(name));
-        // angles have no other quantity beside them: that of a clamped end is the round-off of cosines
+        // angles have no other quantity of their unit: that of a clamped end is a rounding error of cosines
         let alone = if unit(name).as_deref() == Some("rad") {
             1e-6
         } else {
             0.0
         };
         let largest = alike.map(|n| size(n)).fold(alone, f64::max);
-        // ratios of energies are as good as the energies
+        // efficiencies are as accurate as the energies
         if size(name) <= 1e-6 * largest || name == "efficiency" {
             continue;
         }
@@ -63,16 +63,16 @@ fn change(a: &Summary, b: &Summary) -> (f64, String) {
     worst
 }
 
-/// What became of a scene.
+/// Verdict on a scene.
 #[derive(Clone, Debug)]
 enum Fate {
-    /// Refused, failed or too long, as a full model.
+    /// The full model is rejected, fails or takes too long.
     Unusable,
-    /// Nothing is left out but what is exact.
+    /// Only exact omissions.
     Whole,
-    /// Within the tolerance; the part of the full model's work that is left.
+    /// Within the tolerance, with the remaining share of the full model's work.
     Within(f64),
-    /// Beyond it: by how much, and what was left out.
+    /// Beyond the tolerance, with the error and the omitted effects.
     Beyond(String),
 }
 
@@ -103,7 +103,7 @@ fn judge(seed: u64) -> Fate {
     if changed <= TOLERANCE {
         return Fate::Within(saved);
     }
-    // what the integrator itself does not know
+    // uncertainty of the integrator itself
     let finer = load(text, "full", 1e-6).and_then(|case| run(&case));
     let floor = finer.map_or(0.0, |finer| change(&of_full, &finer).0);
     if changed <= TOLERANCE + 3.0 * floor {
@@ -115,7 +115,7 @@ fn judge(seed: u64) -> Fate {
     ))
 }
 
-/// Judges seeds on all cores and prints the tally; returns scenes judged and misses.
+/// Judges seeds on all cores and prints the tally; returns the numbers of judged scenes and of misses.
 fn judge_all(count: u64) -> (usize, usize) {
     let (next, fates) = (AtomicU64::new(0), Mutex::new(BTreeMap::new()));
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -154,8 +154,8 @@ fn judge_all(count: u64) -> (usize, usize) {
     (whole + saved.len() + beyond.len(), beyond.len())
 }
 
-/// Goal: in 95 % of random scenes the quantities of the automatic model are within the tolerance of the full model's.
-/// 120 of them here; `cargo test --release --test stability chooser -- --ignored --nocapture` judges 600.
+/// Goal: in 95 % of random scenes the quantities of the automatic model are within the tolerance of the full model's. This test judges 120;
+/// `cargo test --release --test stability chooser -- --ignored --nocapture` judges 600.
 #[test]
 fn chooser_keeps_what_it_promises() {
     let (judged, missed) = judge_all(120);
@@ -163,8 +163,8 @@ fn chooser_keeps_what_it_promises() {
     assert!(20 * missed <= judged, "{missed} of {judged}");
 }
 
-/// Goal: what flows along bladders is small beside the motion, by 4e-4 and 6e-4 of a bladder's own time here, but damps
-/// vibrations of hundreds of cycles by more than the tolerance.
+/// Goal: the time of flow along bladders is small here relative to the motion (4e-4 and 6e-4), but the flow damps vibrations of hundreds of
+/// cycles by more than the tolerance.
 #[test]
 fn what_damps_long_vibrations_stays() {
     for seed in [373, 414] {

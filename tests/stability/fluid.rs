@@ -5,9 +5,9 @@ use slcbeam::run::summary::Status;
 use crate::harness::{COMBINATIONS, CREEPING, ENERGY_PER_RTOL, Ran, STIFF_VOLUME, VOLUME, distance, off, run};
 
 /// Source: `docs/model.md` sections 3 and 7. Goal: permeability from 10^-6 to 10^6 of the paper's, in every formulation and coupling:
-/// balances close, work stays in one band, and both ends are limits (sealed bladders, one pressure).
-/// Tolerance 1 %: at the ends the fluid's time differs from its limit by 10^-4 and less; what is left is two runs' rtol,
-/// a thousandfold amplified by the waves that follow the start.
+/// balances close, work remains in one band, and both ends are limits (sealed bladders, one pressure).
+/// Tolerance 1 %: at the ends the fluid's time differs from its limit by at most 10^-4; the remaining error is that of two runs at rtol,
+/// amplified a thousandfold by the waves after the start.
 #[test]
 fn permeability_over_twelve_decades() {
     for (name, sets) in COMBINATIONS {
@@ -32,8 +32,8 @@ fn permeability_over_twelve_decades() {
     }
 }
 
-/// Source: `docs/model.md` section 11. Goal: viscosity over eight decades, so that `t_s/t_f` is far above and far below one.
-/// Tolerance as above; the ends are a decade apart and nearer to the middle, hence 2 %.
+/// Source: `docs/model.md` section 11. Goal: viscosity over eight decades, so that `t_s/t_f` is far above and far below one. Tolerance as
+/// above; the ends are a decade closer to the middle, hence 2 %.
 #[test]
 fn viscosity_over_eight_decades() {
     for (name, sets) in COMBINATIONS {
@@ -62,9 +62,9 @@ fn viscosity_over_eight_decades() {
     }
 }
 
-/// Source: `docs/model.md` section 5 (valves). Goal: valves that close in 1 ms and in 1 us, exactly zero in between; one millisecond
-/// more or less of closing changes the deflection by the flow of that millisecond, 1 %.
-/// Seen before: with 1 us the largest step was a 16th of a microsecond for the whole run, 1.9 million steps.
+/// Source: `docs/model.md` section 5 (valves). Goal: valves that close in 1 ms and in 1 us, with zero flow while closed. A millisecond of
+/// closing changes the deflection by the flow of that millisecond, 1 %.
+/// Before, with 1 us the largest step was a 16th of a microsecond for the whole run: 1.9 million steps.
 #[test]
 fn valves_in_a_millisecond_and_a_microsecond() {
     for (name, sets) in COMBINATIONS {
@@ -78,9 +78,9 @@ fn valves_in_a_millisecond_and_a_microsecond() {
     }
 }
 
-/// Goal: a valve that shuts over 50 ms, to nothing in the end. Bound: the balance closes to a few rtol, 1.6 to 2.6 when this was written; 10 to 950
-/// were seen where trust in the contraction of Newton's iteration did not fade from stage to stage. Looser than 8e-5 a step may pass over the end of
-/// the closing, and leaves 15 to 40 rtol whatever the iteration.
+/// Goal: a valve that closes completely within 50 ms. Bound: the balance closes to a few rtol, 1.6 to 2.6 when this was written. It was
+/// open by 10 to 950 when the contraction estimate of Newton's iteration did not fade from stage to stage. Above rtol 8e-5, a step may pass
+/// over the end of the closing and leave 15 to 40 rtol with any iteration.
 #[test]
 fn a_valve_that_shuts_slowly() {
     for rtol in ["6e-5", "1e-5", "1e-6"] {
@@ -91,8 +91,8 @@ fn a_valve_that_shuts_slowly() {
     }
 }
 
-/// Goal: a valve that is shut for ever is no tube at all. Tolerance: two meshes of unknowns, one solution; the runs
-/// differ by their steps alone, 100 rtol.
+/// Goal: a valve that is always closed acts like no tube. Tolerance: the same solution with two sets of unknowns; the runs differ only by
+/// their steps, 100 rtol.
 #[test]
 fn closed_valves_are_walls() {
     for (name, sets) in COMBINATIONS {
@@ -104,8 +104,8 @@ fn closed_valves_are_walls() {
     }
 }
 
-/// Goal: pressure ports that jump and follow corners, a flow port switched on and off. The dose of 2e-6 m^3/s for 10 ms
-/// stays in the lower row; all volumes balance with the ports' flows, within the integrator's error of those.
+/// Goal: pressure ports that jump and follow corners, a flow port switched on and off. The dose of 2e-6 m^3/s for 10 ms remains in the
+/// lower row; all volumes balance with the port flows, within their integration error.
 #[test]
 fn ports_that_switch() {
     for (name, sets) in COMBINATIONS {
@@ -115,14 +115,14 @@ fn ports_that_switch() {
         let volume = ran.summary.balances.volume_residual_relative;
         let ran = ran.line(&format!("{name}, volume with ports {volume:.1e}"));
         assert!(volume < 1e-3, "{name}: {volume}");
-        // Behind it, 2e-8 m^3 in ten bladders of 8.05e-12 m^3/Pa: 248 Pa each, less what stretching takes (model.md 7).
+        // 2e-8 m^3 in ten bladders of 8.05e-12 m^3/Pa behind it: 248 Pa each, minus the effect of stretching (model.md 7)
         let mean = ran.last("max_pressure");
         assert!((50.0..1e3).contains(&mean), "{name}: {mean} Pa");
     }
 }
 
-/// Goal: 20 kPa at once. The undamped beam overshoots to about twice the static deflection, never much more: the front
-/// takes 4 ms, a fifth of the first period, so less than 2; modes above the first may add a tenth.
+/// Goal: a sudden pressure of 20 kPa. The undamped beam overshoots to almost twice the static deflection: the front takes 4 ms, a fifth of
+/// the first period, so less than 2; modes above the first may add a tenth.
 #[test]
 fn a_pressure_step() {
     for (name, sets) in COMBINATIONS {
@@ -135,8 +135,8 @@ fn a_pressure_step() {
     }
 }
 
-/// Goal: conductances that differ by 10^8 through one junction. In 0.3 s nothing passes the fine branches (time constants
-/// of minutes and more), so leaving them out gives the same: 0.1 %.
+/// Goal: conductances that differ by 10^8 in one junction. In 0.3 s nothing flows through the small branches (time constants of minutes and
+/// more), so removing them gives the same result: 0.1 %.
 #[test]
 fn wildly_unequal_tubes() {
     for (name, sets) in COMBINATIONS {
@@ -155,10 +155,10 @@ fn wildly_unequal_tubes() {
     }
 }
 
-/// Goal: networks in pieces and bladders sealed singly; every piece keeps its volume to round-off. With nothing to damp
-/// them, short axial waves take up energy that the published form and the published coupling inject together (work_formulation and
-/// work_reciprocity reach a fifth of the energy, the same at rtol 1e-6 within a twentieth): followed in 150 000 steps,
-/// with an energy residual of 1800 rtol, hence 5000 rtol for that pair.
+/// Goal: separate networks and singly sealed bladders; every part keeps its volume to rounding errors. Short undamped axial waves absorb
+/// energy that the published form and the published coupling inject together: work_formulation and work_reciprocity reach a fifth of the
+/// energy, also at rtol 1e-6 to a twentieth. The run resolves them in 150 000 steps with an energy residual of 1800 rtol, hence 5000 rtol
+/// for that pair.
 #[test]
 fn islands_and_sealed_bladders() {
     for (name, sets) in COMBINATIONS {
@@ -179,9 +179,9 @@ fn islands_and_sealed_bladders() {
     }
 }
 
-/// Source: `docs/model.md` section 12. Goal: the run ends where bladders collapse, with time and cause. Both rows are sucked
-/// alike, so M = N = 0 in the mean and `p = -h_b w_b/a_p` when `r(s) = h_b w_b/(a_p 5e5 Pa)`, `t = 0.5 s`; tolerance the
-/// output interval and the time of the network, 1 ms and 4 ms.
+/// Source: `docs/model.md` section 12. Goal: the run ends at the collapse of bladders, with time and cause. Suction is equal in both rows,
+/// so the mean M and N are 0 and `p = -h_b w_b/a_p` when `r(s) = h_b w_b/(a_p 5e5 Pa)`, `t = 0.5 s`. Tolerance: output interval and time
+/// constant of the network, 1 ms and 4 ms.
 #[test]
 fn a_bladder_driven_to_closure() {
     let ran = run("closing-bladder", &[]);
@@ -205,8 +205,8 @@ fn a_bladder_driven_to_closure() {
     assert!(ran.last("least_opening") <= 0.0 && ran.record.rows.len() > 100);
 }
 
-/// Goal: published against reciprocal kinks from blunt to a millionth, crossed twice a period in every segment. Work grows
-/// slowly with sharpness, deflections change by less than 1 % below a width of 1e-4 (`docs/model.md` section 3).
+/// Goal: published against reciprocal kinks with widths down to a millionth, crossed twice a period in every segment. Work grows slowly
+/// with sharpness; deflections change by less than 1 % below a width of 1e-4 (`docs/model.md` section 3).
 #[test]
 fn kinks_crossed_every_half_cycle() {
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
@@ -223,11 +223,10 @@ fn kinks_crossed_every_half_cycle() {
     }
 }
 
-/// Goal: a pump on a network that equalises 10^8 times faster than the paper's. A flow through its port told from pressures
-/// would be a difference of nearly equal ones times a huge conductance; told from what the network stores, energy and
-/// volume balances close, the energy's but for the flows inside, whose noise squared is dissipation. Pressure and deflection are the same with a hundredth of the tolerance, within 1000 rtol.
-/// Round-off of the matrix costs sealed bladders 1e-16 times 10^8, a thousand steps. Found by random cases (seeds 24, 43,
-/// 66).
+/// Goal: a pump on a network that equalizes 10^8 times faster than the paper's. A port flow computed from pressures would be a tiny
+/// difference times a huge conductance. From the stored volume, the energy and volume balances close, except for the squared noise of
+/// internal flows, which counts as dissipation. With a hundredth of the tolerance, pressure and deflection agree within 1000 rtol. Rounding
+/// errors of the matrix in sealed bladders: 1e-16 times 10^8, in a thousand steps. Found by random cases (seeds 24, 43, 66).
 #[test]
 fn a_port_without_resistance() {
     for (name, sets) in COMBINATIONS {
@@ -245,9 +244,9 @@ fn a_port_without_resistance() {
     }
 }
 
-/// Goal: a root that moves slowly, 10^5 times as far as it stretches the beam. Nothing is rejected step after step, and the
-/// pressures that the small stretch makes are those of a hundredth of the tolerance, within 1000 rtol. (With the root's
-/// motion inside the unknowns: 27 000 steps of order 1, each rejected once.)
+/// Goal: a root that moves slowly over 10^5 times the stretch of the beam. Steps are not rejected repeatedly, and the pressures by the
+/// small stretch agree with those of a hundredth of the tolerance, within 1000 rtol. (With the motion of the root in the unknowns: 27 000
+/// steps of order 1, each rejected once.)
 #[test]
 fn a_slow_drive() {
     for (name, sets) in COMBINATIONS {

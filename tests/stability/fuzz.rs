@@ -14,29 +14,29 @@ use slcbeam::run::summary::Status;
 use crate::fuzz_case;
 use crate::harness::{BUDGET, Budget};
 
-/// Steps and seconds of one run. A case that needs more is tallied, not judged: mostly undamped waves started by a jump,
-/// followed as the tolerance asks.
+/// Budget of steps and seconds of one run. Longer runs are counted, not judged: mostly undamped waves from an abrupt start, resolved as the
+/// tolerance requires.
 const STEPS: u64 = 20_000;
-/// Only a net under the steps, which decide.
+/// Safety limit; the step limit is decisive.
 const SECONDS: f64 = 60.0;
 
-/// Energy residual up to which a balance is closed, as in the run's own warning. Not in units of rtol: the largest energy
-/// of a random case may be far below the sizes to which tolerances refer (a small load beside a large driven motion).
+/// Energy residual below which a balance is closed, as in the run's own warning. It is not in units of rtol: the largest energy of a random
+/// case may be far below the scales of the tolerances (a small load with a large driven motion).
 const CLOSED: f64 = 0.01;
 
-/// Volume that a closed network may lose: round-off of flows between nearly equal pressures and of the matrix, 1e-16 times
-/// step over time constant (up to 10^10 here, 2.5e-7 seen).
+/// Accepted volume loss of a closed network: rounding errors of flows between nearly equal pressures and of the matrix, 1e-16 times step
+/// over time constant (up to 10^10 here, 2.5e-7 observed).
 const VOLUME: f64 = 1e-6;
 
 /// Verdict on one seed.
 enum Verdict {
-    /// One word, for the tally.
+    /// Good, with a word for the tally.
     Good(&'static str),
-    /// What is wrong.
+    /// Failed, with the reason.
     Bad(String),
 }
 
-/// The verdict, and what the run told about itself.
+/// Verdict of a seed, and the warnings of the run.
 fn judge(seed: u64) -> (Verdict, String) {
     let text = fuzz_case::text(seed);
     let mut told = String::new();
@@ -118,8 +118,8 @@ fn run(text: &str, told: &mut String) -> Verdict {
     }
 }
 
-/// A run whose energy balance does not close has warned of it. Whether its answer is right all the same: with a hundredth
-/// of the tolerance it changes by less than 5 % of its largest value, counted from a thousandth of the sizes at hand.
+/// A run with an open energy balance has warned of it. The answer is right all the same if a hundredth of the tolerance changes it by less
+/// than 5 % of its largest value, counted from a thousandth of the scales.
 fn confirm(mut case: slcbeam::case::Case, loose: &Memory) -> Verdict {
     let tight = case.solver.rtol < 5e-5;
     case.solver.rtol = (0.01 * case.solver.rtol).max(1e-9);
@@ -150,14 +150,14 @@ fn confirm(mut case: slcbeam::case::Case, loose: &Memory) -> Verdict {
     })
 }
 
-/// Seeds of cases that went wrong once stay here for ever.
+/// Seeds that failed once; they remain in the test permanently.
 const REGRESSIONS: [u64; 5] = [
-    // no consistent start, for round-off of rates in networks that equalise in nanoseconds
+    // no consistent start, because of rounding errors of rates in networks that equalize in nanoseconds
     41, 44, 90, 123, 170,
 ];
 
-/// Goal: 200 random cases (SLCBEAM_FUZZ says how many) end well; most of what is generated must be a real test: at
-/// least half finishes, at most a tenth is refused by the case check.
+/// Goal: 200 random cases (or SLCBEAM_FUZZ of them) end well. Most must be real tests: at least half finishes, and the case check rejects
+/// at most a tenth.
 #[test]
 fn random_cases_finish_or_are_diagnosed() {
     let wanted: Option<u64> = std::env::var("SLCBEAM_FUZZ").ok().and_then(|n| n.parse().ok());
@@ -196,7 +196,7 @@ fn random_cases_finish_or_are_diagnosed() {
     }
     println!("  {:5} wrong", bad.len());
     assert!(bad.is_empty(), "{}", bad.join("\n"));
-    // Of 2000, 14 % stay open, 3 % are off: at rtol 1e-3, which is good for 3 % of the answer, nearly half; at 1e-6, 2 %.
+    // Of 2000, 14 % have open balances and 3 % are wrong: at rtol 1e-3, which gives 3 % of the answer, nearly half; at 1e-6, 2 %.
     let with = |what: &str| -> u64 {
         counts
             .iter()

@@ -1,4 +1,4 @@
-//! Random cases a user might write: every geometry, wiring, end, load, start, law and tolerance, within wide ranges.
+//! Random plausible cases: every geometry, wiring, end, load, start, law and tolerance, within wide ranges.
 
 use std::f64::consts::PI;
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::chance::Random;
 
-/// Sizes of the beam that the rest of the case is drawn in proportion to.
+/// Scales of the beam, to which the rest of the case is proportional.
 struct Beam {
     length: f64,
     height: f64,
@@ -146,7 +146,7 @@ fn network(r: &mut Random, b: &Beam, per_row: usize, section: f64, ap: f64, case
     if r.one_in(2) {
         order.sort_unstable();
     }
-    // Pressures that open or close a bladder by up to a third; flows that fill a third in a period.
+    // pressures that open or close a bladder by up to a third; flows that fill a third in a period
     let (pressure, flow) = (0.3 * section / ap, 0.3 * section * b.width / b.period);
     let (mut chains, mut ports, mut free) = (vec![], vec![], vec![]);
     let mut rest = order.as_slice();
@@ -223,7 +223,7 @@ fn network(r: &mut Random, b: &Beam, per_row: usize, section: f64, ap: f64, case
     });
 }
 
-/// A signal of about the given size; the first second is that of the beam's period.
+/// A signal of about the given size; its first second is scaled to the beam's period.
 fn signal(r: &mut Random, b: &Beam, size: f64) -> Value {
     let amplitude = size * r.sign() * r.log(0.01, 1.0);
     let t = b.period;
@@ -318,7 +318,7 @@ fn loads(r: &mut Random, b: &Beam, case: &mut Value) {
 fn start(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
     let mut start = json!({});
     if r.one_in(4) {
-        // Nothing at either end, whatever holds it: x^2 (1 - x)^2.
+        // x^2 (1 - x)^2: zero at both ends, for any support
         let a = b.length * r.log(1e-4, 1.0);
         start["u1_m"] = json!({"polynomial": {"coefficients": [0.0, 0.0, a, -2.0 * a, a]}});
     }

@@ -1,4 +1,4 @@
-//! Case texts with tokens deleted, doubled, exchanged, and random bytes: an answer, never a panic.
+//! Case texts with deleted, doubled and exchanged tokens, and random bytes: always an answer, never a panic.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use slcbeam::error::Error;
 
 use crate::chance::Random;
 
-/// Letters of text that looks like JSON.
+/// Characters of JSON-like text.
 const ALPHABET: &[u8] = b"{}[]:,\"\\0123456789.eE+-truefalsn \n";
 
-/// Odd tokens to put in.
+/// Unusual tokens to insert.
 const ODD: [&str; 16] = [
     "null",
     "true",
@@ -72,7 +72,7 @@ fn shipped() -> Vec<String> {
         .collect()
 }
 
-/// True when the text is a case after all; faults must be told and have a place.
+/// True if the text is a valid case; faults must have a message and a place.
 fn read(text: &str) -> bool {
     match case::parse(text, Path::new("x.json"), Path::new("cases"), &[]) {
         Ok(_) => true,
@@ -89,7 +89,7 @@ fn read(text: &str) -> bool {
     }
 }
 
-/// Goal: one to four tokens of every shipped case deleted, doubled, swapped or replaced, 2000 times.
+/// Goal: one to four tokens of every shipped case are deleted, doubled, swapped or replaced, 2000 times.
 #[test]
 fn mutated_cases_are_read_or_refused() {
     let texts = shipped();
@@ -119,7 +119,7 @@ fn mutated_cases_are_read_or_refused() {
     println!("mutated cases: {count}, still valid {sound}, refused {}", count - sound);
 }
 
-/// Goal: random bytes, as far as they are text, and random printable text.
+/// Goal: random bytes that form valid text, and random printable text.
 #[test]
 fn random_bytes_are_refused() {
     let mut r = Random(11);

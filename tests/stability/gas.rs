@@ -1,10 +1,10 @@
-//! Gas through orifices at pressure ratios at which a real orifice chokes.
+//! Gas flow through orifices at pressure ratios at which real orifices choke.
 
 use slcbeam::run::summary::Status;
 
 use crate::harness::{Ran, VOLUME, distance, run};
 
-/// A BDF and a one-step method, each loose and tight; the last is what the others are compared with.
+/// BDF and a one-step method, each with a loose and a tight tolerance; the last is the reference of the others.
 const SOLVERS: [(&str, f64, &str); 4] = [
     ("IDA", 1e-3, r#"/solver={"method":"ida","rtol":1e-3}"#),
     ("ESDIRK46", 1e-3, r#"/solver={"method":"esdirk46","rtol":1e-3}"#),
@@ -12,25 +12,25 @@ const SOLVERS: [(&str, f64, &str); 4] = [
     ("ESDIRK46", 1e-6, r#"/solver={"method":"esdirk46","rtol":1e-6}"#),
 ];
 
-/// Energy residual in units of rtol. Nothing here swings for long, so that it is far below the bound of all hard cases.
+/// Energy residual in units of rtol. Nothing oscillates for long here, so it is far below the bound of all hard cases.
 const ENERGY: f64 = 30.0;
 
 /// Gauge pressures of supply and chamber [Pa].
 const SUPPLY: f64 = 2e5;
 const CHAMBER: f64 = -1e5;
 
-/// The Mach number that W024 tells.
+/// The Mach number reported by W024.
 fn mach(ran: &Ran) -> f64 {
     let told = ran.summary.warnings.iter().find_map(|w| w.strip_prefix("W024"));
     let number = told.and_then(|w| w.split("reached ").nth(1)?.split(' ').next()?.parse().ok());
     number.unwrap_or_else(|| panic!("{}: no W024: {:?}", ran.name, ran.summary.warnings))
 }
 
-/// Source: [E54] to [E56]. Goal: a row of air that is emptied into 1.3 kPa, filled from 3 bar and emptied again (pressure ratios 75 and 230), through
-/// orifices from a tenth of a millimetre to a centimetre wide, at rtol 1e-3 and 1e-6, by BDF and by a one-step method. By the law of viscous
-/// flow gas is faster than sound, and told to be (W024); mass closes to round-off, energy to the tolerance, all four agree, and no pressure
-/// leaves what chamber and supply span (but for 100 Pa by which the beam, still on its way, presses the row). Tolerance of agreement: 30 rtol, the error of a step times the few dozen in which anything moves;
-/// some ten times that for the narrow one, which fills to a sixteenth of the supply, to which scales refer.
+/// Source: [E54] to [E56]. Goal: a row of air is emptied into 1.3 kPa, filled from 3 bar and emptied again (pressure ratios 75 and 230),
+/// through orifices from 0.1 mm to 1 cm wide, at rtol 1e-3 and 1e-6, by BDF and by a one-step method. By the law of viscous flow the gas is
+/// supersonic, with the warning W024. Mass closes to rounding errors, energy to the tolerance, and all four runs agree. No pressure leaves
+/// the range of chamber and supply, except for 100 Pa by the moving beam. Tolerance: 30 rtol, the error of a step times a few dozen active
+/// steps; ten times that for the narrow orifice, which fills only to a sixteenth of the supply, the reference of the scales.
 #[test]
 fn choking_gas() {
     for (radius, apart_per_rtol) in [(5e-5, 500.0), (5e-4, 30.0), (5e-3, 30.0)] {
@@ -66,8 +66,8 @@ fn choking_gas() {
 }
 
 /// Goal: chambers down to a hundred-thousandth of ambient pressure, at every tolerance from 1e-2 to 1e-6, by both methods: all runs finish.
-/// Seen before: in the pressure of a junction flow loses its slope towards vacuum, and with it Newton's iteration: 5 of these 40 failed. Its unknown
-/// is Ψ now, in which it is linear.
+/// Before, the unknown of a junction was its pressure, in which the slope of the flow vanishes towards vacuum: 5 of these 40 runs failed in
+/// Newton's iteration. The unknown is now Ψ, in which the flow is linear.
 #[test]
 fn orifices_into_vacuum() {
     for chamber in [-100_500.0, -101_000.0, -101_300.0, -101_324.0] {
@@ -87,10 +87,10 @@ fn orifices_into_vacuum() {
     }
 }
 
-/// Goal: a chamber that takes all but a thousandth of the gas away, about which the equations are: the run ends with a time and that cause, not with
-/// numbers, by whatever method and tolerance. Tolerance of the time: what is left falls as 1/t, so that an error of its pressure by rtol of
-/// the supply moves the end by twice itself at rtol 1e-3, where 200 Pa stand against the 101 that decide: half to double; at 1e-6 it is 0.2 %, and
-/// the ends of steps of a tenth of the time, between which a cubic looks for it, ten times that.
+/// Goal: a chamber that removes all but a thousandth of the gas, the limit of the equations: the run ends with a time and that cause, by
+/// any method and tolerance. Tolerance of the time: the remaining pressure falls as 1/t, so an error of rtol of the supply changes the end
+/// by twice itself. At rtol 1e-3, with 200 Pa against the decisive 101 Pa, the end is within half to double; at 1e-6 the error is 0.2 %,
+/// and ten times that by the interpolation within steps of a tenth of the time.
 #[test]
 fn all_gas_gone_is_diagnosed() {
     let ends = SOLVERS.map(|(method, rtol, solver)| {

@@ -1,4 +1,4 @@
-//! Instabilities that are physical, with their growth rates, and the neighbours that must not grow.
+//! Physical instabilities with their growth rates, and nearby stable cases.
 
 use nalgebra::Complex;
 use slcbeam::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
@@ -30,9 +30,9 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     above / points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>()
 }
 
-/// Source: `model::characteristic::mathieu_growth` (single mode, monodromy matrix). Goal: inside the tongue growth is the
-/// physical one, outside there is none. Tolerance 2 %: the higher modes left out change it by the square of the modulation
-/// over their distance, the mesh of 40 cells detunes by 1e-3 of a tongue of 5e-2.
+/// Source: `model::characteristic::mathieu_growth` (single mode, monodromy matrix). Goal: inside the tongue growth is the physical one,
+/// outside there is none. Tolerance 2 %: neglected higher modes change it by the square of the modulation over their distance; the mesh of
+/// 40 cells detunes by 1e-3 of a tongue of 5e-2.
 #[test]
 fn mathieu_inside_and_outside_the_tongue() {
     let first = 1.875_104_068_712_f64.powi(2) * (EI / MASS).sqrt();
@@ -61,9 +61,9 @@ fn beck(p: f64, w: Complex<f64>) -> Complex<f64> {
     w * w * 2.0 * (a.cosh() * b.cos() + 1.0) + w * p * a.sinh() * b.sin() + p * p
 }
 
-/// Source: Beck 1952; flutter at `P l^2/EI = 20.0510` with `w = 11.0156` (`docs/exact-results.md` section 1). Goal: a follower load 8 % below
-/// swings for ever, 10 % above flutters with the rate of the exact characteristic equation. Tolerance 5 %: the
-/// rate goes with the root of the distance to 20.05, which 40 cells shift by 0.2 %, a twentieth of it.
+/// Source: Beck 1952; flutter at `P l^2/EI = 20.0510` with `w = 11.0156` (`docs/exact-results.md` section 1). Goal: a follower load 8 %
+/// below oscillates forever, 10 % above it flutters with the rate of the exact characteristic equation. Tolerance 5 %: the rate is
+/// proportional to the root of the distance to 20.05, which 40 cells shift by 0.2 %, a twentieth of it.
 #[test]
 fn beck_below_and_above_flutter() {
     assert!(beck(20.050_953_6, Complex::new(11.015_557_6, 0.0)).norm() < 1e-2);
@@ -125,9 +125,9 @@ fn first_root(load: f64) -> f64 {
     low
 }
 
-/// Source: the exact characteristic equation. Goal: a hundredth below the buckling load the column swings with its slow
-/// frequency, a hundredth above it falls with its slow rate. Tolerance 1 %: the mesh shifts the load by 3e-5 (80 cells),
-/// compression by 2e-5, together 0.3 % of the rate at a distance of 1 %.
+/// Source: the exact characteristic equation. Goal: a hundredth below the buckling load the column oscillates with its slow frequency, a
+/// hundredth above it falls with its slow rate. Tolerance 1 %: the mesh shifts the load by 3e-5 (80 cells), compression by 2e-5, together
+/// 0.3 % of the rate at a distance of 1 %.
 #[test]
 fn columns_around_their_buckling_load() {
     let critical = std::f64::consts::PI.powi(2) * EI / 4.0;

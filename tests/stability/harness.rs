@@ -1,4 +1,4 @@
-//! Runs with a budget, what every sound run must show, and the printed lines.
+//! Runs with a budget, checks of every sound run, and the printed lines.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -9,14 +9,14 @@ use slcbeam::run::dynamics;
 use slcbeam::run::record::{Control, Header, Memory, Progress, Recorder};
 use slcbeam::run::summary::{Status, Summary};
 
-/// Reason of a run that was stopped because its budget was used up, not because anything went wrong.
+/// Reason of a run that stopped because its budget was used up, not because of a failure.
 pub const BUDGET: &str = "budget";
 
 /// The published coupling of the paper.
 pub const PUBLISHED: &str =
     r#"/bladders/coupling={"published": {"slope_per_pressure_rad": 0.00381467, "length_per_pressure_m": 0.01}}"#;
 
-/// Flow in tubes creeps.
+/// Creeping flow in tubes.
 pub const CREEPING: &str = r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#;
 
 /// Every formulation with every coupling, with a name.
@@ -33,20 +33,20 @@ pub const COMBINATIONS: [(&str, [&str; 2]); 4] = [
     ("published, published", [r#"/formulation="published""#, PUBLISHED]),
 ];
 
-/// Errors of single steps, each below rtol of the scales, add up over the characteristic times of a run; of all hard
-/// cases none needs more than 1000 of them, so that the energy balance closes within `1000 rtol` of the largest energy.
+/// Errors of single steps, each below rtol of the scales, add up over the characteristic times of a run. No hard case needs more than 1000
+/// of them, so that the energy balance closes within `1000 rtol` of the largest energy.
 pub const ENERGY_PER_RTOL: f64 = 1000.0;
 
-/// Closed networks lose nothing but round-off: 1e-16 a step, at random, over at most 10^6 steps, with some room.
+/// Closed networks lose volume only by rounding errors: 1e-16 per step, random, over at most 10^6 steps, with a margin.
 pub const VOLUME: f64 = 1e-12;
 
-/// Round-off of flows between nearly equal pressures is 1e-16 times step over time constant, here up to 10^7, in each of
-/// some thousand steps, at random.
+/// Rounding errors of flows between nearly equal pressures: 1e-16 times step over time constant, here up to 10^7, random, in each of some
+/// thousand steps.
 pub const STIFF_VOLUME: f64 = 3e-8;
 
-/// Keeps everything in memory and stops when steps or time are used up.
+/// Recorder that keeps everything in memory and stops when the steps or the time are used up.
 pub struct Budget {
-    /// What was recorded.
+    /// The recorded data.
     pub memory: Memory,
     steps: u64,
     until: Instant,
@@ -84,7 +84,7 @@ impl Recorder for Budget {
     }
 }
 
-/// A run that ended in whatever way.
+/// A run, however it ended.
 pub struct Ran {
     /// File and settings, for messages.
     pub name: String,
@@ -94,7 +94,7 @@ pub struct Ran {
     pub summary: Summary,
     /// Fault of the solver.
     pub fault: Option<SolverError>,
-    /// What was recorded.
+    /// The recorded data.
     pub record: Memory,
 }
 
@@ -109,7 +109,7 @@ pub fn case(file: &str, sets: &[&str]) -> Case {
     }
 }
 
-/// Runs a hard case with settings; more than three million steps or a minute are a failure of the suite itself.
+/// Runs a hard case with settings; more than three million steps or a minute are a failure of the suite.
 pub fn run(file: &str, sets: &[&str]) -> Ran {
     let case = case(file, sets);
     let mut recorder = Budget::new(3_000_000, 60.0);
@@ -125,12 +125,12 @@ pub fn run(file: &str, sets: &[&str]) -> Ran {
 }
 
 impl Ran {
-    /// Finished, all numbers finite, balances closed.
+    /// Asserts that the run finished with finite numbers and closed balances.
     pub fn sound(self) -> Self {
         self.sound_with(ENERGY_PER_RTOL, VOLUME)
     }
 
-    /// The same with other bounds on the energy residual, in units of rtol, and on the volume lost by closed networks.
+    /// Like [`Ran::sound`], with other bounds on the energy residual, in units of rtol, and on the volume loss of closed networks.
     pub fn sound_with(self, energy_per_rtol: f64, closed_volume: f64) -> Self {
         let (s, b) = (&self.summary, &self.summary.balances);
         assert_eq!(s.status, Status::Finished, "{}: {:?}", self.name, s.reason);
@@ -154,7 +154,7 @@ impl Ran {
         self
     }
 
-    /// Steps within a band around what was measured when the suite was written.
+    /// Asserts a number of steps within a band around the value measured when the suite was written.
     pub fn steps_within(self, low: u64, high: u64) -> Self {
         let steps = self.steps();
         assert!(

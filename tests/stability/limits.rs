@@ -1,11 +1,11 @@
-//! Nothing at all, next to nothing, and too much.
+//! Zero loads, tiny loads, and impossible ones.
 
 use slcbeam::run::summary::Status;
 
 use crate::harness::{COMBINATIONS, run};
 
-/// Goal: a resting beam stays at rest for 10^6 s, in a handful of steps (steps double from a thousandth of the run to a
-/// tenth of it; 10 + 10 + the start).
+/// Goal: a resting beam remains at rest for 10^6 s, in a handful of steps (steps double from a thousandth of the run to a tenth of it; 10 +
+/// 10 + the start).
 #[test]
 fn rest_for_a_million_seconds() {
     for (name, sets) in COMBINATIONS {
@@ -17,8 +17,8 @@ fn rest_for_a_million_seconds() {
     }
 }
 
-/// Goal: a load for a second, then rest for 10^6 s: nine decades of time, a few hundred steps. Seen before the axial scale
-/// knew of bending: 3.7 million steps for the first quarter.
+/// Goal: a load for a second, then rest for 10^6 s: nine decades of time in a few hundred steps. Before the axial scale depended on
+/// bending: 3.7 million steps for the first quarter.
 #[test]
 fn settling_for_a_million_seconds() {
     for (name, sets) in COMBINATIONS {
@@ -32,8 +32,8 @@ fn settling_for_a_million_seconds() {
     }
 }
 
-/// Goal: the impossible (a root that runs into the beam faster than axial waves leave it) ends with a time, a place and a
-/// cause, not with numbers.
+/// Goal: an impossible motion (a root that runs into the beam faster than axial waves) ends with a time, a place and a cause instead of
+/// numbers.
 #[test]
 fn a_crushed_beam_is_diagnosed() {
     for (name, sets) in &COMBINATIONS[..2] {

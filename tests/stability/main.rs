@@ -1,4 +1,4 @@
-//! Hard cases: whatever physically sensible case is run, it ends with a right answer or with a diagnosis to act on.
+//! Hard cases: every physically sensible case ends with a right answer or with a diagnosis and a remedy.
 //!
 //! Every test prints a line `case | steps | energy | volume | figures` for the table of `docs/stability.md`:
 //!
@@ -7,7 +7,7 @@
 //! SLCBEAM_FUZZ=2000 cargo test --release --test stability fuzz -- --nocapture
 //! ```
 //!
-//! Work is held within bands of steps, never of wall time.
+//! Bounds on work are in steps, not in wall time.
 
 #[path = "../common/chance.rs"]
 mod chance;

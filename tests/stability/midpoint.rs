@@ -1,17 +1,17 @@
-//! Why force and moment are averaged over a segment and not sampled at its midpoint (`docs/model.md` section 7).
+//! Reason for averaging force and moment over a segment instead of sampling at its midpoint (`docs/model.md` section 7).
 //!
-//! A linear axial model of the paper's beam, written here only: 10 segments of K cells, both rows joined in chains alike
-//! (wiring I), one volume a bladder, the published coupling with the slope `aN+`.
+//! A linear axial model of the paper's beam, local to this file: 10 segments of K cells, both rows chained alike (wiring I), one volume per
+//! bladder, the published coupling with the slope `aN+`.
 //!
 //! ```text
 //! m h_i u_i'' = N_{i+1/2} - N_{i-1/2}        N_c = EA (e_c - 2 phi_b zeta'/E pbar_j)
 //! a = a_p p + aN+ S_j        da/dt = -dq/ds        S_j: mean of N over the segment, or N at its midpoint
 //! ```
 //!
-//! A wave `exp(i k z)` sees pressure through the sample, factor 1 at the midpoint or `s` in the mean, and through the
-//! strain that pressure makes in every cell alike, factor `s = sin(K k h/2)/(K sin(k h/2))`. Mean: `s^2 >= 0`.
-//! Midpoint: `s`, negative for waves between half a segment and one segment long: fluid that leaks with a lag
-//! then feeds the wave instead of damping it, growth about `beta |s|/(2 (1 - beta) tau)`, whatever the mesh.
+//! A wave `exp(i k z)` couples to pressure twice: through the sample, with factor 1 at the midpoint or `s` for the mean, and through the
+//! strain by pressure, which is equal in all cells, with factor `s = sin(K k h/2)/(K sin(k h/2))`. Mean: `s^2 >= 0`. Midpoint: `s`,
+//! negative for waves between half a segment and one segment long. Fluid that leaks with a lag then feeds the wave instead of damping it,
+//! with growth of about `beta |s|/(2 (1 - beta) tau)` on any mesh.
 
 use nalgebra::DMatrix;
 
@@ -23,7 +23,7 @@ enum Sample {
     Midpoint,
 }
 
-/// Matrix of `d/dt (u, v, a)`, unknowns scaled to like sizes.
+/// Matrix of `d/dt (u, v, a)`, with unknowns scaled to similar sizes.
 fn matrix(k: usize, sample: Sample) -> DMatrix<f64> {
     let (length, ea, mass) = (0.1, 1144.8, 950.0 * 0.05 * 0.0216 * 1.0273);
     let (ap, an, zeta, e) = (1.75e-10, 6.31e-8, 0.01, 2e6);
@@ -87,9 +87,9 @@ fn growth(k: usize, sample: Sample) -> (f64, f64) {
 }
 
 /// Source: `docs/exact-results.md` section 5 (another program's eigenvalues: 1620, 1063, 1787, 1968 1/s at K = 3, 4, 8, 16). Goal: midpoint
-/// sampling grows at every mesh from K = 3 on and refinement does not help; the mean never grows. Tolerance 2 %: the
-/// figures there are for a mass rounded to three digits. Zero means round-off: 1e-16 times the largest eigenvalue, 2e5 at
-/// K = 16, times the condition of the modes, together below 1e-5 of the growth at the midpoint.
+/// sampling is unstable on every mesh from K = 3 on, and refinement does not help; the mean is stable. Tolerance 2 %: those figures are for
+/// a mass rounded to three digits. Zero means rounding errors: 1e-16 times the largest eigenvalue, 2e5 at K = 16, times the condition of
+/// the modes, together below 1e-5 of the growth at the midpoint.
 #[test]
 fn midpoint_sampling_grows_and_means_do_not() {
     for (k, expected) in [(1, 0.0), (2, 0.0), (3, 1620.0), (4, 1063.0), (8, 1787.0), (16, 1968.0)] {

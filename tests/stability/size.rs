@@ -2,9 +2,8 @@
 
 use crate::harness::{Ran, off, run};
 
-/// Goal: 1 to 400 bladders a row in the same beam. Bladders, tubes and coupling are shared out so that compliance and
-/// conductance per length stay: a_p, aM, aN ~ 1/n, q1 ~ n; deflections then have a limit as n grows, reached like 1/n
-/// (ends of chains and the pieces between bladders). Tolerance: 100 against 400 within 1 %.
+/// Goal: 1 to 400 bladders per row in the same beam. Compliance and conductance per length are constant: a_p, aM, aN ~ 1/n, q1 ~ n.
+/// Deflections then converge like 1/n (ends of chains, and the pieces between bladders). Tolerance: 100 against 400 within 1 %.
 #[test]
 fn from_one_bladder_to_four_hundred() {
     let runs: Vec<Ran> = [1usize, 2, 10, 40, 100, 400]
@@ -50,8 +49,8 @@ fn from_one_bladder_to_four_hundred() {
     assert!(change < 1e-2, "{change}");
 }
 
-/// Goal: 1 to 32 cells a segment; the highest frequency grows by 32, steps do not follow. Second order: the change from 8 to
-/// 32 is below 0.2 % (half the square of 1/40 times the coefficient seen, with some room).
+/// Goal: 1 to 32 cells per segment; the highest frequency grows by 32, but not the number of steps. Second order: the change from 8 to 32
+/// is below 0.2 % (half the square of 1/40 times the observed coefficient, with a margin).
 #[test]
 fn from_one_cell_to_thirty_two() {
     for coupling in [r#"/bladders/coupling="reciprocal""#, crate::harness::PUBLISHED] {
@@ -68,9 +67,9 @@ fn from_one_cell_to_thirty_two() {
     }
 }
 
-/// Source: similarity. With E -> s E, loads s, compliances 1/s, times s^-1/2, viscosity s^1/2 the scaled equations are the
-/// same. Goal: nothing in the program is an absolute size: from 2 kPa to 2 GPa same steps, same deflection. Tolerance: the
-/// scaled numbers differ by rounding, which flips single decisions of the step control: 20 % of steps (10 % seen), 10 rtol.
+/// Source: similarity. With E -> s E, loads s, compliances 1/s, times s^-1/2, viscosity s^1/2 the scaled equations are the same. Goal: the
+/// program has no absolute scales: 2 kPa to 2 GPa give the same steps and deflection. Tolerance: rounding of the scaled numbers flips
+/// single decisions of the step control: 20 % of steps (10 % observed), 10 rtol.
 #[test]
 fn young_modulus_over_six_decades() {
     let runs: Vec<Ran> = [1e-3, 1e-2, 1.0, 1e2, 1e3]

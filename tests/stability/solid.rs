@@ -1,4 +1,4 @@
-//! Beams alone: stiff, slender, turned right round, buckled, thrown.
+//! Beams alone: stiff, slender, rolled up, buckled, thrown.
 
 use std::f64::consts::PI;
 
@@ -40,9 +40,9 @@ fn the_elastica_reference() {
     assert!((elastica(1.015_396_866).0 - PI / 9.0).abs() < 1e-6);
 }
 
-/// Source: uniform dead load, `q L^3/EI = 4` (`docs/exact-results.md` section 1). Goal: length over height from 5 to 5000; axial against
-/// bending stiffness changes by 10^6. Tolerance 2e-3: 40 cells, second order (h/l)^2 = 6e-4 times about 1; for l/h = 5
-/// the stretch `q l/EA = 1.3 %`, which the reference leaves out.
+/// Source: uniform dead load, `q L^3/EI = 4` (`docs/exact-results.md` section 1). Goal: length over height from 5 to 5000; the ratio of
+/// axial to bending stiffness changes by 10^6. Tolerance 2e-3: 40 cells, second order (h/l)^2 = 6e-4 times about 1; for l/h = 5 the stretch
+/// `q l/EA = 1.3 %`, which the reference omits.
 #[test]
 fn slenderness_over_three_decades() {
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
@@ -76,8 +76,8 @@ fn slenderness_over_three_decades() {
     }
 }
 
-/// Source: end moment `2 pi EI/L`, the tip returns to the root. Goal: rotations counted over a full turn. Tolerance: the
-/// chord polygon of equal angles closes exactly; what is left is the end of the settling, 1e-4 of the length.
+/// Source: end moment `2 pi EI/L`, the tip returns to the root. Goal: rotations are counted over a full turn. Tolerance: the chord polygon
+/// of equal angles closes exactly; the remaining error is the unfinished settling, 1e-4 of the length.
 #[test]
 fn an_end_moment_closes_a_ring() {
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
@@ -92,8 +92,8 @@ fn an_end_moment_closes_a_ring() {
     }
 }
 
-/// Source: elastica, `P/Pcr = (2 K(sin 80°)/pi)^2 = 4.030`, tip angle 160°. Goal: far beyond buckling, through it in time.
-/// Tolerance 3e-3: 80 cells, and the small load across that chooses the side (0.02 N/m of 83 N).
+/// Source: elastica, `P/Pcr = (2 K(sin 80°)/pi)^2 = 4.030`, tip angle 160°. Goal: far beyond buckling, by a run in time through it.
+/// Tolerance 3e-3: 80 cells, and the small transverse load that selects the side (0.02 N/m of 83 N).
 #[test]
 fn an_elastica_to_160_degrees() {
     let critical = PI * PI * (2e9 * 0.05 * 1e-6 / 12.0) / 4.0;
@@ -110,8 +110,8 @@ fn an_elastica_to_160_degrees() {
     }
 }
 
-/// Source: elastica. Goal: without inertia through the buckling load to 1.95 of it, onto the bent branch. Tolerance 1 %: the
-/// load across moves the branch by about its ratio to the buckling load over the stiffness left, and 40 cells.
+/// Source: elastica. Goal: without inertia through the buckling load to 1.95 of it, onto the bent branch. Tolerance 1 %: 40 cells, and the
+/// transverse load, which shifts the branch by about its ratio to the buckling load over the remaining stiffness.
 #[test]
 fn quasi_static_through_buckling() {
     let critical = PI * PI * (2e9 * 0.05 * 1e-6 / 12.0) / 4.0;
@@ -129,8 +129,7 @@ fn quasi_static_through_buckling() {
     );
 }
 
-/// Goal: without the load across the column stays straight, an equilibrium that is unstable beyond Euler's load; the run
-/// says so.
+/// Goal: without a transverse load the column remains straight, an equilibrium that is unstable beyond Euler's load; the run reports it.
 #[test]
 fn a_perfect_column_is_told_to_be_unstable() {
     let said = |sets: &[&str]| {
@@ -143,8 +142,8 @@ fn a_perfect_column_is_told_to_be_unstable() {
     assert!(!said(&[]));
 }
 
-/// Source: linear theory; a load at once makes every mode swing about its static deflection with that amplitude. Goal: twice
-/// the static `q l^4/8 EI = 7.5 mm`, spread of the higher modes (together 3 % of the first) included.
+/// Source: linear theory; under a sudden load every mode oscillates about its static deflection with that amplitude. Goal: twice the static
+/// `q l^4/8 EI = 7.5 mm`, including the scatter of the higher modes (together 3 % of the first).
 #[test]
 fn a_load_at_once() {
     for formulation in [r#"/formulation="conservative""#, r#"/formulation="published""#] {
@@ -156,7 +155,7 @@ fn a_load_at_once() {
 }
 
 /// Source: `docs/model.md` section 10. Goal: the shock of an impulsive start is reflected, not amplified: pressures and stored energy of
-/// the second half stay below those of the first (plus 10 % for waves that happen to meet).
+/// the second half remain below those of the first (plus 10 % for waves that happen to meet).
 #[test]
 fn an_impulsive_start() {
     for (name, sets) in COMBINATIONS {
@@ -179,8 +178,8 @@ fn an_impulsive_start() {
     }
 }
 
-/// Source: `docs/model.md` section 8. Goal: thrown and spinning, linear momentum is exact (round-off), angular momentum and energy to
-/// the integrator's error. The published forms need not conserve; their ledger must still close.
+/// Source: `docs/model.md` section 8. Goal: for a thrown, spinning beam, linear momentum is exact to rounding errors, angular momentum and
+/// energy to the integrator's error. The published forms need not conserve; their ledger must still close.
 #[test]
 fn free_flight() {
     for (name, sets) in COMBINATIONS {

@@ -1,6 +1,6 @@
-//! The equations of a scene for C, as benches/c/ida.c takes them.
+//! C interface to the equations of a scene, used by benches/c/ida.c.
 //!
-//! SAFETY, of all functions: a scene is what `scene_open` gave and `scene_close` has not taken back, arrays have the lengths that are said.
+//! SAFETY, of all functions: a handle is from `scene_open` and not yet passed to `scene_close`; arrays have the documented lengths.
 #![allow(clippy::missing_safety_doc)]
 
 use std::ffi::{CStr, c_char, c_int};
@@ -15,7 +15,7 @@ pub struct Handle {
     dae: Bare,
 }
 
-/// The scene of this name.
+/// Opens the scene of a name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_open(name: *const c_char) -> *mut Handle {
     let name = unsafe { CStr::from_ptr(name) }.to_str().expect("a name");
@@ -29,19 +29,19 @@ pub unsafe extern "C" fn scene_close(handle: *mut Handle) {
     drop(unsafe { Box::from_raw(handle) });
 }
 
-/// Unknowns.
+/// Number of unknowns.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_unknowns(handle: *const Handle) -> c_int {
     unsafe { &*handle }.scene.y.len() as c_int
 }
 
-/// Entries of the Jacobian.
+/// Number of entries of the Jacobian.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_entries(handle: *const Handle) -> c_int {
     unsafe { &*handle }.dae.pattern().entries() as c_int
 }
 
-/// Its pattern by columns: unknowns + 1 starts, entries rows.
+/// Sparsity pattern of the Jacobian by columns: unknowns + 1 starts, entries rows.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_pattern(handle: *const Handle, starts: *mut i64, rows: *mut i64) {
     let pattern = unsafe { &*handle }.dae.pattern();
@@ -61,19 +61,19 @@ pub unsafe extern "C" fn scene_start(handle: *const Handle, y: *mut f64, yp: *mu
     }
 }
 
-/// Output times after t = 0.
+/// Number of output times after t = 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_outputs(handle: *const Handle) -> c_int {
     unsafe { &*handle }.scene.times.len() as c_int
 }
 
-/// One of them [s].
+/// Output time number `k` [s].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_output(handle: *const Handle, k: c_int) -> f64 {
     unsafe { &*handle }.scene.times[k as usize]
 }
 
-/// The tip's deflection [m] and the pressure at the tip [Pa].
+/// Tip deflection [m] and pressure at the tip [Pa].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_read(handle: *const Handle, y: *const f64, out: *mut f64) {
     let scene = &unsafe { &*handle }.scene;
@@ -85,7 +85,7 @@ pub unsafe extern "C" fn scene_read(handle: *const Handle, y: *const f64, out: *
     }
 }
 
-/// `F(t, y, y')`; 0 if it could be evaluated.
+/// `F(t, y, y')`; returns 0 on success.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_residual(
     handle: *mut Handle,
@@ -106,7 +106,7 @@ pub unsafe extern "C" fn scene_residual(
     c_int::from(own.dae.residual(t, y, yp, r).is_err())
 }
 
-/// Entries of `∂F/∂y + cj ∂F/∂y'`; 0 if they could be evaluated.
+/// Entries of `∂F/∂y + cj ∂F/∂y'`; returns 0 on success.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn scene_jacobian(
     handle: *mut Handle,

@@ -1,10 +1,10 @@
-//! Long beams with many bladders: the paper's segments, as many as asked for, wired in several ways.
+//! Long beams with many bladders: segments of the paper in any number, with several wirings.
 
 use slcbeam::case::{self, Case};
 
 use crate::random::Random;
 
-/// Text of `/network` for so many bladders a row.
+/// Text of `/network` for `per_row` bladders per row.
 fn network(wiring: &str, per_row: usize) -> String {
     let n = per_row as i64;
     let row = |sign: i64| {
@@ -42,7 +42,7 @@ fn network(wiring: &str, per_row: usize) -> String {
     format!(r#"{{"chains":[{}],"tubes":[{}]}}"#, chains.join(","), tubes.join(","))
 }
 
-/// A beam of `per_row` segments like those of the paper, 8 mm long, its root shaken by a tenth of a millimetre at 20 Hz after a smooth start.
+/// A beam of `per_row` segments like those of the paper, each 8 mm long. Its root shakes with 0.1 mm at 20 Hz after a smooth start.
 pub fn case(wiring: &str, per_row: usize) -> Case {
     let text = format!(
         r#"{{"name":"{wiring}-{per_row}","preset":"matia-gat-beam","plausibility":"off","beam":{{"length_m":{}}},

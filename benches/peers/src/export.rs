@@ -1,4 +1,4 @@
-//! The numbers of a scene for those who write its equations themselves, and what the equations give at random states.
+//! Exports the parameters of a scene to independent implementations, with residuals at random states for comparison.
 
 use serde_json::{Value, json};
 use slcbeam::dae::Dae;
@@ -6,10 +6,10 @@ use slcbeam::dae::Dae;
 use crate::random::Random;
 use crate::scene::Scene;
 
-/// States at which equations are compared.
+/// Number of states at which equations are compared.
 const STATES: usize = 5;
 
-/// Case as resolved, section, sizes and places of unknowns, pattern, start, and residuals at random states.
+/// Resolved case, section, scales and positions of the unknowns, pattern, initial state, and residuals at random states.
 pub fn scene(scene: &Scene) -> Value {
     let mut dae = scene.dae();
     let n = scene.y.len();

@@ -1,4 +1,4 @@
-//! What large systems cost, beside the floor: one residual and one solution an iteration.
+//! Cost of large systems, compared with the minimum: one residual and one linear solution per iteration.
 
 use std::time::Instant;
 
@@ -9,23 +9,23 @@ use crate::own;
 use crate::prices::Bench;
 use crate::scene::Scene;
 
-/// Steps that are timed.
+/// Number of timed steps.
 const STEPS: usize = 60;
-/// Steps before them, while sizes settle.
+/// Untimed steps before them, in which the step size settles.
 const SETTLING: usize = 10;
 
-/// Largest resident memory of this process so far [bytes]; nothing where the system does not tell.
+/// Peak resident memory of this process [bytes]; none if the system does not report it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(1024 * line.split_whitespace().next()?.parse::<u64>().ok()?)
 }
 
-/// Vectors of all unknowns that an iteration reads or writes at least, besides the factors: 5 to set values and rates, 5 to correct them, 2 for
-/// the norm, 1 to see that all is finite, 5 to give them units, 3 to scale the residual, and what predicts a stage.
+/// Vectors of all unknowns that an iteration accesses at least, besides the factors: 5 to set values and rates, 5 to correct them, 2 for
+/// the norm, 1 to check that all is finite, 5 to convert units, 3 to scale the residual, and those of the predictor of a stage.
 const VECTORS: usize = 24;
 
-/// Seconds a byte takes to be read from an array of so many bytes, over and over.
+/// Time per byte [s] to read an array of `bytes` bytes repeatedly.
 fn reading(bytes: usize) -> f64 {
     let numbers = vec![1.0_f64; (bytes / 8).max(1024)];
     let passes = (200_000_000 / bytes.max(1)).clamp(2, 20_000);
@@ -44,7 +44,7 @@ fn reading(bytes: usize) -> f64 {
     best
 }
 
-/// Runs `esdirk46` for a while at rtol 1e-4.
+/// Runs `esdirk46` for `STEPS` steps at rtol 1e-4.
 pub fn measure(case: Case) -> Value {
     let begin = Instant::now();
     let scene = Scene::of(case);

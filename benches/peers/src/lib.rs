@@ -1,7 +1,7 @@
-//! slcbeam's integrators beside what could be used instead, on the same equations.
+//! slcbeam's integrators and alternative ones on the same equations.
 //!
-//! [`scene`] has the equations, their start and what is read off; [`own`], [`other`] and [`radau`] solve them; [`abi`] hands them
-//! to C, [`export`] to Python. [`prices`] and [`floor`] measure single operations and large systems.
+//! [`scene`] defines the equations, initial states and readings; [`own`], [`other`] and [`radau`] solve them; [`abi`] exports them to C,
+//! [`export`] to Python. [`prices`] and [`floor`] measure single operations and large systems.
 
 pub mod abi;
 pub mod chains;

@@ -1,12 +1,12 @@
-//! What scripts/bench asks for, a command a process; everything is in the library.
+//! Commands of scripts/bench, one per process; the library implements them.
 //!
 //! ```text
-//! peers serve                         runs asked for line by line: SCENE METHOD RTOL
-//! peers export SCENE                  its numbers, for benches/python
+//! peers serve                         runs on requests, line by line: SCENE METHOD RTOL
+//! peers export SCENE                  its parameters, for benches/python
 //! peers prices SCENE                  seconds of a residual, a Jacobian, factors, a solution
-//! peers profile SCENE METHOD RTOL     where the time of a run goes, its work counted
-//! peers work SCENE OPERATION COUNT    the operation so many times, for who counts instructions
-//! peers large WIRING PER_ROW          a beam of so many segments for 60 steps
+//! peers profile SCENE METHOD RTOL     time of a run by operation, with work counters
+//! peers work SCENE OPERATION COUNT    repeats an operation, for instruction counters
+//! peers large WIRING PER_ROW          a beam of PER_ROW segments for 60 steps
 //! ```
 
 use std::collections::HashMap;
@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use peers::scene::{Ran, Scene};
 use peers::{chains, export, floor, other, own, prices, radau};
 
-/// A run; of Radau's method seconds are modelled.
+/// Runs a method; for Radau's method the seconds are modelled.
 fn run(scene: &Scene, method: &str, rtol: f64) -> Result<Ran, String> {
     if method == "radau" {
         return Ok(radau::follow(scene, rtol));

@@ -9,7 +9,7 @@ use slcbeam::dae::{Dae, Seeds};
 
 use crate::scene::{Ran, Scene};
 
-/// Readings at the output times.
+/// Runs a scene with a method of diffsol; readings at the output times.
 pub fn follow(scene: &Scene, name: &str, rtol: f64) -> Result<Ran, String> {
     let n = scene.y.len();
     let zero = vec![0.0; n];
@@ -22,7 +22,7 @@ pub fn follow(scene: &Scene, name: &str, rtol: f64) -> Result<Ran, String> {
             out.iter_mut().for_each(|x| *x = -*x);
         }
     };
-    // the Jacobian once a state, however many products are asked for
+    // evaluate the Jacobian once per state, for any number of products
     let kept = RefCell::new((f64::NAN, vec![0.0; n], vec![0.0; shared.borrow().pattern().rows.len()]));
     let jacobian = {
         let pattern = shared.borrow().pattern().clone();
@@ -41,7 +41,7 @@ pub fn follow(scene: &Scene, name: &str, rtol: f64) -> Result<Ran, String> {
             out.fill(0.0);
             for (column, &v) in v.iter().enumerate() {
                 for k in pattern.column(column) {
-                    // what is zero is no entry, NaN or not
+                    // zero values are no entries, but NaN must propagate
                     if values[k] != 0.0 || v.is_nan() {
                         out[pattern.rows[k] as usize] -= values[k] * v;
                     }

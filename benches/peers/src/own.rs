@@ -10,7 +10,7 @@ use slcbeam::sundials::IdaOptions;
 
 use crate::scene::{Bare, Ran, Scene};
 
-/// Settings of a run as the program makes them, by the name under which a method is asked for.
+/// Options of a run as in the program, by the name of the method.
 pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
     let one_step = |method| {
         Options::OneStep(OneStepOptions {
@@ -43,7 +43,7 @@ pub fn integrator(scene: &Scene, dae: Bare, options: &Options) -> Result<Integra
     Integrator::new(dae, 0.0, &scene.y, &scene.yp, options).map_err(|e| e.to_string())
 }
 
-/// Goes to the end of a scene; readings at the output times.
+/// Integrates to the end of a scene; returns readings at the output times.
 fn through(scene: &Scene, solver: &mut Integrator<Bare>) -> Result<Vec<[f64; 2]>, String> {
     let mut y = scene.y.clone();
     let mut readings = vec![];
@@ -57,7 +57,7 @@ fn through(scene: &Scene, solver: &mut Integrator<Bare>) -> Result<Vec<[f64; 2]>
     Ok(readings)
 }
 
-/// Where the time of a run goes, its work counted.
+/// Time of a run by operation, with work counters.
 pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
     let options = options(scene, name, rtol)?;
     let mut solver = integrator(scene, scene.dae(), &options).ok()?;
@@ -76,7 +76,7 @@ pub fn profile(scene: &Scene, name: &str, rtol: f64) -> Option<Value> {
     }))
 }
 
-/// Readings at the output times.
+/// Runs a scene; readings at the output times.
 pub fn follow(scene: &Scene, options: &Options) -> Result<Ran, String> {
     let dae = scene.dae();
     let begin = Instant::now();

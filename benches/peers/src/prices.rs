@@ -1,4 +1,4 @@
-//! What single operations cost.
+//! Cost of single operations.
 
 use std::time::Instant;
 
@@ -8,10 +8,10 @@ use slcbeam::sparse::Lu;
 
 use crate::scene::{Bare, Scene};
 
-/// Operations, in the order of what they are needed for.
+/// Names of the operations, in their order of dependence.
 pub const OPERATIONS: [&str; 4] = ["residual", "jacobian", "factor", "solve"];
 
-/// Everything that the operations work on.
+/// Workspace of the operations.
 pub struct Bench<'a> {
     scene: &'a Scene,
     dae: Bare,
@@ -39,7 +39,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Does one of [`OPERATIONS`] so many times.
+    /// Executes one of [`OPERATIONS`] `count` times.
     pub fn work(&mut self, what: &str, count: usize) {
         let Self {
             scene,
@@ -64,7 +64,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Seconds that one takes: the median of nine batches, each of 10 ms or of one operation.
+    /// Seconds of one operation: the median of nine batches, each of 10 ms or of one operation.
     pub fn price(&mut self, what: &str) -> f64 {
         let once = {
             let begin = Instant::now();
@@ -83,12 +83,12 @@ impl<'a> Bench<'a> {
         batches[4]
     }
 
-    /// Bytes of the factors that one solution reads.
+    /// Bytes of the factors that one linear solution reads.
     pub fn factor_bytes(&self) -> usize {
         self.lu.bytes()
     }
 
-    /// Seconds of all of them.
+    /// Seconds of each of [`OPERATIONS`].
     pub fn prices(&mut self) -> [f64; 4] {
         OPERATIONS.map(|what| self.price(what))
     }

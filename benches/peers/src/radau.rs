@@ -1,8 +1,8 @@
 //! Radau IIA of order 5 (Hairer & Wanner, *Solving ODEs II*, IV.8) for `M y' = f(t, y)` with constant diagonal `M`.
 //!
-//! The three stages are solved as one real system of 3n unknowns, so steps, iterations and factorisations are the method's,
-//! its time is not: an implementation that splits the system into a real one and a complex one of n unknowns pays for each
-//! iteration three residuals, a real and a complex solution, for each factorisation a real and a complex one.
+//! The three stages are solved as one real system of 3n unknowns. Numbers of steps, iterations and factorizations are those of the method;
+//! the time is not. An implementation that splits the system into a real and a complex one of n unknowns needs, per iteration, three
+//! residuals, a real and a complex solution; per factorization, a real and a complex one.
 
 use slcbeam::dae::{Dae, Seeds};
 use slcbeam::sparse::{Klu, Pattern};
@@ -10,10 +10,10 @@ use slcbeam::sparse::{Klu, Pattern};
 use crate::prices::Bench;
 use crate::scene::{Ran, Scene};
 
-/// Iterations allowed in a step.
+/// Largest number of iterations in a step.
 const ITERATIONS: u32 = 7;
 
-/// Work done.
+/// Work counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Work {
     pub steps: usize,
@@ -73,8 +73,8 @@ fn collocation(z: &[Vec<f64>; 3], unknown: usize, x: f64) -> f64 {
 }
 
 impl Work {
-    /// Time of all this when split into a real and a complex system, of which the complex one costs four times as much: with
-    /// the times of a residual, a real solution, a real factorisation and a Jacobian.
+    /// Modelled time of this work, if the system is split into a real and a complex one; complex operations cost four times as much. The
+    /// arguments are the times of a residual, a real solution, a real factorization and a Jacobian.
     pub fn time(&self, [residual, solution, factorization, jacobian]: [f64; 4]) -> f64 {
         let residuals = (3 * self.iterations + self.estimates) as f64;
         let solutions = (5 * self.iterations + self.estimates) as f64;
@@ -83,7 +83,7 @@ impl Work {
     }
 }
 
-/// Readings and work of a run, its seconds as modelled with measured prices.
+/// Readings and work of a run, with its modelled seconds from measured prices.
 pub fn follow(scene: &Scene, rtol: f64) -> Ran {
     let mass = scene.mass();
     let [residual, jacobian, factor, solve] = Bench::new(scene).prices();
@@ -237,7 +237,7 @@ impl<'a, D: Dae> Radau<'a, D> {
                 stale = true;
                 continue;
             }
-            // the estimate, (γ/h M - J)⁻¹ (f(y0) + M (e·z)/h)
+            // error estimate: (γ/h M - J)⁻¹ (f(y0) + M (e·z)/h)
             self.work.estimates += 1;
             let s = 6.0_f64.sqrt();
             let e = [-(13.0 + 7.0 * s) / 3.0, (-13.0 + 7.0 * s) / 3.0, -1.0 / 3.0];

@@ -1,6 +1,6 @@
-//! Numbers that look random and are the same in every run.
+//! Reproducible pseudo-random numbers.
 
-/// A linear congruential generator (Knuth, MMIX); the upper bits are the good ones.
+/// Linear congruential generator (Knuth, MMIX); uses the upper bits, which are more random.
 pub struct Random(pub u64);
 
 impl Random {

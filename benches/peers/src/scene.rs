@@ -1,4 +1,4 @@
-//! What all solve: the beam without its ledger, its start, and what is read off.
+//! Problems for all peers: the beam without its ledger, its initial state, and its readings.
 
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds, Vectors};
@@ -9,7 +9,7 @@ use slcbeam::numerics::Planar;
 use slcbeam::run::strides::Strides;
 use slcbeam::sparse::Pattern;
 
-/// The beam without its ledger.
+/// Equations of the beam without the energy ledger.
 pub struct Bare(pub BeamDae);
 
 impl Dae for Bare {
@@ -48,7 +48,7 @@ impl Dae for Bare {
     }
 }
 
-/// Where the pressure of the last cell of the upper row is read.
+/// Position of the pressure of the last cell of the upper row among the unknowns.
 #[derive(Clone, Debug)]
 pub struct PressureAt {
     pub area: usize,
@@ -57,7 +57,7 @@ pub struct PressureAt {
     pub law: AreaLaw,
 }
 
-/// What is read off a state: the tip's deflection [m] and the pressure at the tip's end of the upper row [Pa].
+/// Readings of a state: tip deflection [m] and pressure at the tip end of the upper row [Pa].
 #[derive(Clone, Debug)]
 pub struct Readings {
     pub tip: usize,
@@ -96,7 +96,7 @@ impl Readings {
         }
     }
 
-    /// Off scaled unknowns; no pressure where there is no fluid.
+    /// Readings from scaled unknowns; the pressure is 0 without fluid.
     pub fn read(&self, y: &[f64]) -> [f64; 2] {
         let si = |k: usize| y[k] * self.scales[k];
         let pressure = self.pressure.as_ref().map_or(0.0, |at| {
@@ -122,7 +122,7 @@ pub struct Scene {
     equations: BeamDae,
 }
 
-/// A run: readings at the output times, steps, and the seconds that they took once the equations were there.
+/// A run: readings at the output times, number of steps, and seconds without setup of the equations.
 #[derive(Clone, Debug, Default)]
 pub struct Ran {
     pub seconds: f64,
@@ -130,14 +130,14 @@ pub struct Ran {
     pub steps: usize,
 }
 
-/// Where the repository is.
+/// Root folder of the repository.
 pub fn root() -> std::path::PathBuf {
     concat!(env!("CARGO_MANIFEST_DIR"), "/../..").into()
 }
 
-/// The case of a scene. Rotary inertia is left out, so that `F(t, y, y') = M y' - f(t, y)` with a constant diagonal `M`, the form
-/// that most peers take. `name:cells` has so many cells a segment, `name*segments` so many segments of one cell, with `/4` behind either
-/// they are of fourth order; `name@end` has another end, `dry-cantilever-sheared` shear and rotary inertia, `swing` is the dry cantilever let fall.
+/// The case of a scene. It omits rotary inertia, so that `F(t, y, y') = M y' - f(t, y)` with a constant diagonal `M`, as most peers
+/// require. `name:cells` sets the cells per segment, `name*segments` that number of segments with one cell, a final `/4` fourth order,
+/// `name@end` the end time. `dry-cantilever-sheared` has shear and rotary inertia; `swing` is the dry cantilever released to fall.
 pub fn case_of(name: &str) -> Case {
     let cut = |name, at| match str::split_once(name, at) {
         Some((name, value)) => (name, Some(value)),
@@ -222,7 +222,7 @@ impl Scene {
         *self.times.last().expect("times")
     }
 
-    /// `M`, from the residual's change with each rate; it is diagonal, so with all at once.
+    /// `M` from the change of the residual with all rates at once, since `M` is diagonal.
     pub fn mass(&self) -> Vec<f64> {
         let n = self.y.len();
         let (mut with, mut without) = (vec![0.0; n], vec![0.0; n]);

@@ -1,12 +1,12 @@
-//! Eigenvalues of dense matrices, by faer.
+//! Eigenvalues of dense matrices by faer.
 //!
-//! faer is generic: who calls it compiles it. Here that happens once; in the program, at its level of optimisation, it took more than a
-//! minute of a core after every change.
+//! faer is generic: its callers compile it. Here this happens once. In the main program, at its optimization level, it
+//! took more than a minute of one core after every change.
 
 use faer::{Mat, c64};
 
-/// Eigenvalues of an n × n matrix, the largest first, each with a vector of unit length; every copy of a repeated one counts. None
-/// when an entry is not finite or the iteration does not converge.
+/// Eigenvalues of an n × n matrix, largest modulus first, each with a unit vector; repeated ones are listed with their
+/// multiplicity. None if an entry is not finite or the iteration does not converge.
 pub fn eigen(n: usize, entry: &dyn Fn(usize, usize) -> c64) -> Option<Vec<(c64, Vec<c64>)>> {
     let found = Mat::from_fn(n, n, entry).eigen().ok()?;
     let values = found.S().column_vector().iter().copied();
@@ -19,7 +19,8 @@ pub fn eigen(n: usize, entry: &dyn Fn(usize, usize) -> c64) -> Option<Vec<(c64, 
     Some(all)
 }
 
-/// Eigenvalues of a real n × n matrix, without vectors and in no order; every copy of a repeated one counts. None as for [`eigen`].
+/// Eigenvalues of a real n × n matrix, without vectors and unordered; repeated ones are listed with their multiplicity.
+/// None as for [`eigen`].
 pub fn real_eigenvalues(n: usize, entry: &dyn Fn(usize, usize) -> f64) -> Option<Vec<c64>> {
     Mat::from_fn(n, n, entry).eigenvalues().ok()
 }

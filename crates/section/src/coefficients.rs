@@ -1,4 +1,4 @@
-//! The coefficients of the model, model.md sections 1 to 4, from a section's geometry.
+//! Coefficients of the model (model.md sections 1 to 4) from a section's geometry.
 //!
 //! ```text
 //! EA = 1/C_00 = E h w f_e,   EI = 1/C_11 = E (w h^3/12) f_i                                  [K1]
@@ -6,8 +6,8 @@
 //! psi' = l_b am E            zeta' = l_b an E                                                [K3]
 //! ```
 //!
-//! [K3] is Maxwell and Betti's: a pressure bends the beam by as much as a moment opens the bladder. Of the lower row the sign of am is
-//! turned, so that mirrored rows have the same number.
+//! [K3] follows from Maxwell and Betti: curvature per pressure equals area per moment. The sign of am is reversed for
+//! the lower row, so mirrored rows have equal coefficients.
 
 use crate::cell::{self, Cell};
 use crate::error::Error;
@@ -22,12 +22,12 @@ use crate::three::Spatial;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the cell is solved.
+/// Options for the solution of the cell.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// The coarsest mesh.
+    /// Fineness of the coarsest mesh.
     pub fineness: Fineness,
-    /// Number of meshes, every one four times as fine as the last; 3 show an order.
+    /// Number of meshes, each with four times as many triangles as the previous one; 3 determine an order.
     pub meshes: usize,
 }
 
@@ -40,7 +40,7 @@ impl Default for Options {
     }
 }
 
-/// Numbers of one row of bladders, in the model's signs.
+/// Coefficients of one row of bladders, in the model's signs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RowCoefficients {
     /// Cross-section of the bladder [m^2].
@@ -51,7 +51,7 @@ pub struct RowCoefficients {
     pub area_per_pressure_m2_per_pa: f64,
     /// Area per the other row's pressure [m^2/Pa].
     pub area_per_other_pressure_m2_per_pa: f64,
-    /// am: area per moment [m^2/(N m)], positive when a moment that stretches this row's side opens it.
+    /// am: area per moment [m^2/(N m)], positive if a moment that stretches this row's side opens it.
     pub area_per_moment_m2_per_n_m: f64,
     /// an: area per axial force [m^2/N].
     pub area_per_force_m2_per_n: f64,
@@ -63,7 +63,7 @@ pub struct RowCoefficients {
     pub permeability_m4: f64,
 }
 
-/// All numbers of a section. Those named as one row's are means over the rows there are.
+/// All numbers of a section. Numbers of rows are means over the existing rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Numbers {
     /// Compliance over (N, M, p_upper, p_lower) against (stretch, curvature, phi_b l_b area of upper, of lower).
@@ -76,7 +76,8 @@ pub struct Numbers {
     pub axial_stiffness_n: f64,
     /// EI at fixed pressures [N m^2].
     pub bending_stiffness_n_m2: f64,
-    /// Curvature per axial force over the root of stretch per force times curvature per moment: 0 for symmetric sections, below 1.
+    /// Curvature per axial force over the geometric mean of stretch per force and curvature per moment: 0 for symmetric
+    /// sections, below 1.
     pub force_curvature_coupling: f64,
     /// a_p [m^2/Pa].
     pub area_per_pressure_m2_per_pa: f64,
@@ -98,7 +99,7 @@ pub struct Numbers {
     pub solid_mass_kg_per_m: f64,
     /// Second moment of the solid's mass about the mid-plane per unit length [kg m].
     pub solid_rotary_inertia_kg_m: f64,
-    /// Volume of fluid per unit length [m^2]: times its density, the fluid's mass.
+    /// Fluid volume per unit length [m^2]; the fluid's mass is this times its density.
     pub fluid_volume_per_length_m2: f64,
     /// Second moment of that volume about the mid-plane [m^4].
     pub fluid_second_moment_m4: f64,
@@ -111,17 +112,17 @@ pub struct Numbers {
 /// Numbers with their errors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Coefficients {
-    /// On the finest mesh.
+    /// Values on the finest mesh.
     pub numbers: Numbers,
-    /// Relative error of each number; of compliance relative to the root of the product of its diagonal entries.
+    /// Relative error of each number; that of compliance is relative to the geometric mean of its diagonal entries.
     pub errors: Errors,
-    /// Largest relative difference of transposed entries before the matrix was made symmetric: what reciprocity is off by.
+    /// Largest relative difference of transposed entries before symmetrization: the reciprocity error.
     pub asymmetry: f64,
-    /// Displacement unknowns of the finest mesh.
+    /// Number of displacement unknowns of the finest mesh.
     pub unknowns: usize,
 }
 
-/// Relative errors under the names of the numbers.
+/// Relative errors, named as the numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[allow(missing_docs)]
 pub struct Errors {
@@ -129,7 +130,7 @@ pub struct Errors {
     pub axial_stiffness_factor: f64,
     pub bending_stiffness_factor: f64,
     pub area_per_pressure_m2_per_pa: f64,
-    /// Relative to a_p: this number may vanish.
+    /// Relative to a_p, since this number may vanish.
     pub area_per_other_pressure_m2_per_pa: f64,
     pub area_per_moment_m2_per_n_m: f64,
     pub area_per_force_m2_per_n: f64,
@@ -144,12 +145,12 @@ pub struct Errors {
 }
 
 impl Section {
-    /// Every rule the section breaks.
+    /// Returns all violated rules of the section.
     pub fn faults(&self) -> Vec<crate::error::Fault> {
         check(self)
     }
 
-    /// The coefficients, each with the error that its meshes show.
+    /// Coefficients with errors estimated from the meshes.
     pub fn coefficients(&self, options: &Options) -> Result<Coefficients, Error> {
         let levels = self.levels(options)?;
         let all: Vec<Numbers> = levels.iter().map(|level| Numbers::new(self, level)).collect();
@@ -166,7 +167,7 @@ impl Section {
         }
     }
 
-    /// The highest order that estimates may rely on.
+    /// Highest order of convergence for error estimates.
     fn order(&self) -> f64 {
         let regions = self.regions.iter().map(|r| Outline::region(&r.shape, self.pitch_m));
         let smooth = cell::bladders(self)
@@ -177,7 +178,7 @@ impl Section {
         if smooth { estimate::SMOOTH } else { estimate::SHARP }
     }
 
-    /// Results on successive meshes, the coarsest first.
+    /// Results on successive meshes, coarsest first.
     pub fn levels(&self, options: &Options) -> Result<Vec<Level>, Error> {
         self.meshes(options)?
             .iter()
@@ -185,7 +186,7 @@ impl Section {
             .collect()
     }
 
-    /// The cell at finite strain on the last of the meshes.
+    /// Finite-strain cell on the finest mesh.
     pub fn finite(&self, law: Law, options: &Options) -> Result<FiniteCell, Error> {
         let mesh = self
             .meshes(options)?
@@ -194,7 +195,7 @@ impl Section {
         FiniteCell::new(self, Cell::new(self, &mesh), law)
     }
 
-    /// Successive meshes of the cell, the coarsest first.
+    /// Successive meshes of the cell, coarsest first.
     pub fn meshes(&self, options: &Options) -> Result<Vec<Mesh<cell::Part>>, Error> {
         let faults = self.faults();
         if !faults.is_empty() {
@@ -209,14 +210,14 @@ impl Section {
 }
 
 impl Coefficients {
-    /// What follows from compliance taken from the cell in three dimensions.
+    /// Replaces the results by those of the three-dimensional compliance.
     fn in_space(self, section: &Section, plane: &Level, spatial: &Spatial) -> Self {
         let level = Level {
             compliance: spatial.compliance,
             ..plane.clone()
         };
         let c = &spatial.compliance;
-        // of an entry, relative to itself
+        // relative error of an entry
         let error = |i: usize, j: usize| match c[i][j].abs() {
             0.0 => 0.0,
             size => spatial.errors[i][j] * (c[i][i] * c[j][j]).sqrt() / size,
@@ -245,7 +246,7 @@ impl Coefficients {
 }
 
 impl Numbers {
-    /// From the results of one mesh [K1] to [K3].
+    /// Numbers from the results on one mesh, [K1] to [K3].
     pub fn new(section: &Section, level: &Level) -> Self {
         let c = &level.compliance;
         let (h, w, lb) = (section.height_m, section.width_m, section.bladders.length_m);

@@ -1,6 +1,6 @@
 //! Small dense systems.
 
-/// Solves a x = b by Gaussian elimination with partial pivoting; None when a is singular.
+/// Solves a x = b by Gaussian elimination with partial pivoting; None if a is singular.
 pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     for k in 0..N {
         let pivot = (k..N).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))?;
@@ -23,7 +23,8 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     Some(b)
 }
 
-/// Solves a x = b of a positive definite a, whose lower triangle stands by rows and is overwritten; None where it is not.
+/// Solves a x = b for a positive definite a, given as lower triangle in row order and overwritten; None if a is not
+/// positive definite.
 pub fn positive(a: &mut [f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
     for i in 0..n {

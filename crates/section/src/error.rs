@@ -1,13 +1,13 @@
-//! What can be wrong with a section, and where.
+//! Faults of a section, and errors of its solution.
 
 use std::fmt;
 
-/// One rule that a section breaks.
+/// A violated rule of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
-    /// JSON pointer to the offending value, from the section's root: `/bladders/upper/shape/circle/radius_m`.
+    /// JSON pointer to the faulty value from the section's root: `/bladders/upper/shape/circle/radius_m`.
     pub place: String,
-    /// What is wrong with it, in one sentence.
+    /// Description of the fault, in one sentence.
     pub what: String,
 }
 
@@ -17,27 +17,27 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Why there are no coefficients.
+/// Reasons for missing coefficients.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// The section breaks these rules, all that were found.
+    /// The section violates rules; all faults found.
     #[error("{}", .0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
     Section(Vec<Fault>),
     /// The cell could not be meshed.
     #[error("the cell could not be meshed: {0}")]
     Mesh(String),
-    /// The stiffness matrix could not be factorised.
+    /// The stiffness matrix could not be factorized.
     #[error("the stiffness matrix of the cell is not positive definite")]
     Singular,
     /// Newton's iteration on the cell at finite strain did not converge.
     #[error("no equilibrium of the cell was found at load factor {factor} after {iterations} iterations")]
     Equilibrium {
-        /// The part of the load that was reached, 0 to 1.
+        /// Fraction of the load that was reached, 0 to 1.
         factor: f64,
-        /// Iterations made.
+        /// Number of iterations.
         iterations: usize,
     },
-    /// The energy at finite strain has no fit that is good enough.
+    /// No polynomial fits the energy at finite strain with sufficient accuracy.
     #[error(
         "the cell's energy at finite strain has no polynomial with an error of at most 1 %: say \"law\": \"linear\""
     )]

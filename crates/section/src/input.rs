@@ -1,7 +1,8 @@
-//! What a section is made of: one unit cell in the plane of the beam's axis and height.
+//! Input of a section: one unit cell in the plane of the beam's axis and height.
 //!
-//! The cell is `pitch_m` long and `height_m` high; its origin lies in the middle of the pitch on the mid-plane. Points are
-//! `[along, high]`: `along` runs with the beam's axis z, `high` with the transverse axis x, towards the upper row.
+//! The cell is `pitch_m` long and `height_m` high. Its origin is on the mid-plane in the middle of the pitch. Points
+//! are `[along, high]`: `along` is the direction of the beam's axis z, `high` that of the transverse axis x, towards
+//! the upper row.
 
 use crate::finite::Law;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -22,19 +23,20 @@ pub struct Section {
     pub width_m: f64,
     /// Distance between neighbouring bladders of a row [m], 1/phi_b.
     pub pitch_m: f64,
-    /// What the beam is made of where no region says otherwise.
+    /// Material of the beam outside the regions.
     pub material: Material,
     /// The two rows of bladders.
     pub bladders: Bladders,
     /// Parts of the cell made of another material: a skin, a stiff sheet, a fibre. None may overlap another or cross a bladder's wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<Region>,
-    /// Whether the cell is solved in three dimensions, with the ends of bladders and side walls that bend: a second or more instead of a tenth.
+    /// Solves the cell in three dimensions, with the ends of bladders and side walls that bend: a second or
+    /// more instead of a tenth.
     #[serde(default)]
     pub three_d: bool,
 }
 
-/// An isotropic elastic material; a section may name one of [crate::materials].
+/// An isotropic elastic material; a case may give one of [crate::materials] by name.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Given")]
 pub struct Material {
@@ -75,7 +77,7 @@ pub struct Bladders {
 }
 
 impl Bladders {
-    /// Length of a bladder along the beam [m]; 0 where there are none.
+    /// Length of a bladder along the beam [m]; 0 without bladders.
     pub fn along(&self) -> f64 {
         let row = [&self.upper, &self.lower].into_iter().find_map(|row| match row {
             Row::Bladder(bladder) => Some(bladder),
@@ -150,9 +152,9 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
-    /// Where it is.
+    /// Shape and place of the region.
     pub shape: RegionShape,
-    /// What it is made of.
+    /// Material of the region.
     pub material: Material,
 }
 

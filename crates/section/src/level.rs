@@ -1,14 +1,16 @@
-//! Everything one mesh of the cell says about the beam's section.
+//! Properties of the beam's section from one mesh of the cell.
 //!
-//! Per cell, at given loads (N, M, p_u, p_l) and per unit of width of the hollow core l_b and of the side walls w_s - l_b:
+//! Per cell, at given loads (N, M, p_u, p_l). S and S_side are per unit width of the hollow core (l_b) and of the side
+//! walls (w_s - l_b):
 //!
 //! ```text
 //! A q = pitch (N, M, 0, 0) + l_b T^T p,    A = l_b S + (w_s - l_b) S_side on (e, kappa)                [C1]
 //! C (N, M, p_u, p_l) = (e, kappa, phi_b l_b a_u, phi_b l_b a_l),    phi_b = 1/pitch                    [C2]
 //! ```
 //!
-//! The side walls share stretch and curvature with the core; their lateral strains are their own and free. The products of loads and what
-//! they are listed against are energies per unit length of the beam, so C is symmetric: g* = 1/2 load.C load (model.md, 4.2).
+//! The side walls share stretch and curvature with the core; their lateral strains are independent and free. Products
+//! of loads and conjugate quantities are energies per unit length of the beam. C is therefore symmetric: g* = 1/2
+//! load.C load (model.md, 4.2).
 
 use crate::cell::{Cell, Kind, Moments, Part, Response};
 use crate::dense::solve;
@@ -20,7 +22,7 @@ use crate::input::Section;
 pub struct Level {
     /// C of [C2].
     pub compliance: [[f64; 4]; 4],
-    /// Largest relative difference of transposed entries before the matrices were made symmetric.
+    /// Largest relative difference of transposed entries before symmetrization.
     pub asymmetry: f64,
     /// kGA [N].
     pub shear_stiffness: f64,
@@ -28,9 +30,9 @@ pub struct Level {
     pub cavities: [Moments; 2],
     /// Mass of the solid per unit length [kg/m] and its second moment about the mid-plane [kg m].
     pub solid: [f64; 2],
-    /// Permeability of the upper and lower bladder [m^4], zero where there is none.
+    /// Permeability of the upper and lower bladder [m^4]; zero without a bladder.
     pub permeability: [f64; 2],
-    /// Displacement unknowns.
+    /// Number of displacement unknowns.
     pub unknowns: usize,
 }
 
@@ -93,7 +95,7 @@ impl Level {
     }
 }
 
-/// The side walls beyond the bladders' ends, per unit of their width.
+/// Side walls beyond the bladders' ends, per unit of their width.
 pub(crate) struct Walls {
     pub(crate) stiffness: [[f64; 2]; 2],
     shear: f64,
@@ -109,7 +111,7 @@ impl Walls {
                 shear: solid.shear_stiffness(cell)?,
             });
         }
-        // One material: uniaxial stress, and the parabola of shear stress.
+        // One material: uniaxial stress, and a parabolic shear stress.
         let e = section.material.young_modulus_pa;
         let stiffness = [[e * pitch * h, 0.0], [0.0, e * pitch * h.powi(3) / 12.0]];
         Ok(Self {

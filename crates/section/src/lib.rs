@@ -9,17 +9,17 @@
 //! # Ok::<(), slcbeam_section::error::Error>(())
 //! ```
 //!
-//! | room | what it holds |
+//! | room | content |
 //! |---|---|
-//! | [input], [error] | what the user writes; what can be wrong with it, and where |
+//! | [input], [error] | the user's input; its faults with their location |
 //! | [materials] | elastomers by name, with their sources |
-//! | [geometry], [mesh] | outlines and their rules; quadratic triangles on them, refined by halving |
-//! | [element] | shapes; stiffness without locking [S1] [S2]; the Laplacian |
+//! | [geometry], [mesh] | outlines and their rules; meshes of quadratic triangles, refined by halving |
+//! | [element] | shape functions; stiffness without locking [S1] [S2]; the Laplacian |
 //! | [cell] | one cell's response to stretch, curvature, lateral strain and pressures [L1] to [L4]; shear [L5] to [L7] |
 //! | [level], [coefficients] | compliance of the whole width [C1] [C2]; the model's numbers [K1] to [K3] with errors [R1] |
 //! | [finite] | the cell at finite strain: an energy over stretch, curvature and pressures [F1] to [F5] |
 //! | [permeability], [picture] | channels [Q1]; deformed cells |
-//! | [verify], [paper] | exact results beside computed ones; the printed coefficients beside the paper's cell |
+//! | [verify], [paper] | comparison with exact results, and with the paper's printed coefficients |
 
 pub mod cell;
 pub mod coefficients;

@@ -1,4 +1,4 @@
-//! Elastomers by name, each number with where it was published.
+//! Elastomers by name, with the publication of each number.
 //!
 //! ```text
 //! Yeoh           W = C1 (I1 - 3) + C2 (I1 - 3)^2 + C3 (I1 - 3)^3      mu = 2 C1
@@ -7,9 +7,9 @@
 //! E = 2 (1 + nu) mu
 //! ```
 //!
-//! The sources take their material as incompressible. A section takes the ratio [INCOMPRESSIBLE]: the bulk modulus of silicones, above 1 GPa,
-//! gives ratios nearer to 0.5 than that. Batches, curing, speed and stretches before change a modulus by some ten percent; measured numbers
-//! beside a name stand.
+//! The sources assume incompressibility. A section uses the ratio [INCOMPRESSIBLE]; silicones with a bulk modulus above
+//! 1 GPa have ratios closer to 0.5. Batch, curing, strain rate and previous stretches change a modulus by some ten
+//! percent. Measured numbers next to a name take precedence.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,15 +17,15 @@ use serde::{Deserialize, Serialize};
 use crate::finite::law::Law;
 use crate::input::Material;
 
-/// Poisson's ratio where a source says incompressible: the largest that a section takes without loss of accuracy.
+/// Poisson's ratio of materials that a source calls incompressible: the largest without loss of accuracy in a section.
 pub const INCOMPRESSIBLE: f64 = 0.4999;
 
-/// A law with the constants as they are published.
+/// A law with its published constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Published {
-    /// Young's modulus at small strain [Pa] of an incompressible solid; no law for large strain was found.
+    /// Young's modulus at small strain [Pa] of an incompressible solid, without a law for large strain.
     Small(f64),
-    /// Shear modulus mu of neo-Hooke's law [Pa].
+    /// Shear modulus mu of the neo-Hookean law [Pa].
     NeoHookean(f64),
     /// C10, C01 [Pa].
     MooneyRivlin(f64, f64),
@@ -44,7 +44,7 @@ impl Published {
         }
     }
 
-    /// The law at finite strain, which does not hold the shear modulus; None where none was found.
+    /// Law at finite strain, without the shear modulus; None if no law was found.
     pub fn law(self) -> Option<Law> {
         Some(match self {
             Self::Small(_) => return None,
@@ -60,18 +60,18 @@ impl Published {
     }
 }
 
-/// What is known of an elastomer.
+/// Properties of an elastomer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elastomer {
-    /// Elasticity.
+    /// Elastic law.
     pub published: Published,
-    /// Largest stretch that the source or the fit to its data covers.
+    /// Largest stretch covered by the source or the fit to its data.
     pub up_to_stretch: Option<f64>,
-    /// Where the elasticity is from.
+    /// Source of the elastic law.
     pub elastic_source: &'static str,
     /// Density [kg/m^3].
     pub density_kg_m3: f64,
-    /// Where the density is from.
+    /// Source of the density.
     pub density_source: &'static str,
 }
 
@@ -85,17 +85,17 @@ macro_rules! presets {
         }
 
         impl Preset {
-            /// All of them.
+            /// All presets.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// The name that a section gives it.
+            /// Name in a section.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$name => $key,)*
                 }
             }
 
-            /// What is known of it.
+            /// Properties of the elastomer.
             pub fn elastomer(self) -> Elastomer {
                 match self {
                     $(Self::$name => Elastomer {
@@ -111,8 +111,8 @@ macro_rules! presets {
     };
 }
 
-/// Tension of dumbbells (ASTM D412, 450 mm/min, strain from the crosshead). The constants are a fit to its data by least squares with equal
-/// weights; `tests/case/materials.rs` holds them against points of the data.
+/// Tension test of dumbbells (ASTM D412, 450 mm/min, strain from the crosshead). The constants are a least-squares fit
+/// to its data with equal weights; `tests/case/materials.rs` compares them with points of the data.
 const MARECHAL: &str = "fit to the tension test in the Soft Robotics Materials Database, Marechal et al. 2021, Soft Robotics 8(3), doi:10.1089/soro.2019.0115";
 
 presets! {
@@ -132,7 +132,8 @@ presets! {
     ElastosilM4601 = "elastosil-m4601": Published::Yeoh(0.11e6, 0.02e6, 0.0), None,
         "Polygerinos et al. 2013, Towards a soft pneumatic glove for hand rehabilitation, IROS, doi:10.1109/IROS.2013.6696549";
         1130.0, "Wacker, data sheet Elastosil M 4601 A/B (1.13 g/cm3, ISO 2781)";
-    /// PDMS: Sylgard 184 (Dow), base to agent 10:1, cured at 25 C (at 200 C 2.97 MPa): Johnston et al. 2014, doi:10.1088/0960-1317/24/3/035017.
+    /// PDMS: Sylgard 184 (Dow), base to agent 10:1, cured at 25 C (at 200 C 2.97 MPa): Johnston et al. 2014,
+    /// doi:10.1088/0960-1317/24/3/035017.
     Pdms10 = "pdms-10-1": Published::Small(1.32e6), None,
         "Johnston et al. 2014, Mechanical characterization of bulk Sylgard 184, J. Micromech. Microeng. 24, 035017, doi:10.1088/0960-1317/24/3/035017";
         1030.0, "Dow Corning, product information Sylgard 184, form 11-3184B (specific gravity cured 1.03)";
@@ -140,7 +141,8 @@ presets! {
     Tpu85a = "tpu-85a": Published::Small(12e6), None,
         "NinjaTek, technical specifications NinjaFlex 3D Printing Filament (tensile modulus 12 MPa, ASTM D638)";
         1190.0, "NinjaTek, technical specifications NinjaFlex 3D Printing Filament (specific gravity 1.19, ASTM D792)";
-    /// Natural rubber, vulcanised without filler: Treloar 1944, doi:10.1039/TF9444000059, whose data neo-Hooke's law follows up to stretch 1.5.
+    /// Natural rubber, vulcanised without filler: Treloar 1944, doi:10.1039/TF9444000059, whose data neo-Hooke's law
+    /// follows up to stretch 1.5.
     NaturalRubber = "natural-rubber": Published::NeoHookean(0.39e6), Some(1.5),
         "Treloar 1944, Stress-strain data for vulcanised rubber under various types of deformation, Trans. Faraday Soc. 40, 59-70, doi:10.1039/TF9444000059";
         950.0, "MatWeb, Natural Rubber, Vulcanized (0.950 g/cm3, uncompounded)";

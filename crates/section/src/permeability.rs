@@ -4,7 +4,8 @@
 //! -lap w = 1 in the cross-section,  w = 0 on its walls,  q1 = integral of w;   flow = -(q1 / mu) dp/ds      [Q1]
 //! ```
 //!
-//! w is twice differentiable but at corners that turn inwards; quadratic elements give q1, the energy of w, to the fourth order.
+//! w is twice differentiable except at reentrant corners. Quadratic elements give q1, the energy of w, with fourth
+//! order.
 
 use crate::element::poisson;
 use crate::error::Error;
@@ -17,13 +18,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// The cross-section of a channel.
+/// Cross-section of a channel.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Channel {
-    /// Within one outline.
+    /// Interior of one outline.
     Open(Shape),
-    /// Between two circles of the same centre.
+    /// Region between two concentric circles.
     Annulus {
         /// Inner radius [m].
         inner_m: f64,
@@ -32,7 +33,7 @@ pub enum Channel {
     },
 }
 
-/// The outer boundary and, of an annulus, the inner one.
+/// Outer boundary, and the inner one of an annulus.
 fn outlines(channel: &Channel) -> Vec<Outline> {
     match channel {
         Channel::Open(shape) => vec![Outline::shape(shape, [0.0; 2])],
@@ -42,7 +43,7 @@ fn outlines(channel: &Channel) -> Vec<Outline> {
     }
 }
 
-/// q1 [m^4] of a channel on each of `levels` meshes, every one four times as fine as the last.
+/// q1 [m^4] of a channel on `levels` meshes, each with four times as many triangles as the previous one.
 pub fn levels(channel: &Channel, levels: usize) -> Result<Vec<f64>, Error> {
     let domain = Domain {
         outlines: outlines(channel),
@@ -63,7 +64,7 @@ pub fn levels(channel: &Channel, levels: usize) -> Result<Vec<f64>, Error> {
     Ok(values)
 }
 
-/// q1 [m^4] of a channel with its error.
+/// q1 [m^4] of a channel with its estimated error.
 pub fn permeability(channel: &Channel) -> Result<Estimate, Error> {
     Ok(estimate(
         &levels(channel, 3)?,
@@ -77,7 +78,7 @@ pub fn permeability(channel: &Channel) -> Result<Estimate, Error> {
 
 type Element<'a> = &'a dyn Fn(&[Point; 6]) -> Option<([[f64; 6]; 6], [f64; 6])>;
 
-/// Solves [Q1] on these triangles, w = 0 on edges that only one of them has.
+/// Solves [Q1] on these triangles, with w = 0 on edges of a single triangle.
 pub(crate) fn flow(nodes: &[Point], triangles: &[[usize; 6]], element: Element) -> Result<f64, Error> {
     let mut seen: HashMap<usize, (usize, [usize; 3])> = HashMap::new();
     for t in triangles {

@@ -1,4 +1,4 @@
-//! The cell deformed by each of its four loads, as plain arrays for a picture.
+//! Deformation of the cell under each of its four loads, as plain arrays for a picture.
 
 use crate::cell::{Cell, Kind, Part, Response};
 use crate::coefficients::Options;
@@ -15,16 +15,17 @@ pub struct Picture {
     pub nodes_m: Vec<Point>,
     /// Quadratic triangles: vertices 0, 1, 2, then the middles of 01, 12, 20.
     pub triangles: Vec<[usize; 6]>,
-    /// Edges of triangles on the solid's boundary: end, middle, end.
+    /// Triangle edges on the boundary of the solid: end, middle, end.
     pub outline: Vec<[usize; 3]>,
-    /// Place of each triangle's material: 0 the section's, k the k-th region's.
+    /// Material index of each triangle: 0 for the section, k for the k-th region.
     pub materials: Vec<usize>,
-    /// Under N = 1 N, M = 1 N m, p_upper = 1 Pa and p_lower = 1 Pa, of every node `[along, high]` [m]; the cell's middle is not turned.
+    /// Displacements `[along, high]` [m] of every node under N = 1 N, M = 1 N m, p_upper = 1 Pa and p_lower = 1 Pa. The
+    /// cell's middle does not rotate.
     pub displacements_m: [Vec<[f64; 2]>; 4],
 }
 
 impl Section {
-    /// Pictures of the cell on the last but one of the meshes.
+    /// Picture of the cell on the second finest mesh.
     pub fn picture(&self, options: &Options) -> Result<Picture, Error> {
         let meshes = self.meshes(options)?;
         let cell = Cell::new(self, &meshes[meshes.len().saturating_sub(2)]);
@@ -68,7 +69,7 @@ impl Section {
 }
 
 impl Picture {
-    /// Nodes inside the cavities belong to no triangle.
+    /// Removes nodes without triangles, which are inside the cavities.
     fn drop_unused(&mut self) {
         let mut place = vec![usize::MAX; self.nodes_m.len()];
         self.triangles.iter().flatten().for_each(|&k| place[k] = 0);

@@ -1,4 +1,4 @@
-//! Sparse symmetric systems, by faer's Cholesky factorisation with a fill-reducing ordering.
+//! Sparse symmetric systems by faer's Cholesky factorization with a fill-reducing ordering.
 
 use crate::error::Error;
 use faer::linalg::solvers::Solve;
@@ -6,7 +6,7 @@ use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 use faer::{Mat, Side};
 
-/// Where the entries of matrices stand, with what follows from it: order of elimination and fill.
+/// Sparsity pattern of matrices, with elimination order and fill.
 pub struct Pattern {
     n: usize,
     matrix: SymbolicSparseColMat<usize>,
@@ -15,7 +15,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// From entries (row, column, value) of the lower triangle.
+    /// Pattern from entries (row, column, value) of the lower triangle.
     pub fn new(n: usize, entries: &[(usize, usize, f64)]) -> Result<Self, Error> {
         let places: Vec<_> = entries.iter().map(|&(row, col, _)| Pair { row, col }).collect();
         let (matrix, order) = SymbolicSparseColMat::try_new_from_indices(n, n, &places).map_err(|_| Error::Singular)?;
@@ -28,7 +28,7 @@ impl Pattern {
         })
     }
 
-    /// Factorises the matrix of entries at the same places in the same order; those with one place add up.
+    /// Factorizes a matrix from entries with equal positions in equal order; entries at one position add up.
     pub fn factor(&self, entries: &[(usize, usize, f64)]) -> Result<Factor, Error> {
         let values: Vec<f64> = entries.iter().map(|entry| entry.2).collect();
         let matrix = SparseColMat::new_from_argsort(self.matrix.clone(), &self.order, &values);
@@ -41,14 +41,14 @@ impl Pattern {
     }
 }
 
-/// A factorised positive definite matrix.
+/// A factorized positive definite matrix.
 pub struct Factor {
     n: usize,
     factor: Llt<usize, f64>,
 }
 
 impl Factor {
-    /// Factorises from entries (row, column, value) of the lower triangle; those with the same place add up.
+    /// Factorizes a matrix from entries (row, column, value) of the lower triangle; entries at one position add up.
     pub fn new(n: usize, entries: &[(usize, usize, f64)]) -> Result<Self, Error> {
         Pattern::new(n, entries)?.factor(entries)
     }

@@ -1,4 +1,4 @@
-//! The energy at finite strain as a polynomial, against the cell that it is made from.
+//! The polynomial of the energy at finite strain, compared with its cell.
 
 mod common;
 
@@ -21,7 +21,7 @@ fn cell(section: &Section, meshes: usize) -> FiniteCell {
     FiniteCell::new(section, finest(section, meshes), section.material.law.unwrap()).unwrap()
 }
 
-/// P by its definition, at z.
+/// P at z, by its definition.
 fn value(energy: &StrainEnergy, z: [f64; 4]) -> f64 {
     let term = |k: [usize; 4]| (0..4).map(|i| z[i].powi(k[i] as i32)).product::<f64>();
     let terms = monomials(energy.degree).map(term);
@@ -35,7 +35,7 @@ fn scaled(energy: &StrainEnergy, y: [f64; 4]) -> [f64; 4] {
     [y[0] / e, y[1] / k, (y[2] + y[3]) / (2.0 * p), (y[2] - y[3]) / (2.0 * p)]
 }
 
-/// Strains by loads y_1, y_2 of a cell, whose strains by pressure are those of its tangent at rest.
+/// A cell's state at rest; its tangent gives the strains by pressure, and thus the strains by loads y_1, y_2.
 struct Rest(SectionState);
 
 impl Rest {
@@ -43,7 +43,7 @@ impl Rest {
         Self(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap())
     }
 
-    /// By how much the polynomial is off the energy of the cell at y, over the quadratic part.
+    /// Error of the polynomial relative to the energy of the cell at y, over the quadratic part.
     fn off(&self, energy: &StrainEnergy, cell: &FiniteCell, y: [f64; 4]) -> f64 {
         let p = [y[2], y[3]];
         let [stretch, curvature] = self.by_pressure(p);
@@ -61,13 +61,13 @@ impl Rest {
         [0, 1].map(|i| -(t[i][2] * p[0] + t[i][3] * p[1]) / t[i][i])
     }
 
-    /// Size of the quadratic part, whose terms differ in sign.
+    /// Sum of the magnitudes of the quadratic terms, which differ in sign.
     fn size(&self, at: &SectionState) -> f64 {
         let x = [at.strain[0], at.strain[1], at.pressures_pa[0], at.pressures_pa[1]];
         (0..4).map(|i| 0.5 * self.0.tangent[i][i].abs() * x[i] * x[i]).sum()
     }
 
-    /// Omega less its quadratic part.
+    /// Omega without its quadratic part.
     fn beyond(&self, at: &SectionState) -> f64 {
         let x = [at.strain[0], at.strain[1], at.pressures_pa[0], at.pressures_pa[1]];
         let quadratic: f64 = (0..4)
@@ -89,7 +89,7 @@ fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitte
         assert!(energy.error < 1e-2, "{law:?}: {}", energy.error);
         let cell = cell(&section, 1);
         let rest = Rest::of(&cell);
-        // directions with no symmetry, inside the ellipsoid
+        // directions without symmetry, inside the ellipsoid
         for direction in [
             [0.6, 0.3, 0.4, 0.1],
             [-0.3, 0.5, 0.6, 0.2],

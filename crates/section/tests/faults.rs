@@ -1,4 +1,4 @@
-//! Every rule of a section, named with its place; several at once.
+//! Every rule of a section is reported with its location; several violations are reported at once.
 
 mod common;
 
@@ -14,7 +14,7 @@ const OTHER: Material = Material {
     law: None,
 };
 
-/// The places of a section's faults, in order.
+/// Locations of a section's faults, in order.
 fn places(section: &Section) -> Vec<String> {
     section.faults().into_iter().map(|f| f.place).collect()
 }

@@ -1,4 +1,4 @@
-//! The cell at finite strain: laws, limits, derivatives, closed forms.
+//! Cell at finite strain: laws, limits, derivatives, closed forms.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn cells(section: &Section, law: Law, meshes: usize) -> (FiniteCell, Level) {
     (FiniteCell::new(section, cell, law).unwrap(), level)
 }
 
-/// A block without bladders, as wide as its core.
+/// A block without bladders and side walls.
 fn block(nu: f64, pitch_m: f64) -> Section {
     let mut section = with_shapes(nu, None, None);
     section.bladders.length_m = section.width_m;
@@ -31,7 +31,7 @@ fn block(nu: f64, pitch_m: f64) -> Section {
     Section { pitch_m, ..section }
 }
 
-/// Response of the four conjugates to unit loads, from Omega's Hessian: the linear cell's compliance.
+/// Compliance from Omega's Hessian, comparable to that of the linear cell.
 fn compliance(h: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
     let det = h[0][0] * h[1][1] - h[0][1] * h[1][0];
     let inverse = [[h[1][1] / det, -h[0][1] / det], [-h[1][0] / det, h[0][0] / det]];
@@ -49,7 +49,8 @@ fn compliance(h: &[[f64; 4]; 4]) -> [[f64; 4]; 4] {
 
 #[test]
 fn small_strains_are_those_of_the_linear_cell() {
-    // Straight sides: there quadratic elements hold the macroscopic parabola exactly, and both cells are the same but for round-off.
+    // With straight sides, quadratic elements represent the macroscopic parabola exactly: both cells agree to rounding
+    // errors.
     let section = paper(0.49, 0.0);
     for law in LAWS {
         let (cell, level) = cells(&section, law, 1);
@@ -69,7 +70,7 @@ fn small_strains_are_those_of_the_linear_cell() {
         let small = cell.equilibrium(Drive::Load([1e-3, 2e-6]), [0.05, -0.02]).unwrap();
         let loads = [1e-3, 2e-6, 0.05, -0.02];
         let strain: f64 = (0..4).map(|j| linear[0][j] * loads[j]).sum();
-        // Strains of 1e-6: the next order is a millionth of the first.
+        // At strains of 1e-6, the next order is a millionth of the first.
         assert!(
             (small.strain[0] / strain - 1.0).abs() < 1e-4,
             "{} {strain}",
@@ -82,7 +83,7 @@ fn small_strains_are_those_of_the_linear_cell() {
 fn resultants_areas_and_tangent_are_derivatives_of_one_potential() {
     let section = paper(0.48, 0.002);
     let x = [0.06, 4.0, 6e3, -3e3];
-    // Central differences: the error falls with the square of these steps, and round-off of 1e-12 stays below it.
+    // Central differences: the error decreases with the square of these steps; rounding errors of 1e-12 stay below it.
     let steps = [1e-4, 1e-2, 20.0, 20.0];
     for law in LAWS {
         let (cell, _) = cells(&section, law, 1);
@@ -136,7 +137,7 @@ fn laws_derive_from_their_energies() {
             let (a, b) = (moved(-1.0), moved(1.0));
             for part in 0..2 {
                 let slope = (b[part].v - a[part].v) / 2e-5;
-                // Central differences of smooth functions of order one: 1e-10, and round-off 1e-16/1e-5.
+                // Central differences of smooth functions of order one: error 1e-10, rounding error 1e-16/1e-5.
                 assert!((slope - middle[part].g[k]).abs() < 1e-8, "{law:?}");
                 for j in 0..5 {
                     let second = (b[part].g[j] - a[part].g[j]) / 2e-5;
@@ -184,7 +185,8 @@ fn a_block_bends_to_the_same_arc_whatever_the_pitch() {
         let (cell, _) = cells(&block(0.45, pitch), Law::NeoHookean, 2);
         cell.equilibrium(Drive::Load([0.0, 2.0]), [0.0; 2]).unwrap()
     };
-    // Both cells see one field, constant along the arc; their meshes differ, and err with the fourth power of a turn of 0.1 an element.
+    // The field is constant along the arc and equal in both cells. Their meshes differ; the error is of fourth order in
+    // the rotation of 0.1 per element.
     let (a, b) = (at(0.01), at(0.017));
     assert!(a.strain[1] > 20.0, "{:?}", a.strain);
     assert!(
@@ -200,8 +202,8 @@ fn a_block_bends_to_the_same_arc_whatever_the_pitch() {
         a.strain[0],
         b.strain[0]
     );
-    // Every fibre a bar at its height of rest, what the side walls are taken for: the height's own change is left out, of second order in
-    // the strain of the outer fibre.
+    // Every fibre is a bar at its rest height, the assumption for side walls. The change of height is neglected; it is
+    // of second order in the strain of the outer fibre.
     let fibres = |law: Law, e: f64, kappa: f64| {
         let section = block(0.45, 0.01);
         let (mu, bulk, n) = (section.material.shear_modulus(), section.material.bulk_modulus(), 2000);
@@ -243,7 +245,7 @@ fn the_state_does_not_depend_on_the_way() {
 
 #[test]
 fn a_cavitys_volume_is_that_of_its_outline() {
-    // A rectangle 2 by 3 with its centroid at height 5.
+    // A rectangle of 2 by 3 with its centroid at height 5.
     let corners = [[-1.0, 3.5], [1.0, 3.5], [1.0, 6.5], [-1.0, 6.5]];
     let (g0, g1) = (0.1, -0.03);
     let part = |k: usize| {

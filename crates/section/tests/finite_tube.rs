@@ -1,8 +1,9 @@
-//! A long tube with closed ends blown up by half its bore: rubber elasticity's closed form.
+//! A long tube with closed ends, inflated to 1.5 times its bore: closed form of rubber elasticity.
 //!
-//! Rivlin, Phil. Trans. A 242 (1949): an incompressible tube under inner pressure stays a tube. With radius R at rest, r deformed and
-//! axial stretch l, r^2 - r_i^2 = (R^2 - R_i^2)/l; the principal stretches are r/R, R/(r l), l. Its energy per length at rest is a function
-//! of r_i and l alone, and p does the work p (l pi r_i^2): both derivatives give p.
+//! Rivlin, Phil. Trans. A 242 (1949): an incompressible tube under inner pressure remains a tube. With radius R at
+//! rest, deformed radius r and axial stretch l, r^2 - r_i^2 = (R^2 - R_i^2)/l. The principal stretches are r/R, R/(r
+//! l), l. The energy per rest length depends only on r_i and l, and p does the work p (l pi r_i^2). Both derivatives
+//! therefore give p.
 
 mod common;
 
@@ -21,7 +22,8 @@ fn radius(at_rest: f64, inner: f64, stretch: f64) -> f64 {
     (inner * inner + (at_rest * at_rest - INNER * INNER) / stretch).sqrt()
 }
 
-/// Energy over the shear modulus, of the neo-Hookean tube per length at rest; the middle rule on 4000 rings errs by 1e-7.
+/// Energy of the neo-Hookean tube per rest length, over the shear modulus; the error of the midpoint rule on 4000 rings
+/// is 1e-7.
 fn energy(inner: f64, stretch: f64) -> f64 {
     let n = 4000;
     let step = (OUTER - INNER) / f64::from(n);
@@ -34,7 +36,7 @@ fn energy(inner: f64, stretch: f64) -> f64 {
     (0..n).map(ring).sum()
 }
 
-/// Axial stretch and pressure over the shear modulus at a deformed bore.
+/// Axial stretch, and pressure over the shear modulus, for a deformed bore.
 fn exact(inner: f64) -> (f64, f64) {
     let by_bore = |l: f64| {
         let d = 1e-5 * inner;
@@ -53,7 +55,7 @@ fn exact(inner: f64) -> (f64, f64) {
     (low, by_bore(low))
 }
 
-/// The tube stands in a cell as long as its diameter; the faces of the period are one node each.
+/// Cell of the tube's diameter in length; each face of the period is a single node.
 fn tube(section: &Section, meshes: usize) -> FiniteCell {
     let rings = [OUTER, INNER].map(|r| Outline::ellipse([0.0; 2], [r; 2]));
     let bore = rings[1].chords();
@@ -81,7 +83,7 @@ fn tube(section: &Section, meshes: usize) -> FiniteCell {
 
 #[test]
 fn a_tube_blown_up_by_half_its_bore() {
-    // mu/K is 2e-4 here; what it changes is of that size.
+    // mu/K is 2e-4; the effect of compressibility is of this size.
     let mut section = with_shapes(0.4999, None, None);
     section.bladders.length_m = section.width_m;
     section.bladders.lower = Row::None;

@@ -1,4 +1,4 @@
-//! The paper's cell beside the printed coefficients (A.4.1, A.4.2).
+//! The paper's cell compared with the printed coefficients (A.4.1, A.4.2).
 
 use slcbeam_section::finite::Law;
 use slcbeam_section::paper::{Experiment, PRINTED, paper_table};
@@ -12,7 +12,7 @@ fn the_papers_cell() {
             "nu {nu} fillet {fillet} centre {center}: {:?} misfit {:.3}",
             v.computed, v.misfit
         );
-        // Reciprocity leaves the printed slope per pressure out of reach of every shape, by two orders of magnitude.
+        // By reciprocity, no shape comes within two orders of magnitude of the printed slope per pressure.
         assert!(v.computed[5] > 50.0 * PRINTED[5].high);
         // The printed permeability is that of a square of 2.6 mm.
         assert!(v.computed[7] > 50.0 * PRINTED[7].high);
@@ -21,7 +21,7 @@ fn the_papers_cell() {
     }
     let best = &table.variants[table.best];
     println!("best {best:?}, in three dimensions {:?}", table.spatial);
-    // The plane cell's own error, measured: 2 % in stiffness, 11 % in areas and what follows from them.
+    // Measured error of the plane cell: 2 % in stiffness, 11 % in areas and derived numbers.
     for (k, (plane, spatial)) in best.computed.iter().zip(table.spatial).enumerate() {
         assert!((plane / spatial - 1.0).abs() < if k < 2 { 0.02 } else { 0.11 });
     }
@@ -40,13 +40,13 @@ fn plus_and_minus_are_secants_of_the_papers_linear_law_at_finite_strain() {
     let hooke = Experiment::new(0.49, 0.0039, 0.0049, Law::SaintVenantKirchhoff).unwrap();
     let bent = hooke.moment(0.28).unwrap();
     println!("moment {bent:?}");
-    // Printed: 6.54 to 3.75, a ratio of 1.744.
+    // Printed: 6.54 and 3.75, a ratio of 1.744.
     assert!((bent.closing / bent.opening / 1.744 - 1.0).abs() < 0.02);
     let pulled = hooke.force(90.0).unwrap();
     println!("force {pulled:?}");
-    // Printed: 6.31 to 3.64, a ratio of 1.734.
+    // Printed: 6.31 and 3.64, a ratio of 1.734.
     assert!((pulled.closing / pulled.opening / 1.734 - 1.0).abs() < 0.02);
-    // f_e 0.53 as the mean pull of the paper's experiment makes it, 150 N of the 300 at the root.
+    // f_e 0.53 is a secant at the mean tension of the paper's experiment, 150 N of the 300 N at the root.
     let stiffness = hooke.extension(150.0).unwrap();
     println!("f_e {stiffness}");
     assert!((stiffness / 0.53 - 1.0).abs() < 0.05);

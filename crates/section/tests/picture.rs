@@ -1,4 +1,4 @@
-//! The deformed cell is the one whose compliance is given.
+//! The deformed cell agrees with the computed compliance.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn faces_of_the_period_part_by_stretch_and_curvature() {
     for (load, u) in picture.displacements_m.iter().enumerate() {
         let jump = |x: f64| u[node(half, x)][0] - u[node(-half, x)][0];
         let c = &levels[0].compliance;
-        // The sum of four displacements of the size of the jump.
+        // Sum of four displacements of the size of the jump.
         let size = section.pitch_m * (c[0][load].abs() + top * c[1][load].abs());
         assert!(((jump(top) + jump(-top)) / 2.0 - section.pitch_m * c[0][load]).abs() < 1e-9 * size);
         assert!(((jump(top) - jump(-top)) / (2.0 * top) - section.pitch_m * c[1][load]).abs() < 1e-9 * size / top);

@@ -1,4 +1,4 @@
-//! What must hold of every section.
+//! Properties of every section.
 
 mod common;
 
@@ -11,7 +11,6 @@ fn solve(section: &Section) -> Coefficients {
     section.coefficients(&Options::default()).unwrap()
 }
 
-/// Of a mesh each: laws that hold on any mesh.
 fn coarse(section: &Section) -> Coefficients {
     section
         .coefficients(&Options {
@@ -21,7 +20,6 @@ fn coarse(section: &Section) -> Coefficients {
         .unwrap()
 }
 
-/// Leading minors by elimination without pivoting: all positive if and only if the matrix is.
 fn is_positive_definite(mut a: [[f64; 4]; 4], rows: usize) -> bool {
     for k in 0..rows {
         if a[k][k] <= 0.0 {
@@ -128,7 +126,7 @@ fn mirrored_rows_leave_no_coupling_and_equal_numbers() {
         (upper.area_per_moment_m2_per_n_m, lower.area_per_moment_m2_per_n_m),
         (upper.area_per_force_m2_per_n, lower.area_per_force_m2_per_n),
     ] {
-        // Round-off of a cell close to incompressible.
+        // Rounding error of a nearly incompressible cell.
         assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
     }
     assert!((upper.centroid_m + lower.centroid_m).abs() < 1e-15);
@@ -143,7 +141,7 @@ fn a_lower_row_given_as_its_own_is_that_of_the_mirror() {
     let own = solve(&with_shapes(0.45, Some((0.005, shape())), Some((-0.005, shape()))));
     let mirrored = solve(&with_shapes(0.45, Some((0.005, shape())), None));
     let (a, b) = (own.numbers, mirrored.numbers);
-    // Another mesh of the same cell: equal within the errors of both.
+    // Another mesh of the same cell: equal within the sum of their errors.
     let within = |x: f64, y: f64, e: f64| assert!((x / y - 1.0).abs() < 2.0 * e, "{x} {y} {e}");
     within(
         a.axial_stiffness_factor,
@@ -169,7 +167,7 @@ fn one_row_alone_bends_the_beam_it_stretches() {
     let c = solve(&section).numbers;
     assert!(c.lower.is_none());
     assert!(is_positive_definite(c.compliance, 3));
-    // The upper side is the weaker: a pull stretches it more, which is a positive curvature.
+    // The upper side is weaker: tension stretches it more, which is a positive curvature.
     assert!(c.compliance[0][1] > 0.0);
     assert!(c.area_per_moment_m2_per_n_m > 0.0 && c.area_per_force_m2_per_n > 0.0);
 }
@@ -213,7 +211,7 @@ fn coefficients_scale_with_size_and_modulus() {
 fn nothing_locks_towards_incompressibility() {
     let at = |nu| solve(&paper(nu, 0.002)).numbers.bending_stiffness_factor;
     let (a, b, c) = (at(0.49), at(0.499), at(0.4999));
-    // 1/K falls tenfold from one to the next, and so must the change; a locking element stiffens without bound.
+    // 1/K decreases tenfold from one to the next, and so must the change; a locking element stiffens without bound.
     let ratio = (b - a) / (c - b);
     assert!((ratio - 10.0).abs() < 1.0, "{ratio}");
 }
@@ -264,7 +262,7 @@ fn shape() -> impl Strategy<Value = Shape> {
 }
 
 proptest! {
-    // A cell takes some ten milliseconds.
+    // One cell takes about ten milliseconds.
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
@@ -279,7 +277,7 @@ proptest! {
             section.regions = vec![Region { shape, material }];
         }
         prop_assert_eq!(section.faults(), vec![]);
-        // of flat shapes the coarsest mesh may fold, which is reported
+        // the coarsest mesh of flat shapes may fold, which is reported
         let found = section.coefficients(&Options { meshes: 1, ..Options::default() });
         prop_assume!(!found.as_ref().is_err_and(|error| error.to_string().contains("folded")));
         let c = found.unwrap();
@@ -299,7 +297,7 @@ fn regions_of_the_same_material_change_nothing() {
         material: plain.material,
     };
     let regions = vec![
-        // Around a bladder; on one face of the period only; a fibre.
+        // Regions: around a bladder; on one face of the period only; a fibre.
         same(RegionShape::Circle {
             center_m: [0.0, 0.0054],
             radius_m: 0.0044,
@@ -326,7 +324,7 @@ fn regions_of_the_same_material_change_nothing() {
         for j in 0..4 {
             let (x, y) = (&a.numbers.compliance, &b.numbers.compliance);
             let error = a.errors.compliance[i][j] + b.errors.compliance[i][j];
-            // Twice the errors of both, and round-off where an entry vanishes by symmetry.
+            // Twice the sum of the errors, plus rounding errors where an entry vanishes by symmetry.
             assert!(
                 (x[i][j] - y[i][j]).abs() < (2.0 * error + 1e-9) * (x[i][i] * x[j][j]).sqrt(),
                 "{i} {j}"
@@ -362,13 +360,13 @@ fn a_stiff_liner_around_a_bladder_holds_it() {
     let c = solve(&lined).numbers;
     assert!(c.upper.unwrap().area_per_pressure_m2_per_pa < 0.05 * free);
     assert!(c.lower.unwrap().area_per_pressure_m2_per_pa > 0.7 * free);
-    // The upper side is the stiffer now: a pull stretches it less.
+    // The upper side is stiffer now: tension stretches it less.
     assert!(c.compliance[0][1] < 0.0);
 }
 
 #[test]
 fn a_cell_of_two_pitches_is_as_stiff_in_shear_as_one() {
-    // Rods across the beam, stiff or soft: [L5] to [L7] must not depend on how many of them make a cell.
+    // Stiff or soft rods across the beam: [L5] to [L7] must not depend on their number in a cell.
     let with_rods = |young_modulus_pa: f64, count: i32| {
         let mut section = with_shapes(0.4, None, None);
         section.bladders.lower = Row::None;

@@ -1,4 +1,4 @@
-//! The cell in three dimensions.
+//! Cell in three dimensions.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn a_solid_beam_has_saint_venants_stiffness() {
         section.bladders.lower = Row::None;
         let (c, _) = section.spatial(&COARSE, 2).unwrap();
         let (e, w, h) = (2e6, section.width_m, section.height_m);
-        // Linear stress and a parabola of displacement: exact but for round-off, the more of it the closer to incompressible.
+        // Linear stress and parabolic displacement: exact to rounding errors, which grow towards incompressibility.
         assert!((c[0][0] * e * w * h - 1.0).abs() < 1e-9, "{}", c[0][0] * e * w * h);
         assert!((c[1][1] * e * w * h.powi(3) / 12.0 - 1.0).abs() < 1e-9);
     }
@@ -60,7 +60,7 @@ fn layers_of_one_poisson_ratio_bend_as_beams_do() {
 
 #[test]
 fn a_wide_beam_is_that_of_the_plane_cell() {
-    // Ends of 2 mm on a bladder of 0.8 m: what they disturb reaches a cell's height, 3 % of it.
+    // Ends of 2 mm on a bladder of 0.8 m: their disturbance extends over one cell height, 3 % of the bladder.
     let wide = Section {
         width_m: 0.804,
         ..paper(0.45, 0.0025)
@@ -93,7 +93,7 @@ fn the_plane_cell_is_off_by_a_few_percent_on_the_papers_section() {
     let spatial = paper(0.45, 0.0025).three_dimensional().unwrap();
     println!("{spatial:#?}");
     let off = &spatial.plane_off;
-    // Measured before on the same shape by another program: 2 % for stiffness, 3 to 11 % for couplings.
+    // Results of another program for this shape: 2 % for stiffness, 3 to 11 % for couplings.
     assert!(off[0][0].abs() < 0.02 && off[1][1].abs() < 0.02);
     for (i, j) in [(2, 2), (0, 2), (1, 2)] {
         assert!((0.02..0.11).contains(&off[i][j].abs()), "{i} {j} {}", off[i][j]);
@@ -103,7 +103,7 @@ fn the_plane_cell_is_off_by_a_few_percent_on_the_papers_section() {
         "{:?}",
         spatial.errors
     );
-    // a second's work
+    // about a second of work
     assert!((8_000..16_000).contains(&spatial.unknowns), "{}", spatial.unknowns);
 }
 

@@ -1,4 +1,4 @@
-//! Every exact result, and what the meshes say of themselves.
+//! Every exact result, and the error estimates from the meshes.
 
 use slcbeam_section::verify::{LEAST_ORDER, ROUND_OFF, verify};
 
@@ -22,7 +22,7 @@ fn exact_results_are_met_or_approached_with_the_order_of_the_element() {
             );
         }
     }
-    // What is exact by construction is held to round-off, most of the rest is approached.
+    // Results exact by construction are checked to rounding errors; most of the others are approximated.
     let exact = rows.iter().filter(|row| row.estimate().is_none()).count();
     assert!(exact > 30 && rows.len() - exact > 20, "{exact} of {}", rows.len());
 }

@@ -4,7 +4,7 @@
 >>> result = slcbeam.run("bend-wet")
 >>> tip = result.history["tip_u1"]    # [m], one value an output time
 
-Numbers are in SI units, which names of figures and fields carry. A case is what ``slcbeam schema`` describes.
+Numbers are in SI units; names of figures and fields end in their unit. ``slcbeam schema`` describes the format of a case.
 """
 
 try:
@@ -51,7 +51,7 @@ from ._simulator import Simulator, State
 try:
     __version__ = _metadata.version("slcbeam")
 except _metadata.PackageNotFoundError:
-    # on the path without having been installed
+    # imported from the path, not installed
     __version__ = "unknown"
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""The program, as ``slcbeam`` or ``python -m slcbeam``: ``slcbeam run case.json``."""
+"""Entry point of ``slcbeam`` and ``python -m slcbeam``: ``slcbeam run case.json``."""
 
 import signal
 import sys
@@ -7,7 +7,7 @@ from . import _slcbeam
 
 
 def main() -> None:
-    # what the program makes of Ctrl-C, not Python
+    # Ctrl-C ends the program; Python does not raise KeyboardInterrupt
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     sys.exit(_slcbeam.program(sys.argv[1:]))
 

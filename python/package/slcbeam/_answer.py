@@ -1,4 +1,4 @@
-"""What a command other than a run tells."""
+"""Results of commands other than runs."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 
 class Columns(Mapping[str, np.ndarray]):
-    """Columns of a table by name: arrays of shape (rows,), of floats where every cell is a number or empty (nan), else of texts."""
+    """Columns of a table by name: arrays of shape (rows,). Floats if every cell is a number or empty (nan), else texts."""
 
     def __init__(self, headings: list[str], rows: list[list[str]]) -> None:
         #: Names of the columns, without units.
         self.names, units = split(headings)
-        #: Unit of each column by its name; ``""`` where its heading has none.
+        #: Unit of each column by its name; ``""`` if its heading has none.
         self.units = dict(zip(self.names, units))
         self._columns = {name: _column([row[k] for row in rows]) for k, name in enumerate(self.names)}
         self._rows = len(rows)
@@ -49,13 +49,13 @@ class Columns(Mapping[str, np.ndarray]):
         return len(self._columns)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A frame with a column a name. Needs pandas."""
+        """Returns a data frame with one column per name. Needs pandas."""
         import pandas
 
         return pandas.DataFrame(self._columns)
 
     def to_polars(self) -> polars.DataFrame:
-        """A frame of polars with a column a name. Needs polars."""
+        """Returns a polars data frame with one column per name. Needs polars."""
         import polars
 
         return polars.DataFrame(self._columns)
@@ -77,16 +77,16 @@ def _column(cells: list[str]) -> np.ndarray:
 
 
 class Answer(Mapping[str, Any]):
-    """What a command found: the values of its JSON file by key, ``answer["quantities"]``, and the tables and arrays of its folder.
+    """Result of a command: values of its JSON file by key, ``answer["quantities"]``, and tables and arrays of its folder.
 
-    Without ``out`` the folder is a temporary one, which goes when the answer goes.
+    Without ``out`` the folder is temporary and is deleted with the answer.
     """
 
     def __init__(self, told: dict[str, Any], folder: Path | None, *, interrupted: bool = False, kept: Any = None) -> None:
         self._told, self._kept = told, kept
-        #: Its folder; ``None`` for a command that writes none.
+        #: Folder of the result; ``None`` for a command that writes none.
         self.folder = folder
-        #: Whether Ctrl-C ended it early, with what there is; not of what was complete when it came.
+        #: True if Ctrl-C ended the command before its result was complete.
         self.interrupted = interrupted
 
     def __getitem__(self, key: str) -> Any:
@@ -102,15 +102,16 @@ class Answer(Mapping[str, Any]):
 
     @property
     def warnings(self) -> list[str]:
-        """What to know before trusting it."""
+        """Warnings of the command."""
         warnings: list[str] = self._told.get("warnings", [])
         return warnings
 
     @property
     def bands(self) -> dict[str, dict[str, Any]]:
-        """What uncertain numbers leave open of each figure, in its unit: ``value``, ``numerical_error`` where it is known, ``sd``, ``low``,
-        ``high``, of so many ``samples`` of those ``drawn``; empty where none were said to be uncertain. Figures of modes are ``mode_1.frequency_hz``, the lowest that
-        swings; each mode has its own, too: ``answer["modes"][0]["bands"]``.
+        """Uncertainty of each figure due to ``uncertain`` numbers, in the unit of the figure: ``value``, ``numerical_error`` if known,
+        ``sd``, ``low``, ``high``, and the number of ``samples`` of those ``drawn``. Empty without uncertain numbers. Figures of modes are named
+        ``mode_1.frequency_hz``, with the lowest oscillating mode first; each mode has its own bands, too:
+        ``answer["modes"][0]["bands"]``.
 
         >>> import slcbeam
         >>> coarse = slcbeam.load("bend-dry", set={"/mesh/cells_per_segment": 1})
@@ -130,7 +131,7 @@ class Answer(Mapping[str, Any]):
 
     @property
     def tables(self) -> dict[str, Columns]:
-        """Tables of the folder by the names of their files: ``answer.tables["path"]`` of ``path.csv``; read anew at every call."""
+        """Tables of the folder by file name: ``tables["path"]`` is ``path.csv``. Every access reads the files again."""
         found: dict[str, Columns] = Named()
         sums = self._checksums()
         for path in sorted(self._folder().glob("*.csv")):
@@ -146,12 +147,12 @@ class Answer(Mapping[str, Any]):
             table = found[path.stem] = Columns(headings, rows)
             about = path.with_suffix(".json")
             if path.stem == "sweep" and about.is_file():
-                # names of figures stand in that table without units
+                # headings of figures in this table have no units
                 table.units |= {one["name"]: one["unit"] for one in json.loads(about.read_text(encoding="utf-8"))["columns"]}
         return found
 
     def _checksums(self) -> dict[str, int]:
-        """Checksums of tables by file, of a run or a cycle; others have none."""
+        """Checksums of tables by file name; only runs and cycles have them."""
         path = self._folder() / "summary.json"
         try:
             return json.loads(path.read_text(encoding="utf-8")).get("tables_crc32", {}) if path.is_file() else {}
@@ -160,7 +161,7 @@ class Answer(Mapping[str, Any]):
 
     @property
     def arrays(self) -> dict[str, np.ndarray]:
-        """Arrays of the folder's NPZ files by name, units in the names; read anew at every call."""
+        """Arrays of the NPZ files of the folder by name, with units in the names. Every access reads the files again."""
         found: dict[str, np.ndarray] = {}
         for path in sorted(self._folder().glob("*.npz")):
             with np.load(path) as arrays:
@@ -168,7 +169,7 @@ class Answer(Mapping[str, Any]):
         return found
 
     def save(self, dir: str | os.PathLike[str]) -> Path:
-        """Copies the folder to another place that is not there yet; returns its path."""
+        """Copies the folder to a path that does not exist yet; returns that path."""
         target = place(dir)
         try:
             shutil.copytree(self._folder(), target)
@@ -177,7 +178,7 @@ class Answer(Mapping[str, Any]):
         return target
 
     def report(self) -> Report:
-        """The page of the answer; ``lean`` leaves it out."""
+        """Returns the page of the answer; with ``lean`` there is none."""
         if not (self._folder() / "report.html").is_file():
             raise UsageError("this answer has no page: ask for it without lean")
         return Report((self._folder() / "report.html").read_text(encoding="utf-8"))
@@ -204,16 +205,16 @@ class Answer(Mapping[str, Any]):
         return (_again, (self._told, None if files is not None else self.folder, self.interrupted, files))
 
 
-#: Files that tell what a command found, those first that stand beside another.
+#: Main result files of the commands; a file comes before those that may be beside it in a folder.
 MAIN = ("cycle", "sweep", "summary", "equilibrium", "modes", "study", "effects", "floquet", "map", "fit", "sense", "optimum", "response")
 
 
 def read(dir: str | os.PathLike[str]) -> Answer:
-    """What a result folder holds, of whichever command and machine: values of its JSON file, tables, arrays, page.
+    """Reads a result folder of any command: values of its JSON file, tables, arrays, page.
 
-    Of a run these are ``summary.json``, ``tables["history"]`` and the ``arrays`` of ``fields.npz``.
+    For a run these are ``summary.json``, ``tables["history"]`` and the ``arrays`` of ``fields.npz``.
 
-    :raises FileError: it holds no result.
+    :raises FileError: if the folder contains no result.
     """
     folder = place(dir)
     found = [path for path in (folder / f"{name}.json" for name in MAIN) if path.is_file()]

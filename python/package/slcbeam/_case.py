@@ -1,4 +1,4 @@
-"""Cases: what is simulated."""
+"""Cases: descriptions of the simulated systems."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ import numpy as np
 from . import _slcbeam
 from ._errors import UnknownError, UsageError
 
-#: Cases that come with the package.
+#: Folder of the cases shipped with the package.
 CASES = Path(__file__).parent / "cases"
 
-#: What is taken for a case.
+#: Types accepted as a case.
 CaseLike = Union["Case", str, "os.PathLike[str]", Mapping[str, Any]]
 
 
 def plain(value: Any) -> Any:
-    """Numbers and arrays of numpy as JSON has them."""
+    """Converts numbers and arrays of numpy to plain Python values."""
     if hasattr(value, "tolist"):
         return value.tolist()
     raise TypeError(f"{type(value).__name__} has no form in JSON")
 
 
 def as_json(value: Any, what: str = "value of a case", **how: Any) -> str:
-    """A value as JSON.
+    """Returns a value as JSON text.
 
-    :raises UsageError: it has none.
+    :raises UsageError: if the value has no JSON form.
     """
     try:
         return json.dumps(value, default=plain, **how)
@@ -42,9 +42,9 @@ def as_json(value: Any, what: str = "value of a case", **how: Any) -> str:
 
 
 def numbers(values: Any) -> np.ndarray:
-    """An array of floats from numbers, ``None`` for one that is missing (nan).
+    """Returns an array of floats; ``None`` becomes nan.
 
-    :raises UsageError: something is no real number, such as a text, a date or a complex number.
+    :raises UsageError: if a value is no real number, such as a text, a date or a complex number.
     """
     try:
         given = np.asarray(values)
@@ -59,7 +59,7 @@ def numbers(values: Any) -> np.ndarray:
 
 
 class Case:
-    """A case that was checked. It stays as it is; :meth:`set` makes another one.
+    """A checked, immutable case; :meth:`set` returns a changed copy.
 
     >>> import slcbeam
     >>> case = slcbeam.load("bend-wet")
@@ -79,18 +79,18 @@ class Case:
         self._own = _slcbeam.Case.parse(text, path, base, list(self._sets))
         self._dict: dict[str, Any] | None = None
         if '"csv"' in text:
-            # tables of files are taken as they are now, whatever becomes of the files
+            # read tables now, so that later changes of their files have no effect
             self._text = json.dumps(_within(json.loads(text), self.to_dict()), indent=2)
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the case."""
         return self._own.name
 
     def set(self, pointer: str | Mapping[str, Any], value: Any = ...) -> Case:
-        """Another case with a value at a JSON pointer, or with several: ``case.set({"/a": 1, "/b": 2})``.
+        """Returns a copy with another value at a JSON pointer, or with several: ``case.set({"/a": 1, "/b": 2})``.
 
-        ``None`` leaves out what could stand there. Everything is checked again.
+        ``None`` removes an optional value. The copy is checked again.
         """
         if isinstance(pointer, Mapping) != (value is ...):
             raise UsageError("case.set takes a pointer and a value, or a dict of values by pointer")
@@ -98,12 +98,12 @@ class Case:
         return Case(self._text, self._path, self._base, self._sets + _sets(changes, self._base))
 
     def to_dict(self) -> dict[str, Any]:
-        """The whole case with every default filled in; a copy."""
+        """Returns a copy of the whole case as a dict, with all defaults filled in."""
         whole: dict[str, Any] = json.loads(self._own.json())
         return whole
 
     def __getitem__(self, pointer: str) -> Any:
-        """The value at a JSON pointer, defaults included."""
+        """Returns the value at a JSON pointer, including defaults."""
         if not isinstance(pointer, str):
             raise UnknownError(f"{pointer!r} is no JSON pointer")
         if self._dict is None:
@@ -130,14 +130,14 @@ def _sets(changes: Mapping[str, Any], base: str) -> tuple[str, ...]:
 
 
 def _absolute(value: Any, base: str) -> Any:
-    """Files of tables as seen from anywhere."""
+    """Makes the file names of tables absolute."""
     if isinstance(value, Mapping):
         return {key: os.path.join(base, of) if key == "csv" and isinstance(of, str) else _absolute(of, base) for key, of in value.items()}
     return [_absolute(one, base) for one in value] if isinstance(value, (list, tuple)) else value
 
 
 def _within(value: Any, resolved: Any) -> Any:
-    """A case with the points of its tables in place of their files."""
+    """Replaces the files of tables in a case by their points."""
     if isinstance(value, dict) and isinstance(resolved, dict):
         if "csv" in value and "csv" not in resolved:
             return resolved
@@ -148,7 +148,7 @@ def _within(value: Any, resolved: Any) -> Any:
 
 
 def shipped() -> list[str]:
-    """Names of the cases that come with the package.
+    """Returns the names of the cases shipped with the package.
 
     >>> "wiring-2" in shipped()
     True
@@ -163,11 +163,11 @@ def _shipped() -> Iterator[Path]:
 def load(case: CaseLike, set: Mapping[str, Any] | None = None) -> Case:
     """Reads and checks a case.
 
-    :param case: a file; the name of a case that comes with the package, see :func:`shipped`; a dict; JSON text.
-        A file is taken before a name. Tables that a file names are looked for beside it, those of a dict or text in the working directory.
-    :param set: values by JSON pointer that take the place of those in the case.
-    :raises CaseError: with every fault of the case.
-    :raises UsageError: there is no such case.
+    :param case: a file; the name of a shipped case, see :func:`shipped`; a dict; JSON text. An existing file has priority over a name.
+        Files of tables are relative to the file of the case, or to the working directory for a dict or text.
+    :param set: values by JSON pointer that replace those of the case.
+    :raises CaseError: if the case is invalid, with all its faults.
+    :raises UsageError: if there is no such case.
 
     >>> load("wiring-2", set={"/time/end_s": 0.1})
     <slcbeam.Case 'wiring-2', 1 changed>

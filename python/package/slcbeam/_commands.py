@@ -1,5 +1,5 @@
-"""The commands beside runs. Each takes what the command line takes: options by name with underscores, ``load_factor=0.5`` for
-``--load-factor 0.5``; ``True`` for one without a value, lists and dicts for what can be repeated."""
+"""Commands other than runs. Options are those of the command line, with underscores in their names: ``load_factor=0.5`` for
+``--load-factor 0.5``. ``True`` stands for an option without a value, a list or a dict for a repeated option."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._case import Case, CaseLike, as_json, load, numbers
 from ._errors import SolverError, UsageError
 from ._result import place
 
-#: A place for a result.
+#: Folder of a result.
 Place = Union[str, "os.PathLike[str]", None]
 #: Measured data: a CSV file, a dict of columns, or a frame of pandas.
 Data = Union[str, "os.PathLike[str]", Mapping[str, Any], Any]
@@ -30,7 +30,7 @@ def _text(value: Any) -> str:
 
 
 def _words(options: Mapping[str, Any]) -> list[str]:
-    """Options as words of the command line."""
+    """Converts options to arguments of the command line."""
     words = []
     for name, value in options.items():
         option = "--" + name.rstrip("_").replace("_", "-")
@@ -48,7 +48,7 @@ def _words(options: Mapping[str, Any]) -> list[str]:
 
 
 def _file(case: Case, folder: Path) -> str:
-    """A file that holds the case, without what was set."""
+    """Path of a file that contains the case without later changes."""
     path = Path(case._path)
     if path.is_file() and path.read_text(encoding="utf-8") == case._text:
         return str(path)
@@ -59,12 +59,12 @@ def _file(case: Case, folder: Path) -> str:
 
 
 def _table(data: Data, folder: Path, name: str = "data.csv") -> str:
-    """A file that holds a table of numbers."""
+    """Path of a file that contains a table of numbers."""
     if isinstance(data, (str, os.PathLike)):
         return str(place(data))
     columns: dict[str, list[float]] = {}
     try:
-        # iterating a frame of polars gives its columns, not their names
+        # iterating a polars data frame yields its columns, not their names
         for heading in getattr(data, "columns", data):
             column = np.atleast_1d(numbers(data[heading]))
             if column.ndim > 1:
@@ -124,7 +124,7 @@ def _do(
 
 
 def check(case: CaseLike, **options: Any) -> Answer:
-    """Characteristic numbers, audit of the coupling, effects chosen and why (``slcbeam check``).
+    """Returns characteristic numbers, an audit of the coupling, and the chosen effects with reasons (``slcbeam check``).
 
     >>> import slcbeam
     >>> slcbeam.check("bend-wet")["effects"]["shear"]
@@ -134,9 +134,9 @@ def check(case: CaseLike, **options: Any) -> Answer:
 
 
 def equilibrium(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """The path of static equilibria from rest to the full load (``slcbeam equilibrium``).
+    """Computes the path of static equilibria from rest to the full load (``slcbeam equilibrium``).
 
-    :param case: a :class:`Case`, or what :func:`load` takes.
+    :param case: a :class:`Case`, or an argument of :func:`load`.
     :param out: a folder for the result.
     :param options: ``at=SECONDS``, ``via``, ``load_factor``, ``points``, ``keep_branch=True``, ``sensitivity=[POINTER, ...]``,
         ``accuracy``, ``uncertain={POINTER: "normal:MEAN:SD"}``, ..
@@ -151,7 +151,7 @@ def equilibrium(case: CaseLike, *, out: Place = None, progress: bool = False, **
 
 
 def modes(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """Frequencies, damping, shapes and stability of small motions (``slcbeam modes``).
+    """Computes frequencies, damping, shapes and stability of small motions (``slcbeam modes``).
 
     :param options: ``count``, ``near=HZ``, ``at=SECONDS``, ``sensitivity=[POINTER, ...]``, ``accuracy``, ``uncertain={..}``, ..
     :returns: ``modes.json``; ``tables["modes"]``; shapes in ``arrays``.
@@ -167,10 +167,10 @@ def modes(case: CaseLike, *, out: Place = None, progress: bool = False, **option
 def response(
     case: CaseLike, input: str, output: str | Iterable[str], *, out: Place = None, progress: bool = False, **options: Any
 ) -> Answer:
-    """The frequency response of small motions (``slcbeam response``).
+    """Computes the frequency response of small motions (``slcbeam response``).
 
     :param input: JSON pointer of a signal of the case.
-    :param output: a quantity or a probe, or several.
+    :param output: one or several quantities or probes.
     :param options: ``from_=HZ``, ``to=HZ``, ``points``, ``at=SECONDS``, ..
     :returns: ``response.json``; ``tables["response"]``.
 
@@ -185,7 +185,7 @@ def response(
 
 
 def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """The steady cycle of a periodically driven case, directly (``slcbeam periodic``).
+    """Computes the steady cycle of a periodically driven case without the transient (``slcbeam periodic``).
 
     :param options: ``periods``, ``sweep="POINTER=FROM:TO:COUNT[:log]"``, ``accuracy``, ``uncertain={..}``, ..
     :returns: ``cycle.json``, or ``sweep.json``; ``tables["history"]`` over a cycle, fields in ``arrays``.
@@ -194,7 +194,7 @@ def periodic(case: CaseLike, *, out: Place = None, progress: bool = False, **opt
 
 
 def floquet(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """The steady cycle and whether it is stable, or a map of where shaking is stable (``slcbeam floquet``).
+    """Computes the steady cycle and its stability, or a stability map of axial shaking (``slcbeam floquet``).
 
     :param options: ``count``, ``period``, ``map="frequency,amplitude"``, ``range``, ``points``, ``permeability``, ``accuracy``,
         ``uncertain={..}``, ..
@@ -204,7 +204,7 @@ def floquet(case: CaseLike, *, out: Place = None, progress: bool = False, **opti
 
 
 def study(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """What accuracy costs: time against error over tolerances, meshes and orders (``slcbeam study``).
+    """Measures the cost of accuracy: time against error over tolerances, meshes and orders (``slcbeam study``).
 
     :param options: ``budget="60s"``, ``rtol=[1e-3, 1e-5]``, ``cells=[1, 2, 4]``, ``methods=[..]``, ``measure``, ..
     """
@@ -212,7 +212,7 @@ def study(case: CaseLike, *, out: Place = None, progress: bool = False, **option
 
 
 def effects(case: CaseLike, *, out: Place = None, progress: bool = False, **options: Any) -> Answer:
-    """What each effect of the model does, and what leaving it out saves (``slcbeam effects``).
+    """Measures the influence of each effect of the model, and the time saved without it (``slcbeam effects``).
 
     :param options: ``budget="60s"``, ``repeats``, ``measure``.
     """
@@ -228,13 +228,14 @@ def sweep(
     progress: bool = False,
     **options: Any,
 ) -> Answer:
-    """Many designs on all cores into one table (``slcbeam sweep``). The same call with the same ``out`` goes on where one was ended.
+    """Computes many designs in parallel into one table (``slcbeam sweep``). The same call and ``out`` resume an interrupted sweep.
 
-    :param case: one case, or several that are compared in every design.
+    :param case: one case, or several to compare in every design.
     :param vary: by JSON pointer a list of values, or a text such as ``"log:0.01:1:25"``, ``"uniform:LOW:HIGH"``.
-    :param designs: in place of ``vary`` a table, a row a design: numbers by JSON pointer as a dict of columns or a frame, or a CSV file.
+    :param designs: instead of ``vary``, a table with a row per design and JSON pointers as headings: a dict of columns, a data frame or a
+        CSV file.
     :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``design="sobol:64"``, ``jobs``, ``lean=True``, ``accuracy``, ..
-    :returns: ``sweep.json``; ``tables["sweep"]``, a row a design.
+    :returns: ``sweep.json``; ``tables["sweep"]`` with a row per design.
 
     >>> import slcbeam
     >>> table = slcbeam.sweep("bend-wet", {"/beam/length_m": [0.1, 0.11]}, command="equilibrium", lean=True).tables["sweep"]
@@ -249,12 +250,12 @@ def sweep(
 
 
 def merge(parts: Iterable[str | os.PathLike[str]], *, out: str | os.PathLike[str]) -> Answer:
-    """Joins parts of a sweep that were computed apart, ``shard="1/8"``, into one folder (``slcbeam merge``).
+    """Joins separately computed parts of a sweep, ``shard="1/8"``, into one folder (``slcbeam merge``).
 
     :param parts: folders of the parts.
-    :returns: as :func:`sweep` does; where something is missing, ``complete`` is false, ``missing`` tells what, and standard error the commands
-        that compute it.
-    :raises UsageError: parts of different sweeps.
+    :returns: the result of :func:`sweep`. If parts are missing, ``complete`` is false, ``missing`` lists them, and standard error shows the
+        commands that compute them.
+    :raises UsageError: if the parts belong to different sweeps.
     """
     if isinstance(parts, (str, os.PathLike)):
         parts = [parts]
@@ -284,11 +285,11 @@ def fit(
     progress: bool = False,
     **options: Any,
 ) -> Answer:
-    """Numbers of a case from measured data (``slcbeam fit``).
+    """Fits parameters of a case to measured data (``slcbeam fit``).
 
-    :param data: a CSV file, a dict of columns, or a frame of pandas; headings with units: ``angle_deg``.
+    :param data: a CSV file, a dict of columns, or a data frame; headings with units: ``angle_deg``.
     :param vary: bounds by JSON pointer.
-    :param match: by column the quantity that it measures: ``{"angle_deg": "tip_angle"}``.
+    :param match: measured quantity of each column: ``{"angle_deg": "tip_angle"}``.
     :param options: ``drive={"p_kpa": POINTER}``, ``noise={COLUMN: SIGMA}``, ``robust="huber"``, ``starts``, ``time``, ``jobs``.
     :returns: ``fit.json``.
     """
@@ -306,13 +307,14 @@ def optimize(
     progress: bool = False,
     **options: Any,
 ) -> Answer:
-    """The numbers of a case with which a figure is largest or least (``slcbeam optimize``).
+    """Finds the parameters of a case that maximize or minimize a figure (``slcbeam optimize``).
 
     :param vary: bounds by JSON pointer.
-    :param maximize: a figure as the table of a sweep names it: ``harvested_power_w``, ``tip_u1_m.max_abs``; or ``minimize``.
-    :param subject_to: limits to figures: ``["max_pressure_pa<=5e4"]``.
+    :param maximize: the objective, a figure with its name in the table of a sweep: ``harvested_power_w``, ``tip_u1_m.max_abs``.
+    :param minimize: the objective to minimize; give either this or ``maximize``.
+    :param subject_to: limits of figures: ``["max_pressure_pa<=5e4"]``.
     :param options: ``command="run"|"periodic"|"equilibrium"|"modes"``, ``starts``, ``crossovers``, ``choose=[..]``, ``jobs``.
-    :returns: ``optimum.json``; ``tables["designs"]``; the case of the best is ``optimum-case.json`` of the ``folder``.
+    :returns: ``optimum.json``; ``tables["designs"]``; the best case is ``optimum-case.json`` in ``folder``.
     """
     asked = {"maximize": maximize, "minimize": minimize, "subject_to": [subject_to] if isinstance(subject_to, str) else list(subject_to)}
     return _do("optimize", [case], out=out, progress=progress, options={"vary": _spans(vary or {}), **asked, **options})
@@ -327,11 +329,11 @@ def sense(
     progress: bool = False,
     **options: Any,
 ) -> Answer:
-    """Loads from measured pressures of bladders, at rest or over time, with bands of 95 % (``slcbeam sense``).
+    """Estimates loads from measured bladder pressures, at rest or over time, with 95 % bands (``slcbeam sense``).
 
-    :param pressures: a CSV file, a dict of columns, or a frame of pandas: ``pressure_3_pa``, a row a measurement, or an
-        instant ``t_s`` with ``dynamic=True``; without it, what pressures would tell.
-    :param load: what is looked for: ``tip-force``, ``tip-moment``, ``uniform``, ``point:0.5``, ``profile:8``, ..
+    :param pressures: a CSV file, a dict of columns, or a data frame: ``pressure_3_pa``. A row is a measurement at rest or, with
+        ``dynamic=True``, an instant ``t_s``. Without it, only the observability of the loads.
+    :param load: loads to estimate: ``tip-force``, ``tip-moment``, ``uniform``, ``point:0.5``, ``profile:8``, ..
     :param options: ``noise=PA``, ``smoothing``, ``dynamic=True``, ``knots``, ``at=SECONDS``, ``choose="variances"``.
     :returns: ``sense.json``; ``tables``.
     """
@@ -339,7 +341,7 @@ def sense(
 
 
 def coefficients(case: CaseLike, **options: Any) -> Answer:
-    """Coefficients of a section from its geometry, with errors (``slcbeam coefficients``).
+    """Computes the coefficients of a section from its geometry, with errors (``slcbeam coefficients``).
 
     :param case: a case with ``/section``.
     :param options: ``three_d=True``.
@@ -348,11 +350,11 @@ def coefficients(case: CaseLike, **options: Any) -> Answer:
 
 
 def measure(data: Data, of: CaseLike, as_: str, **options: Any) -> Answer:
-    """Coefficients from measurements of a specimen, with errors (``slcbeam measure``).
+    """Computes coefficients from measurements of a specimen, with errors (``slcbeam measure``).
 
-    :param data: a CSV file, a dict of columns, or a frame of pandas; headings with units: ``pressure_kpa``, ``volume_ml``.
-    :param of: the case whose sizes, modulus and fluid are those of the specimen.
-    :param as_: what was measured: ``"pressure-volume"``, ``"moment-curvature"``, ``"flow-pressure"``, ..
+    :param data: a CSV file, a dict of columns, or a data frame; headings with units: ``pressure_kpa``, ``volume_ml``.
+    :param of: a case with the dimensions, modulus and fluid of the specimen.
+    :param as_: kind of measurement: ``"pressure-volume"``, ``"moment-curvature"``, ``"flow-pressure"``, ..
     :param options: ``bladders``, ``through_zero=True``, ``cubic=True``, ``plot=FILE``, ..
     """
     case = load(of)
@@ -365,9 +367,9 @@ def measure(data: Data, of: CaseLike, as_: str, **options: Any) -> Answer:
 
 
 def compare(*results: str | os.PathLike[str], **options: Any) -> Answer:
-    """Result folders beside each other, or one and measured data (``slcbeam compare``).
+    """Compares result folders, or one folder and measured data (``slcbeam compare``).
 
-    :param results: folders, two or more; or one and a CSV file, with ``match``.
+    :param results: two or more folders; or a folder and a CSV file, with ``match``.
     :param options: ``match={COLUMN: QUANTITY}``, ``time=COLUMN``, ``out=FOLDER`` for a page.
     """
     words = ["compare", *(str(place(one)) for one in results), *_words(options)]
@@ -384,7 +386,7 @@ def export(folder: str | os.PathLike[str], **options: Any) -> None:
 
 
 def explain(what: str) -> list[dict[str, Any]]:
-    """What a message, a key, a column, a figure, a word or a symbol means (``slcbeam explain``).
+    """Explains a message, a key, a column, a figure, a word or a symbol (``slcbeam explain``).
 
     >>> import slcbeam
     >>> slcbeam.explain("tip_u1")[0]["meaning"]

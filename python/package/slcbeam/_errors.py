@@ -1,4 +1,4 @@
-"""What can go wrong, as exceptions."""
+"""Exceptions of the package."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any
 
 
 class Error(Exception):
-    """What every error of the package is."""
+    """Base class of all errors of the package."""
 
-    #: Number of its messages, where it is raised before a command could give one.
+    #: Default message number, for errors that no command raised.
     _number: str | None = None
 
     def __init__(self, words: str = "", told: str = "{}") -> None:
         super().__init__(words)
         self._told = told
-        #: What scripts read: a dict, as the command line prints it with ``--json``.
+        #: The error as a dict, as the command line prints it with ``--json``.
         self.told: dict[str, Any] = json.loads(told)
-        #: Number of the message; ``slcbeam explain E006`` tells more.
+        #: Number of the message; ``slcbeam explain E006`` explains it.
         self.code: str | None = self.told.get("code") or self._number
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -26,13 +26,13 @@ class Error(Exception):
 
 
 class UsageError(Error, ValueError):
-    """A call that makes no sense: no such case, no number at a pointer."""
+    """An invalid call, such as an unknown case or a pointer without a number."""
 
     _number = "E030"
 
 
 class UnknownError(Error, KeyError):
-    """A name that a table, an answer or a case does not have."""
+    """A name that does not exist in a table, an answer or a case."""
 
     _number = "E030"
 
@@ -44,7 +44,7 @@ class FileError(Error, OSError):
     """A file or a folder that cannot be read or written."""
 
     _number = "E050"
-    #: The result of a run that had ended but could not be written into ``out``; ``None`` otherwise.
+    #: Result of a completed run that could not be written into ``out``; ``None`` otherwise.
     result: Any = None
 
     def __str__(self) -> str:
@@ -57,26 +57,26 @@ class Fault:
 
     #: Number of the message: ``E006``.
     code: str
-    #: JSON pointer of the value, or of its parent where something is missing; ``""`` for the whole case.
+    #: JSON pointer of the value, or of the parent of a missing value; ``""`` for the whole case.
     pointer: str
-    #: What is wrong.
+    #: Description of the fault.
     message: str
-    #: What is allowed there.
+    #: Allowed values.
     allowed: str | None = None
-    #: Nearest name that is known.
+    #: Nearest known name.
     nearest: str | None = None
-    #: What to do.
+    #: Suggested remedy.
     hint: str | None = None
-    #: The change it came from, ``POINTER=JSON``.
+    #: The change that caused it, ``POINTER=JSON``.
     set: str | None = None
-    #: Where it stands in the text, from 1.
+    #: Line in the text, from 1.
     line: int | None = None
-    #: Likewise, in characters.
+    #: Column in the line, in characters from 1.
     column: int | None = None
 
 
 class CaseError(Error, ValueError):
-    """A case that cannot be used, with all its faults."""
+    """An invalid case, with all its faults."""
 
     def __init__(self, words: str = "", told: str = "{}") -> None:
         super().__init__(words, told)
@@ -88,19 +88,19 @@ class CaseError(Error, ValueError):
 
 
 class SolverError(Error, RuntimeError):
-    """A computation that could not go on."""
+    """A computation that failed."""
 
     def __init__(self, words: str = "", told: str = "{}", result: Any = None) -> None:
         super().__init__(words, told)
-        #: The result as far as it goes; ``None`` where there is none.
+        #: The partial result, or ``None``.
         self.result = result
-        #: Simulated time up to which results stand [s].
+        #: Simulated time reached by the result [s].
         self.time_s: float | None = self.told.get("time_s")
-        #: Unknown that is worst.
+        #: Unknown with the largest residual or error.
         self.unknown: str | None = self.told.get("unknown")
         #: Likely cause.
         self.cause: str | None = self.told.get("cause")
-        #: What to try.
+        #: Suggested remedy.
         self.hint: str | None = self.told.get("hint")
 
     def __reduce__(self) -> tuple[Any, ...]:

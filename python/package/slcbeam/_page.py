@@ -1,4 +1,4 @@
-"""What notebooks show."""
+"""HTML output in notebooks."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-#: Rows and columns of a table that are shown: as many from its begin and from its end.
+#: Largest numbers of rows and columns shown of a table; half of the rows are its first, half its last.
 ROWS, COLUMNS = 10, 9
 
 
 class Report:
-    """A page. A notebook shows it; :meth:`save` writes it."""
+    """A page of HTML. Notebooks display it; :meth:`save` writes it."""
 
     def __init__(self, text: str) -> None:
-        #: The whole page as HTML; it needs nothing else.
+        #: The page as self-contained HTML.
         self.html = text
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -37,7 +37,7 @@ def _cell(value: Any) -> str:
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    """A table in HTML: headings, rows of texts and numbers."""
+    """HTML table with headings and rows of texts and numbers."""
     lines = ["".join(f"<th>{html.escape(head)}</th>" for head in heads)]
     lines += ["".join(f"<td>{html.escape(_cell(value))}</td>" for value in row) for row in rows]
     return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
@@ -48,7 +48,7 @@ def _cut(row: Sequence[Any]) -> list[Any]:
 
 
 def columns(told: str, names: Sequence[str], units: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
-    """Begin and end of a table with units, below its description."""
+    """HTML of the first and last rows of a table with units, below its description."""
     heads = _cut([f"{name} [{unit}]" if unit else name for name, unit in zip(names, units)])
     half = ROWS // 2
     shown = [_cut(row) for row in (rows if len(rows) <= ROWS else [*rows[:half], *rows[-half:]])]
@@ -58,6 +58,6 @@ def columns(told: str, names: Sequence[str], units: Sequence[str], rows: Sequenc
 
 
 def summary(told: str, warnings: Sequence[str], figures: str = "") -> str:
-    """Description, warnings, figures."""
+    """HTML of description, warnings and figures."""
     listed = "".join(f"<li>{html.escape(one)}</li>" for one in warnings)
     return f"<p>{html.escape(told)}</p>" + (f"<ul>{listed}</ul>" if listed else "") + figures

@@ -1,4 +1,4 @@
-"""What a run tells."""
+"""Results of runs."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def frozen(array: np.ndarray) -> np.ndarray:
-    """A view of an array through which nobody can write, nor make it writable again."""
+    """A read-only view of an array that cannot be made writable again."""
     whole: Any = array
     while isinstance(whole, np.ndarray):
         whole.flags.writeable = False
@@ -35,11 +35,11 @@ def frozen(array: np.ndarray) -> np.ndarray:
 
 
 def unknown(name: object, names: Iterable[str]) -> UnknownError:
-    """That there is no such name, with the nearest that there is."""
+    """The error of an unknown name, with the nearest known one."""
     import difflib
 
     names = list(names)
-    # a name without its unit is one, too
+    # a name may be missing only its unit
     begins = [own for own in names if own.startswith(f"{name}_")]
     near = begins or difflib.get_close_matches(str(name), names, 1)
     return UnknownError(f"{name}; did you mean {near[0]!r}?" if near else str(name))
@@ -48,7 +48,7 @@ def unknown(name: object, names: Iterable[str]) -> UnknownError:
 def place(dir: Any) -> Path:
     """The path of a file or folder.
 
-    :raises UsageError: it is none.
+    :raises UsageError: if it is no path.
     """
     if not isinstance(dir, (str, os.PathLike)) or "\0" in os.fspath(dir):
         raise UsageError(f"{dir!r} is no path of a file or folder")
@@ -56,14 +56,14 @@ def place(dir: Any) -> Path:
 
 
 class Named(dict[str, Any]):
-    """Figures by name; one that is not there is told with the nearest that is."""
+    """Figures by name. The error of an unknown name suggests the nearest known one."""
 
     def __missing__(self, name: str) -> Any:
         raise unknown(name, self)
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns of equal length by name; each is read-only, of shape (rows,), in the unit of :attr:`units`. No column is copied.
+    """Columns of equal length by name; each is read-only, of shape (rows,), in the unit given by :attr:`units`. Columns are not copied.
 
     >>> import slcbeam
     >>> history = slcbeam.run("bend-wet").history
@@ -74,9 +74,9 @@ class Table(Mapping[str, np.ndarray]):
     def __init__(self, names: list[str], units: list[str], rows: np.ndarray, about: list[str] | None = None) -> None:
         #: Names of the columns, without units.
         self.names = list(names)
-        #: Unit of each column by its name; ``"1"`` where it has none.
+        #: Unit of each column by its name; ``"1"`` for dimensionless columns.
         self.units = dict(zip(names, units))
-        #: What each column is, by its name.
+        #: Description of each column by its name.
         self.about = dict(zip(names, about or [""] * len(names)))
         #: All values, of shape (rows, columns), read-only.
         self.values_2d = frozen(rows)
@@ -95,14 +95,14 @@ class Table(Mapping[str, np.ndarray]):
         return len(self.names)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """A frame with a column a name; what has a time is indexed by it. Needs pandas."""
+        """Returns a data frame with one column per name, indexed by time if there is a column ``t``. Needs pandas."""
         import pandas
 
         frame = pandas.DataFrame(self.values_2d, columns=self.names)
         return frame.set_index("t") if "t" in self._place else frame
 
     def to_polars(self) -> polars.DataFrame:
-        """A frame of polars with a column a name. Needs polars."""
+        """Returns a polars data frame with one column per name. Needs polars."""
         import polars
 
         return polars.DataFrame({name: np.ascontiguousarray(self[name]) for name in self.names})
@@ -115,7 +115,7 @@ class Table(Mapping[str, np.ndarray]):
 
 
 class Fields(Mapping[str, np.ndarray]):
-    """Arrays over time and places by name, each of shape (times, places), in the unit of its name; coordinates by their names, too.
+    """Arrays over time and position by name, of shape (times, positions), in the unit of the name. Coordinates are available by name, too.
 
     >>> import slcbeam
     >>> fields = slcbeam.run("bend-wet").fields
@@ -136,11 +136,11 @@ class Fields(Mapping[str, np.ndarray]):
         self.t = frozen(times)
         #: Coordinates by name, unit included: ``theta_node_m``.
         self.coordinates: dict[str, np.ndarray] = {name: frozen(values) for name, _, _, values in axes}
-        #: Name of the coordinate along which a field lies, by the field's name.
+        #: Name of the coordinate of each field, by the name of the field.
         self.axis = {name: axis for name, _, axis, _ in fields}
         #: Units by name, of fields and coordinates.
         self.units = {name: unit for name, unit, *_ in [*axes, *fields]} | {"t": "s"}
-        #: What each is.
+        #: Descriptions by name, of fields and coordinates.
         self.about = {name: about for name, _, about, _ in axes} | {name: about for name, *_, about in fields}
         self._arrays = {field[0]: frozen(array) for field, array in zip(fields, arrays)}
 
@@ -157,7 +157,7 @@ class Fields(Mapping[str, np.ndarray]):
         return len(self._arrays)
 
     def to_xarray(self) -> xarray.Dataset:
-        """A dataset with all coordinates, units and names. Needs xarray."""
+        """Returns a dataset with all coordinates, units and descriptions. Needs xarray."""
         import xarray
 
         def attributes(name: str) -> dict[str, str]:
@@ -172,33 +172,33 @@ class Fields(Mapping[str, np.ndarray]):
 
 
 def split(names: list[str]) -> tuple[list[str], list[str]]:
-    """Names and units of headings such as ``tip_u1 [m]``; the unit is empty where a heading has none."""
+    """Splits headings such as ``tip_u1 [m]`` into names and units; a missing unit is empty."""
     parts = [name[:-1].partition(" [") if name.endswith("]") else (name, "", "") for name in names]
     return [head for head, _, _ in parts], [unit for *_, unit in parts]
 
 
 class Result:
-    """A run that has ended. Its arrays are those that the run filled, and read-only."""
+    """Result of a run. Its arrays are read-only and shared with the run, not copied."""
 
     def __init__(self, case: Case, recorded: Any, arrays: dict[str, Any]) -> None:
         self._asked, self._recorded, self._arrays = case, recorded, arrays
         #: ``summary.json`` as a dict.
         self.summary: dict[str, Any] = json.loads(recorded.summary())
-        #: Whether Ctrl-C came before the end. With an accuracy the result is then the last candidate that finished.
+        #: True if Ctrl-C ended the run early. With an accuracy, the result then is the last candidate that finished.
         self.interrupted: bool = recorded.interrupted
         names, units, about = ([*column] for column in zip(*recorded.columns())) if recorded.columns() else ([], [], [])
-        #: One row an output time: ``result.history["tip_u1"]``.
+        #: One row per output time: ``result.history["tip_u1"]``.
         self.history = Table(names, units, arrays["history"], about)
-        #: What is left of output times that the history leaves out (``/time/history``); no columns otherwise.
+        #: Statistics over the output times that the history omits (``/time/history``); no columns if it omits none.
         self.envelope = Table(*split(recorded.envelope()), arrays["envelope"])
-        #: Derivatives of the history's columns: ``result.derivatives["d tip_u1/d /beam/length_m"]``; no columns where none were asked for.
+        #: Derivatives of the history's columns: ``result.derivatives["d tip_u1/d /beam/length_m"]``; none without ``sensitivity``.
         self.derivatives = Table(*split(recorded.sensitivities()), arrays["sensitivities"])
-        #: Arrays over time and places: ``result.fields["u1_m"]``.
+        #: Arrays over time and position: ``result.fields["u1_m"]``.
         self.fields = Fields(arrays["times"], recorded.axes(), recorded.fields(), arrays["fields"])
 
     @property
     def case(self) -> Case:
-        """The case that was asked for."""
+        """The case that was run."""
         return self._asked
 
     @property
@@ -209,8 +209,8 @@ class Result:
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
-        """Figures of every quantity by name and unit: ``final``, ``max_abs`` at ``max_abs_at_s``, ``extreme``, which has its sign,
-        ``window_rms`` .. in the unit of its name, and ``error``, the largest of their errors over the largest of them, ``None`` where none is known. Columns of
+        """Figures of every quantity, by name with unit: ``final``, ``max_abs`` at ``max_abs_at_s``, the signed ``extreme``,
+        ``window_rms`` .. in that unit. ``error`` is relative: the largest error of the figures over the largest figure, ``None`` if unknown. Columns of
         :attr:`history` have names without units: ``tip_u1``.
 
         >>> import slcbeam
@@ -222,7 +222,7 @@ class Result:
         return Named({name: Named(figures | {"error": self._relative_error(name, figures)}) for name, figures in all.items()})
 
     def _relative_error(self, name: str, figures: dict[str, Any]) -> float | None:
-        """Largest error of a quantity over its largest figure."""
+        """Largest error of the figures of a quantity over its largest figure."""
         kinds = ("final", "max_abs", "window_max_abs", "window_rms", "window")
         errors = [self.errors[name][kind] for kind in kinds if kind in self.errors.get(name, {})]
         size = max((abs(figures[kind]) for kind in kinds if figures.get(kind) is not None), default=0.0)
@@ -230,7 +230,7 @@ class Result:
 
     @property
     def errors(self) -> dict[str, dict[str, float]]:
-        """Absolute errors of figures of quantities, probes and ports, each in the unit of its figure; empty without a companion.
+        """Absolute errors of the figures of quantities, probes and ports, each in the unit of its figure. Empty without a companion run.
 
         >>> import slcbeam
         >>> slcbeam.run("bend-wet").errors["tip_u1_m"]["final"] < 1e-3
@@ -241,27 +241,27 @@ class Result:
 
     @property
     def sensitivities(self) -> dict[str, dict[str, Any]]:
-        """Derivatives of the quantities by the JSON pointers of the numbers that were asked for, as in ``summary.json``."""
+        """Derivatives of the quantities, by the JSON pointers of the ``sensitivity`` numbers, as in ``summary.json``."""
         told: dict[str, dict[str, Any]] = self.summary.get("sensitivities", {})
         return told
 
     @property
     def warnings(self) -> list[str]:
-        """What to know before trusting the result."""
+        """Warnings of the run."""
         warnings: list[str] = self.summary["warnings"]
         return warnings
 
     def save(self, dir: str | os.PathLike[str], force: bool = False) -> Path:
-        """Writes the folder that ``slcbeam run --out`` writes, the page with it; returns its path.
+        """Writes the same folder as ``slcbeam run --out``, with the page; returns its path.
 
-        :param force: take a folder that holds something else.
+        :param force: also write into a folder that contains other files.
         """
         folder = place(dir)
         self._recorded.save(folder, force, self._arrays)
         return folder
 
     def report(self) -> Report:
-        """The page of the result: pictures, figures, motion."""
+        """Returns the page of the result: diagrams, figures, animation."""
         with tempfile.TemporaryDirectory() as folder:
             page = self.save(Path(folder) / "result") / "report.html"
             return Report(page.read_text(encoding="utf-8"))

@@ -1,4 +1,4 @@
-"""Runs in time."""
+"""Simulation over time."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ._case import CaseLike, load, numbers
 from ._errors import FileError, SolverError, UsageError
 from ._result import Result, place
 
-#: Called some 20 times a second with the simulated time [s], its end [s] and the steps so far.
+#: Called about 20 times a second with the simulated time [s], the end time [s] and the number of steps so far.
 Progress = Callable[[float, float, int], None]
 
 
@@ -36,19 +36,19 @@ def run(
     progress: bool | Progress = False,
     out: str | os.PathLike[str] | None = None,
 ) -> Result:
-    """Runs a case in time.
+    """Simulates a case over time.
 
-    :param case: a :class:`Case`, or what :func:`load` takes.
-    :param accuracy: relative error below which every figure is wanted; mesh and tolerance are then chosen.
-    :param sensitivity: JSON pointers of numbers by which figures and history are differentiated.
-    :param progress: ``True`` for a bar on standard error, or a function ``f(t, end, steps)``; what it raises ends the run.
-    :param out: a folder for the result, written when the run has ended; one that holds something else is refused before it begins.
-    :returns: the result; after a KeyboardInterrupt it is ``interrupted`` and its ``status`` ``stopped``, or, with an accuracy, that of the
-        last candidate that finished, if one has.
-    :raises SolverError: the run could not go on; its ``result`` holds what there is.
-    :raises FileError: ``out`` could not be written; where the run had ended, its ``result`` is that of the run.
+    :param case: a :class:`Case`, or an argument of :func:`load`.
+    :param accuracy: required relative error of every figure; mesh and tolerances are then chosen automatically.
+    :param sensitivity: JSON pointers of numbers; figures and history are differentiated with respect to them.
+    :param progress: ``True`` for a bar on standard error, or a function ``f(t, end, steps)``; an exception in it ends the run.
+    :param out: a folder for the result, written at the end of the run. A folder with other files is rejected before the run.
+    :returns: the result. After a KeyboardInterrupt it is ``interrupted`` and its ``status`` is ``stopped``; with an accuracy, it is the
+        last candidate that finished, if there is one.
+    :raises SolverError: if the run fails; its ``result`` is the partial result.
+    :raises FileError: if ``out`` cannot be written; its ``result`` is that of the run, if the run is complete.
 
-    The lock of Python is free during a run, so that others go on in other threads.
+    A run releases the global interpreter lock, so that other threads continue.
 
     >>> import slcbeam
     >>> result = slcbeam.run(slcbeam.load("bend-wet", set={"/time/end_s": 0.01}))
@@ -77,7 +77,7 @@ def run(
         try:
             result.save(out)
         except FileError as error:
-            # what took hours is not lost with the folder
+            # keep a result that may have taken hours
             error.result = result
             raise
     fault = recorded.fault()

@@ -1,4 +1,4 @@
-"""Simulation from one control instant to the next."""
+"""Stepwise simulation with inputs that change between the steps."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ._errors import UsageError
 from ._result import frozen
 from ._slcbeam import State as State
 
-#: Values of the inputs: in their order, or some of them by pointer.
+#: Values of all inputs in their order, or of some inputs by pointer.
 Values = Union[None, float, Sequence[float], np.ndarray, Mapping[str, float]]
 
 
 class Simulator:
-    """A case that is simulated piece by piece, with loads, pressures, flows and openings that are held in between.
+    """Simulates a case step by step. Inputs (loads, pressures, flows, openings) are constant during a step.
 
-    :param case: a :class:`Case`, or what :func:`load` takes. ``/time/end_s`` is how far it can be simulated.
-    :param inputs: by the JSON pointer of a signal the smallest and the largest value that it will be given, in the unit of its key; what the
-        scene calls for, and the sizes of the unknowns, follow from these. They begin as the case has them at its start.
-    :raises UsageError: there is no such signal, or one that must not jump (a motion, a volume).
+    :param case: a :class:`Case`, or an argument of :func:`load`. ``/time/end_s`` limits the simulated time.
+    :param inputs: smallest and largest value of each input, by the JSON pointer of its signal in the unit of its key. They determine the
+        effects of the model and the scales of the unknowns. The initial values are those of the case at its start.
+    :raises UsageError: if a signal does not exist, or must not jump (a motion, a volume).
 
     >>> import slcbeam
     >>> inlet = "/network/chains/0/ends/0/pressure_pa"
@@ -50,25 +50,26 @@ class Simulator:
         columns = self._own.columns()
         #: Names of the columns of :attr:`row`.
         self.columns = [name for name, _, _ in columns]
-        #: Their units, by name.
+        #: Units of the columns, by name.
         self.units = {name: unit for name, unit, _ in columns}
-        #: What they are, by name.
+        #: Descriptions of the columns, by name.
         self.about = {name: about for name, _, about in columns}
         self._place = {name: k for k, name in enumerate(self.columns)}
 
     def step(self, duration: float, values: Values = None) -> np.ndarray:
-        """Holds the inputs at these values from now on and simulates for a time [s]; returns :attr:`row` at its end.
+        """Sets the inputs and simulates for a duration [s]; returns :attr:`row` at the end.
 
-        :param values: one for each input, in their order; a number where there is one input; some by pointer; none: as they are.
-        :raises UsageError: a value outside of its range, a time beyond the end of the case.
-        :raises SolverError: it could not go on; :attr:`t` tells where it stands, and :meth:`restore` leads back; its ``result`` is
-            ``None``, since :attr:`row` and :attr:`warnings` have what there is. Where the model ends, that is at its limit.
-        :raises KeyboardInterrupt: after the step in which it came; :attr:`t` tells where it stands.
+        :param values: a value for each input in their order; a number if there is one input; a dict of some values by pointer; ``None`` to
+            keep all values.
+        :raises UsageError: if a value is outside its range, or the time is after the end of the case.
+        :raises SolverError: if the simulation fails or reaches a limit of the model. :attr:`t` is the time reached; :meth:`restore`
+            returns to a saved state. ``result`` of the error is ``None``; :attr:`row` and :attr:`warnings` remain available.
+        :raises KeyboardInterrupt: after the current step of the integrator; :attr:`t` is the time reached.
         """
         return self._step(duration, True, values)
 
     def step_to(self, t: float, values: Values = None) -> np.ndarray:
-        """The same until a time [s]."""
+        """Sets the inputs and simulates until a time [s]; otherwise like :meth:`step`."""
         return self._step(t, False, values)
 
     def _step(self, time: float, further: bool, values: Values) -> np.ndarray:
@@ -112,18 +113,18 @@ class Simulator:
 
     @property
     def end(self) -> float:
-        """Time up to which the case can be simulated, its ``/time/end_s`` [s]."""
+        """Last time that can be simulated [s]: ``/time/end_s`` of the case."""
         return self._own.end
 
     @property
     def steps(self) -> int:
-        """Steps that the integrator has taken."""
+        """Number of steps of the integrator so far."""
         return self._own.steps
 
     @property
     def wall_s(self) -> dict[str, float]:
-        """Wall time of all steps so far [s]: ``integration``; ``jumps``, for consistent values behind changed inputs; ``watching``, for
-        limits of the model, balances and the row."""
+        """Wall time of all steps so far [s]: ``integration``; ``jumps``, consistent values after changes of inputs; ``watching``, limits of
+        the model, balances and the row."""
         return dict(zip(("integration", "jumps", "watching"), self._own.spent()))
 
     @property
@@ -133,27 +134,27 @@ class Simulator:
 
     @property
     def row(self) -> np.ndarray:
-        """The history's columns at the present time: an array of shape (columns,), in :attr:`units`."""
+        """Columns of the history at the current time: an array of shape (columns,), in :attr:`units`."""
         return self._own.row()
 
     def __getitem__(self, column: str) -> float:
-        """One of them by its name."""
+        """The current value of a column."""
         return float(self.row[self._place[column]])
 
     @property
     def warnings(self) -> list[str]:
-        """What to know of what has been simulated: balances that do not close, a range that was left, and what
-        the mesh does not resolve of inputs as they have been."""
+        """Warnings so far: balances that do not close, validity ranges that were left, and input changes that the mesh does not
+        resolve."""
         return self._own.warnings()
 
     def save(self) -> State:
-        """The present state; it can be pickled. The simulator goes on from it exactly as one that restores it does."""
+        """Returns the current state, which can be pickled. A simulator that restores it continues exactly like this one."""
         return self._own.save()
 
     def restore(self, state: State) -> None:
-        """Goes to a state that a simulator of the same case and inputs was in.
+        """Returns to a state saved by a simulator of the same case and inputs.
 
-        :raises UsageError: a state of another case.
+        :raises UsageError: if the state is of another case.
         """
         self._own.restore(state)
 

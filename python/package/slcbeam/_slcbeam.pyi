@@ -1,4 +1,4 @@
-"""What the package takes from the program's library; :mod:`slcbeam` is what to use."""
+"""Interface of the compiled library, for internal use; the public interface is :mod:`slcbeam`."""
 
 from collections.abc import Callable
 from pathlib import Path

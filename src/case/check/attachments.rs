@@ -1,17 +1,17 @@
-//! What is attached to the beam.
+//! Checks of attachments to the beam.
 
 use crate::case::faults::Violations;
 use crate::case::numbers::{digits, rounded};
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
-/// Lengths of the beam beyond which no mass centre lies.
+/// Largest offset of a center of mass from its attachment point, in beam lengths.
 const FAR: f64 = 10.0;
-/// Masses of the beam, in that distance, of which no body has more rotary inertia.
+/// Largest rotary inertia of an attachment, in beam masses at the distance `FAR`.
 const HEAVY: f64 = 100.0;
 
 const LENGTH: &str = "/beam/length_m";
-/// What the beam's mass is made of.
+/// Pointers of the values that determine the mass of the beam.
 const MASS: [&str; 5] = [
     LENGTH,
     "/beam/height_m",

@@ -1,4 +1,4 @@
-//! Bladders: what must come with them, whether they fit, the order of their slopes.
+//! Checks of bladders: required sections of the case, fit into the beam, order of the slopes.
 
 use slcbeam_section::finite::energy::monomials;
 
@@ -28,7 +28,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// What makes sense with bladders only.
+/// Rejects values that require bladders, in a case without bladders.
 fn dry(case: &Case, faults: &mut Violations) {
     let present = [
         ("/fluid", case.fluid.is_some()),
@@ -43,7 +43,7 @@ fn dry(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Where the number of bladders stands.
+/// Pointer of the number of bladders per row.
 pub(super) const PER_ROW: &str = "/bladders/per_row";
 
 fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
@@ -53,7 +53,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         faults.push_beside(beside, fault);
     };
     let segment = beam.length_m / bladders.per_row.max(1) as f64;
-    // A part in 1e9 forgives what decimal fractions lose.
+    // Tolerance for rounding errors of decimal fractions.
     let exceeds = |size: f64, room: f64| size > room * (1.0 + 1e-9);
     if exceeds(bladders.width_m, segment) {
         let what = format!(
@@ -140,10 +140,10 @@ fn slopes(bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
-/// A polynomial with all its coefficients about a state at rest, where there is one potential.
+/// Checks a strain energy: number of coefficients, limits on both sides of zero, reciprocal coupling, conservative formulation.
 fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults: &mut Violations) {
     let at = "/bladders/strain_energy";
-    // the schema has said so of a degree that is none
+    // an invalid degree already has its fault from the schema
     let (degree, given) = (energy.degree, energy.coefficients_n.len());
     let wanted = || monomials(degree).count();
     if faults.are_sound(&[at]) && given != wanted() {
@@ -172,7 +172,7 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
     }
 }
 
-/// A permeability and a cross-section that would give another one.
+/// Reports a permeability given together with a cross-section, from which another permeability would follow.
 pub(super) fn two_permeabilities(pointer: &str, faults: &mut Violations) {
     let fault = Violation::new(
         Code::Slopes,

@@ -1,4 +1,4 @@
-//! Coefficients far beyond what the sizes of their section allow: almost always a unit.
+//! Coefficients far beyond the magnitude that the dimensions of their section suggest: almost always a wrong unit.
 
 use std::f64::consts::PI;
 
@@ -7,11 +7,11 @@ use crate::case::numbers::{digits, plain};
 use crate::case::schema::{Case, Coupling};
 use crate::error::{Code, Violation};
 
-/// How far beyond what the sizes suggest a coefficient may lie: thin walls make bladders some hundred times softer than a block
-/// of their size; a millimetre in place of a metre is a thousand, its square a million.
+/// Largest accepted ratio of a coefficient to its estimate. Thin walls make bladders some hundred times softer than a block of their size.
+/// A millimeter in place of a meter gives a factor of 1e3, its square 1e6.
 const BEYOND: f64 = 1e5;
 
-/// What suggests the coefficients of bladders.
+/// Pointers of the values from which the coefficients of bladders are estimated.
 const SIZES: [&str; 6] = [
     "/beam/young_modulus_pa",
     "/beam/height_m",
@@ -21,11 +21,11 @@ const SIZES: [&str; 6] = [
     "/bladders/length_m",
 ];
 
-/// Each coefficient against the one that its section's sizes and modulus suggest.
+/// Compares each coefficient with its estimate from the dimensions and the modulus of its section.
 ///
 /// ```text
 /// a_p ~ h_b w_b/E    aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)    ζ' ~ l_b E aN    ψ' ~ l_b E aM
-/// q1 ~ A²/(8π), that of a circle of the same area, which no other shape exceeds
+/// q1 ~ A²/(8π), the value of a circle of the same area, which no other shape exceeds
 /// ```
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let mut look = |pointer: &str, value: f64, (suggested, by): (f64, &[&str]), unit: &str, hint: &str| {

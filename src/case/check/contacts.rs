@@ -1,4 +1,4 @@
-//! Walls: which way they face, what presses where, and what friction needs.
+//! Checks of walls: direction of the normal, stiffness, and friction.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Ends: exactly one of each pair of conditions.
+//! Checks of ends: exactly one of each pair of conditions.
 
 use crate::case::faults::Violations;
 use crate::case::schema::{Case, End, EndConditions};
@@ -33,7 +33,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Nothing missing, unless follower forces stand for both dead forces.
+/// Reports missing conditions, and follower forces on held ends. Follower forces may replace both dead forces.
 fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], faults: &mut Violations) {
     let follower = ["follower_normal_n", "follower_shear_n"]
         .into_iter()

@@ -1,4 +1,4 @@
-//! The fluid: what goes with a gas, what with a liquid, and pressures that leave something of a gas.
+//! Checks of the fluid: keys of gases and of liquids, and gas pressures above absolute vacuum.
 
 use super::strength::inlets;
 use crate::case::faults::Violations;
@@ -51,7 +51,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// A tank is of fluid that is compressed; a vessel of gas holds some at ambient pressure; what gas fills is above absolute vacuum.
+/// Checks accumulators: a tank needs a compressible fluid, an elastic vessel of gas needs a volume, and gas pressures stay above vacuum.
 fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
     let all = case.network.iter().flat_map(|network| &network.accumulators);
     for (i, one) in all.enumerate() {
@@ -97,7 +97,7 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
     }
 }
 
-/// A gauge pressure of gas, at the least.
+/// Checks that the lowest gauge pressure of a gas is above absolute vacuum.
 fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violations) {
     let ambient = fluid.ambient_pressure();
     if lowest <= -ambient {
@@ -108,7 +108,7 @@ fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violat
     }
 }
 
-/// Pressures that ports and the start prescribe stay above absolute vacuum.
+/// Checks that the prescribed pressures of ports and of the start are above absolute vacuum.
 fn pressures(case: &Case, fluid: &Fluid, faults: &mut Violations) {
     let mut look = |pointer: String, lowest: f64| above_vacuum(fluid, pointer, lowest, faults);
     for (pointer, signal) in inlets(case).pressures {

@@ -1,4 +1,4 @@
-//! Functions of time and place: tables that make a curve, values in range, no jumps where something moves.
+//! Checks of functions of time and place: valid tables, values in range, no jumps of motions, streams or volumes.
 
 use super::time::END;
 use crate::case::faults::Violations;
@@ -11,13 +11,13 @@ use crate::functions::MOST_KNOTS;
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Signal, Table};
 
-/// Beyond this a beam does not move [Hz].
+/// Highest plausible frequency [Hz].
 const HIGHEST_FREQUENCY: f64 = 1e6;
 
-/// Beyond this a logistic step is followed in steps that never end [1/s].
+/// Largest steepness of a logistic step [1/s]; beyond it, the time steps become too small for the run to end.
 const STEEPEST: f64 = 1e8;
 
-/// What a signal is used for.
+/// Kind of quantity that a signal drives.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Role {
     Motion,
@@ -28,7 +28,7 @@ enum Role {
 }
 
 impl Role {
-    /// What must not jump, and what is infinite where it does.
+    /// Quantity that must not jump, and the quantity that a jump would make infinite.
     fn of_jumps(self) -> Option<[&'static str; 2]> {
         match self {
             Self::Motion => Some(["motion", "velocity"]),
@@ -39,10 +39,10 @@ impl Role {
     }
 }
 
-/// Part of the range of a table's values by which a spline may swing beyond them without a word.
+/// Largest overshoot of a spline that is not reported, relative to the range of the table's values.
 const SWINGS: f64 = 0.01;
 
-/// Splines that swing beyond their points, each with its pointer and by which part of the range of their values.
+/// Splines that overshoot their points, each with its pointer and its overshoot relative to the range of its values.
 pub fn overshoots(case: &Case) -> Vec<(String, f64)> {
     let signals = signals(case)
         .into_iter()
@@ -53,7 +53,7 @@ pub fn overshoots(case: &Case) -> Vec<(String, f64)> {
     signals.chain(profiles).filter(|(_, by)| *by > SWINGS).collect()
 }
 
-/// Every signal with its pointer, and whether it may jump: what moves a beam, a stream or a volume may not.
+/// All signals, each with its pointer and a flag: true if the signal may jump. Motions, streams and volumes must not jump.
 pub fn controls(case: &Case) -> Vec<(String, bool, &Signal)> {
     let all = signals(case).into_iter();
     all.map(|(at, role, signal)| (at, role.of_jumps().is_none(), signal))
@@ -95,7 +95,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// All signals of a case with their pointers.
+/// All signals of a case, each with its pointer and its role.
 fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     let mut all = vec![];
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
@@ -111,7 +111,7 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     }
     for (i, load) in case.loads.iter().enumerate() {
         if let Some((key, load)) = load.distributed() {
-            // what is damped by its rate must not jump
+            // with damping of bending rates, the rest curvature must not jump
             let moves = key == "rest_curvature_1_m" && case.beam.damping.bending_time_s > 0.0;
             let role = if moves { Role::Motion } else { Role::Other };
             all.push((format!("/loads/{i}/{key}/signal"), role, &load.signal));
@@ -256,7 +256,7 @@ fn sum_or_product(sum: bool) -> &'static str {
     if sum { "sum" } else { "product" }
 }
 
-/// Faults of the points of a table; `jumps` is none where two points at one place are none, else whether the table repeats.
+/// Faults of the points of a table. `jumps` is none if two points at one place are forbidden; otherwise it is true if the table repeats.
 fn table_fault(pointer: &str, key: &str, jumps: Option<bool>, at: &[f64], values: &[f64], faults: &mut Violations) {
     let fault = if at.is_empty() {
         Violation::new(Code::Table, pointer, "a table without points").hint(format!("give \"{key}\" and \"values\""))
@@ -288,8 +288,8 @@ fn table_fault(pointer: &str, key: &str, jumps: Option<bool>, at: &[f64], values
     faults.push(fault);
 }
 
-/// A signal over the run: no jumps where something moves, finite everywhere, openings within their range. By bounds, so that no
-/// pulse passes between two looks.
+/// Checks a signal over the run: no jumps of motions, finite values, openings within their range. Bounds are used instead of samples, so
+/// that no pulse is missed.
 fn values(pointer: &str, role: Role, signal: &Signal, end: f64, faults: &mut Violations) {
     if let Some([moves, infinite]) = role.of_jumps()
         && let Some([t, before, after]) = signal.first_jump(end)

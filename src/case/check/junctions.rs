@@ -1,5 +1,5 @@
-//! Junctions have no storage: each must reach a bladder, an accumulator or a pressure port through open branches, or its pressure
-//! is not determined.
+//! Checks of junctions. A junction stores nothing: its pressure is determined only if open branches join it to a bladder, an accumulator or
+//! a pressure port.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,14 +11,14 @@ use crate::case::wiring::Point;
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
-/// An opening below this is closed.
+/// Openings below this value count as closed.
 const CLOSED: f64 = 1e-9;
-/// Instants at which the branches are looked at when a valve moves.
+/// Number of instants at which branches are checked if a valve moves.
 const INSTANTS: usize = 200;
 
 pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     let names = case.network.as_ref().map_or(&[][..], |network| &network.junctions);
-    // a name that is declared twice is the first of them
+    // of two junctions with one name, the first counts
     let first = |name: &String| names.iter().position(|other| other == name).map(Point::Junction);
     let used = |name: &String| first(name).is_some_and(|point| joined.attached.contains_key(&point));
     for (i, name) in names.iter().enumerate().filter(|(_, name)| !used(name)) {

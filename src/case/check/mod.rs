@@ -1,4 +1,4 @@
-//! The rules that the schema cannot say, all faults at once.
+//! Rules beyond the JSON schema; all faults are reported at once.
 
 mod attachments;
 mod bladders;
@@ -53,7 +53,7 @@ const RULES: [(Rule, &[&str]); 17] = [
     (coefficients::check, &["beam", "bladders", "tubes"]),
 ];
 
-/// Every rule on one case, but those that compare a broken section with others.
+/// Applies all rules to a case, except those that compare a broken section with others.
 pub fn check(case: &Case, broken: &[String], faults: &mut Violations) {
     if !case.plausibility.is_on() {
         faults.take_as_meant();
@@ -66,7 +66,7 @@ pub fn check(case: &Case, broken: &[String], faults: &mut Violations) {
     }
 }
 
-/// The name becomes a folder.
+/// Checks that the name of the case is a valid name of a folder.
 fn name(case: &Case, faults: &mut Violations) {
     let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if case.name.is_empty() || case.name.starts_with('.') || !case.name.chars().all(good) {

@@ -1,4 +1,4 @@
-//! The network: every name and index leads somewhere, nothing is joined twice, ends are what they say.
+//! Checks of the network: every name and index exists, no point is used twice, and ends agree with their connections.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -14,7 +14,7 @@ use crate::error::{Code, Violation, listed};
 use crate::functions::signals::Signal;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
-    // of how many bladders there are none is told apart from what is none
+    // without a valid number of bladders, indices cannot be checked
     if !faults.are_sound(&[PER_ROW]) {
         return;
     }
@@ -24,22 +24,22 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// What is attached where.
+/// Connections of the network, by point.
 #[derive(Default)]
 pub struct Joined<'a> {
-    /// To each point: pointers of tubes, ports and turbines.
+    /// Pointers of everything attached to each point.
     pub attached: BTreeMap<Point, Vec<String>>,
-    /// Single tubes with their valves, and turbines.
+    /// Single tubes with their opening signals, and turbines.
     pub branches: Vec<([Point; 2], Option<&'a Signal>)>,
     /// Points of ports with a pressure.
     pub held: BTreeSet<Point>,
     /// Points of accumulators.
     pub stores: BTreeSet<Point>,
-    /// Some end leads nowhere: what is not attached may have been meant by it.
+    /// True if an endpoint is invalid; unattached ends and junctions are then not reported.
     lost: bool,
 }
 
-/// The network, but for what is a fault.
+/// Resolves the network without its faulty parts, and reports the faults.
 pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Joined<'a>) {
     let Some((bladders, network)) = case.bladders.as_ref().zip(case.network.as_ref()) else {
         return Default::default();
@@ -66,7 +66,7 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Join
     (wiring, rules.joined)
 }
 
-/// The index of a bladder; a fault if there is none.
+/// Index of a bladder by its number; reports a fault if there is none.
 pub(super) fn bladder(number: i64, per_row: usize, pointer: &str, faults: &mut Violations) -> Option<usize> {
     let index = bladder_index(number, per_row);
     if index.is_none() {
@@ -119,7 +119,7 @@ impl<'a> Rules<'a, '_> {
         }
     }
 
-    /// The point an end of a tube, port or turbine names, and a note of who is attached there.
+    /// Resolves the point that an endpoint names, and records its owner as attached there.
     fn point(&mut self, endpoint: &Endpoint, pointer: &str, owner: &str) -> Option<Point> {
         let point = self.named(endpoint, pointer);
         match point {
@@ -164,7 +164,7 @@ impl<'a> Rules<'a, '_> {
         });
     }
 
-    /// The points of a tube or turbine, which must differ.
+    /// Resolves the two points of a tube or turbine, which must differ.
     fn branch(
         &mut self,
         [from, to]: [&Endpoint; 2],
@@ -300,7 +300,7 @@ impl<'a> Rules<'a, '_> {
         found
     }
 
-    /// A valve lets more through than it leaks.
+    /// Checks that the reverse conductance of a valve does not exceed its forward conductance.
     fn valve(&mut self, valve: &CheckValve, pointer: &str) {
         if valve.reverse_conductance_m3_s_pa > valve.forward_conductance_m3_s_pa {
             let what = "a check valve that leaks more than it lets through";
@@ -363,7 +363,7 @@ impl<'a> Rules<'a, '_> {
         }
     }
 
-    /// What one end of a chain prescribes, if it does; faults where it is not what it says.
+    /// Returns the port that one end of a chain prescribes, if any. Reports an end that contradicts its connections.
     fn end(&mut self, i: usize, chain: &'a schema::Chain, k: usize) -> Option<Port<'a>> {
         let (number, end) = chain_end(chain, k)?;
         let at = self.end_of(number, end);

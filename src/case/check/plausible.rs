@@ -1,4 +1,4 @@
-//! Sizes that no such device has: almost always a unit.
+//! Values beyond the range of plausible devices: almost always a wrong unit.
 
 use crate::case::faults::Violations;
 use crate::case::numbers::{plain, rounded};
@@ -7,7 +7,7 @@ use crate::error::{Code, Violation};
 
 const MILLIMETRES: &str = "lengths are in metres; is this in millimetres?";
 
-/// What is accepted, and what to suspect beyond it.
+/// Accepted range of a value, and the suspected cause of values outside it.
 struct Range {
     low: f64,
     high: f64,
@@ -43,7 +43,7 @@ const SOFTNESS: Range = Range::new(
     "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
 );
 const FACTOR: Range = Range::new(1e-6, 1e3, "1", "a ratio to the full section, near 1");
-/// Over Young's modulus times the area of the full section.
+/// Range of the shear stiffness relative to Young's modulus times the area of the full section.
 const SHEAR: Range = Range::new(
     1e-6,
     1e3,
@@ -53,15 +53,15 @@ const SHEAR: Range = Range::new(
 const RELAXATION: Range = Range::new(1e-9, 1e9, "s", "times are in seconds");
 const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");
 
-/// What [`SHEAR`] is relative to.
+/// Pointers of the reference values of [`SHEAR`].
 const FULL_SECTION: [&str; 3] = ["/beam/young_modulus_pa", "/beam/height_m", "/beam/width_m"];
 
-/// Longest beam, in heights: dry, and with bladders, which cover a good part of it.
+/// Largest ratio of length to height of the beam: dry, and with bladders.
 const MOST_SLENDER: [f64; 2] = [1e5, 4e3];
 /// Longest tube, in lengths of the beam.
 const LONGEST_TUBE: f64 = 100.0;
 
-/// Sizes of everything that has a size.
+/// Checks dimensions, material properties and durations against their plausible ranges.
 pub(super) fn sizes(case: &Case, faults: &mut Violations) {
     let mut look = |pointer: &str, value: f64, range: &Range| look(pointer, value, range, faults);
     let beam = &case.beam;
@@ -145,7 +145,7 @@ fn look(pointer: &str, value: f64, range: &Range, faults: &mut Violations) {
     faults.push_beside(&[], fault.allowed(allowed.trim_end()).hint(range.hint));
 }
 
-/// Lengths that do not go together.
+/// Checks ratios of lengths: length to height of the beam, and length of tubes to length of the beam.
 pub(super) fn proportions(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;

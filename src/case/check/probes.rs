@@ -1,4 +1,4 @@
-//! Names of probes: columns begin with them. The time of a step whose response is told.
+//! Checks of probes, whose names begin columns, and of the time of the step response.
 
 use std::collections::HashMap;
 
@@ -29,7 +29,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Something of the run has to be left after the step.
+/// Checks that the step is before the end of the run.
 pub(super) fn step(case: &Case, faults: &mut Violations) {
     let Some(step) = case.step_response.filter(|step| step.at_s >= case.time.end_s) else {
         return;
@@ -43,5 +43,5 @@ pub(super) fn step(case: &Case, faults: &mut Violations) {
     faults.push_beside(&[END], fault);
 }
 
-/// The tip has columns of its own.
+/// Reserved name: the tip has columns of its own.
 const TIP: &str = "tip";

@@ -1,4 +1,4 @@
-//! The solid that relaxes.
+//! Checks of the viscoelastic solid.
 
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
@@ -64,5 +64,5 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Upper over lower end of a band at most.
+/// Largest ratio of the upper to the lower end of a frequency band.
 const WIDEST: f64 = 1e12;

@@ -1,4 +1,4 @@
-//! What a case may have and is seldom meant: told, not refused.
+//! Warnings about permitted values that are rarely intended.
 
 use std::f64::consts::TAU;
 
@@ -10,35 +10,35 @@ use crate::case::schema::{Case, FluidKind, Load};
 use crate::functions::Profile;
 use crate::functions::signals::Signal;
 
-/// Key of the softness of bladders.
+/// Pointer of the area per pressure of bladders.
 const PER_PRESSURE: &str = "/bladders/area_per_pressure_m2_per_pa";
 
-/// Density of the solid below which grams per cubic centimetre are suspected [kg/m^3]; silicones and rubbers have a thousand.
+/// Density of the solid below which g/cm^3 is suspected [kg/m^3]; silicones and rubbers have about 1000.
 const LIGHT: f64 = 100.0;
 
-/// Viscosity above which millipascal seconds are suspected [Pa s]; honey has ten.
+/// Viscosity above which mPa s is suspected [Pa s]; honey has 10.
 const THICK: f64 = 100.0;
 
-/// Gravity beyond which millimetres are suspected [m/s^2]; that of the earth is 9.81.
+/// Gravity above which mm/s^2 is suspected [m/s^2]; the earth's is 9.81.
 const HEAVY: f64 = 100.0;
 
-/// Density of a liquid below which grams per cubic centimetre are suspected [kg/m^3]; oils have 700 and more.
+/// Density of a liquid below which g/cm^3 is suspected [kg/m^3]; oils have 700 and more.
 const THIN: f64 = 100.0;
 
-/// Pressure of the atmosphere [Pa], the standard and as it is often rounded.
+/// Atmospheric pressure [Pa]: the standard value, and a common rounding of it.
 const ATMOSPHERE: [f64; 2] = [101_325.0, 101_300.0];
 
-/// Step of the pressures that are round [Pa].
+/// Pressures that are multiples of this value count as round [Pa].
 const ROUND_PRESSURE: f64 = 500.0;
 
-/// Pressures of the air at places where people live [Pa]: a recording that begins there is one of absolute pressure.
+/// Air pressures at inhabited altitudes [Pa]; a recording that begins in this range is of absolute pressure.
 const AMBIENT: std::ops::Range<f64> = 95e3..106e3;
 
-/// Area per pressure times Young's modulus over the section of a bladder above which another unit is suspected: cells of thick walls have 1
-/// to 10, and one with a wall of a fifth of its width has 100.
+/// Area per pressure times Young's modulus over the section of a bladder, above which another unit is suspected. Thick-walled cells have 1
+/// to 10; a cell with a wall of a fifth of its width has 100.
 const SOFT: f64 = 100.0;
 
-/// Numbers of a unit that is seldom meant, each with its pointer and what there is to say.
+/// Values whose unit is probably wrong, each with its pointer and a message.
 pub fn sizes(case: &Case) -> Vec<(String, String)> {
     if !case.plausibility.is_on() {
         return vec![];
@@ -115,7 +115,7 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
     all
 }
 
-/// Pressures that are absolute by their digits.
+/// Warns of pressures whose digits suggest that they are absolute.
 fn pressures(case: &Case, all: &mut Vec<(String, String)>) {
     let mut given: Vec<(String, f64)> = vec![];
     for (pointer, signal) in inlets(case).pressures {
@@ -147,7 +147,7 @@ fn pressures(case: &Case, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// True if a pressure is that of the atmosphere and something round more, or the first of a recording at ambient pressure.
+/// True if a pressure is atmospheric plus a round amount, or is the first value of a recording at ambient pressure and not round.
 fn is_absolute(pointer: &str, value: f64) -> bool {
     let above = value - ATMOSPHERE[0];
     let round = |x: f64| (x / ROUND_PRESSURE - (x / ROUND_PRESSURE).round()).abs() < 1e-9;
@@ -155,7 +155,7 @@ fn is_absolute(pointer: &str, value: f64) -> bool {
     (above >= 0.0 && round(above)) || ATMOSPHERE.contains(&value) || recorded
 }
 
-/// Angles that are degrees by their digits: more than a turn, and whole or half numbers.
+/// Warns of angles that are probably degrees: more than a turn, and whole or half numbers.
 fn angles(case: &Case, all: &mut Vec<(String, String)>) {
     let is_degrees = |angle: f64| angle.abs() > TAU && (2.0 * angle).fract() == 0.0;
     let mut tell = |pointer: String, angle: f64| {
@@ -185,7 +185,7 @@ fn angles(case: &Case, all: &mut Vec<(String, String)>) {
     }
 }
 
-/// Numbers of a signal that are values of its own: constants, ends of ramps, amplitudes, the first and the last of a table; none of products.
+/// Visits the values of a signal in its own unit: constants, ends of ramps, amplitudes, first and last values of tables. Skips products.
 fn each_value(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
     each_part(pointer, signal, &mut |at, part| {
         let mut tell = |key: &str, value: f64| tell(format!("{at}{key}"), value);
@@ -210,7 +210,7 @@ fn each_value(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64))
     });
 }
 
-/// Damping times that are longer than the period of the first bending mode of this frequency [Hz]: nothing swings.
+/// Warnings about damping times longer than the period of the first bending mode, whose frequency is `first` [Hz]: no mode oscillates.
 pub fn damping(case: &Case, first: Option<f64>) -> Vec<(String, String)> {
     let Some(frequency) = first.filter(|_| case.plausibility.is_on()) else {
         return vec![];
@@ -232,7 +232,7 @@ pub fn damping(case: &Case, first: Option<f64>) -> Vec<(String, String)> {
     told.collect()
 }
 
-/// That nothing holds the beam in some directions.
+/// Warning that no support holds the beam in some directions.
 pub fn unheld(case: &Case, directions: &[&str]) -> Option<(String, String)> {
     if directions.is_empty() || !case.plausibility.is_on() {
         return None;
@@ -244,7 +244,7 @@ pub fn unheld(case: &Case, directions: &[&str]) -> Option<(String, String)> {
     Some(("/ends".to_owned(), what))
 }
 
-/// What there is to say of an instant that is asked about outside the run [s].
+/// Warning about a requested instant `at` [s] outside the run.
 pub fn instant(case: &Case, at: f64) -> Option<String> {
     let end = case.time.end_s;
     let side = match at {
@@ -259,7 +259,7 @@ pub fn instant(case: &Case, at: f64) -> Option<String> {
     ))
 }
 
-/// Ramps and tables that begin when the run has ended, each with its pointer and what there is to say.
+/// Ramps and tables that begin at or after the end of the run, each with its pointer and a message.
 pub fn late(case: &Case) -> Vec<(String, String)> {
     let mut all = vec![];
     for (pointer, _, signal) in controls(case) {
@@ -279,7 +279,7 @@ pub fn late(case: &Case) -> Vec<(String, String)> {
     all
 }
 
-/// Where a part of a signal begins to change [s], and under which key.
+/// Key of a part of a signal, and the time at which the part begins to change [s].
 fn begins(part: &Signal) -> Option<(&'static str, f64)> {
     match part {
         Signal::Ramp(ramp) if ramp.from != ramp.to => Some(("ramp", ramp.start_s)),

@@ -1,21 +1,20 @@
-//! How large a function of time or place gets.
+//! Largest absolute values of functions of time or place.
 
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
 
-/// Largest absolute value that a signal reaches by `end` [s]: what is found is reached, so that nothing is refused for what it does
-/// not do.
+/// Largest absolute value that a signal reaches by `end` [s]. It is reached, not only a bound, so that no case is rejected for a value that
+/// does not occur.
 pub(super) fn size_of(signal: &Signal, end: f64) -> f64 {
     signal.reaches(end).value
 }
 
-/// Largest absolute value that a profile has.
+/// Largest absolute value of a profile.
 pub(super) fn size_along(profile: &Profile) -> f64 {
     profile.size()
 }
 
-/// Largest absolute value of the integral of a sum of signals from 0 to times up to `end`; none where one of them is too fast
-/// to be told by samples.
+/// Largest absolute value of the integral of a sum of signals from 0 to times up to `end`. None if a signal is too fast for the samples.
 pub(super) fn size_of_integral(signals: &[&Signal], end: f64) -> Option<f64> {
     const STEPS: u32 = 2000;
     let slow = |s: &&Signal| s.fastest_period_s().is_none_or(|period| period * 100.0 > end);

@@ -1,4 +1,4 @@
-//! The state at t = 0: bladders that exist, and agreement with what holds the ends.
+//! Checks of the state at t = 0: existing bladders, and agreement with the conditions of the ends.
 
 use std::collections::HashMap;
 
@@ -39,7 +39,7 @@ fn pressures(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Volumes that ports let in begin at what the network holds of them.
+/// Checks that prescribed volumes begin at the volume that the network contains at the start.
 fn volumes(case: &Case, faults: &mut Violations) {
     for (pointer, signal) in inlets(case).volumes {
         if !faults.are_sound(&[END, &pointer]) {
@@ -59,7 +59,7 @@ fn volumes(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Displacements are found, not given; ends stand where the loads' instant has them.
+/// Checks a start from equilibrium: valid instants, and no prescribed displacements.
 fn equilibrium(case: &Case, faults: &mut Violations) {
     let Some(start) = &case.start.equilibrium else { return };
     if !start.loads_at_s.is_finite() {
@@ -70,7 +70,7 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
         ));
     }
     for (i, &instant) in start.via_s.iter().enumerate() {
-        // a signal beyond the end of the run is not looked at anywhere else
+        // signals beyond the end of the run are not checked elsewhere
         if !(instant.is_finite() && instant <= case.time.end_s) {
             let pointer = format!("/start/equilibrium/via_s/{i}");
             let what = format!("the instant {instant} s is not one before the end of the run");
@@ -86,7 +86,7 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Displacement and slope at an end as the start has them and as the end is driven.
+/// Compares the displacement and slope of the start with those that drive an end.
 fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations) {
     let (form, given) = end.form();
     if !faults.are_sound(&[END, "/beam/length_m", &format!("/ends/{name}")]) {
@@ -109,7 +109,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations
             };
             let what =
                 format!("at t = 0 the {name} is driven to {key} = {driven} {unit}, but the start has {starts} {unit}");
-            // The pointer of a start by equilibrium is that of its instant.
+            // A start from equilibrium is reported at its own pointer.
             let pointer = if case.start.equilibrium.is_some() {
                 "/start/equilibrium".into()
             } else {
@@ -139,7 +139,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations
 }
 
 impl Signal {
-    /// Value at t = 0 as the first smooth interval has it.
+    /// Value at t = 0, taken in the first smooth interval.
     fn at_start(&self, end: f64) -> f64 {
         let (_, stop) = self.smooth_intervals(end)[0];
         self.jet(Clock {

@@ -1,4 +1,4 @@
-//! Loads, pressures and flows that no such beam bears: almost always a unit.
+//! Loads, pressures and flows that no such beam withstands: almost always a wrong unit.
 
 use super::bladders::PER_ROW;
 use super::functions::controls;
@@ -10,22 +10,22 @@ use crate::case::schema::{AccumulatorKind, Bladders, Case, Load, Rectifier};
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
-/// Largest strain and largest pressure over the modulus: the model ends at a tenth of that, whatever the material.
+/// Largest strain, and largest pressure over the modulus. The model is valid up to a tenth of it, whatever the material.
 const MOST: f64 = 10.0;
-/// Bladders filled in the time in which sound in the solid crosses the beam's height.
+/// Largest number of bladder fillings in the time in which sound in the solid crosses the beam's height.
 const FASTEST_FILL: f64 = 10.0;
 
-/// What a load may be [its unit], and what that means.
+/// Upper bound of a load, its unit, and its meaning.
 struct Bound {
     largest: f64,
-    /// What it is computed from.
+    /// Pointers of the values from which the bound is computed.
     of: &'static [&'static str],
     unit: &'static str,
     meaning: &'static str,
     hint: &'static str,
 }
 
-/// What bounds of loads are computed from: modulus, section, length, mass.
+/// Pointers of the values that determine the bounds of loads: modulus, section, length, mass.
 const BEAM: [&str; 8] = [
     "/beam/young_modulus_pa",
     "/beam/height_m",
@@ -36,7 +36,7 @@ const BEAM: [&str; 8] = [
     "/beam/density_kg_m3",
     "/beam/mass_factor",
 ];
-/// What bounds of flows are computed from.
+/// Pointers of the values that determine the bounds of flows.
 const FILLED: [&str; 7] = [
     BEAM[0],
     BEAM[1],
@@ -46,7 +46,7 @@ const FILLED: [&str; 7] = [
     "/bladders/length_m",
     PER_ROW,
 ];
-/// What bounds of volumes are computed from.
+/// Pointers of the values that determine the bounds of volumes.
 const ROOM: [&str; 8] = [
     BEAM[0],
     "/bladders/area_per_pressure_m2_per_pa",
@@ -61,7 +61,7 @@ const ROOM: [&str; 8] = [
 /// Speed of sound in air [m/s]: no stream of the model is faster.
 const SOUND: f64 = 343.0;
 
-/// Bounds from the beam's own sizes.
+/// Bounds computed from the dimensions of the beam.
 struct Bounds {
     pressure: Bound,
     force: Bound,
@@ -74,7 +74,7 @@ struct Bounds {
 }
 
 impl Bounds {
-    /// `p = 10 E`, `F = 10 EA`, `M = 10 EI/(h/2)`; along the beam by its length, on its mass by that too.
+    /// `p = 10 E`, `F = 10 EA`, `M = 10 EI/(h/2)`; divided by the length for loads along the beam, by the mass for accelerations.
     fn new(case: &Case) -> Self {
         let beam = &case.beam;
         let area = beam.height_m * beam.width_m;
@@ -134,7 +134,7 @@ impl Bounds {
     }
 }
 
-/// Everything that presses, pulls, bends or fills.
+/// Checks all loads, pressures, flows and volumes against their bounds.
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let bounds = Bounds::new(case);
     let end = case.time.end_s;
@@ -166,7 +166,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let pointer = format!("/network/accumulators/{i}/start_pressure_pa");
         look(pointer, accumulator.start_pressure_pa.abs(), &bounds.pressure);
     }
-    // what signals reach is told where it is known until when
+    // signals are checked only if the end of the run is valid
     if !timed {
         return;
     }
@@ -221,8 +221,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Flows that fill the bladders within what sound takes across the beam, and what leaves more in bladders and accumulators than ten times
-/// Young's modulus presses in, where no port with a pressure lets it out.
+/// Rejects flows that fill the bladders faster than sound crosses the beam. Without a pressure port, also rejects volumes larger than those
+/// that ten times Young's modulus presses into bladders and accumulators.
 fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     const FLOW: &str = "flows are in m^3/s; a ml/s is 1e-6";
     const VOLUME: &str = "volumes are in m^3; a ml is 1e-6";
@@ -286,13 +286,13 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
-/// Refuses what is implausible, where nothing else was found at its place or in what its bound is computed from.
+/// Rejects an implausible value, unless a fault exists at its pointer or at a pointer of its bound.
 fn refuse(faults: &mut Violations, pointer: &str, of: &[&str], what: String, allowed: String, hint: &str) {
     let fault = Violation::new(Code::Implausible, pointer, what);
     faults.push_beside(of, fault.allowed(allowed).hint(hint));
 }
 
-/// Ports and ends of chains with what they prescribe.
+/// Ports and ends of chains, by the quantity that they prescribe.
 #[derive(Default)]
 pub(super) struct Inlets<'a> {
     pub pressures: Vec<(String, &'a Signal)>,

@@ -1,23 +1,23 @@
-//! Run and output times.
+//! Checks of run and output times.
 
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
 use crate::error::{Code, Violation};
 
-/// Rows of a history at most, those that `/time/history` leaves out not counted: some 2 GB, more than anything reads.
+/// Largest number of rows of a history, without those that `/time/history` omits: about 2 GB, more than any program reads.
 const MOST_ROWS: f64 = 1e7;
 
-/// Checkpoints at most; each costs a start afresh of the integrator.
+/// Largest number of checkpoints; each restarts the integrator.
 const MOST_CHECKPOINTS: f64 = 1e5;
 
-/// Where a run ends.
+/// Pointer of the end of a run.
 pub(super) const END: &str = "/time/end_s";
-/// What other intervals go with.
+/// Pointer of the output interval, on which other intervals depend.
 const OUTPUT: &str = "/time/output_interval_s";
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let time = &case.time;
-    // what is no length of time has its fault already
+    // an invalid time already has its fault
     let sound = |time: &f64| *time > 0.0;
     if !sound(&time.end_s) || !faults.are_sound(&[END]) {
         return;

@@ -1,13 +1,13 @@
-//! What people write that is no JSON, and what they mean: of numbers, words and quotes.
+//! Common mistakes in JSON texts, and their intended meaning: numbers, words and quotes.
 
 use crate::case::amounts;
 use crate::case::slips::number_of;
 use crate::case::wording::short;
 
-/// Minus signs and dashes of typesetters.
+/// Typographic minus signs and dashes.
 pub const MINUS: [char; 2] = ['−', '–'];
 
-/// Quotes of typesetters, each with those that close it.
+/// Typographic quotes, each with its closing quotes.
 const QUOTES: [(char, &str); 8] = [
     ('“', "”“\""),
     ('”', "”“\""),
@@ -19,32 +19,32 @@ const QUOTES: [(char, &str); 8] = [
     ('‚', "‘’"),
 ];
 
-/// Spaces that people set between the digits of long numbers, and a quote.
+/// Spaces and quotes that separate the digit groups of long numbers.
 const BETWEEN: [char; 6] = [' ', '\u{a0}', '\u{2009}', '\u{202f}', '\'', '’'];
 
-/// What is wrong with so many bytes of a text, and what to do.
+/// A mistake at the beginning of a text, and its remedy.
 pub struct Slip {
-    /// How many.
+    /// Length of the faulty text [bytes].
     pub bytes: usize,
-    /// What is wrong.
+    /// Description of the mistake.
     pub what: String,
-    /// What to do.
+    /// Remedy.
     pub hint: String,
 }
 
-/// The line that a text begins with, up to what ends a value.
+/// First line of a text, up to the end of a value.
 fn value(text: &str) -> &str {
     let end = text.find([',', '}', ']', '{', '[', ':', '\n', '\r', '\t']);
     text[..end.unwrap_or(text.len())].trim_end()
 }
 
-/// A word of so many bytes at least, and those behind it in its value.
+/// A word of at least `least` bytes, with the words after it in the same value.
 pub fn words(text: &str, least: usize) -> &str {
     let whole = value(text);
     if whole.len() < least { &text[..least] } else { whole }
 }
 
-/// A number followed by what no number has: a unit, more digits, an operation. `text` begins with the number.
+/// Detects a number followed by characters that no number has: a unit, more digits, an operation. `text` begins with the number.
 pub fn behind_number(number: &str, text: &str, pointer: &str) -> Option<Slip> {
     let whole = value(text);
     let rest = whole.get(number.len()..)?;
@@ -84,7 +84,7 @@ pub fn behind_number(number: &str, text: &str, pointer: &str) -> Option<Slip> {
     })
 }
 
-/// A number whose digits stand in groups of three: how long it is, and the number without what stands between.
+/// Reads a number whose digits are in groups of three: its length [bytes], and the number without separators.
 pub fn grouped(text: &str) -> Option<(usize, String)> {
     let sign = text.len() - text.trim_start_matches(['-', '+']).len();
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
@@ -105,7 +105,7 @@ pub fn grouped(text: &str) -> Option<(usize, String)> {
     if joined.len() == sign + first {
         return None;
     }
-    // decimals behind it
+    // decimals after the groups
     if text[end..].starts_with('.') {
         let decimals = 1 + digits(&text[end + 1..]);
         joined += &text[end..end + decimals];
@@ -114,8 +114,8 @@ pub fn grouped(text: &str) -> Option<(usize, String)> {
     Some((end, joined.trim_start_matches('+').to_owned()))
 }
 
-/// What a number with commas, or with several points, may be: `1,5`, `60,000`, `1,234,567`, `60.000,5`. Two readings where a comma may stand before
-/// decimals or between thousands.
+/// Possible values of a number with commas or several points: `1,5`, `60,000`, `1,234,567`, `60.000,5`. There are two if a comma may
+/// separate decimals or thousands.
 pub fn loose(text: &str) -> Vec<String> {
     let unsigned = text.trim_start_matches(['-', '+']);
     let sign = if text.starts_with('-') { "-" } else { "" };
@@ -132,7 +132,7 @@ pub fn loose(text: &str) -> Vec<String> {
             .then(|| format!("{sign}{text}"))
     };
     let readings: Vec<Option<String>> = match unsigned.rsplit_once([',', '.']) {
-        // one sign before decimals, another between thousands
+        // one sign separates decimals, another thousands
         Some((before, decimals)) if before.contains([',', '.']) && !decimals.is_empty() => {
             let last = unsigned.as_bytes()[before.len()] as char;
             let other = if last == ',' { '.' } else { ',' };
@@ -151,7 +151,7 @@ pub fn loose(text: &str) -> Vec<String> {
     readings.into_iter().flatten().filter_map(number).collect()
 }
 
-/// What to do about a number as [`loose`] reads it.
+/// Remedy for a number as [`loose`] reads it.
 pub fn loosely(text: &str) -> Option<String> {
     match &loose(text)[..] {
         [one] => Some(match *one == text.replacen(',', ".", 1) {
@@ -163,7 +163,7 @@ pub fn loosely(text: &str) -> Option<String> {
     }
 }
 
-/// What a word that is no JSON value is meant to be.
+/// Remedy for a word that is not a JSON value.
 pub fn word(word: &str, pointer: &str) -> String {
     if let Some((_, joined)) = grouped(word).filter(|(bytes, _)| *bytes == word.len()) {
         return format!("write {joined}: nothing stands between digits");
@@ -182,7 +182,7 @@ pub fn word(word: &str, pointer: &str) -> String {
     }
 }
 
-/// A text between quotes that are not those of JSON.
+/// Detects a text between quotes that are not JSON quotes.
 pub fn quoted(text: &str) -> Option<Slip> {
     let open = text.chars().next()?;
     let (_, closing) = QUOTES.iter().find(|(quote, _)| *quote == open)?;
@@ -203,7 +203,7 @@ pub fn quoted(text: &str) -> Option<Slip> {
     })
 }
 
-/// Whether a text has a quote that is not JSON's, so that it seems to be closed.
+/// First quote in a text that is not a JSON quote and seems to close it.
 pub fn closed_otherwise(text: &str) -> Option<char> {
     text.chars().find(|c| QUOTES.iter().any(|(quote, _)| quote == c))
 }
@@ -263,7 +263,7 @@ mod tests {
             let slip = behind_number(number, text, "/a/pressure_pa").expect(text);
             assert_eq!((slip.bytes, slip.hint.as_str()), (bytes, hint), "{text}");
         }
-        // of an array several numbers may be meant
+        // several numbers of an array may be intended
         let slip = behind_number("100", "100 200]", "/a/values/0").expect("a slip");
         assert!(slip.hint.contains("commas between numbers"), "{}", slip.hint);
         for (number, text) in [

@@ -1,7 +1,7 @@
-//! A strict JSON reader that keeps places, goes on after numbers that are none, and says in words what is wrong.
+//! Strict JSON reader that stores places, continues after invalid numbers, and describes every mistake.
 //!
 //! ```text
-//! misread     what people write that is no JSON, and what they mean
+//! misread     common mistakes and their intended meaning
 //! told        faults of a text
 //! ```
 
@@ -16,16 +16,16 @@ use crate::error::Violation;
 
 /// Deepest nesting that is read; a case needs about ten.
 pub(super) const DEEPEST: usize = 100;
-/// Violations after which nothing more is collected.
+/// Number of violations after which no more are collected.
 const MOST_FAULTS: usize = 100;
 
-/// Reads one JSON value. Violations that leave the structure readable (numbers that are not finite, keys given twice)
-/// come with a value, others without. Members whose key begins with `//` are remarks and left out.
+/// Reads one JSON value. Violations that leave the structure readable (numbers that are not finite, keys given twice) are returned with a
+/// value, others without. Members whose key begins with `//` are remarks and are omitted.
 pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
     parse_below(text, "")
 }
 
-/// The same of a value that stands at a pointer.
+/// Reads one JSON value as `parse`; `pointer` is its place in a case.
 pub fn parse_below(text: &str, pointer: &str) -> (Option<Node>, Vec<Violation>) {
     let mut parser = Parser {
         text,
@@ -38,7 +38,7 @@ pub fn parse_below(text: &str, pointer: &str) -> (Option<Node>, Vec<Violation>) 
     (node, parser.faults)
 }
 
-/// Members whose key begins so are remarks: nobody reads them.
+/// True if a member is a remark, which is not read.
 fn is_remark(key: &str) -> bool {
     key.starts_with("//")
 }

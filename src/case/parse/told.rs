@@ -1,4 +1,4 @@
-//! Faults of a text that is no JSON: what is wrong, where, and what to do.
+//! Faults of a text that is not JSON: description, place and remedy.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::case::wording::short;
 use crate::error::{Code, Violation};
 
 impl Parser<'_> {
-    /// Tells a slip and reads on behind it; a value of which nothing is known stands there.
+    /// Reports a mistake and continues after it; the value there is unknown.
     pub(super) fn slip(&mut self, start: usize, slip: Slip) -> Option<()> {
         self.at = start + slip.bytes;
         let fault = self.fault(start..self.at, slip.what).hint(slip.hint);
@@ -16,7 +16,7 @@ impl Parser<'_> {
         Some(())
     }
 
-    /// A text at whose end a word begins: it was to end before, and what ends it begins another.
+    /// Reports a text that is directly followed by a word: its closing quote is missing, and the quote that ends it begins another text.
     pub(super) fn ends_before_a_word(&mut self, start: usize) -> Option<()> {
         let text = &self.text[start..self.at];
         if !self.text[self.at..].starts_with(char::is_alphanumeric) || !text.contains([':', ',', '}', ']']) {
@@ -31,7 +31,7 @@ impl Parser<'_> {
         self.fail(fault.hint(hint))
     }
 
-    /// The text that begins at a place goes on to the end of its line.
+    /// Reports a text that is not closed in its line.
     pub(super) fn unclosed<T>(&mut self, start: usize, end: usize) -> Option<T> {
         let line = self.text[start..end]
             .lines()
@@ -75,12 +75,12 @@ impl Parser<'_> {
         self.fail(fault)
     }
 
-    /// Whether what is here stands at once behind a digit and a comma: `0,3`.
+    /// True if the current position directly follows a digit and a comma: `0,3`.
     pub(super) fn is_behind_decimal_comma(&self) -> bool {
         matches!(self.text.as_bytes()[..self.at], [.., digit, b','] if digit.is_ascii_digit())
     }
 
-    /// The digits, commas and points about what is here.
+    /// Digits, commas and points around the current position.
     fn around(&self) -> &str {
         let of_number = |c: char| c.is_ascii_digit() || "+-.,eE".contains(c);
         let begin = self.text[..self.at].trim_end_matches(of_number).len();
@@ -89,12 +89,12 @@ impl Parser<'_> {
         self.text[begin..self.at + behind].trim_end_matches(',')
     }
 
-    /// The next member follows without one: told behind the last, where it belongs, not in the line below.
+    /// Reports a missing comma at the end of the last member, not in the line of the next one.
     pub(super) fn missing_comma<T>(&mut self) -> Option<T> {
         self.missing(",")
     }
 
-    /// A sign that belongs behind what was read last.
+    /// Reports a sign that is missing after the last value that was read.
     pub(super) fn missing<T>(&mut self, sign: &str) -> Option<T> {
         let end = self.text[..self.at].trim_end().len();
         let name = if sign == "," { "comma" } else { "colon" };
@@ -108,7 +108,7 @@ impl Parser<'_> {
         self.fail(fault.hint("remove the comma"))
     }
 
-    /// The text breaks off inside what starts at `start`.
+    /// Reports that the text ends inside the value that starts at `start`.
     pub(super) fn ends_early<T>(&mut self, start: usize, wanted: &str) -> Option<T> {
         let end = self.text.trim_end().len();
         let inside = match self.text.as_bytes().get(start) {

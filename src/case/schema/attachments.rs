@@ -1,4 +1,4 @@
-//! What is attached to the beam at a place.
+//! Attachments to the beam.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -63,7 +63,7 @@ pub struct Attachment {
 }
 
 impl Attachment {
-    /// Nothing, at a share of the length.
+    /// Creates an empty attachment at a fraction of the length.
     pub fn at(at: f64) -> Self {
         Self {
             at,
@@ -83,7 +83,7 @@ impl Attachment {
         }
     }
 
-    /// The forces that are given, with their keys.
+    /// Given forces, with their keys.
     pub fn forces(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
         given([
             ("force_x_n", &self.force_x_n),
@@ -93,7 +93,7 @@ impl Attachment {
         ])
     }
 
-    /// How far the mass centre is from the place, with their keys [m].
+    /// Offsets of the center of mass from the place, with their keys [m].
     pub fn offsets(&self) -> [(&'static str, f64); 2] {
         [
             ("offset_across_m", self.offset_across_m),
@@ -101,12 +101,12 @@ impl Attachment {
         ]
     }
 
-    /// Whether its mass centre lies beside its place.
+    /// True if the center of mass is offset from the place.
     pub fn is_eccentric(&self) -> bool {
         self.offsets().iter().any(|(_, offset)| *offset != 0.0)
     }
 
-    /// Whether it does nothing to the beam.
+    /// True if the attachment does not act on the beam.
     pub fn is_empty(&self) -> bool {
         let sizes = [
             self.mass_kg,

@@ -1,4 +1,4 @@
-//! The solid.
+//! The elastic beam and its damping.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

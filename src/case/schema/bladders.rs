@@ -1,4 +1,4 @@
-//! The fluid, the bladders and how they couple to the beam; cross-sections of ducts.
+//! The fluid, the bladders, their coupling to the beam, and cross-sections of ducts.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,12 +46,12 @@ pub struct Fluid {
 }
 
 impl Fluid {
-    /// Whether its density follows its pressure.
+    /// True if the density depends on the pressure.
     pub fn is_compressible(&self) -> bool {
         self.gas() > 0.0 || self.bulk_modulus_pa.is_some()
     }
 
-    /// Part of its volume at ambient pressure that is gas, x.
+    /// Volume fraction of gas at ambient pressure, x.
     pub fn gas(&self) -> f64 {
         match self.kind {
             FluidKind::Gas => 1.0,
@@ -59,12 +59,12 @@ impl Fluid {
         }
     }
 
-    /// Vapor pressure, absolute [Pa], where it is known.
+    /// Vapor pressure, absolute [Pa], if known.
     pub fn vapor_pressure(&self) -> Option<f64> {
         self.preset?.vapor_pressure(self.temperature_c.unwrap_or(ROOM_C))
     }
 
-    /// Pressure against ambient below which a liquid boils [Pa]: by its vapor pressure where that is known, else that of a vacuum; none of gas.
+    /// Gauge pressure below which a liquid boils [Pa]: from its vapor pressure if known, otherwise from vacuum. None for a gas.
     pub fn boils_below(&self) -> Option<f64> {
         let vapor = self.vapor_pressure().unwrap_or(0.0);
         (self.kind == FluidKind::Liquid).then(|| vapor - self.ambient_pressure())
@@ -177,7 +177,7 @@ pub struct StrainEnergy {
 }
 
 impl StrainEnergy {
-    /// Of stretch, curvature, upper and lower pressure.
+    /// Limits of stretch, curvature, upper and lower pressure.
     pub fn limits(&self) -> [[f64; 2]; 4] {
         [
             self.stretch,

@@ -1,4 +1,4 @@
-//! What the beam may come to lie against.
+//! Walls that the beam may touch.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

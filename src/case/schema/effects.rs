@@ -1,11 +1,11 @@
-//! Which physical effects are simulated.
+//! Choice of the simulated physical effects.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Formulation;
 
-/// Which physical effects are simulated: `"auto"`, `"full"` or choice by choice.
+/// Choice of the simulated physical effects: `"auto"`, `"full"` or effect by effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Effects {
     /// The program chooses and says why.
@@ -17,7 +17,7 @@ pub enum Effects {
     Chosen(EffectChoices),
 }
 
-/// Makes [`Effect`] of all effects, and [`EffectChoices`] of those that a case chooses; the others are there where the case gives them.
+/// Defines [`Effect`] with all effects, and [`EffectChoices`] with those that a case chooses. The others are active if the case gives them.
 macro_rules! effects {
     (
         chosen { $($(#[doc = $about:literal])* $Chosen:ident $chosen:ident,)* }
@@ -32,12 +32,12 @@ macro_rules! effects {
         }
 
         impl Effect {
-            /// All of them.
+            /// All effects.
             pub const ALL: &[Self] = &[$(Self::$Chosen,)* $(Self::$Given,)*];
-            /// Those that a case chooses.
+            /// Effects that a case chooses.
             pub const CHOSEN: &[Self] = &[$(Self::$Chosen,)*];
 
-            /// Its key in a case, and its name in every report.
+            /// Key in a case, and name in every report.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$Chosen => stringify!($chosen),)*
@@ -45,7 +45,7 @@ macro_rules! effects {
                 }
             }
 
-            /// What it is, as in the schema.
+            /// Description, as in the schema.
             pub const fn note(self) -> &'static str {
                 match self {
                     $(Self::$Chosen => concat!($($about),*),)*
@@ -62,7 +62,7 @@ macro_rules! effects {
         }
 
         impl EffectChoices {
-            /// Of an effect; of one that is no choice, `Auto`.
+            /// Choice of an effect; `Auto` for an effect that cannot be chosen.
             pub fn of(&self, effect: Effect) -> Choice {
                 match effect {
                     $(Effect::$Chosen => self.$chosen,)*
@@ -70,7 +70,7 @@ macro_rules! effects {
                 }
             }
 
-            /// Sets that of an effect; one that is no choice stays as it is.
+            /// Sets the choice of an effect; ignores an effect that cannot be chosen.
             pub fn set(&mut self, effect: Effect, choice: Choice) {
                 match effect {
                     $(Effect::$Chosen => self.$chosen = choice,)*
@@ -178,22 +178,22 @@ impl std::fmt::Display for Effect {
 }
 
 impl Effect {
-    /// Whether it is there only where a case names it: flow creeps in the published form.
+    /// True if the effect is active only when a case names it: flow is creeping in the published form.
     pub fn by_name(self, formulation: Formulation) -> bool {
         formulation == Formulation::Published && self.of_flow()
     }
 
-    /// Whether it is about flow that does not creep.
+    /// True if the effect concerns flow that is not creeping.
     pub const fn of_flow(self) -> bool {
         self.of_inertia() || matches!(self, Self::TubeLosses)
     }
 
-    /// Whether it takes flow as what is accelerated.
+    /// True if the effect concerns the inertia of flow.
     pub const fn of_inertia(self) -> bool {
         matches!(self, Self::TubeInertia | Self::BladderInertia | Self::UnsteadyFriction)
     }
 
-    /// Their names, so joined.
+    /// Names of the effects, joined by `separator`.
     pub fn names(effects: &[Self], separator: &str) -> String {
         let names: Vec<&str> = effects.iter().map(|effect| effect.name()).collect();
         names.join(separator)
@@ -201,7 +201,7 @@ impl Effect {
 }
 
 impl Effects {
-    /// What is named; nothing by `"auto"` and `"full"`.
+    /// Named choices; none for `"auto"` and `"full"`.
     pub fn choices(&self) -> EffectChoices {
         match self {
             Self::Auto | Self::Full => EffectChoices::default(),

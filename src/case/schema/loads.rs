@@ -37,17 +37,17 @@ pub enum Load {
 }
 
 impl Load {
-    /// Whether it acts on masses.
+    /// True if the load acts on masses.
     pub fn is_body(&self) -> bool {
         matches!(self, Self::BodyXMS2(_) | Self::BodyZMS2(_) | Self::Gravity { .. })
     }
 
-    /// Whether it bends the beam at rest, without a moment.
+    /// True if the load is a rest curvature, which bends the beam without a moment.
     pub fn is_rest(&self) -> bool {
         matches!(self, Self::RestCurvature(_))
     }
 
-    /// Name and function of a load that has one.
+    /// Key and function of a load that has one.
     pub fn distributed(&self) -> Option<(&'static str, &Distributed)> {
         match self {
             Self::ForceXNM(load) => Some(("force_x_n_m", load)),
@@ -118,13 +118,13 @@ pub struct EndConditions {
 /// Each name may stand alone as a string, then with zero motion and load.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
-    /// Nothing held: takes `force_x_n`, `force_z_n`, `moment_n_m`, `follower_normal_n`, `follower_shear_n`.
+    /// Nothing held: accepts `force_x_n`, `force_z_n`, `moment_n_m`, `follower_normal_n`, `follower_shear_n`.
     Free(EndConditions),
-    /// u1, u3 and slope held or driven: takes `u1_m`, `u3_m`, `slope_rad`.
+    /// u1, u3 and slope held or driven: accepts `u1_m`, `u3_m`, `slope_rad`.
     Clamped(EndConditions),
-    /// u1 and u3 held or driven, free to turn: takes `u1_m`, `u3_m`, `moment_n_m`.
+    /// u1 and u3 held or driven, free to turn: accepts `u1_m`, `u3_m`, `moment_n_m`.
     Pinned(EndConditions),
-    /// Slope held, free to move across: takes `slope_rad`, `force_x_n`, and `u3_m` (held, default) or `force_z_n`.
+    /// Slope held, free to move across: accepts `slope_rad`, `force_x_n`, and `u3_m` (held, default) or `force_z_n`.
     Guided(EndConditions),
     /// One of each pair, all three given.
     Conditions(EndConditions),

@@ -1,7 +1,6 @@
-//! The case as the user writes it: these structures *are* the JSON (externally tagged enums, unknown
-//! keys refused), every key in SI units with its unit in its name. The JSON Schema that editors use is
-//! generated from these files, doc comments included; `case.json` of a result folder is this structure
-//! written back with every default filled in.
+//! The case as the user writes it: these structures define the JSON format (externally tagged enums, unknown keys rejected). Every key is
+//! in SI units and has its unit in its name. The JSON Schema for editors is generated from these files, including the doc comments.
+//! `case.json` of a result folder is this structure with every default filled in.
 
 use std::sync::Arc;
 
@@ -127,25 +126,25 @@ pub struct Case {
     /// Tells rise time, settling times and overshoot of the tip and at probes. Absent: not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step_response: Option<Step>,
-    /// Where its coefficients come from; not part of the text, and not compared.
+    /// Origins of the coefficients; neither serialized nor compared.
     #[serde(skip)]
     #[schemars(skip)]
     pub origins: Origins,
-    /// The text it was read from, where faults have their places; not part of the text, and not compared.
+    /// Text from which the case was read, for the places of faults; neither serialized nor compared.
     #[serde(skip)]
     #[schemars(skip)]
     pub source: Arc<Source>,
 }
 
 impl Case {
-    /// Segments along the beam: bladders per row, or what the mesh of a dry beam says.
+    /// Segments along the beam: bladders per row, or the segments of the mesh of a dry beam.
     pub fn segments(&self) -> usize {
         self.bladders
             .as_ref()
             .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
     }
 
-    /// Value of a signal that the beam is at rest with when the run begins: 0, or that which holds its equilibrium.
+    /// Value of a signal at which the beam rests when the run begins: 0, or the value in the equilibrium of the start.
     pub fn held_at_start(&self, signal: &Signal) -> f64 {
         let value = |t: f64| signal.jet(Clock { t, within: t }).value;
         self.start
@@ -154,13 +153,13 @@ impl Case {
             .map_or(0.0, |start| value(start.loads_at_s))
     }
 
-    /// What an effect may change and still be left out.
+    /// Largest relative change of results by an effect that may be omitted.
     pub fn effects_tolerance(&self) -> f64 {
         self.effects_tolerance.unwrap_or(1e-3)
     }
 
-    /// The case with every default filled in; without the editor's schema, which is not where results are, and without
-    /// presets, whose values it has.
+    /// Returns the case with every default filled in. Omits the editor's schema, which result folders lack, and presets, whose values are
+    /// included.
     pub fn resolved(&self) -> Self {
         let mut case = self.clone();
         case.schema = None;
@@ -182,7 +181,7 @@ fn one() -> f64 {
     1.0
 }
 
-/// The signals of a pair that are given, with their keys.
+/// Given signals, with their keys.
 fn given<'a, const N: usize>(
     all: [(&'static str, &'a Option<Signal>); N],
 ) -> impl Iterator<Item = (&'static str, &'a Signal)> {
@@ -190,7 +189,7 @@ fn given<'a, const N: usize>(
         .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
 }
 
-/// Whether a number is the default that a case need not write.
+/// True if a number is 0, the default that a case may omit.
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

@@ -1,4 +1,4 @@
-//! What is simulated, how finely, how long and with which accuracy.
+//! Numerical options of a case: formulation, mesh, time and integration.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ pub enum Plausibility {
 }
 
 impl Plausibility {
-    /// The default, which a case need not write.
+    /// True for the default, which a case may omit.
     pub fn is_on(&self) -> bool {
         *self == Self::On
     }
@@ -44,7 +44,7 @@ pub enum Companion {
 }
 
 impl Companion {
-    /// True for the default, which a case need not write.
+    /// True for the default, which a case may omit.
     pub fn is_on(&self) -> bool {
         *self == Self::On
     }
@@ -74,7 +74,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// [`Mesh::order`], or what stands for it.
+    /// [`Mesh::order`], or its default.
     pub fn order(&self) -> u8 {
         self.order.unwrap_or(2)
     }
@@ -135,12 +135,12 @@ pub enum Thinning {
 }
 
 impl Thinning {
-    /// Whether all are.
+    /// True if all output times are written.
     pub fn is_none(&self) -> bool {
         *self == Self::All
     }
 
-    /// Whether the output of a number before the window is.
+    /// True if the output with this number before the window is written.
     pub fn keeps(self, number: u64) -> bool {
         match self {
             Self::All => true,
@@ -161,7 +161,7 @@ impl Time {
         self.fields_interval_s.unwrap_or(self.output_interval())
     }
 
-    /// Outputs at such intervals [s] that are written at most: all in the window, before it those that `history` keeps.
+    /// Largest number of outputs at this interval [s] that are written: all in the window, and those before it that `history` keeps.
     pub fn written(&self, interval: f64) -> f64 {
         let window = self.window().min(self.end_s);
         let before = self.end_s - window;

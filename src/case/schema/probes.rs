@@ -1,4 +1,4 @@
-//! Places that are recorded, and the step whose response is told.
+//! Recorded places, and the step whose response is reported.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! What the beam moves through.
+//! Fluid around the beam.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
-    /// Velocities of the stream that are given, with their keys.
+    /// Given velocities of the stream, with their keys.
     pub fn stream(&self) -> impl Iterator<Item = (&'static str, &Signal)> {
         given([
             ("stream_x_m_s", &self.stream_x_m_s),

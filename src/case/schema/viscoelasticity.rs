@@ -1,4 +1,4 @@
-//! The solid that relaxes.
+//! Relaxation of the solid.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

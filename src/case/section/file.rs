@@ -14,7 +14,7 @@ use crate::case::faults::{Source, Violations};
 use crate::case::{computed, parse as json, schema_json, sets, validate};
 use crate::error::{Code, Result, Violation};
 
-/// A section in its file.
+/// A section read from a file.
 #[derive(Debug)]
 pub struct Written {
     /// The section.
@@ -24,15 +24,15 @@ pub struct Written {
 }
 
 impl Written {
-    /// Its coefficients.
+    /// Coefficients of the section.
     ///
     /// # Errors
-    /// [`crate::error::Error::Case`] with every rule that it breaks, or why its cell has no solution.
+    /// [`crate::error::Error::Case`] with every rule that it violates, or the reason why its cell has no solution.
     pub fn coefficients(&self) -> Result<Coefficients> {
         self.solved(computed::coefficients(&self.section))
     }
 
-    /// Its energy at finite strain, where its material has a law.
+    /// Energy of the section at finite strain, if its material has a law.
     ///
     /// # Errors
     /// As [`Self::coefficients`].
@@ -40,7 +40,7 @@ impl Written {
         self.solved(computed::strain_energy(&self.section))
     }
 
-    /// Its compliance by the cell in three dimensions.
+    /// Compliance of the section by the cell in three dimensions.
     ///
     /// # Errors
     /// As [`Self::coefficients`].
@@ -53,10 +53,10 @@ impl Written {
     }
 }
 
-/// Reads a section from the text of a file that is one, or of a case that has one.
+/// Reads a section from the text of its own file, or of a case that has one.
 ///
 /// # Errors
-/// [`crate::error::Error::Case`] with what cannot be read of it.
+/// [`crate::error::Error::Case`] with the unreadable parts.
 pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     let source = Source::of(path, text);
     let (file, violations) = json::parse(text);
@@ -85,7 +85,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     Err(source.error(faults.placed(&source)))
 }
 
-/// Whether the text of a file, as a value, is a section by itself and no case.
+/// True if the value of a file is a section on its own, and not a case.
 pub(in crate::case) fn is_one(value: &Value) -> bool {
     let has = |key: &str| value.get(key).is_some();
     let rows = ["/bladders/upper", "/bladders/lower"];
@@ -93,7 +93,7 @@ pub(in crate::case) fn is_one(value: &Value) -> bool {
     !of_case && (has("pitch_m") || rows.iter().any(|row| value.pointer(row).is_some()))
 }
 
-/// That such a file is no case.
+/// Fault of a file that is a section, not a case.
 pub(in crate::case) fn no_case() -> Violation {
     let hint = "`slcbeam coefficients` has its coefficients; in a case it stands under \"section\", beside beam, ends and time";
     Violation::new(Code::Missing, "", "this is a section by its geometry, not a case").hint(hint)

@@ -1,4 +1,4 @@
-//! The coefficients of a case that gives its section by its geometry.
+//! Coefficients of a case whose section is given by its geometry.
 
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
@@ -17,26 +17,26 @@ mod file;
 pub use file::{Written, parse};
 pub(super) use file::{is_one, no_case};
 
-/// Where it stands in a case.
+/// Key of the section in a case.
 const KEY: &str = "section";
-/// The same as a pointer.
+/// Pointer of the section in a case.
 const AT: &str = "/section";
-/// Difference of the rows, and coupling of force and curvature, that the model's two alike rows may leave out.
+/// Largest difference of the rows, and largest coupling of force and curvature, that the model's two equal rows may neglect.
 const ALIKE: f64 = 1e-3;
-/// Error of a coefficient above which it is not taken.
+/// Largest accepted relative error of a coefficient.
 const COARSE: f64 = 0.02;
-/// The same of a cell in three dimensions, whose meshes are coarser; the plane one leaves out more.
+/// Largest accepted relative error for a cell in three dimensions, whose meshes are coarser; the plane cell omits more.
 const COARSE_IN_SPACE: f64 = 0.06;
-/// Where the energy at finite strain stands.
+/// Pointer of the energy at finite strain.
 const ENERGY: &str = "/bladders/strain_energy";
-/// Where the number of bladders stands.
+/// Pointer of the number of bladders per row.
 const PER_ROW: &str = "/bladders/per_row";
-/// Where the same number stands in the case of a result.
+/// Pointer of the same number in the case of a result.
 const SEGMENTS: &str = "/mesh/segments";
-/// Relative difference of a size that is given twice.
+/// Largest relative difference of a size that is given twice.
 const ROUND_OFF: f64 = 1e-9;
 
-/// What a case may say beside its section, but not otherwise.
+/// Values that a case may repeat beside its section, but not change.
 pub(super) const SIZES: [&str; 7] = [
     "/beam/height_m",
     "/beam/width_m",
@@ -47,7 +47,7 @@ pub(super) const SIZES: [&str; 7] = [
     "/bladders/height_m",
 ];
 
-/// What is wrong with a section that stands at a pointer.
+/// Faults of a section at a pointer.
 fn violations(error: Error, at: &str) -> Vec<Violation> {
     match error {
         Error::Section(faults) => faults
@@ -58,19 +58,19 @@ fn violations(error: Error, at: &str) -> Vec<Violation> {
     }
 }
 
-/// What a section brings to its case.
+/// Values that a section adds to its case.
 #[derive(Debug)]
 pub(super) struct Brought {
-    /// Sizes, material and coefficients, as a case has them; those of a preset where the section cannot be computed, so that the rest of
-    /// the case can be looked at.
+    /// Dimensions, material and coefficients in the form of a case. If the section cannot be computed, those of a preset, so that the rest
+    /// of the case can be checked.
     pub values: Value,
-    /// Whether they are those of the cell in three dimensions.
+    /// True for values from the cell in three dimensions.
     three_d: bool,
     stands_in: bool,
     told: Vec<Violation>,
 }
 
-/// What the section of a case brings, if it has one.
+/// Returns the values of the section of a case, if it has one.
 pub(super) fn of(case: &Value) -> Option<Brought> {
     let given = case.get(KEY).filter(|given| given.is_object())?;
     let found = read(given, AT).map_err(|violation| vec![*violation]);
@@ -91,13 +91,13 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     })
 }
 
-/// Whether arguments change the section of a case, or the length that says how many bladders there are.
+/// True if arguments change the section of a case, or the length that determines the number of bladders.
 pub(super) fn changes(sets: &[SetValue]) -> bool {
     sets.iter()
         .any(|set| is_below(&set.pointer, AT) || is_below("/beam/length_m", &set.pointer))
 }
 
-/// Takes out of a case what its file, one of a result, has from its section: another section, or length, brings its own.
+/// Removes the values that a case, from the file of a result, has from its section: a changed section or length supplies new ones.
 pub(super) fn release(case: &mut Value, file: &Value) {
     if !case.get(KEY).is_some_and(Value::is_object) {
         return;
@@ -126,15 +126,15 @@ pub(super) fn release(case: &mut Value, file: &Value) {
 }
 
 impl Brought {
-    /// Whether its numbers are none of its own.
+    /// True if the values are those of a preset.
     pub(super) fn stands_in(&self) -> bool {
         self.stands_in
     }
 
-    /// Takes what stands in for its own as nothing to compare with, of a case `own`.
+    /// Marks preset values in a case `own` as doubtful, so that nothing is compared with them.
     pub(super) fn doubt(&self, own: &Value, faults: &mut Violations) {
         if self.stands_in {
-            // the number of bladders is that of its pitch
+            // the number of bladders is valid, because it follows from the pitch
             let pitched = !self.told.iter().any(|fault| is_below(&fault.pointer, PITCH));
             let doubted = self.in_place(own).into_iter();
             let doubted = doubted.filter(|pointer| pointer != PER_ROW || !pitched);
@@ -142,7 +142,7 @@ impl Brought {
         }
     }
 
-    /// Pointers of what a case `own` has not itself.
+    /// Pointers of the values that a case `own` does not give itself.
     fn in_place(&self, own: &Value) -> Vec<String> {
         let mut at = vec![];
         parameter::numbers(&self.values, String::new(), &mut at);
@@ -150,20 +150,20 @@ impl Brought {
         at
     }
 
-    /// Whether a number that the case has at a pointer is the section's, as in the case of a result.
+    /// True if a number of the case at a pointer is the section's, as in the case of a result.
     pub(super) fn gives(&self, pointer: &str, number: &Value) -> bool {
         let own = self.values.pointer(pointer).and_then(Value::as_f64);
         let pair = own.zip(number.as_f64());
         !self.stands_in && pair.is_some_and(|(own, given)| (given / own - 1.0).abs() <= ROUND_OFF)
     }
 
-    /// Where what it gives comes from.
+    /// Origin of the values.
     pub(super) fn origin(&self) -> Origin {
         Origin::Section { three_d: self.three_d }
     }
 
-    /// Tells what is wrong with the section of a case `own`, and nothing of numbers that stand in for its own; what the schema has found in
-    /// the section comes first.
+    /// Reports the faults of the section of a case `own`, and drops those of preset values. Faults that the schema has found in the section
+    /// take precedence.
     pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
         if self.stands_in {
             let mut at = self.in_place(own);
@@ -177,7 +177,7 @@ impl Brought {
     }
 }
 
-/// Sizes of a case that are not those of its section.
+/// Dimensions and material of a case that differ from those of its section.
 fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
     let number = |of: &Value, pointer: &str| of.pointer(pointer).and_then(Value::as_f64);
     let told = SIZES.into_iter().filter_map(|pointer| {
@@ -189,7 +189,7 @@ fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
     told.collect()
 }
 
-/// A section as it is written, at a pointer of its file.
+/// Reads a section at a pointer of its file.
 fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>> {
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().iter().filter_map(|segment| match segment {
@@ -202,14 +202,14 @@ fn read(value: &Value, at: &str) -> std::result::Result<Section, Box<Violation>>
     })
 }
 
-/// Takes the section away.
+/// Removes the section from a case.
 pub(super) fn remove(case: &mut Value) {
     if let Some(case) = case.as_object_mut() {
         case.shift_remove(KEY);
     }
 }
 
-/// What a preset has of what a section brings.
+/// Values of a preset that replace those of a section.
 fn stand_in(case: &Value) -> Value {
     let mut preset = Preset::MatiaGatBeam.values();
     if let Some(beam) = preset["beam"].as_object_mut() {
@@ -223,8 +223,8 @@ fn stand_in(case: &Value) -> Value {
     json!({"beam": preset["beam"], "bladders": preset["bladders"]})
 }
 
-/// What a case takes of its section: the size along the beam of a bladder and the height of a rectangle as large, so that volumes and
-/// masses are right.
+/// Values that a case takes from its section. A bladder has its size along the beam as width, and the height of a rectangle of equal area,
+/// so that volumes and masses are correct.
 fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Violation>> {
     let found = computed::coefficients(section).map_err(|error| violations(error, AT))?;
     let (c, e) = (&found.numbers, &found.errors);
@@ -295,7 +295,7 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                 "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
             });
-            // what the case has of it, as that of a result has, is not computed again, nor what it leaves out
+            // an energy that the case gives, as that of a result does, or omits by null is not computed
             let given = |energy: &Value| energy.is_null() || energy.get("coefficients_n").is_some();
             if !case.pointer(ENERGY).is_some_and(given) {
                 let energy = computed::strain_energy(section).map_err(|error| violations(error, AT))?;
@@ -320,12 +320,12 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
     if faults.is_empty() { Ok(values) } else { Err(faults) }
 }
 
-/// Where the length of a cell stands.
+/// Pointer of the length of a cell.
 const PITCH: &str = "/section/pitch_m";
 
 const ONE_ROW: &str = "a case has two rows alike; `slcbeam coefficients` has the numbers of any section";
 
-/// How many bladders a row has.
+/// Number of bladders in a row.
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     let Some(length) = case.pointer("/beam/length_m").and_then(Value::as_f64) else {
         return Ok(1000);

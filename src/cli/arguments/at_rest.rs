@@ -1,4 +1,4 @@
-//! What `equilibrium` and `modes` can be asked for.
+//! Arguments of `equilibrium` and `modes`.
 
 use clap::{Args, ValueEnum};
 

@@ -1,4 +1,4 @@
-//! What `fit` and `compare` can be asked for.
+//! Arguments of `fit` and `compare`.
 
 use std::path::PathBuf;
 

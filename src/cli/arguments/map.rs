@@ -1,4 +1,4 @@
-//! What can be asked of a map, by the two commands that draw one.
+//! Arguments of a map, for the two commands that draw one.
 
 use clap::Args;
 

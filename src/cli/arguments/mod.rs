@@ -1,4 +1,4 @@
-//! What can be asked for.
+//! Command-line arguments.
 
 mod at_rest;
 mod fit;
@@ -101,7 +101,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether a script asks.
+    /// True if JSON output is requested, as by a script.
     pub fn json(&self) -> bool {
         match self {
             Self::Run(a) => a.json,

@@ -1,4 +1,4 @@
-//! What `optimize` can be asked for.
+//! Arguments of `optimize`.
 
 use clap::Args;
 

@@ -1,4 +1,4 @@
-//! What `periodic` can be asked for.
+//! Arguments of `periodic`.
 
 use clap::Args;
 

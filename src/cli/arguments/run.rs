@@ -1,4 +1,4 @@
-//! What `run` can be asked for.
+//! Arguments of `run`.
 
 use clap::Args;
 

@@ -1,4 +1,4 @@
-//! What `sense` can be asked for.
+//! Arguments of `sense`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What `sweep` and `merge` can be asked for.
+//! Arguments of `sweep` and `merge`.
 
 use std::path::PathBuf;
 

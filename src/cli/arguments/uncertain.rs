@@ -1,4 +1,4 @@
-//! What of a case may be uncertain.
+//! Arguments for uncertain numbers of a case.
 
 use std::ffi::OsString;
 
@@ -28,7 +28,7 @@ pub struct UncertainArguments {
     pub jobs: Option<usize>,
 }
 
-/// What to do instead, by commands that do not take it.
+/// Alternatives, by commands that do not accept `--uncertain`.
 const INSTEAD: [(&str, &str); 6] = [
     (
         "optimize",
@@ -56,7 +56,7 @@ const INSTEAD: [(&str, &str); 6] = [
     ),
 ];
 
-/// The fault of a command line whose reader found `--uncertain` where it does not belong, with what to do instead.
+/// Error of a command line with `--uncertain` for a command that does not accept it, with an alternative; none for other faults.
 pub fn elsewhere(words: &[OsString], answer: &clap::Error) -> Option<Error> {
     let unknown = matches!(answer.get(ContextKind::InvalidArg), Some(ContextValue::String(text)) if text.starts_with("--uncertain"));
     if answer.kind() != ErrorKind::UnknownArgument || !unknown {

@@ -1,7 +1,7 @@
-//! `slcbeam explain`: what a message, a key, an effect, a column or a symbol means.
+//! `slcbeam explain`: meaning of a message, a key, an effect, a column or a symbol.
 //!
 //! ```text
-//! pages       what pages say of words, symbols and columns
+//! pages       descriptions of words, symbols and columns in the documentation
 //! ```
 
 mod pages;
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use crate::case::{Meaning, meanings, nearest, synonyms};
 use crate::error::{Code, Error, Result};
 
-/// Keys that are told of a word at most.
+/// Largest number of keys listed for a word.
 const MOST: usize = 12;
 
 /// `explain`.
@@ -28,7 +28,7 @@ pub struct ExplainArguments {
     pub json: bool,
 }
 
-/// Prints the section of a message or the meaning of a name; without one, all numbers with their headings.
+/// Prints the section of a message or the meaning of a name; without a name, all message numbers with their headings.
 pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     let what = asked.what.join(" ");
     if what.is_empty() {
@@ -49,18 +49,18 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
             format!("{} {}\n\n{}\n", code.id(), code.title(), code.text().replace("**", "")),
         );
     }
-    // a heading as a table has it, a pointer as a case has it
+    // a heading in the form of a table, a pointer in the form of a case
     let name = what.split(" [").next().unwrap_or(what);
     let name = name.rsplit('/').next().unwrap_or(name);
     let all = meanings();
     let named = |name: &str| all.iter().filter(|m| m.name == name).collect::<Vec<_>>();
     let mut found = named(name);
     if found.is_empty() {
-        // a turbine stands under turbines
+        // a turbine is listed under turbines
         found = named(&format!("{name}s"));
     }
     if found.is_empty() {
-        // and so does what the schema calls a Turbine
+        // so is the type Turbine of the schema
         let snake = snake(name);
         found = named(&snake);
         found.extend(named(&format!("{snake}s")));
@@ -84,7 +84,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     for one in &told {
         let _ = writeln!(text, "{} ({}): {}", one.name, one.kind, one.meaning);
     }
-    // a word may be a key and mean others too: flow is an effect, and a port has flow_m3_s
+    // a word may be a key and also mean others: flow is an effect, and a port has flow_m3_s
     let known = found.len();
     let also = synonyms::of(name).into_iter().flat_map(named).take(MOST);
     let also: Vec<&Meaning> = also.filter(|m| !found.contains(m)).collect();
@@ -113,7 +113,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     answer(asked, keys.chain(others).chain(places).collect(), text)
 }
 
-/// The name of a type as one of a key: check_valve of CheckValve; empty of what is no such name.
+/// Converts the name of a type to that of a key: check_valve for CheckValve; empty if it is not the name of a type.
 fn snake(name: &str) -> String {
     if !name.starts_with(char::is_uppercase) || !name.chars().all(char::is_alphanumeric) || name.len() < 3 {
         return String::new();
@@ -127,7 +127,7 @@ fn snake(name: &str) -> String {
     })
 }
 
-/// Keys that a word may mean, and how they come to be meant: those of which it is a synonym, in whose names it stands, or in whose meanings.
+/// Keys that a word may mean, and the reason: synonyms, keys with the word in their name, or keys with the word in their description.
 fn likely<'m>(all: &'m [Meaning], word: &str) -> (&'static str, Vec<&'m Meaning>) {
     let keys = synonyms::of(word);
     let meant = keys.iter().flat_map(|key| all.iter().filter(move |m| m.name == *key));
@@ -165,7 +165,7 @@ fn unknown(all: &[Meaning], what: &str, name: &str) -> Error {
     ))
 }
 
-/// Keys and words of what stands at a key, one level down.
+/// Keys and words of the value at a key, one level down.
 fn inside<'m>(all: &'m [Meaning], of: &'m Meaning) -> impl Iterator<Item = &'m Meaning> {
     all.iter().filter(|m| {
         of.objects.iter().any(|object| {

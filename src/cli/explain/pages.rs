@@ -1,16 +1,16 @@
-//! What pages say of words, symbols and columns of results: rows of their tables.
+//! Descriptions of words, symbols and result columns in the documentation: rows of its tables.
 
 use crate::discrete::quantities::{Field, Interest, Observable};
 use crate::output::report::facts;
 
-/// Words and symbols.
+/// Page of words and symbols.
 const GLOSSARY: &str = include_str!("../../../docs/glossary.md");
-/// Files of results, with their columns and keys.
+/// Pages on files of results, with their columns and keys.
 const RESULTS: [(&str, &str); 2] = [
     ("docs/names.md", include_str!("../../../docs/names.md")),
     ("docs/data.md", include_str!("../../../docs/data.md")),
 ];
-/// Letters of equations as they are typed.
+/// Greek letters of equations, by their spelled-out names.
 const GREEK: &[(&str, &str)] = &[
     ("alpha", "α"),
     ("gamma", "γ"),
@@ -30,14 +30,14 @@ const GREEK: &[(&str, &str)] = &[
     ("omega", "Ω"),
 ];
 
-/// What something is called where it is not a key of a case, and what it is.
+/// A name that is not a key of a case, and its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
-    /// What kind of thing it is: `symbol`, `word`, `column`, `figure`, `field`, `number`, `result`.
+    /// Kind: `symbol`, `word`, `column`, `figure`, `field`, `number`, `result`.
     pub kind: &'static str,
     /// Its name.
     pub name: String,
-    /// Its meaning, with unit and where it stands.
+    /// Its meaning, with the unit and the place where it occurs.
     pub meaning: String,
 }
 
@@ -51,7 +51,7 @@ impl Told {
     }
 }
 
-/// Everything of a name, of a figure by its quantity and its kind: `tip_u1_m.max_abs`.
+/// All meanings of a name; a figure is found by its quantity and its kind: `tip_u1_m.max_abs`.
 pub fn of(name: &str) -> Vec<Told> {
     let mut found = exactly(name);
     if found.is_empty()
@@ -61,7 +61,7 @@ pub fn of(name: &str) -> Vec<Told> {
         found.extend(exactly(kind));
     }
     if found.is_empty() {
-        // a column of a table as a key of a file has it, with its unit behind
+        // a column of a table in the form of a key, with its unit at the end
         let ends = ["_pa", "_j", "_w", "_m", "_m3", "_m^3", "_N", "_N m", "_rad"];
         let mut without = ends.iter().filter_map(|end| name.strip_suffix(end)).map(exactly);
         found = without.find(|told| !told.is_empty()).unwrap_or_default();
@@ -78,7 +78,7 @@ fn exactly(name: &str) -> Vec<Told> {
         let what = format!("{about} [{unit}], a characteristic number: slcbeam check, summary.json");
         found.push(Told::new("number", name, what));
     }
-    // rows of the first page are of one name or few
+    // rows of the first page have one name or few
     for (page, text) in RESULTS {
         if found.is_empty() {
             found = rows(text).filter_map(|row| of_results(page, &row, name)).collect();
@@ -87,7 +87,7 @@ fn exactly(name: &str) -> Vec<Told> {
     found
 }
 
-/// Names that are exactly known, to find the nearest among.
+/// Exactly known names, for the search of the nearest.
 pub fn names() -> Vec<&'static str> {
     let columns = Observable::ALL.iter().map(|one| one.name());
     let figures = Interest::ALL.iter().map(|one| one.name());
@@ -127,7 +127,7 @@ fn rows(page: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
     })
 }
 
-/// What a row of the glossary tells of a name, or of a symbol whose letter it spells.
+/// Meanings of a name in a row of the glossary; a spelled-out Greek letter matches its symbol.
 fn of_glossary(row: &[&str], name: &str) -> Vec<Told> {
     let Some(first) = row.first() else { return vec![] };
     let names: Vec<&str> = first.split([',', ';']).map(str::trim).collect();
@@ -154,7 +154,7 @@ fn of_symbol(row: &[&str], names: &[&str], place: usize, name: &str) -> Option<T
     match *row {
         [_, meaning] => Some(Told::new("word", name, meaning.into())),
         [_, meaning, unit, tag] => {
-            // of as many parts as there are names each is that of one
+            // with as many parts as names, each part belongs to one name
             let part = |text: &str| {
                 let parts: Vec<&str> = text.split([',', ';']).map(str::trim).collect();
                 match parts.len() == names.len() {
@@ -193,7 +193,7 @@ fn of_results(page: &str, row: &[&str], name: &str) -> Option<Told> {
     Some(Told::new("result", own.0, format!("{meaning}{unit}, see {page}")))
 }
 
-/// Whether a name is that of a row, in which words of capitals stand for names and numbers.
+/// True if a name matches that of a row, in which words of capitals are placeholders for names and numbers.
 fn fits(pattern: &str, name: &str) -> bool {
     let wild = pattern
         .split(['_', ' '])
@@ -203,7 +203,7 @@ fn fits(pattern: &str, name: &str) -> bool {
         return false;
     };
     let middle = name.strip_prefix(begin).and_then(|rest| rest.strip_suffix(end));
-    // a figure of a quantity is told by its parts
+    // a figure of a quantity is explained by its parts
     middle.is_some_and(|middle| !middle.is_empty() && !middle.contains('.'))
 }
 

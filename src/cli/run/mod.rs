@@ -37,7 +37,7 @@ use crate::study::target::effects::Annotate;
 use crate::study::target::{self, Setting};
 use resume::resume;
 
-/// Runs a case into a result folder; the program began at an instant.
+/// Runs a case into a result folder; `began` is the start of the program.
 pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     let mut laps = Laps::since(began);
     let case = &size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
@@ -81,7 +81,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
             settle(case, first, &parameters, &way)?
         }
     };
-    // what is told stands below no bar
+    // clears the bar before messages are printed
     drop(way);
     laps.lap();
     let mut uncertainty = None;
@@ -95,7 +95,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
         uncertainty = uncertain::compute(Some(asked), Some(finished.folder()))?;
         summary.bands = uncertain::bands(uncertainty.as_ref());
         summary.wall_s.samples = laps.lap();
-        // the page is made of what the folder holds
+        // the page is made from the files in the folder
         let summed = || summary::to_json(&summary);
         written = written.and(uncertain::write(
             uncertainty.as_ref(),
@@ -110,7 +110,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     });
     let lap = laps.lap();
     summary.wall_s.report = if asked.lean { 0.0 } else { lap };
-    // without a page all of this can be repeated
+    // if the page fails, the folder is not closed, so that all of this can be repeated
     written = match finished {
         Some(finished) if written.is_ok() => close(finished, &mut summary, &mut laps),
         _ => written,
@@ -129,7 +129,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     Ok(terminal::exit_code(fault.as_ref()))
 }
 
-/// Leaves a folder whose page is written; its summary tells of all wall time until then.
+/// Closes a folder whose page is written; its summary includes all wall time until then.
 fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<()> {
     let folder = finished.close()?;
     summary.wall_s.files += laps.lap();
@@ -137,7 +137,7 @@ fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<(
     summary::write(&folder, summary).map(|_| ())
 }
 
-/// What runs are asked, and what came before them.
+/// Options of runs, and the wall times before them.
 struct Way {
     hook: SharedHook,
     lean: bool,
@@ -145,13 +145,13 @@ struct Way {
 }
 
 impl Way {
-    /// True if a run with derivatives by some numbers has a companion: if it has error bars and the memory holds both.
+    /// True if a run with derivatives by some numbers has a companion: if it has error bars and the memory suffices for both.
     fn has_companion(&self, case: &Case, by: &[Parameter]) -> bool {
         !self.lean && size::holds_companion(case, by.len())
     }
 }
 
-/// Asked after every step of every run: progress, Ctrl-C, wall time.
+/// Hook that is called after every step of every run: progress, Ctrl-C, wall time.
 type SharedHook = Rc<RefCell<Hook>>;
 
 fn hook(asked: &RunArguments) -> SharedHook {
@@ -177,7 +177,7 @@ fn own(hook: &SharedHook) -> Hook {
     Box::new(move |progress| hook.borrow_mut()(progress))
 }
 
-/// Runs a case of many into a folder of its own, which may hold what an interrupted one left.
+/// Runs one of many cases into a folder of its own, which may contain the files of an interrupted run.
 pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
     let mut laps = Laps::since(Instant::now());
     let interrupted = Arc::clone(stop);
@@ -218,11 +218,11 @@ pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool
 /// A run that has ended.
 struct Recorded {
     outcome: Outcome,
-    /// Its folder, unless nothing was done in it.
+    /// Folder of the run, unless nothing was done in it.
     finished: Option<Finished>,
-    /// Where an older result went.
+    /// Path to which an older result was moved.
     aside: Option<PathBuf>,
-    /// True if its files could be written.
+    /// The error if its files could not be written.
     written: Result<()>,
 }
 
@@ -244,7 +244,7 @@ fn record(
     complete(recorder, outcome, way)
 }
 
-/// Repeats a run with effects that its companion shows to matter. Repeated runs are recorded inside the folder and take the result's place when
+/// Repeats a run with effects that its companion shows to matter. Repeated runs are recorded inside the folder and replace the result when
 /// they finish.
 fn settle(case: &Case, mut run: Recorded, by: &[Parameter], way: &Way) -> Result<Recorded> {
     let (Some(finished), Ok(())) = (&mut run.finished, &run.written) else {
@@ -285,8 +285,8 @@ fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result
     })
 }
 
-/// Candidates are recorded inside the folder and take the result's place when they finish, so that one that is stopped leaves the
-/// one before. The first may end early: then it is all there is.
+/// Runs candidates until one reaches the accuracy. Candidates are recorded inside the folder and replace the result when they finish, so
+/// that a stopped one leaves its predecessor. The first may end early: then it is the only result.
 fn reach(case: &Case, accuracy: f64, from: Option<&Setting>, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
     let began = Instant::now();
     let (mut placed, mut aside, mut unwritten) = (false, None, Ok(()));

@@ -1,4 +1,4 @@
-//! Going on with a run that was interrupted.
+//! Resumption of an interrupted run.
 
 use std::path::Path;
 
@@ -80,7 +80,7 @@ fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outc
     Ok(Outcome { summary, fault: None })
 }
 
-/// Says by what numbers the run that is gone on with is differentiated.
+/// Error with the numbers by which the resumed run is differentiated.
 fn other_derivatives(kept: &[Parameter]) -> Error {
     let kept: Vec<&str> = kept.iter().map(|p| p.pointer.as_str()).collect();
     let kept = match kept.is_empty() {
@@ -92,7 +92,7 @@ fn other_derivatives(kept: &[Parameter]) -> Error {
     ))
 }
 
-/// Says where two cases differ.
+/// Error with the differences of two cases.
 fn another_case(there: &str, here: &Case, whose: &str) -> Error {
     let value = |text: &str| serde_json::from_str::<Value>(text).unwrap_or_default();
     let (physics, numerics) = changes(&value(there), &value(&here.resolved_json()));

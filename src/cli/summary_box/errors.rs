@@ -4,7 +4,7 @@ use super::{BETWEEN, hold};
 use crate::output::numbers::{counted, duration, quantity, significant, with_error};
 use crate::run::summary::{Status, Summary};
 
-/// A figure with its error, where that is known.
+/// A figure with its error, if known.
 pub(super) fn figure(summary: &Summary, (name, figure): (&str, &str), value: f64, unit: &str) -> String {
     hold(match summary.error(name, figure) {
         Some(error) => with_error(value, error, unit),
@@ -12,7 +12,7 @@ pub(super) fn figure(summary: &Summary, (name, figure): (&str, &str), value: f64
     })
 }
 
-/// How the errors of figures were measured, or why there are none.
+/// Source of the errors of figures, or the reason why there are none.
 pub(super) fn errors(summary: &Summary) -> Option<String> {
     if summary.accuracy.is_some() || summary.status != Status::Finished {
         return None;

@@ -1,4 +1,4 @@
-//! The box at the end of a run: what matters, in a glance.
+//! The box at the end of a run, with the most important results.
 
 mod errors;
 
@@ -16,13 +16,13 @@ use crate::run::sensitivity::figures::Sensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 use errors::{errors, figure};
 
-/// Warnings shown; the rest is counted.
+/// Largest number of warnings shown; the rest is counted.
 const WARNINGS: usize = 3;
-/// Lines a single entry may take; what to know, and why something failed, is told to its end, where what to do stands.
+/// Largest number of lines of a plain entry. Warnings and reasons of failures are printed in full, because their advice is at the end.
 const LINES: usize = 2;
-/// Shares of the wall time that are told.
+/// Smallest share of the wall time that is shown.
 const LEAST_SHARE: f64 = 0.005;
-/// Between parts of an entry; stays on the line of what it follows.
+/// Separator of the parts of an entry; it stays on the line of the part before it.
 const BETWEEN: &str = "\u{a0}· ";
 /// Width of the names of entries.
 const NAME: usize = 11;
@@ -33,7 +33,7 @@ const SHOWN: [(Interest, &str); 3] = [
     (Interest::MaxPressure, "p"),
 ];
 
-/// How a row is painted.
+/// Color of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Tone {
     Plain,
@@ -61,7 +61,8 @@ struct Row {
     tone: Tone,
 }
 
-/// The box, `width` columns wide (at least 40), with a newline at the end; coloured when `colour`. `page`: whether there is one in the folder.
+/// Renders the box, `width` columns wide (at least 40), with a newline at the end; colored if `colour` is set. `page` is true if the folder
+/// has a page.
 pub fn render(summary: &Summary, dir: &Path, page: bool, colour: bool, width: usize) -> String {
     let width = width.clamp(40, 100);
     let (status, tone) = match summary.status {
@@ -83,7 +84,7 @@ pub fn render(summary: &Summary, dir: &Path, page: bool, colour: bool, width: us
     if length + 6 <= width {
         out.push_str(&format!("╰─ {files} {}╯\n", "─".repeat(width - length - 5)));
     } else {
-        // A path is to be copied whole.
+        // A path stays whole, so that it can be copied.
         out.push_str(&format!("╰{}╯\n{files}\n", "─".repeat(width - 2)));
     }
     out.replace('\u{a0}', " ")
@@ -123,7 +124,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
     rows
 }
 
-/// The step response of the tip's deflection, where it is asked for.
+/// Step response of the tip's deflection, if requested.
 fn step(summary: &Summary) -> Option<String> {
     let name = Interest::TipU1.name();
     let found = summary.step_response.get(name)?;
@@ -141,21 +142,21 @@ fn step(summary: &Summary) -> Option<String> {
     Some(parts.join(BETWEEN))
 }
 
-/// Between which values uncertain numbers leave the largest figures, beside their numerical errors.
+/// Bands of the largest figures due to uncertain numbers, beside their numerical errors.
 fn uncertain(summary: &Summary) -> Option<String> {
     let of = |(one, word): (Interest, &str)| {
         let value = get(summary, one)?.largest()?;
         let figures = ["extreme", "max_abs", "window_max_abs"];
         let band = bands::of(&summary.bands, one.name(), &figures, value)?;
         let text = hold(format!("{word} {}", bands::short(band, one.unit())?));
-        // a narrow box breaks between the ends
+        // a narrow box may break the line between the ends of a band
         Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))
     };
     let shown: Vec<String> = SHOWN.into_iter().filter_map(of).collect();
     (!shown.is_empty()).then(|| format!("largest, 95 %: {}", shown.join(BETWEEN)))
 }
 
-/// What one per cent more of each number does to the largest deflections and the largest pressure.
+/// Change of the largest deflections and the largest pressure when each number grows by one percent.
 fn sensitivities(summary: &Summary) -> Option<String> {
     let of = |(pointer, s): (&String, &Sensitivity)| -> String {
         let relative = |one: Interest, word: &str| {
@@ -202,12 +203,12 @@ fn lines(text: &str, room: usize) -> Vec<Cow<'_, str>> {
     textwrap::wrap(text, Options::new(room).word_splitter(WordSplitter::NoHyphenation))
 }
 
-/// The first of these lines.
+/// First of the lines of at most `room` columns.
 fn start(text: &str, room: usize) -> String {
     lines(text, room).into_iter().next().unwrap_or_default().into_owned()
 }
 
-/// Numbers hold together with their units: wrapping knows only blanks.
+/// Joins numbers and units by non-breaking spaces, because wrapping breaks at any other space.
 fn hold(text: String) -> String {
     text.replace(' ', "\u{a0}")
 }
@@ -216,7 +217,7 @@ fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
     summary.quantities.get(one.name())
 }
 
-/// Where the tip is at the end, and where it was furthest away, and when.
+/// Position of the tip at the end, and its largest displacement with the time.
 fn tip(summary: &Summary) -> [Option<String>; 2] {
     let joined = |words: &str, told: &dyn Fn(&str, &Quantity) -> Option<String>| {
         let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
@@ -247,7 +248,7 @@ fn pressure(summary: &Summary) -> Option<String> {
 
 fn energy(summary: &Summary) -> Option<String> {
     let last = |one: Interest| get(summary, one)?.last;
-    // of what is nothing the power is, too
+    // a quantity that is zero has zero power
     let power = |one: Interest| {
         let quantity = get(summary, one)?;
         let power = quantity.window_power_w.filter(|_| quantity.last != Some(0.0))?;
@@ -277,7 +278,7 @@ fn energy(summary: &Summary) -> Option<String> {
     Some(parts.into_iter().flatten().collect::<Vec<_>>().join(BETWEEN))
 }
 
-/// What was asked, the largest errors, and how it was reached.
+/// Requested accuracy, the setting that reached it, and the largest errors.
 fn accuracy(summary: &Summary) -> Option<String> {
     let found = summary.accuracy.as_ref()?;
     let errors = accuracy::largest(found).join(BETWEEN);
@@ -298,7 +299,7 @@ fn balances(summary: &Summary) -> String {
         ("momentum", b.momentum_residual_relative),
         ("angular momentum", b.angular_momentum_residual_relative),
     ];
-    // Exactly zero where a balance does not apply; energy always does.
+    // Exactly zero if a balance does not apply; energy always does.
     let shown = parts.into_iter().filter(|(what, x)| *what == "energy" || *x != 0.0);
     let shown: Vec<_> = shown.map(|(what, x)| open(what, x)).collect();
     format!("open by (relative): {}", shown.join(BETWEEN))

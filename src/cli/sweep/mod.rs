@@ -29,13 +29,13 @@ use crate::study::target::Setting;
 use progress::Counter;
 use source::Source;
 
-/// Designs that are looked at before the first is computed.
+/// Largest number of designs that are checked before the first is computed.
 const CHECKED: usize = 10_000;
 
-/// Threads at most.
+/// Largest number of threads.
 const MOST_AT_ONCE: usize = 1024;
 
-/// Computes what is missing, writes the table, prints how many there are of which kind.
+/// Computes missing designs, writes the table, prints the number of designs of each kind.
 pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let source = Source::read(asked)?;
     let plan = &source.plan;
@@ -113,10 +113,10 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     Ok(ExitCode::from(if finished || stopped || none { 0 } else { 4 }))
 }
 
-/// How many designs are computed at once: as many as asked for, or as there are cores.
+/// Number of designs computed at once: the requested number, or the number of cores.
 ///
 /// # Errors
-/// [`Error::Usage`]: none, or more than is sensible.
+/// [`Error::Usage`]: zero, or too many.
 pub fn jobs(asked: Option<usize>) -> Result<usize> {
     let jobs = asked.unwrap_or_else(pool::cores);
     match (1..=MOST_AT_ONCE).contains(&jobs) {
@@ -125,10 +125,10 @@ pub fn jobs(asked: Option<usize>) -> Result<usize> {
     }
 }
 
-/// Whether something that is set is set again for every case: `why` says by what, of its pointer.
+/// Checks that no value of `--set` is set again for every case; `why` names the source of the second value at a pointer.
 ///
 /// # Errors
-/// [`Error::Usage`] with the first.
+/// [`Error::Usage`] with the first such value.
 pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> String) -> Result<()> {
     for set in sets {
         let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
@@ -153,7 +153,7 @@ fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
     place.claim(&source.first, Kind::Designs)
 }
 
-/// Looks at designs before the first is computed: at all of them, or at as many as is done soon, evenly spread.
+/// Checks designs before the first is computed: all of them, or an evenly spread selection that is checked in a short time.
 fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &AtomicBool) -> Result<()> {
     let every = left.len().div_ceil(CHECKED).max(1);
     let some: Vec<usize> = left.iter().copied().step_by(every).collect();
@@ -171,10 +171,10 @@ fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &Atomi
     }
 }
 
-/// What `look` finds at fault with cases by their numbers, as far as it is not interrupted; `seen` is told of each whether something is.
+/// Faults that `look` finds in cases, by their numbers, until interrupted; `seen` receives true for each faulty case, false for others.
 ///
 /// # Errors
-/// None of its own: those of the pool.
+/// Only those of the pool.
 pub fn faults(
     numbers: &[usize],
     jobs: usize,
@@ -196,7 +196,7 @@ pub fn faults(
     Ok(faults)
 }
 
-/// Computes designs and keeps their rows; whether it was interrupted.
+/// Computes designs and stores their rows; true if it was interrupted.
 fn compute_all(
     asked: &SweepArguments,
     source: &Source,
@@ -258,7 +258,7 @@ fn compute_all(
             return Err(error);
         }
         if let Err(error) = journal.append(&row) {
-            // the disk has the others
+            // the disk has the other rows
             super::print(&format!("{}\n", serde_json::to_string(&row).unwrap_or_default()))?;
             return Err(error);
         }
@@ -271,7 +271,7 @@ fn compute_all(
     }
 }
 
-/// Keeps the cases of designs that were computed before cases were asked for.
+/// Stores the cases of designs that were computed before cases were requested.
 fn keep_others(source: &Source, folder: &ResultFolder, done: &Survey) -> Result<()> {
     let plan = &source.plan;
     for number in (0..plan.designs).filter(|number| done.has(*number)) {
@@ -284,7 +284,7 @@ fn keep_others(source: &Source, folder: &ResultFolder, done: &Survey) -> Result<
     Ok(())
 }
 
-/// What is kept of a design besides its row.
+/// Files that are kept of a design in addition to its row.
 struct Keep<'a> {
     asked: &'a SweepArguments,
     plan: &'a Plan,
@@ -294,7 +294,7 @@ struct Keep<'a> {
 }
 
 impl Keep<'_> {
-    /// The case, on request.
+    /// Stores the case, on request.
     fn case(&self, case: &Case) -> Result<()> {
         if !self.asked.keep_cases {
             return Ok(());
@@ -302,7 +302,7 @@ impl Keep<'_> {
         files::keep_case(self.folder, &files::numbered(self.plan, self.number), &case.written())
     }
 
-    /// A run, with its folder on request.
+    /// Runs the case, and keeps its folder on request.
     fn run(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
         if !self.asked.keep_folders {
             return analysis::run(case, ask, stop);

@@ -1,4 +1,4 @@
-//! How far a sweep is: on a terminal a line that moves, elsewhere a line now and then.
+//! Progress of a sweep: a moving line on a terminal, occasional lines elsewhere.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use crate::cli::line::{PLAIN, Shown};
 use crate::cli::terminal;
 use crate::output::numbers::{count, counted, duration};
 
-/// Between two lines where there is no terminal.
+/// Interval between two lines without a terminal.
 const EVERY: Duration = Duration::from_secs(30);
 
 /// Counts designs.
@@ -21,7 +21,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Of so many.
+    /// Creates a counter for `of` designs.
     pub fn new(quiet: bool, what: &'static str, of: usize) -> Self {
         let now = Instant::now();
         Self {
@@ -35,7 +35,7 @@ impl Counter {
         }
     }
 
-    /// One more is done.
+    /// Counts one more design.
     pub fn one(&mut self, failed: bool) {
         self.done += 1;
         self.failed += usize::from(failed);

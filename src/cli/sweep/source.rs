@@ -1,4 +1,4 @@
-//! From what was typed to designs and their cases.
+//! Designs and their cases, from the arguments.
 
 use std::path::{Path, PathBuf};
 
@@ -11,27 +11,27 @@ use crate::study::sweep::plan::{Listed, Plan};
 use crate::study::sweep::table::Table;
 use crate::study::sweep::{Design, Designs, Draw, Vary};
 
-/// What an accuracy chooses.
+/// Pointers of the values that an accuracy determines.
 const CHOSEN: [&str; 3] = ["/mesh/cells_per_segment", "/mesh/cells_per_bladder", "/solver/rtol"];
 
-/// Where the cases of designs come from.
+/// Source of the cases of designs.
 pub struct Source {
     /// Files and their texts.
     texts: Vec<(PathBuf, String)>,
     sets: Vec<String>,
     /// The designs.
     pub designs: Designs,
-    /// What they are.
+    /// Plan of the designs.
     pub plan: Plan,
-    /// The first of them.
+    /// Case of the first design.
     pub first: Case,
 }
 
 impl Source {
-    /// Reads everything, and looks at the first design of every case.
+    /// Reads everything, and checks the first design of every case.
     ///
     /// # Errors
-    /// What does not go together, cases that are none.
+    /// Contradictory arguments, or invalid cases.
     pub fn read(asked: &SweepArguments) -> Result<Self> {
         let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
         let draw = Draw::parse(&asked.design)?;
@@ -115,26 +115,26 @@ impl Source {
         })
     }
 
-    /// The case of a design.
+    /// Returns the case of a design.
     ///
     /// # Errors
-    /// It is none.
+    /// The case is invalid.
     pub fn case(&self, design: &Design) -> Result<Case> {
         let (path, text) = &self.texts[design.case];
         parse(path, text, &self.sets, &self.designs, design)
     }
 
-    /// What a design's command would say before it begins.
+    /// Checks a design as its command would before it begins.
     ///
     /// # Errors
-    /// In its words; a case that the memory does not hold, so many at once.
+    /// Those of the command; or `jobs` copies of the case exceed the memory.
     pub fn check(&self, number: usize, jobs: usize) -> Result<()> {
         let case = self.case(&self.designs.design(number))?;
         size::fits(&case, 0, jobs)?;
         self.plan.command.analysis().check(&case)
     }
 
-    /// Tells which design it is that an error is about.
+    /// Prints the design to which an error belongs.
     pub fn tell(&self, number: usize, more: usize) {
         name(&self.designs, &self.designs.design(number), more);
     }
@@ -146,7 +146,7 @@ fn parse(path: &Path, text: &str, sets: &[String], designs: &Designs, design: &D
     found.map_err(|error| error.by(designs.option(), &own))
 }
 
-/// Says which design it was that had an error.
+/// Prints the design if its case has an error.
 fn told<T>(found: Result<T>, designs: &Designs, design: &Design) -> Result<T> {
     if found.is_err() {
         name(designs, design, 0);
@@ -171,7 +171,7 @@ fn name(designs: &Designs, design: &Design, more: usize) {
     ));
 }
 
-/// Whether cases can be told apart by their names.
+/// Checks that the names of the cases differ.
 fn alike(cases: &[Listed]) -> Result<()> {
     for (k, case) in cases.iter().enumerate() {
         if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {

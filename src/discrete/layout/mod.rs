@@ -1,7 +1,7 @@
-//! Which unknowns there are, in which order, what they are called and how large they are.
+//! Layout of the unknowns: order, names and characteristic sizes.
 //!
-//! An absent effect is an absent unknown: a driven end has no position, a quasi-static solid no velocities, a dry beam
-//! no fluid. Equation i belongs to unknown i. Unknowns come in blocks, [`Line`], [`Turning`], [`Coupling`], [`Network`]; each knows its own.
+//! An omitted effect has no unknowns: a driven end has no position, a quasi-static solid no velocities, a dry beam no fluid. Equation i
+//! belongs to unknown i. Unknowns are grouped in the blocks [`Line`], [`Turning`], [`Coupling`] and [`Network`].
 
 mod solid;
 mod wet;
@@ -16,28 +16,28 @@ use crate::model::Model;
 pub use solid::{Line, Relaxation, Turning};
 pub use wet::{Coupling, Network};
 
-/// Blocks of unknowns, in this order; what each unknown is.
+/// Blocks of unknowns, in this order, and properties of each unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Motion of the beam across (`u1`) and along (`u3`).
+    /// Transverse (`u1`) and axial (`u3`) motion of the beam.
     pub lines: [Line; 2],
-    /// Turning of sections that shear.
+    /// Rotation of sections that shear.
     pub turning: Turning,
-    /// What a solid that relaxes remembers.
+    /// Relaxed strains of the solid.
     pub relaxation: Relaxation,
-    /// What beam and bladders know of each other.
+    /// Coupling variables of beam and bladders.
     pub coupling: Coupling,
-    /// Bladders and what joins them.
+    /// Bladders and their network.
     pub network: Network,
     /// Number of unknowns.
     pub len: usize,
-    /// Whether masses resist acceleration.
+    /// True if the solid has inertia.
     pub inertia: bool,
     /// Characteristic size of each unknown, in its unit.
     pub scales: Vec<f64>,
     /// Characteristic size of each equation.
     pub row_scales: Vec<f64>,
-    /// Whether each unknown is differential.
+    /// True for each unknown that is differential.
     pub differential: Vec<bool>,
     names: Vec<Name>,
     per_row: usize,
@@ -62,7 +62,7 @@ enum Name {
 }
 
 impl Layout {
-    /// Unknowns of a model on a mesh.
+    /// Creates the unknowns of a model on a mesh.
     pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
         let mut build = Builder::default();
         let lines = Line::both(model, mesh, &mut build);
@@ -89,30 +89,30 @@ impl Layout {
         }
     }
 
-    /// Whether velocities across and along are unknowns.
+    /// True for transverse and for axial velocities that are unknowns.
     pub fn waves(&self) -> [bool; 2] {
         self.lines.each_ref().map(|line| line.v.is_some())
     }
 
-    /// Every unknown that is moved, with its velocity where that is an unknown.
+    /// Every displacement or section angle, with its velocity if that is an unknown.
     pub fn moved(&self) -> impl Iterator<Item = (usize, Option<usize>)> + '_ {
         let nodes = self.lines.iter().flat_map(Line::unknowns).map(|(_, u, v)| (u, v));
         nodes.chain(self.turning.unknowns())
     }
 
-    /// Whether nothing is elsewhere, or faster, in one state than in another.
+    /// True if positions and velocities of two states are equal.
     pub fn unmoved(&self, one: &[f64], other: &[f64]) -> bool {
         let still = |k: usize| one[k] == other[k];
         self.moved().all(|(u, v)| still(u) && v.is_none_or(still))
     }
 
-    /// Whether all bladders hold what they hold in another state; not where a network has one pressure.
+    /// True if all bladders have equal contents in two states; false if a network has one common pressure.
     pub fn unfilled(&self, one: &[f64], other: &[f64]) -> bool {
         let areas = self.network.area.clone().chain(self.coupling.nonlinear_area.clone());
         self.network.lumped_pressure.is_empty() && areas.into_iter().all(|k| one[k] == other[k])
     }
 
-    /// Blocks of unknowns that are moved with velocities that are unknowns, and these.
+    /// Blocks of displacements and angles whose velocities are unknowns, and the blocks of these velocities.
     pub fn moved_blocks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         let nodes = self
             .lines
@@ -127,8 +127,8 @@ impl Layout {
         self.moved().filter_map(|(_, velocity)| velocity)
     }
 
-    /// Scaled unknowns of another layout of the same beam in the scales of this one: 0 for what only this one has, such as the flow through a tube
-    /// that is shut for ever there.
+    /// Converts scaled unknowns of another layout of the same beam to this layout. Unknowns that only this layout has are 0, such as the
+    /// flow through a permanently closed tube.
     pub fn take_over(&self, other: &Self, y: &[f64]) -> Vec<f64> {
         let mut next = 0;
         let mut one = |k: usize| {
@@ -139,7 +139,7 @@ impl Layout {
         (0..self.len).map(|k| one(k).unwrap_or(0.0)).collect()
     }
 
-    /// Name of an unknown with unit and place.
+    /// Name of an unknown, with unit and place.
     pub fn name(&self, unknown: usize) -> String {
         let bladder = |b: usize| bladder_label(b, self.per_row);
         match self.names[unknown] {
@@ -178,7 +178,7 @@ impl Builder {
         self.scales.len()
     }
 
-    /// Adds an unknown; its index.
+    /// Adds an unknown; returns its index.
     fn push(&mut self, name: Name, scale: f64, row_scale: f64, differential: bool) -> usize {
         self.scales.push(scale);
         self.row_scales.push(row_scale);
@@ -187,7 +187,7 @@ impl Builder {
         self.len() - 1
     }
 
-    /// What `add` adds.
+    /// Range of the unknowns that `add` creates.
     fn block(&mut self, add: impl FnOnce(&mut Self)) -> Range<usize> {
         let first = self.len();
         add(self);

@@ -8,39 +8,39 @@ use crate::case::schema::Effect;
 use crate::discrete::Mesh;
 use crate::model::{Kinematics, Model};
 
-/// Motion of the nodes in one direction.
+/// Transverse or axial motion of the nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Nodes whose displacement is unknown.
+    /// Nodes with unknown displacement.
     pub free: Range<usize>,
-    /// Their displacements.
+    /// Displacements of these nodes.
     pub u: Range<usize>,
-    /// Their velocities; none without inertia, and along a beam without axial waves.
+    /// Velocities of these nodes; none without inertia, and for axial motion without axial waves.
     pub v: Option<Range<usize>>,
 }
 
-/// Turning of the sections of cells; empty where they stay across the beam.
+/// Rotation of the sections of cells; empty if sections remain perpendicular to the beam.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Turning {
-    /// Their angles θ.
+    /// Section angles θ.
     pub angle: Range<usize>,
-    /// Rates of these; none without rotary inertia.
+    /// Rates of the section angles; none without rotary inertia.
     pub rate: Option<Range<usize>>,
 }
 
-/// Curvatures, stretches and shear strains to which the branches of a solid have relaxed, branch by branch.
+/// Relaxed curvatures, stretches and shear strains of a solid, branch by branch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relaxation {
-    /// At nodes.
+    /// Relaxed curvatures at nodes.
     pub curvature: Range<usize>,
-    /// In cells.
+    /// Relaxed stretches in cells.
     pub stretch: Range<usize>,
-    /// In cells that shear.
+    /// Relaxed shear strains in cells.
     pub shear: Range<usize>,
 }
 
 impl Line {
-    /// Every free node with its displacement and, where it is an unknown, its velocity.
+    /// Every free node with its displacement and, if it is an unknown, its velocity.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize, Option<usize>)> {
         let velocity = self.v.as_ref().map(|v| v.start);
         let (free, u) = (self.free.clone(), self.u.start);
@@ -48,7 +48,7 @@ impl Line {
             .map(move |(k, node)| (node, u + k, velocity.map(|v| v + k)))
     }
 
-    /// The balance of momentum of a node; none where its motion is given.
+    /// Index of a node's momentum balance; none if its motion is given.
     #[inline]
     pub fn momentum(&self, node: usize) -> Option<usize> {
         let rows = self.v.as_ref().unwrap_or(&self.u);
@@ -57,7 +57,7 @@ impl Line {
 }
 
 impl Line {
-    /// Across and along; displacements of both stand before velocities.
+    /// Transverse and axial motion; displacements of both precede the velocities.
     pub(super) fn both(model: &Model, mesh: &Mesh, build: &mut Builder) -> [Self; 2] {
         let driven = |motion: &Translation| usize::from(matches!(motion, Translation::Displacement(_)));
         let [root, tip] = &model.ends;
@@ -77,7 +77,8 @@ impl Line {
         let waves = [inertia && !bar, inertia && model.effects.has(Effect::AxialInertia)];
         let damped = model.section.resists_motion();
         let bent = model.section.bending_damping_time > 0.0;
-        // Without waves the damping of bending alone does not make u3 differential: in a straight beam it acts across.
+        // Without axial waves bending damping alone does not make u3 differential: in a straight beam it acts
+        // transversely.
         let differential = [inertia || damped || bent, waves[1] || damped || (bent && !inertia)];
         let s = &model.scales;
         let (sizes, rates) = ([s.transverse, s.axial], [s.transverse_rate, s.axial_rate]);
@@ -98,13 +99,13 @@ impl Line {
 }
 
 impl Turning {
-    /// Every angle and its rate, where that is an unknown, cell by cell.
+    /// Every angle and, if it is an unknown, its rate, cell by cell.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         let (angle, rate) = (self.angle.start, self.rate.as_ref().map(|rate| rate.start));
         (0..self.angle.len()).map(move |cell| (angle + cell, rate.map(|rate| rate + cell)))
     }
 
-    /// The balance of moments of each cell.
+    /// Moment balances of the cells.
     pub fn moments(&self) -> Range<usize> {
         self.rate.as_ref().unwrap_or(&self.angle).clone()
     }

@@ -1,4 +1,4 @@
-//! Unknowns of bladders and of what joins them.
+//! Unknowns of bladders and of their network.
 
 use std::ops::Range;
 
@@ -7,17 +7,17 @@ use crate::discrete::fluid_mesh::{MeshFlow, MeshLink, Place};
 use crate::discrete::{FluidMesh, Mesh, let_in};
 use crate::model::{LumpedKind, Model, Wet};
 
-/// Share of its size that counts as the size of a volume which sets steps: it is one among many unknowns, and work all follows from it.
+/// Scale of an injected volume relative to its size: it is one of many unknowns in the error test, and all work follows from it.
 const CLOSELY: f64 = 0.1;
 
-/// Means of segments that bladders feel.
+/// Coupling variables of segments and bladders.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Coupling {
     /// Mean moments `Mbar_j`.
     pub mean_moment: Range<usize>,
     /// Mean forces `Nbar_j`.
     pub mean_force: Range<usize>,
-    /// Area changes of bladders that the section's energy beyond its quadratic part makes.
+    /// Area changes of bladders by the section's energy at finite strain.
     pub nonlinear_area: Range<usize>,
 }
 
@@ -26,19 +26,19 @@ pub struct Coupling {
 pub struct Network {
     /// Stored areas of cells.
     pub area: Range<usize>,
-    /// Pressures of junctions; of those that are accumulators, their volumes.
+    /// Pressures of junctions, or volumes of junctions with an accumulator.
     pub junction: Range<usize>,
-    /// Pressure drops of turbines behind real rectifiers.
+    /// Pressure drops of turbines behind bridges of check valves.
     pub bridge: Range<usize>,
-    /// Flows of tubes that do not follow from pressures alone.
+    /// Flows of tubes that are not given by pressures alone.
     pub flow: Range<usize>,
-    /// Flows of the branches of their friction.
+    /// Flows of their friction branches.
     pub branch: Range<usize>,
-    /// Pressure of each lumped network, where it is unknown.
+    /// Pressure of each lumped network, if it is unknown.
     pub lumped_pressure: Vec<Option<usize>>,
-    /// Volume of each lumped network, where it is unknown.
+    /// Volume of each lumped network, if it is unknown.
     pub lumped_volume: Vec<Option<usize>>,
-    /// The integral of what each source of prescribed volume lets in, with its number: nothing follows from it, but its error sets steps.
+    /// Injected volume of each source of prescribed volume, with its number; no equation contains it, but its error controls the steps.
     pub let_in: Vec<(usize, usize)>,
 }
 
@@ -62,7 +62,7 @@ impl Network {
     pub(super) fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
         let s = &model.scales;
         let stored = wet.compliance() * s.pressure;
-        // what is left of a cross-section where walls touch is to be known as well as pressures are
+        // the remaining cross-section of touching walls must be as accurate as pressures
         let area_size = wet.closing.map_or(stored, |closing| stored.min(closing.touching()));
         let area = build.block(|build| {
             for &bladder in &fluid.flowing {

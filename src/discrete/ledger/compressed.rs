@@ -1,4 +1,4 @@
-//! What flow brings along and loses, and what fluid stores that is compressed, [E56]; without compression `h = p`.
+//! Energy flow, dissipation and storage of a compressible fluid, [E56]; without compression `h = p`.
 
 use std::ops::Range;
 
@@ -6,7 +6,7 @@ use super::fluid::imposed_rate;
 use crate::discrete::{FluidMesh, System, Workspace};
 use crate::model::{Compression, Storage, Wet};
 
-/// Rates of a cell's pressure [Pa/s], of that which strains its walls, and of its area [m^2/s], from that of what it stores.
+/// Rates of a cell's pressure [Pa/s], of the pressure on its walls, and of its area [m^2/s], from the rate of its content.
 fn rates(wet: &Wet, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) -> [f64; 3] {
     let (law, closing) = (&wet.area, wet.closing.as_ref());
     let contact = |area: f64, rate: f64| closing.map_or(0.0, |closing| closing.at(area).1 * rate);
@@ -32,8 +32,8 @@ fn rates(wet: &Wet, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) 
     }
 }
 
-/// Rates of a cell of a bladder that shares its pressure: of that which strains its walls [Pa/s], and of what it stores [m^2/s], from that
-/// of its pressure.
+/// Rates of a cell in a bladder of a lumped network, from the rate of its pressure: of the pressure on its walls [Pa/s], and of its
+/// content [m^2/s].
 pub fn shared_rates(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure: f64, imposed: f64) -> [f64; 2] {
     let a_p = wet.area.per_pressure;
     let area = w.fluid.area_changes()[cell];
@@ -46,7 +46,8 @@ pub fn shared_rates(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure: f64, i
     [pressure + slope * rate, stored]
 }
 
-/// Unknown pressures of lumped networks, and what these take in per pressure where nothing else changes [m^3/Pa].
+/// Unknown pressures of lumped networks, and the derivatives of the networks' contents by these pressures, all else
+/// constant [m^3/Pa].
 pub fn lumped_slopes<'a>(system: &'a System, w: &'a Workspace<f64>) -> impl Iterator<Item = (usize, f64)> + 'a {
     let wet = system.model.wet.as_ref().zip(system.fluid.as_ref());
     wet.into_iter().flat_map(move |(wet, fluid)| {
@@ -61,7 +62,7 @@ pub fn lumped_slopes<'a>(system: &'a System, w: &'a Workspace<f64>) -> impl Iter
     })
 }
 
-/// Rate of a cell's pressure [Pa/s]; needs [`super::complete`].
+/// Rate of a cell's pressure [Pa/s]; requires [`super::complete`].
 pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
     let bladder = cell / fluid.cells_per_bladder;
     match wet.storage[bladder] {
@@ -72,7 +73,7 @@ pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usi
     }
 }
 
-/// Mean of the rates of what strains the walls of a bladder.
+/// Mean rate of the pressure on the walls of a bladder.
 pub fn mean_pressure_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize, cells: Range<usize>) -> f64 {
     let (count, imposed) = (cells.len() as f64, imposed_rate(wet, w, bladder));
     if let Storage::Shared(lumped) = wet.storage[bladder] {
@@ -82,7 +83,7 @@ pub fn mean_pressure_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize, cells: 
     each.sum::<f64>() / count
 }
 
-/// Rate of a cell's area [m^2/s]; needs [`super::complete`].
+/// Rate of a cell's area [m^2/s]; requires [`super::complete`].
 pub fn area_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) -> f64 {
     if wet.compression.is_none() {
         return w.fluid.area_rate[cell];
@@ -91,7 +92,7 @@ pub fn area_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) 
     rates(wet, w, cell, w.fluid.area_rate[cell], imposed)[2]
 }
 
-/// Lost between two neighbouring cells [W].
+/// Dissipation between two neighboring cells [W].
 pub fn lost_between(wet: &Wet, w: &Workspace<f64>, conductance: f64, [a, b]: [usize; 2]) -> f64 {
     let drop = w.fluid.pressure[a] - w.fluid.pressure[b];
     match &wet.compression {
@@ -103,12 +104,12 @@ pub fn lost_between(wet: &Wet, w: &Workspace<f64>, conductance: f64, [a, b]: [us
     }
 }
 
-/// `h` where Ψ has a value.
+/// Enthalpy `h` for a value of the potential Ψ.
 fn behind(compression: &Compression, potential: f64) -> f64 {
     compression.enthalpy(compression.pressure_of_potential(potential))
 }
 
-/// Power of a flow that enters a cell through half of it, resistance `half`, or a junction at once, and what is lost on the way [W].
+/// Power of a flow into a cell through half of its resistance, `half`, or directly into a junction, and the dissipation in it [W].
 pub fn fed(wet: &Wet, pressure: f64, half: f64, q: f64) -> [f64; 2] {
     match &wet.compression {
         None => [(pressure + half * q) * q, half * q * q],

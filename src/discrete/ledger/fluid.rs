@@ -1,4 +1,4 @@
-//! The fluid's part of the balances.
+//! Contributions of the fluid to the balances.
 
 use std::ops::Range;
 
@@ -13,7 +13,8 @@ use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, Network};
 use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
 
-/// What no equation needs but the balances: means, rates of lumped networks' pressures and of their bladders' areas.
+/// Computes quantities needed only for balances: means, pressure rates of lumped networks, and area rates of their
+/// bladders.
 pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -33,7 +34,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             None => rate(&own.mean_force),
         };
     }
-    // equations take Ψ of these
+    // equations use only Ψ of these
     if wet.compression.is_some() {
         for (k, link) in fluid.links.iter().enumerate().filter(|(_, link)| link.is_plain()) {
             look_along(wet, link, now, w, k);
@@ -57,7 +58,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     surplus(system, now, w);
 }
 
-/// Rate of the area that moment, force and finite strain impose on a bladder.
+/// Rate of a bladder's area by moment, force and finite strain.
 pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
     wet.area.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
@@ -65,7 +66,7 @@ pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64
         + w.coupling.excess_area_rate.get(bladder).copied().unwrap_or(0.0)
 }
 
-/// Stretch by pressure of a beam that does not stretch otherwise, and with it the motion along, `[E28]`.
+/// Stretch by pressure of an otherwise inextensible beam, and the resulting axial motion, `[E28]`.
 pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     if let Some(wet) = &system.model.wet
         && system.model.effects.has(Effect::PressureToStretch)
@@ -87,7 +88,7 @@ pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     small::foreshorten(system, now, stretch_rate, w);
 }
 
-/// Power that a coupling without reciprocity adds, and the rate of curvature at an end with a given moment, less that of `M/EI`.
+/// Adds the power of a coupling without reciprocity; returns the rate of curvature at an end with a given moment, less that of `M/EI`.
 ///
 /// ```text
 /// P_reciprocity = l_seg Σ_j { Nbar d/dt(φ_b [l_b A_N' - ζ'/E] (p_u + p_d))
@@ -117,7 +118,7 @@ pub fn rates<'a>(
     }
 }
 
-/// Rates of the mean pressures of a segment's upper and lower bladder [Pa/s]; needs [`complete`].
+/// Rates of the mean pressures of a segment's upper and lower bladder [Pa/s]; requires [`complete`].
 pub fn pressure_rates(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> [f64; 2] {
     SegmentRates::new(system, wet, w, j).pressure_rate
 }
@@ -153,7 +154,7 @@ impl SegmentRates {
         }
     }
 
-    /// Rates of `lambda_p` and `alpha_p` under a coupling.
+    /// Rates of `lambda_p` and `alpha_p` for a coupling.
     fn strain_rates(&self, coupling: &Coupling, law: &AreaLaw) -> (f64, f64) {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
@@ -179,11 +180,11 @@ impl SegmentRates {
     }
 }
 
-/// Dissipation, harvest, power of ports, and the outflow of every component.
+/// Dissipation, harvested power, power of ports, and the outflow of every component.
 ///
-/// Flow through a pressure port is `g (p_port - p)`: where g is large, the last digits of p make it noise. So what a
-/// component takes in through its pressure ports is told from what it stores, exactly; `g (p_port - p)` only says how
-/// the ports share it.
+/// Flow through a pressure port is `g (p_port - p)`: for a large g, rounding errors of p make it noise. The total
+/// inflow of a component through its pressure ports is therefore computed exactly from its storage. `g (p_port - p)`
+/// only determines the shares of the ports.
 pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -196,8 +197,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     let component = |place: Place| component(network, fluid, place);
     let w = &*w;
     let count = network.open.len();
-    // `noise` is the flow of which the law misses a share: `g |p|` of a pressure
-    // port.
+    // `noise` is the reference flow of the law's relative error: `g |p|` of a pressure port.
     let leave = |component: usize, [outward, by_law, noise]: [f64; 3], out: &mut [f64]| {
         if let Some(open) = network.open_number(component) {
             out[ENERGY_RATES.len() + 2 * open] += outward;
@@ -254,7 +254,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     }
 }
 
-/// What flow along links dissipates and harvests, and the power of pumps.
+/// Dissipation and harvested power of flow along links, and the power of pumps.
 fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
     let mut rates = Rates::default();
     for (k, (link, &conductance)) in fluid.links.iter().zip(&now.conductance).enumerate() {
@@ -281,13 +281,13 @@ fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
     rates
 }
 
-/// Rate of what the bladders of a lumped network store [m^3/s].
+/// Rate of the volume stored in the bladders of a lumped network [m^3/s].
 pub fn stored_rate(fluid: &FluidMesh, w: &Workspace<f64>, lumped: &LumpedNetwork) -> f64 {
     let cells = lumped.bladders.iter().flat_map(|&b| fluid.cells_of(b));
     cells.map(|cell| w.fluid.area_rate[cell]).sum::<f64>() * fluid.ds
 }
 
-/// Power and outflow of a lumped network through its ports, and volume that passes them.
+/// Power and outflow of a lumped network through its ports.
 fn lumped_ports(
     wet: &Wet,
     fluid: &FluidMesh,
@@ -304,7 +304,7 @@ fn lumped_ports(
     (wet.enthalpy(w.fluid.lumped[k]) * gain, -gain)
 }
 
-/// Power and outflow of lumped networks with given pressure, whose areas jump where their pressure or the beam does.
+/// Power and outflow of lumped networks of given pressure, whose areas jump with their pressure or with the beam.
 pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -324,7 +324,7 @@ pub fn lumped_jump(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mu
     }
 }
 
-/// What of the flow along a link from or to a pressure port its component does not store: its share of [`surplus`].
+/// Part of the flow along a link to a pressure port that its component does not store: the link's share of [`surplus`].
 pub(super) fn beyond_stored(w: &Workspace<f64>, conductance: f64, components: [Option<usize>; 2]) -> f64 {
     let share = |c: usize| w.fluid.volume_defect[c] * conductance / w.fluid.port_conductance[c].max(f64::MIN_POSITIVE);
     match components {
@@ -334,7 +334,7 @@ pub(super) fn beyond_stored(w: &Workspace<f64>, conductance: f64, components: [O
     }
 }
 
-/// The component in which a place lies; none of a port.
+/// Component of a place; none for a port.
 pub(super) fn component(network: &Network, fluid: &FluidMesh, place: Place) -> Option<usize> {
     match place {
         Place::Cell(c) => Some(network.component_of_bladder[c / fluid.cells_per_bladder]),
@@ -343,7 +343,7 @@ pub(super) fn component(network: &Network, fluid: &FluidMesh, place: Place) -> O
     }
 }
 
-/// Sums over the components of the network what flows in and is not stored, and the conductances to pressure ports.
+/// Sums the inflow that is not stored, and the conductances to pressure ports, for each component of the network.
 fn surplus(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;

@@ -1,4 +1,4 @@
-//! What is done in no time: work at a switch, where a solid without inertia jumps with its load and ends turn with their moment.
+//! Work in zero time at a switch: a solid without inertia jumps with its load, and ends with their moment.
 
 use super::{EnergyRate, add, add_all, add_rates, fluid, ports, solid};
 use crate::discrete::kick::{self, Nodal};
@@ -6,7 +6,7 @@ use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
 use crate::model::Kinematics;
 
-/// Gives the values of time the differences over a jump as rates: the jump takes one unit of a time that nobody counts.
+/// Sets the rates of the time data to the differences over a jump, which is treated as one unit of time.
 pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
     let step = |jet: &mut Jet, from: &Jet, to: &Jet| jet.rate = to.value - from.value;
     let option = |jet: &mut Option<Jet>, from: &Option<Jet>, to: &Option<Jet>| {
@@ -32,11 +32,11 @@ pub fn travel(now: &mut TimeData, [before, after]: [&TimeData; 2]) {
     differences(&mut now.statics.mean_rate, &before.statics.mean, &after.statics.mean);
 }
 
-/// Power of everything that does work on a jump, on one of its sides: loads, ends, and ports that give lumped networks their pressure, with
-/// what the published forms add. Nothing flows and nothing is dissipated in no time.
+/// Power of everything that does work during a jump, at one of its sides: loads, ends, ports of lumped networks with given pressure, and
+/// terms of the published forms. Without duration there is no flow and no dissipation.
 ///
-/// `now` and `yp` hold differences as rates, velocities in the workspace are displacements; the mean of both sides is the
-/// trapezoid rule along the straight way, exact where the response is linear.
+/// `now` and `yp` contain differences as rates; velocities in the workspace are displacements. The mean of both sides is the trapezoid
+/// rule along a straight path, exact for linear response.
 pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     add_rates(system, now, yp, w);
@@ -54,8 +54,8 @@ pub fn side(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>,
     }
 }
 
-/// Impulses and work of driven ends whose velocity jumps: they carry half a cell along, without axial waves the whole beam, and turn
-/// the sections around. The workspace holds the state, `velocities` are those of nodes on both sides of the jump.
+/// Impulses and work of driven ends with a velocity jump. They move half a cell, or without axial waves the whole beam, and rotate the
+/// adjacent sections. The workspace contains the state; `velocities` are those of nodes on both sides of the jump.
 pub fn strokes(
     system: &System,
     [before, after]: [&TimeData; 2],
@@ -77,7 +77,7 @@ pub fn strokes(
         let mean = |k: usize| 0.5 * (was[node][k] + is[node][k]);
         let stroke = |k: usize| (impulses[node][k], (impulses[node][k] + around[node][k]) * mean(k));
         let across = system.model.kinematics != Kinematics::Bar && end.is_some_and(|end| end.u[0].is_some());
-        // what the fluid around takes of a free node
+        // impulse that the surrounding fluid transfers to a free node
         let left = |k: usize| (-around[node][k], 0.0);
         let (px, work_x) = if across { stroke(0) } else { left(0) };
         let (pz, work_z) = if l.lines[1].v.is_some() {
@@ -101,7 +101,7 @@ pub fn strokes(
     }
 }
 
-/// Impulse and work of a node that goes along with the frame.
+/// Impulse and work of a node that moves with the frame.
 fn carried(system: &System, sides: [&TimeData; 2], node: usize) -> (f64, f64) {
     let mass = system.masses[node];
     let share = node as f64 / (system.mesh.nodes - 1) as f64;

@@ -1,4 +1,5 @@
-//! Energies, powers and impulses, exact in the semi-discrete system: their balance is the integrator's error alone.
+//! Energies, powers and impulses, exact in the semi-discrete system: the residual of their balance is the error of the
+//! time integration alone.
 
 mod compressed;
 mod fluid;
@@ -20,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{State, System, TimeData, Workspace, readings, residual, touching};
 
-/// Rates that are integrated along the run, and what they add up to.
+/// Rates that are integrated during a run, for the balances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EnergyRate {
     /// Power of distributed loads and given end forces.
@@ -29,19 +30,19 @@ pub enum EnergyRate {
     Ends,
     /// Power of ports and pumps.
     Ports,
-    /// Dissipated in the bladders.
+    /// Dissipation in the bladders.
     Bladders,
-    /// Dissipated in the tubes.
+    /// Dissipation in the tubes.
     Tubes,
-    /// Harvested by the turbines.
+    /// Power harvested by the turbines.
     Turbines,
-    /// Dissipated in check valves, of rectifiers and in tubes.
+    /// Dissipation in check valves, of rectifiers and in tubes.
     Rectifiers,
-    /// Dissipated by material damping and drag.
+    /// Dissipation by material damping and drag.
     Damping,
-    /// Power that the published form of the momentum balance adds.
+    /// Power added by the published form of the momentum balance.
     Formulation,
-    /// Power that a coupling without reciprocity adds.
+    /// Power added by a coupling without reciprocity.
     Reciprocity,
     /// External force in x (its integral is the impulse).
     ImpulseX,
@@ -51,8 +52,8 @@ pub enum EnergyRate {
     AngularImpulse,
 }
 
-/// All flows, in the order in which they are stored; outflow and throughput of every open network follow, then of each what its
-/// ports' law gives and how finely that can be known, then what has come in through each port by itself.
+/// All rates, in the order of their storage. They are followed by outflow and throughput of every open network, then for each network by
+/// the outflow according to the ports' law and its noise level, then by the inflow of each port.
 pub const ENERGY_RATES: [EnergyRate; 13] = [
     EnergyRate::Loads,
     EnergyRate::Ends,
@@ -69,11 +70,11 @@ pub const ENERGY_RATES: [EnergyRate; 13] = [
     EnergyRate::AngularImpulse,
 ];
 
-/// One of each.
+/// One value for each rate.
 type Rates = [f64; ENERGY_RATES.len()];
 
 impl EnergyRate {
-    /// Sign with which the flow enters the energy balance; 0 for impulses.
+    /// Sign of the rate in the energy balance; 0 for impulses.
     pub fn energy_sign(self) -> f64 {
         match self {
             Self::Loads | Self::Ends | Self::Ports | Self::Formulation | Self::Reciprocity => 1.0,
@@ -88,42 +89,42 @@ impl EnergyRate {
 pub struct Energies {
     /// `Σ h_i m |v_i|²/2`.
     pub kinetic: f64,
-    /// Rotation of the sections.
+    /// Rotary energy of the sections.
     pub rotary: f64,
     /// `Σ h N²/2EA`.
     pub axial: f64,
     /// `Σ h_i M²/2EI`.
     pub bending: f64,
-    /// Stored in the bladders.
+    /// Energy stored in the bladders.
     pub bladders: f64,
-    /// Kinetic, of the fluid in tubes and along bladders.
+    /// Kinetic energy of the fluid in tubes and along bladders.
     #[serde(default)]
     pub tubes: f64,
-    /// Of the section at finite strain, beyond all these.
+    /// Energy of the section at finite strain, beyond its quadratic part.
     #[serde(default)]
     pub section: f64,
-    /// Of the parts of the section's forces that relax.
+    /// Energy of the relaxing parts of the section forces.
     #[serde(default)]
     pub relaxing: f64,
-    /// Of compressed fluid.
+    /// Energy of the compressed fluid.
     #[serde(default)]
     pub compression: f64,
-    /// In accumulators.
+    /// Energy in accumulators.
     #[serde(default)]
     pub accumulators: f64,
-    /// Of walls that are pressed.
+    /// Energy stored in walls in contact.
     #[serde(default)]
     pub contacts: f64,
-    /// Of springs to ground.
+    /// Energy of springs to ground.
     #[serde(default)]
     pub springs: f64,
-    /// Kinetic, of the fluid around the beam.
+    /// Kinetic energy of the surrounding fluid.
     #[serde(default)]
     pub around: f64,
 }
 
 impl Energies {
-    /// Sum.
+    /// Total energy.
     pub fn total(&self) -> f64 {
         self.kinetic
             + self.rotary
@@ -141,27 +142,27 @@ impl Energies {
     }
 }
 
-/// Momentum, angular momentum and stored volumes: what else is conserved.
+/// Momentum, angular momentum and stored volumes: the other conserved quantities.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
     /// `Σ h_i m v` in x and z [kg m/s].
     pub momentum: [f64; 2],
-    /// About the origin, positive in the sense of growing phi [kg m^2/s].
+    /// Angular momentum about the origin, positive in the direction of growing phi [kg m^2/s].
     pub angular_momentum: f64,
     /// Volume change stored in each component of the network [m^3].
     pub volumes: Vec<f64>,
 }
 
-/// Balance of energy at an instant.
+/// Energy balance at an instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyBalance {
-    /// Stored now.
+    /// Energy stored now.
     pub stored: Energies,
     /// Residual [J].
     pub residual: f64,
 }
 
-/// Energy now, less at the start, less all that came in and went out (`integrals` of [`ENERGY_RATES`]).
+/// Computes the present energy minus that at the start minus all work and losses (`integrals` of [`ENERGY_RATES`]).
 pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
     let passed: f64 = ENERGY_RATES
         .iter()
@@ -179,7 +180,8 @@ pub fn rate_count(system: &System) -> usize {
     wet.map_or(ENERGY_RATES.len(), |wet| ports::first(wet) + ports::count(wet))
 }
 
-/// Volume that has left the `open`-th open network through its ports, and volume that has passed them either way [m^3].
+/// Outflow of the `open`-th open network through its ports, and the volume that has passed them in either direction
+/// [m^3].
 pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
     (
         integrals[ENERGY_RATES.len() + 2 * open],
@@ -187,8 +189,8 @@ pub fn passed(integrals: &[f64], open: usize) -> (f64, f64) {
     )
 }
 
-/// Volume that has left the `open`-th of `count` open networks by the law of its ports, and the volume that conductances times
-/// pressures would have passed [m^3]: a share of it, the last digits of pressures, is noise.
+/// Outflow of the `open`-th of `count` open networks according to the law of its ports, and the reference volume of conductances times
+/// pressures [m^3]. A fraction of the latter, the rounding error of pressures, is noise.
 pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
     let first = ENERGY_RATES.len() + 2 * count + 2 * open;
     (integrals[first], integrals[first + 1])
@@ -201,7 +203,7 @@ pub fn by_law(integrals: &[f64], open: usize, count: usize) -> (f64, f64) {
 ///         + P_formulation + P_reciprocity
 /// ```
 ///
-/// The workspace must hold [`residual::evaluate`] of the same state; rates are added to it here.
+/// The workspace must contain [`residual::evaluate`] of the same state; rates are added to it here.
 pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>, out: &mut [f64]) {
     out.fill(0.0);
     add_rates(system, now, yp, w);
@@ -211,21 +213,21 @@ pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
     ports::rates(system, now, w, out);
 }
 
-/// What balances and samples need and no equation does: rates of strain, means, motion along where it has no unknowns.
-/// The workspace must hold [`residual::evaluate`] of the same state.
+/// Completes a workspace with quantities that balances and samples need, but no equation: rates of strain, means, and
+/// axial motion without unknowns. The workspace must contain [`residual::evaluate`] of the same state.
 pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Workspace<f64>) -> State<'w> {
     add_rates(system, now, yp, w);
     readings::read(system, now, w);
     State(w)
 }
 
-/// The same of a workspace that [`flows`] has left and nobody has touched since: what is read off is all that is missing.
+/// Completes a workspace directly after [`flows`]: only output values are missing.
 pub fn complete_after_flows<'w>(system: &System, now: &TimeData, w: &'w mut Workspace<f64>) -> State<'w> {
     readings::read(system, now, w);
     State(w)
 }
 
-/// What balances need: all of [`complete`] but what is read off.
+/// Adds the quantities for balances: everything in [`complete`] except output values.
 fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>) {
     residual::complete(system, now, yp, w);
     fluid::complete(system, now, yp, w);
@@ -234,7 +236,7 @@ fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
     }
 }
 
-/// Energies of a state.
+/// Stored energies of a state.
 pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = stored::energy(system, &w);
@@ -256,7 +258,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
     e
 }
 
-/// Invariants of a state.
+/// Conserved quantities of a state.
 pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
     let (momentum, angular_momentum) = solid::momenta(system, now, &w);
     Invariants {
@@ -266,14 +268,14 @@ pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
     }
 }
 
-/// Adds to all flows.
+/// Adds to all rates.
 fn add_all(out: &mut [f64], rates: Rates) {
     for (out, rate) in out.iter_mut().zip(rates) {
         *out += rate;
     }
 }
 
-/// Adds `value` to a flow.
+/// Adds `value` to one rate.
 fn add(out: &mut [f64], flow: EnergyRate, value: f64) {
     out[flow as usize] += value;
 }

@@ -1,4 +1,4 @@
-//! What passes each port by itself.
+//! Flow, volume and pressure of each port.
 
 use super::fluid::{beyond_stored, component, stored_rate};
 use super::{ENERGY_RATES, rate_count};
@@ -8,17 +8,17 @@ use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::model::network::Feed;
 use crate::model::{LumpedKind, Wet};
 
-/// Number of ports of a network: those that give a pressure first, then those that give flow or volume.
+/// Number of ports of a network: first those of given pressure, then those that prescribe flow or volume.
 pub fn count(wet: &Wet) -> usize {
     wet.network.ports.len() + wet.network.sources.len()
 }
 
-/// Where the volumes that have come in through ports stand among the integrals.
+/// Index of the first inflow volume of ports among the integrals.
 pub fn first(wet: &Wet) -> usize {
     ENERGY_RATES.len() + 4 * wet.network.open.len()
 }
 
-/// Volume that has come in through a port [m^3].
+/// Volume that has entered through a port [m^3].
 pub fn let_in(system: &System, integrals: &[f64], port: usize) -> f64 {
     let wet = system.model.wet.as_ref();
     wet.and_then(|wet| integrals.get(first(wet) + port))
@@ -26,8 +26,8 @@ pub fn let_in(system: &System, integrals: &[f64], port: usize) -> f64 {
         .unwrap_or(0.0)
 }
 
-/// Adds the flow that comes in through each port [m^3/s]: of ports of given pressure what their network stores, shared by the ports' law, whose
-/// pressure differences may be last digits of pressures. The workspace must hold [`super::complete`] of the state.
+/// Adds the inflow of each port [m^3/s]. For ports of given pressure it is the rate of storage in their network, shared according to the
+/// ports' law, whose pressure differences may be rounding errors. The workspace must contain [`super::complete`] of the state.
 pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -53,7 +53,7 @@ pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64
     }
 }
 
-/// Of networks of one pressure, whose ports let in what they store.
+/// Adds the inflow of ports in networks of one pressure, which equals the rate of storage.
 fn of_lumped(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -65,21 +65,21 @@ fn of_lumped(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
     }
 }
 
-/// What comes in through ports in no time, into networks of one pressure that jumps.
+/// Inflow through ports in zero time, for networks of one pressure when it jumps.
 pub(super) fn lumped_jump(system: &System, w: &Workspace<f64>, out: &mut [f64]) {
     if let Some(wet) = &system.model.wet {
         of_lumped(system, w, &mut out[first(wet)..]);
     }
 }
 
-/// What ports of prescribed volume have let in is their signal: puts that in the place of the integral of its rate, of each port by itself
-/// and, where it stays in its network, in what has left that. Elsewhere it is so much more or less that ports of given pressure let out.
+/// Replaces integrals of the flow rate of ports with prescribed volume by the exact volume from their signal. This applies to the volume
+/// of each port and, if it stays in its network, to the outflow of the network. Otherwise ports of given pressure release the difference.
 pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
     let Some(wet) = &system.model.wet else { return };
     let (network, own) = (&wet.network, first(wet) + wet.network.ports.len());
     for (k, source) in network.sources.iter().enumerate() {
         let Feed::Volume(volume) = &source.feed else { continue };
-        // since the start, which may have something in it already
+        // relative to the start, at which the signal may already have a volume
         let let_in = now.source_volume[k] - volume.value(0.0);
         let more = let_in - integrals[own + k];
         integrals[own + k] = let_in;
@@ -93,7 +93,7 @@ pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
     }
 }
 
-/// The flows of [`flows`] among the rates of all integrals.
+/// Adds the flows of [`flows`] to the rates of all integrals.
 pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64]) {
     if let Some(wet) = &system.model.wet {
         let first = first(wet);
@@ -101,7 +101,7 @@ pub(super) fn rates(system: &System, now: &TimeData, w: &Workspace<f64>, out: &m
     }
 }
 
-/// Pressure at a port, outside of the half cell behind it [Pa], where a flow comes in through it.
+/// Pressure at a port, outside the half cell behind it [Pa], for its inflow `flow`.
 pub fn pressure(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> f64 {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return 0.0;
@@ -119,7 +119,7 @@ pub fn pressure(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize
                 Some(compression) => compression.pressure_of_potential(compression.potential(inside) + lost),
             }
         }
-        // in a network of one pressure
+        // network of one pressure
         None => {
             let component = wet.network.component_of(wet.network.sources[source].into);
             let own = wet.lumped.iter().position(|lumped| Some(lumped.component) == component);
@@ -128,7 +128,7 @@ pub fn pressure(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize
     }
 }
 
-/// The same, and the power of the flow [W].
+/// Pressure at a port [Pa], and the power of its inflow [W].
 pub fn pressure_and_power(system: &System, now: &TimeData, w: &Workspace<f64>, port: usize, flow: f64) -> [f64; 2] {
     let pressure = pressure(system, now, w, port, flow);
     let wet = system.model.wet.as_ref();

@@ -1,18 +1,18 @@
-//! Reactions of driven ends, told in two ways that a mesh makes differ.
+//! Reactions of driven ends by two methods, whose difference is a mesh error.
 
 use crate::case::schema::Effect;
 use crate::discrete::{Attached, Body, State, System, TimeData};
 use crate::model::Kinematics;
 
-/// Squares of reactions and of what they differ by [N^2], added over driven ends and directions; with the reactions stand the end's
-/// moment over the length of the beam, beside which forces may be nothing but round-off.
+/// Sums of squares over driven ends and directions: of the reactions, and of the differences between both methods [N^2]. The first sum
+/// includes the end's moment over the length of the beam, because forces may be mere rounding errors beside it.
 ///
-/// One is what the momentum of the end's half cell leaves over, which closes the balance of momentum whatever the mesh; the
-/// other the force of the section at the end, extrapolated from the two nearest cells.
+/// The first method is the momentum balance of the end's half cell, which satisfies the balance of momentum on every mesh. The second
+/// method is the section force at the end, extrapolated from the two nearest cells.
 pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let mut squares = [0.0; 2];
-    // between the cells that are compared the force would jump
+    // an attachment between the two cells would let the section force jump
     let inner = |a: &Attached| {
         let near = |node: usize| (1..=2).contains(&node) || (1..=2).contains(&(mesh.cells - node));
         a.weights
@@ -28,7 +28,7 @@ pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
     {
         return squares;
     }
-    // the end lies beyond the nearest cell by this share of what lies between the two, by masses of nodes
+    // distance of the end beyond the nearest cell relative to the distance of the two cells, by masses of nodes
     let beyond = system.lengths[0] / system.lengths[1];
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {
         let end = &now.ends[usize::from(node > 0)];

@@ -1,4 +1,4 @@
-//! The beam's part of the balances.
+//! Contributions of the beam to the balances.
 
 use super::{Energies, EnergyRate, Rates, add};
 use crate::case::schema::Effect;
@@ -66,7 +66,7 @@ pub fn flows(
     rates
 }
 
-/// Work and torque of bodies that turn with the beam, whose own momentum is no force from outside.
+/// Work and torque of bodies that rotate with the beam; their own momentum is not an external force.
 fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) {
     for body in &system.bodies {
         add(out, EnergyRate::Loads, body.weight_power(system, now, w));
@@ -85,7 +85,7 @@ fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) 
     }
 }
 
-/// Reaction of a driven end: what is missing in the balance of momentum of a node on which a force acts besides its sections.
+/// Reaction of a driven end: residual of a node's momentum balance with its section forces and the external force `force`.
 fn missing(system: &System, w: &Workspace<f64>, i: usize, force: Planar<f64>) -> Planar<f64> {
     let none = Planar::default();
     let right = w.forces.section.get(i).copied().unwrap_or(none);
@@ -93,14 +93,14 @@ fn missing(system: &System, w: &Workspace<f64>, i: usize, force: Planar<f64>) ->
     w.motion.a[i] * system.masses[i] - force - right + left
 }
 
-/// Force of what holds an end on the beam, where its motion is given [N].
+/// Force of the support or drive on an end with given motion [N].
 pub fn reaction(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> Planar<f64> {
     let mut f = Planar::default();
     outer_forces(system, now, w, node, |_, force| f += force);
     missing(system, w, node, f)
 }
 
-/// End moments, viscous moments, and the published curvature measure, at one node.
+/// Contributions of one node: end moments, viscous moments, and the published curvature measure.
 fn bending(
     system: &System,
     now: &TimeData,
@@ -126,7 +126,7 @@ fn bending(
         }
     };
     let (stretch, stretch_rate) = stretches(i);
-    // Where the moment is given, the curvature follows from it.
+    // With a given moment, the curvature follows from it.
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
             let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
@@ -134,7 +134,7 @@ fn bending(
             if mesh.fourth {
                 let beside = fourth::neighbour(system, i);
                 let (left, right) = mesh.segments_of_node(beside);
-                // curvatures that pressure has on the left of nodes
+                // curvatures by pressure on the left of nodes
                 let by_pressure = 0.5 * (curvature_rate(w, beside) + curvature_rate(w, beside + right - left));
                 let (stretch, stretch_rate) = stretches(beside);
                 let alpha_rate = stretch * w.shape.kappa_rate[beside] + stretch_rate * w.shape.kappa[beside];
@@ -174,7 +174,7 @@ fn bending(
     }
 }
 
-/// Distributed moments, viscous forces, and the published rotary term, over the cells.
+/// Contributions of the cells: distributed moments, viscous forces, and the published rotary term.
 fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut Rates) {
     let (h, section) = (system.mesh.h, &system.model.section);
     let rotary = section.mass_per_length * section.gyration_radius_squared;
@@ -207,7 +207,7 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
     }
 }
 
-/// Velocity along with which a node carries its mass: its own, without axial inertia that of the frame, `[E27]`.
+/// Axial velocity of a node's mass: its own, or without axial inertia that of the frame, `[E27]`.
 fn carried(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
     if system.layout.lines[1].v.is_some() {
         return w.motion.v[node].z;
@@ -216,13 +216,13 @@ fn carried(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> 
     now.carried(1, share).rate
 }
 
-/// Whether sections turn finitely but have the rotary inertia of `[E27]`.
+/// True if sections rotate finitely but have the rotary inertia of `[E27]`.
 fn turned_across(system: &System) -> bool {
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
     finite && system.turns_with_its_line() && system.layout.lines[1].v.is_none()
 }
 
-/// Rate of turning that rotary inertia resists: `φ_t`, without axial inertia `x'_t`.
+/// Rate of rotation for rotary inertia: `φ_t`, without axial inertia `x'_t`.
 fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     if turned_across(system) {
         (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h
@@ -231,7 +231,7 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     }
 }
 
-/// Kinetic and elastic energy, that of shear with that of bending.
+/// Kinetic and elastic energies; the energy of shear is included in that of bending.
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let sheared = system.model.effects.has(Effect::Shear);
@@ -283,7 +283,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies
     e
 }
 
-/// Angular momentum of a cell's rotation per length and turning: `m y11 φ_t`, published `m y11 λ² φ_t`.
+/// Angular momentum of a cell's rotation per length: `m y11 φ_t`, published `m y11 λ² φ_t`.
 fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     let section = &system.model.section;
     let factor = if system.model.published() && system.layout.lines[1].v.is_some() {
@@ -294,8 +294,8 @@ fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     section.mass_per_length * section.gyration_radius_squared * factor * turning_rate(system, w, c)
 }
 
-/// Arms (x, z) with which a node's momentum and force turn about the origin, and their rates: its position. A small
-/// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is: that is what the potential of `[E26]` does not feel.
+/// Moment arms (x, z) of a node's momentum and force about the origin, i.e. its position, and their rates. A small
+/// rotation ε moves a node by (ε θ, -ε g u1), whatever u3 is; the potential of `[E26]` is invariant under this motion.
 pub fn arms(system: &System, w: &Workspace<f64>, i: usize) -> (Planar<f64>, Planar<f64>) {
     let at = Planar {
         x: 0.0,

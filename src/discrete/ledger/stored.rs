@@ -1,9 +1,9 @@
-//! What the fluid's parts store: energy and volume.
+//! Energy and volume stored in the parts of the fluid system.
 
 use crate::discrete::{System, Workspace};
 use crate::model::ROWS;
 
-/// Energy stored in the bladders, walls that meet included, [E71], the same for both couplings; p is what strains the walls:
+/// Energy stored in the bladders, including touching walls, [E71], for both couplings; p is the pressure on the walls:
 ///
 /// ```text
 /// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
@@ -35,7 +35,7 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     wet.bladder_length * sum
 }
 
-/// Energy of accumulators, [E60], and of compressed fluid in them, [E67].
+/// Energies of accumulators, [E60], and of compressed fluid in them, [E67].
 pub fn in_vessels(system: &System, w: &Workspace<f64>) -> [f64; 2] {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return [0.0; 2];
@@ -49,7 +49,7 @@ pub fn in_vessels(system: &System, w: &Workspace<f64>) -> [f64; 2] {
     sums
 }
 
-/// Volume change stored in each component.
+/// Volume change stored in each component of the network.
 pub fn volumes(system: &System, w: &Workspace<f64>) -> Vec<f64> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];

@@ -1,4 +1,4 @@
-//! Energy of the fluid in tubes and along bladders where it does not creep, [E51] [E74].
+//! Energy of the fluid in tubes and along bladders if flow is not creeping, [E51] [E74].
 
 use std::ops::Range;
 
@@ -6,11 +6,11 @@ use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::{System, Workspace};
 use crate::model::network::Ladder;
 
-/// A valve that is open by less than this tells what it dissipates by the pressure drop over it: its flow is too small to.
+/// Opening below which the dissipation of a valve is computed from its pressure drop, because its flow is too small.
 const NEARLY_SHUT: f64 = 0.01;
 
-/// What a check valve, bladders by the memory of their friction, and the rest of a link dissipate where flow creeps, of its conductance without the valve [m^3/(s Pa)], flow
-/// [m^3/s], and all that is lost outside half cells [W].
+/// Dissipation of creeping flow in a check valve, in the friction memory of bladders, and in the rest of a link [W]. Arguments:
+/// conductance without the valve [m^3/(s Pa)], flow [m^3/s], and total dissipation outside the half cells [W].
 pub fn creeping(link: &MeshLink, [conductance, q, lost]: [f64; 3]) -> [f64; 3] {
     if link.check_valve.is_none() {
         return [0.0, 0.0, lost];
@@ -23,8 +23,8 @@ pub fn creeping(link: &MeshLink, [conductance, q, lost]: [f64; 3]) -> [f64; 3] {
     [lost - rest, 0.0, rest]
 }
 
-/// The same of a tube in which flow is an unknown, [E51]: its resistance R/o at its opening [Pa s/m^3], flow at its mean density [m^3/s], and
-/// what is left to drive it [Pa]; k its number among the links.
+/// Dissipation as in [`creeping`], for a tube with its flow as an unknown, [E51]. Arguments: resistance R/o at the tube's opening
+/// [Pa s/m^3], flow at mean density [m^3/s], and remaining driving pressure [Pa]; k is the index of the link.
 pub fn dissipation(
     link: &MeshLink,
     flow: &MeshFlow,
@@ -46,7 +46,7 @@ pub fn dissipation(
     let (in_valve, steady) = match &link.check_valve {
         None if nearly_shut => (0.0, left * left / resistance),
         None => (0.0, q * q * resistance),
-        // a flow that leaks back tells its pressure drop less well than the rest does
+        // for backward leakage, the pressure drop follows more accurately from the rest of the link
         Some(valve) if valve.is_shut(q) => {
             let steady = if nearly_shut { 0.0 } else { q * q * resistance };
             (q * left - steady, steady)
@@ -64,7 +64,8 @@ pub fn dissipation(
     [in_valve, in_bladders, q * q * link.of_pump + steady + q * lost + slips]
 }
 
-/// Kinetic energy of the fluid in tubes and along bladders: `Σ I y²/2`, y = q without compression, and what the branches of friction store, [E51] [E66].
+/// Kinetic energy of the fluid in tubes and along bladders: `Σ I y²/2`, y = q without compression, and the energy of the friction
+/// branches, [E51] [E66].
 pub fn kinetic(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(fluid) = &system.fluid else { return 0.0 };
     let each = fluid.links.iter().filter_map(|link| link.flow).map(|flow| {

@@ -7,7 +7,7 @@ use crate::case::wiring::bladder_label;
 use crate::discrete::{System, Workspace};
 use crate::model::mapping::NetworkCoordinate;
 
-/// What is fixed along a line: coordinates, and numbers of what lies there.
+/// Fixed arrays along a line: coordinates and indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// Nodes of the beam.
@@ -16,13 +16,13 @@ pub enum Axis {
     Cells,
     /// Cells of the bladders.
     Network,
-    /// The bladder of each of these.
+    /// Bladder of each cell of the bladders.
     Bladder,
-    /// The connected array of each of these.
+    /// Connected array of each cell of the bladders.
     Array,
 }
 
-/// A quantity at every place of a line.
+/// A quantity at every place along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Field {
     /// Transverse displacement.
@@ -47,7 +47,7 @@ pub enum Field {
     AreaChange,
 }
 
-/// One row of the table: name with unit, unit, axis, what is made of it, what it is, how it is read.
+/// One row of the table: name with unit, unit, axis, role, description, evaluation.
 type Entry = (
     &'static str,
     &'static str,
@@ -58,7 +58,7 @@ type Entry = (
 );
 
 impl Field {
-    /// All of them, in the order in which they are recorded.
+    /// All fields, in the order in which they are recorded.
     pub const ALL: [Self; 10] = [
         Self::U1,
         Self::U3,
@@ -90,7 +90,7 @@ impl Field {
         }
     }
 
-    /// Name of its array, unit included: `u1_m`.
+    /// Name of the field's array, including the unit: `u1_m`.
     pub fn name(self) -> &'static str {
         self.entry().0
     }
@@ -100,27 +100,27 @@ impl Field {
         self.entry().1
     }
 
-    /// The line along which it is.
+    /// Line along which the field is defined.
     pub fn axis(self) -> Axis {
         self.entry().2
     }
 
-    /// How much is made of it.
+    /// Role of the field in outputs.
     pub fn role(self) -> Role {
         self.entry().3
     }
 
-    /// What it is, in one sentence.
+    /// Description in one sentence.
     pub fn about(self) -> &'static str {
         self.entry().4
     }
 
-    /// Values in a state, in the order of the mesh: along the network those of [`cell_order`] are recorded.
+    /// Values in a state, in the order of the mesh; along the network they are recorded in the order of [`cell_order`].
     pub fn values(self, w: &Workspace<f64>) -> Cow<'_, [f64]> {
         (self.entry().5)(w)
     }
 
-    /// The field whose values are its slopes in time.
+    /// Field that contains the time derivative of this one.
     pub fn rate(self) -> Option<Self> {
         match self {
             Self::U1 => Some(Self::V1),
@@ -129,12 +129,12 @@ impl Field {
         }
     }
 
-    /// That of a name.
+    /// Field of a given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|field| field.name() == name)
     }
 
-    /// Those that a system has.
+    /// Fields of a system.
     pub fn of(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
         let shears = !system.layout.turning.angle.is_empty();
@@ -143,7 +143,7 @@ impl Field {
             .filter(move |field| (wet || field.axis() != Axis::Network) && (shears || *field != Self::SectionAngle))
     }
 
-    /// Numbers that it has in a system.
+    /// Number of values in a system.
     pub fn len(self, system: &System) -> usize {
         match self.axis() {
             Axis::Nodes => system.mesh.nodes,
@@ -166,7 +166,7 @@ impl Axis {
         }
     }
 
-    /// Name of its array.
+    /// Name of the axis' array.
     pub fn name(self) -> &'static str {
         self.entry()[0]
     }
@@ -176,12 +176,12 @@ impl Axis {
         self.entry()[1]
     }
 
-    /// What it is, in one sentence.
+    /// Description in one sentence.
     pub fn about(self) -> &'static str {
         self.entry()[2]
     }
 
-    /// Those that a system has.
+    /// Axes of a system.
     pub fn of(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
         Self::ALL
@@ -189,7 +189,7 @@ impl Axis {
             .filter(move |axis| wet || matches!(axis, Self::Nodes | Self::Cells))
     }
 
-    /// Its values in a system whose tubes have a length [m].
+    /// Values in a system with the given length of tubes [m].
     pub fn values(self, system: &System, tube_length: f64) -> Vec<f64> {
         let mesh = &system.mesh;
         match self {

@@ -1,4 +1,4 @@
-//! Quantities of interest: what the summary tells of a whole run.
+//! Quantities of interest: the results of a run in its summary.
 
 use std::fmt;
 
@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 use super::observables::{Group, Observable};
 use crate::discrete::glance::Watched;
 
-/// What a quantity of interest follows.
+/// Source of a quantity of interest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Values that swing, between output times too; of two the larger in size.
+    /// Oscillating values, also between output times; of two, the one with the larger magnitude.
     Motion(&'static [Watched]),
-    /// Energies of one group, together.
+    /// Sum of the energies of one group.
     Energy(Group),
-    /// The energy harvested over what was put in; in the window, over all that was spent in it.
+    /// Efficiency: harvested energy over energy put in; in the window, over all energy spent in it.
     Efficiency,
 }
 
-/// What a quantity needs to be there.
+/// Condition for the presence of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum When {
     Always,
@@ -45,7 +45,7 @@ macro_rules! interest {
         }
 
         impl Interest {
-            /// All of them.
+            /// All quantities of interest.
             pub const ALL: &[Self] = &[$(Self::$id),*];
 
             fn entry(self) -> &'static Entry {
@@ -57,7 +57,7 @@ macro_rules! interest {
     };
 }
 
-// name [unit], what it is called, when it is there, what it follows, columns of the history from which it can be told as well
+// name [unit], words, condition, source, columns of the history from which it can also be computed
 interest! {
     TipU1: "tip_u1_m" ["m"], "tip deflection", Always, Source::Motion(&[Watched::Tip1]), [Observable::TipU1];
     TipU3: "tip_u3_m" ["m"], "axial tip displacement", Always, Source::Motion(&[Watched::Tip3]), [Observable::TipU3];
@@ -83,22 +83,22 @@ impl Interest {
         self.entry().unit
     }
 
-    /// What it is called within a sentence.
+    /// Name used within a sentence.
     pub fn words(self) -> &'static str {
         self.entry().words
     }
 
-    /// What it follows.
+    /// Source of the quantity.
     pub fn source(self) -> Source {
         self.entry().source
     }
 
-    /// Columns of the history from which it can be told as well; of two the larger in size.
+    /// Columns of the history from which it can also be computed; of two, the one with the larger magnitude.
     pub fn columns(self) -> &'static [Observable] {
         self.entry().columns
     }
 
-    /// Those of a run: `has` tells whether there is fluid, and whether there are turbines.
+    /// Quantities of a run; the flags state the presence of fluid and of turbines.
     pub fn of([wet, turbines]: [bool; 2]) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |one| match one.entry().when {
             When::Always => true,
@@ -107,7 +107,7 @@ impl Interest {
         })
     }
 
-    /// That of a name.
+    /// Quantity of a given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|one| one.name() == name)
     }

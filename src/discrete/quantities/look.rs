@@ -1,4 +1,4 @@
-//! How a state is read.
+//! Evaluation of quantities of a state.
 
 use crate::discrete::fluid_mesh::{MeshLink, Place};
 use crate::discrete::glance::Moving;
@@ -9,7 +9,7 @@ use crate::discrete::turns::{nearest, tip_angle};
 use crate::discrete::{State, System, TimeData, Workspace};
 use crate::model::network::LinkKind;
 
-/// Where the largest and smallest values of a state are, and its slope angle at the tip: what a derivative holds on to.
+/// Positions of the largest and smallest values of a state, and its slope angle at the tip; kept fixed for derivatives.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Extremes {
     high: usize,
@@ -19,7 +19,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Of the state in the workspace.
+    /// Extremes of the state in the workspace.
     pub fn of(system: &System, now: &TimeData, w: &Workspace<f64>) -> Self {
         let place = |values: &[f64], sign: f64| {
             let all = values.iter().enumerate();
@@ -35,23 +35,23 @@ impl Extremes {
     }
 }
 
-/// A state that is read.
+/// A state to be evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<'a> {
     /// Model and mesh.
     pub system: &'a System,
-    /// What is given at the time.
+    /// Time data of the state.
     pub now: &'a TimeData,
     /// The state.
     pub w: State<'a>,
-    /// What it stores.
+    /// Stored energies.
     pub stored: Energies,
-    /// Where its largest values are looked for.
+    /// Positions at which extreme values are read.
     pub at: Extremes,
 }
 
 impl<'a> Look<'a> {
-    /// Of a state that stores these energies; its largest values are its own.
+    /// Creates the evaluation of a state with these energies, at its own extremes.
     pub fn new(system: &'a System, now: &'a TimeData, w: State<'a>, stored: Energies) -> Self {
         let at = Extremes::of(system, now, &w);
         Self {
@@ -77,7 +77,7 @@ impl Look<'_> {
         self.w.motion.u[self.tip()].z
     }
 
-    /// Without full turns between it and the angle that is held on to.
+    /// Angle of the tip, unwrapped to the fixed reference angle.
     pub(super) fn tip_angle(&self) -> f64 {
         nearest(tip_angle(self.system, self.now, &self.w), self.at.angle)
     }
@@ -90,7 +90,7 @@ impl Look<'_> {
         self.w.fluid.pressure[self.at.low]
     }
 
-    /// `(h_b w_b + a1)/(h_b w_b)`.
+    /// Least relative opening of a bladder, `(h_b w_b + a1)/(h_b w_b)`.
     pub(super) fn least_opening(&self) -> f64 {
         let at_rest = self.system.model.wet.as_ref().map(|wet| wet.area_at_rest);
         at_rest.map_or(1.0, |at_rest| {
@@ -98,7 +98,7 @@ impl Look<'_> {
         })
     }
 
-    /// `Σ R q²` of turbines between bladders, `Σ g Δp²` of those of bridges.
+    /// Turbine power: `Σ R q²` of turbines between bladders, `Σ g Δp²` of those in bridges.
     pub(super) fn turbine_power(&self) -> f64 {
         let Self { system, w, .. } = *self;
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
@@ -119,13 +119,13 @@ impl Look<'_> {
     }
 }
 
-/// `|q|/r` of the tube in which it is largest, r its radius [m^2/s]: times `2 ρ_0/(π μ)` its Reynolds number.
+/// Largest `|q|/r` of a tube, r its radius [m^2/s]; times `2 ρ_0/(π μ)` it is the Reynolds number.
 pub fn largest_flow(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(Moving, usize)> {
     largest_in_tubes(system, now, w, |_, radius| radius.recip())
 }
 
-/// `|q| √r'/(r A)` of the tube in which it is largest, r the density over `ρ_0` at its end where it is least, A its cross-section
-/// [m/(s Pa^(1/2))]: times `√ρ_0` its Mach number; none where fluid is not compressed.
+/// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` at the end of lowest density, A the cross-section [m/(s Pa^(1/2))]. Times
+/// `√ρ_0` it is the Mach number. None if the fluid is incompressible.
 pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> Option<(Moving, usize)> {
     let compression = system.model.wet.as_ref()?.compression.as_ref()?;
     largest_in_tubes(system, now, w, |link, radius| {
@@ -135,7 +135,8 @@ pub fn largest_mach(system: &System, now: &TimeData, w: &Workspace<f64>) -> Opti
     })
 }
 
-/// Least pressure of junctions, vessels, and ports that give flow or volume [Pa], at most 0; and its place: junctions are counted first.
+/// Lowest pressure of junctions, accumulators, and ports that prescribe flow or volume [Pa], at most 0, and its index: junctions come
+/// first.
 pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
     let Some(wet) = system.model.wet.as_ref() else {
         return (0.0, 0);
@@ -147,8 +148,8 @@ pub fn thinnest(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, us
     all.fold((0.0, 0), |least, (k, p)| if p < least.0 { (p, k) } else { least })
 }
 
-/// Flow times a factor of the tube, of its link and its radius, in the tube in which that is largest: its size, its rate as far as flow makes it and
-/// bladders and ports make flow, and the tube's number among the tubes.
+/// Flow times a factor (of link and radius), for the tube in which this is largest. Returns its magnitude with the rate caused by changes
+/// of flow or of pressures in bladders and ports, and the number of the tube.
 fn largest_in_tubes(
     system: &System,
     now: &TimeData,
@@ -177,7 +178,7 @@ fn largest_in_tubes(
     Some((moving, wet.network.tube(number)))
 }
 
-/// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ beyond that at rest, and the node where it is.
+/// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ relative to the rest curvature, and its node.
 pub fn largest_strain(system: &System, now: &TimeData, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
     let last = system.mesh.nodes - 1;
     (0..=last)

@@ -1,4 +1,4 @@
-//! What is read off a run: one table of the quantities over time, one of those of interest in the end, one of fields.
+//! Output quantities of a run: tables of quantities over time, quantities of interest, and fields.
 //!
 //! ```text
 //! observables   over time: the columns of the history, from which its derivatives, pictures, comparisons and the energy balance follow
@@ -11,8 +11,8 @@
 //! row           the values of all of them at one instant
 //! ```
 //!
-//! A quantity is added by a row of its table. What it is called, its unit, where it stands in reports and how it is read are told there,
-//! and nowhere else; `docs/data.md` is held against the tables by a test.
+//! A quantity is added by a row of its table, which alone defines its name, unit, place in reports and evaluation; a test compares
+//! `docs/data.md` with the tables.
 
 pub mod fields;
 pub mod interest;

@@ -8,22 +8,22 @@ use crate::discrete::System;
 use crate::discrete::ledger::{EnergyRate, passed};
 use crate::model::effects::Cause;
 
-/// What a quantity is read off.
+/// Source of a quantity.
 #[derive(Clone, Copy, Debug)]
 pub enum Read {
     /// The time [s].
     Time,
-    /// A state: smooth in it, as long as largest values are where they were looked for.
+    /// A state; smooth as long as extreme values stay at their fixed positions.
     State(fn(&Look) -> f64),
-    /// What has flowed since the start, of the integrals of [`crate::discrete::ledger::flows`].
+    /// Integrals of [`crate::discrete::ledger::flows`] since the start.
     Integral(fn(&[f64]) -> f64),
-    /// The same, with the system that tells where it stands among them.
+    /// Integrals since the start, with the system that determines their index.
     Through(fn(&System, &[f64]) -> f64),
-    /// What the balance of energy leaves open [J].
+    /// Residual of the energy balance [J].
     Open,
 }
 
-/// Where a quantity belongs among others.
+/// Group of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// Time itself.
@@ -34,26 +34,26 @@ pub enum Group {
     Pressure,
     /// Powers and flows.
     Power,
-    /// What else a state has.
+    /// Other quantities of a state.
     State,
-    /// What passes ports.
+    /// Flow and volume of ports.
     Ports,
-    /// Energy that is stored.
+    /// Stored energy.
     Stored,
-    /// Energy that came in.
+    /// Energy put in.
     PutIn,
-    /// Energy that forms of the equations add.
+    /// Energy added by forms of the equations.
     Added,
-    /// Energy that is lost.
+    /// Dissipated energy.
     Lost,
-    /// Energy that is harvested.
+    /// Harvested energy.
     Harvested,
-    /// Energy that nothing explains.
+    /// Residual of the energy balance.
     Open,
 }
 
 impl Group {
-    /// Its title in a list to choose from.
+    /// Title of the group in a list.
     pub fn title(self) -> &'static str {
         match self {
             Self::Time | Self::Power | Self::State => "More",
@@ -67,14 +67,14 @@ impl Group {
     }
 }
 
-/// How much is made of a quantity; each has what those before it lack.
+/// Role of a quantity; each includes the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// It is recorded.
+    /// Recorded only.
     Recorded,
-    /// Studies measure errors by it as well.
+    /// Also used by studies to measure errors.
     Studied,
-    /// It is shown first.
+    /// Shown first.
     Headline,
 }
 
@@ -128,13 +128,13 @@ fn open(system: &System) -> bool {
     wet.is_some_and(|wet| !wet.network.open.is_empty())
 }
 
-/// Volume that all open networks together have taken in [m^3].
+/// Total inflow volume of all open networks [m^3].
 fn injected(system: &System, integrals: &[f64]) -> f64 {
     let networks = system.model.wet.as_ref().map_or(0, |wet| wet.network.open.len());
     -(0..networks).map(|network| passed(integrals, network).0).sum::<f64>()
 }
 
-/// Flow through all ports into their networks, told exactly by what these store [m^3/s].
+/// Total inflow through all ports, exactly from the storage of their networks [m^3/s].
 fn port_flow(look: &Look) -> f64 {
     let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
         return 0.0;
@@ -172,7 +172,7 @@ macro_rules! observables {
         }
 
         impl Observable {
-            /// All of them, in the order of the history.
+            /// All observables, in the order of the history.
             pub const ALL: &[Self] = &[$(Self::$id),*];
 
             fn entry(self) -> &'static Entry {
@@ -187,7 +187,7 @@ macro_rules! observables {
     };
 }
 
-// name [unit], label, words, where it belongs, what is made of it, where it is, how it is read, what it is
+// name [unit], label, words, group, role, condition, evaluation, description
 observables! {
     Time: "t" ["s"], "time", "time", Time, Recorded, always, Read::Time,
         "time";
@@ -270,53 +270,53 @@ impl Observable {
         self.entry().unit
     }
 
-    /// What stands beside an axis or in a legend.
+    /// Label beside an axis or in a legend.
     pub fn label(self) -> &'static str {
         self.entry().label
     }
 
-    /// What it is called within a sentence.
+    /// Name used within a sentence.
     pub fn words(self) -> &'static str {
         self.entry().words
     }
 
-    /// What it is, in one sentence.
+    /// Description in one sentence.
     pub fn about(self) -> &'static str {
         self.entry().about
     }
 
-    /// Where it belongs.
+    /// Group of the quantity.
     pub fn group(self) -> Group {
         self.entry().group
     }
 
-    /// How much is made of it.
+    /// Role of the quantity.
     pub fn role(self) -> Role {
         self.entry().role
     }
 
-    /// How it is read.
+    /// Source of the quantity.
     pub fn read(self) -> Read {
         self.entry().read
     }
 
-    /// That of a name.
+    /// Quantity of a given name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|one| one.name() == name)
     }
 
-    /// Those that the history of a system has.
+    /// Quantities in the history of a system.
     pub fn of(system: &System) -> Vec<Self> {
         let all = Self::ALL.iter().copied();
         all.filter(|one| (one.entry().present)(system)).collect()
     }
 
-    /// Those of a group.
+    /// Quantities of a group.
     pub fn grouped(group: Group) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |one| one.group() == group)
     }
 
-    /// Those that are read off a state at rest as well: motion and pressures, and what is elastic.
+    /// True for quantities that also exist for a state at rest: motion, pressures and elastic quantities.
     pub fn at_rest(self) -> bool {
         match self.group() {
             Group::Tip | Group::Pressure | Group::Power | Group::State => true,
@@ -325,7 +325,7 @@ impl Observable {
         }
     }
 
-    /// Whether it has a derivative by a number of the case: time has none, and the integrator's error is none of the model's.
+    /// True if it has a derivative by a number of the case: not for time, nor for the balance residual, an error of the time integration.
     pub fn has_derivative(self) -> bool {
         !matches!(self.read(), Read::Time | Read::Open)
     }
@@ -336,7 +336,7 @@ mod tests {
     use super::*;
     use crate::discrete::ledger::ENERGY_RATES;
 
-    /// Goal: each energy that flows is in one column, and enters the balance as its group says.
+    /// Goal: each energy flow has exactly one column, and its sign in the balance agrees with its group.
     #[test]
     fn every_energy_that_flows_has_its_column() {
         for flow in ENERGY_RATES.iter().filter(|flow| flow.energy_sign() != 0.0) {
@@ -350,7 +350,7 @@ mod tests {
         }
     }
 
-    /// Goal: names tell quantities apart, and each finds its own.
+    /// Goal: names are unique, and each finds its own quantity.
     #[test]
     fn names_are_unique() {
         for one in Observable::ALL {

@@ -1,4 +1,4 @@
-//! Quantities at places that the case names.
+//! Quantities at places named in the case.
 
 use super::Observable;
 use super::look::Look;
@@ -8,18 +8,20 @@ use crate::discrete::{Mesh, System};
 
 /// A place of the beam, on a mesh.
 ///
-/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends: off by the second order of a cell.
+/// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends: the error is second order in the cell
+/// length.
 #[derive(Clone, Debug)]
 pub struct Probe {
-    /// What its columns begin with.
+    /// First part of its column names.
     pub name: String,
     /// Place `θ/l_s`.
     pub at: f64,
-    /// The node before it, and how far it is from there to the next.
+    /// Node before it, and the fraction of the distance to the next.
     node: (usize, f64),
-    /// The cell whose midpoint is before it, and how far it is from there to the next; below 0 and above 1 at the ends.
+    /// Cell whose midpoint is before it, and the fraction of the distance to the next midpoint; below 0 or above 1 at
+    /// the ends.
     cell: (usize, f64),
-    /// Its segment.
+    /// Segment of the probe.
     segment: usize,
     /// `h_s/2` [m].
     half_height: f64,
@@ -27,10 +29,10 @@ pub struct Probe {
     young_modulus: f64,
 }
 
-/// One row of the table: what a column's name ends with, unit, what it is, whether it needs bladders, how it is read.
+/// One row of the table: last part of the column name, unit, description, need of bladders, evaluation.
 type Entry = (&'static str, &'static str, &'static str, bool, fn(&Probe, &Look) -> f64);
 
-/// What is recorded at each place.
+/// Quantities recorded at each probe.
 #[rustfmt::skip]
 const TABLE: [Entry; 13] = [
     ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
@@ -48,19 +50,19 @@ const TABLE: [Entry; 13] = [
     ("pressure_lower", "Pa", "mean pressure of the lower bladder", true, |p, look| p.pressure(look, 1)),
 ];
 
-/// A column of the history: one number an output time.
+/// A column of the history: one number per output time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// Name without unit, snake case: `tip_u1`.
     pub name: String,
     /// Unit: `m`; `1` when dimensionless.
     pub unit: &'static str,
-    /// One sentence.
+    /// Description in one sentence.
     pub about: String,
 }
 
 impl Column {
-    /// Name with its unit, as keys of equilibria have it: `tip_u1_m`. Those of the summary of a run are by [`key`].
+    /// Name with unit, for keys of equilibria: `tip_u1_m`. The summary of a run uses [`key`].
     pub fn key(&self) -> String {
         let unit = match self.unit {
             "1" => return self.name.clone(),
@@ -83,7 +85,7 @@ impl From<Observable> for Column {
     }
 }
 
-/// A name with its unit, as keys of the summary have those of probes and ports: `middle_u1_m`, `port_inlet_flow_m3_s`.
+/// Name with unit, for keys of probes and ports in the summary: `middle_u1_m`, `port_inlet_flow_m3_s`.
 pub fn key(name: &str, unit: &str) -> String {
     match unit {
         "1" => name.into(),
@@ -97,7 +99,8 @@ pub fn key(name: &str, unit: &str) -> String {
     }
 }
 
-/// True if a column is a stress of the solid, by its name: its unit is that of pressures of the fluid, its size is not.
+/// True if the name of a column is that of a stress of the solid. It has the unit of fluid pressures but another order
+/// of magnitude.
 pub fn is_stress(name: &str) -> bool {
     name.ends_with("_stress_upper") || name.ends_with("_stress_lower")
 }
@@ -111,7 +114,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = Column> + '_ {
     })
 }
 
-/// Their values in a state.
+/// Values of the columns in a state.
 pub fn values<'a>(look: &'a Look) -> impl Iterator<Item = f64> + 'a {
     entries(look.system).map(|(probe, entry)| (entry.4)(probe, look))
 }
@@ -128,7 +131,7 @@ fn entries(system: &System) -> impl Iterator<Item = (&Probe, Entry)> {
 }
 
 impl Probe {
-    /// All of a case.
+    /// Probes of a case.
     pub fn all(case: &Case, mesh: &Mesh) -> Vec<Self> {
         let solid = (0.5 * case.beam.height_m, case.beam.young_modulus_pa);
         let probe = |probe: &Written| Self::new(&probe.name, probe.at, solid, mesh);
@@ -163,12 +166,12 @@ impl Probe {
         }
     }
 
-    /// That of the midpoints' chain, `φ_{c+1} = φ_c - h κ_{c+1}`, with the turns of the tip's.
+    /// Angle along the chain of midpoints, `φ_{c+1} = φ_c - h κ_{c+1}`, with the full turns of the tip's angle.
     fn angle(&self, look: &Look) -> f64 {
         let (kappa, h) = (&look.w.shape.kappa, look.system.mesh.h);
         let (node, share) = self.node;
         let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
-        // from the midpoint of the first cell: nodes that are passed, and half of that at an end
+        // from the midpoint of the first cell: nodes passed, with half a cell at an end
         let passed: f64 = kappa[1..=node].iter().sum();
         let rest = match (node, share) {
             (0, share) if share < 0.5 => (share - 0.5) * kappa[0],
@@ -178,15 +181,15 @@ impl Probe {
         first_angle(look.system, look.now, &look.w) - h * (passed + rest) + turns
     }
 
-    /// `λ - 1 ± κ h_s/2`, κ beyond that at rest.
+    /// `λ - 1 ± κ h_s/2`, κ relative to the rest curvature.
     fn surface(&self, look: &Look, side: f64) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
             + side * self.half_height * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
     }
 
-    /// Stress of a fibre at a surface: Young's modulus E times its strain, and what Maxwell branches carry besides, which is linear over the
-    /// section as strain is:
+    /// Stress of a fibre at a surface: Young's modulus E times its strain, plus the stress of the Maxwell branches, which, like strain,
+    /// is linear over the section:
     ///
     /// ```text
     /// σ = E (λ - 1 ± κ h_s/2 + N_r/EA ± M_r h_s/(2 EI))        N_r, M_r: forces of the branches
@@ -211,7 +214,7 @@ mod tests {
     use super::TABLE;
     use crate::discrete::quantities::Observable;
 
-    /// Goal: only a probe called "tip", which cases refuse, would have columns of a name that is taken.
+    /// Goal: only a probe named "tip", which is not allowed in cases, would have column names that already exist.
     #[test]
     fn names_of_columns_are_their_own() {
         let ends = |name: &str| {

@@ -1,4 +1,4 @@
-//! What holds the beam: forces and couples at ends whose motion is given, at springs and dashpots, and angles of ends that turn.
+//! Reactions: forces and couples at ends with given motion, at springs and dashpots, and angles of ends that can rotate.
 
 use super::look::Look;
 use super::probes::Column;
@@ -8,23 +8,23 @@ use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
 use crate::discrete::turns::{first_angle, nearest};
 
-/// What is told of an end or an attachment.
+/// A reaction quantity of an end or of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Told {
-    /// Force of what holds an end on the beam, across (0) or along (1).
+    /// Force of an end's support or drive on the beam, transverse (0) or axial (1).
     End(usize, usize),
-    /// Couple of what holds an end, in the sense of growing φ.
+    /// Couple of an end's support or drive, positive in the direction of growing φ.
     Couple(usize),
-    /// Angle of an end that turns.
+    /// Angle of an end that can rotate.
     Angle(usize),
-    /// Force of springs and dashpots, across (0) or along (1), of an attachment.
+    /// Force of springs and dashpots of an attachment, transverse (0) or axial (1).
     Attached(usize, usize),
 }
 
 const ENDS: [&str; 2] = ["root", "tip"];
 const AXES: [&str; 2] = ["x", "z"];
 
-/// All that a system has, ends first; those of a reduced model are those of the full one.
+/// All reaction quantities of a system, ends first; a reduced model has those of the full one.
 fn all(system: &System) -> Vec<Told> {
     let given = |motion: &Translation| matches!(motion, Translation::Displacement(_));
     let mut all = vec![];
@@ -36,7 +36,7 @@ fn all(system: &System) -> Vec<Told> {
         );
         match &end.rotation {
             Rotation::Slope(_) => all.push(Told::Couple(k)),
-            // the tip's is a quantity of its own
+            // the tip's angle is an observable of its own
             Rotation::Moment(_) if k == 0 => all.push(Told::Angle(k)),
             Rotation::Moment(_) => {}
         }
@@ -48,7 +48,7 @@ fn all(system: &System) -> Vec<Told> {
     all
 }
 
-/// Columns of a system.
+/// Columns of the reaction quantities of a system.
 pub fn columns(system: &System) -> impl Iterator<Item = Column> {
     all(system).into_iter().map(|one| {
         let (name, unit, about) = match one {
@@ -87,7 +87,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = Column> {
     })
 }
 
-/// Their values in a state.
+/// Values of the reaction quantities in a state.
 pub fn values(look: &Look, put: &mut impl FnMut(f64)) {
     let (system, now, w) = (look.system, look.now, &*look.w);
     let node = |end: usize| end * (system.mesh.nodes - 1);

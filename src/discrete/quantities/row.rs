@@ -5,23 +5,23 @@ use serde::{Deserialize, Serialize};
 use super::{Group, Look, Observable, Read, probes, stations};
 use crate::discrete::System;
 
-/// Values of the quantities over time at one instant, then those of ports, accumulators and walls, then those of probes.
+/// Values of observables at one instant, followed by those of ports, accumulators, walls and reactions, and those of probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     columns: Vec<Observable>,
-    /// How many values are those of ports, accumulators and walls.
+    /// Number of values of ports, accumulators, walls and reactions.
     stations: usize,
     values: Vec<f64>,
 }
 
 impl Row {
-    /// Of a system, zero yet.
+    /// Creates a row of zeros for a system.
     pub fn of(system: &System) -> Self {
         let stations = stations::columns(system, false).len();
         Self::new(Observable::of(system), [stations, probes::columns(system).count()])
     }
 
-    /// Of columns, so many of ports, accumulators and walls, and so many of probes, zero yet.
+    /// Creates a row of zeros for columns and for the given numbers of values of stations and of probes.
     pub fn new(columns: Vec<Observable>, [stations, probes]: [usize; 2]) -> Self {
         let values = vec![0.0; columns.len() + stations + probes];
         Self {
@@ -31,7 +31,7 @@ impl Row {
         }
     }
 
-    /// Reads a state at a time [s], with what has flowed up to then and what the balance of energy leaves open [J].
+    /// Evaluates a state at a time [s], with integrals up to that time and the residual of the energy balance [J].
     pub fn take(&mut self, t: f64, look: &Look, integrals: &[f64], open: f64) {
         let (values, rest) = self.values.split_at_mut(self.columns.len());
         let (at_stations, at_probes) = rest.split_at_mut(self.stations);
@@ -52,17 +52,17 @@ impl Row {
         }
     }
 
-    /// Its values, in the order of the columns, those of probes behind them.
+    /// Values in the order of the columns, followed by those of stations and probes.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Its values at ports, accumulators and walls.
+    /// Values at ports, accumulators, walls and reactions.
     pub fn at_stations(&self) -> &[f64] {
         &self.values[self.columns.len()..][..self.stations]
     }
 
-    /// Its values at probes.
+    /// Values at probes.
     pub fn at_probes(&self) -> &[f64] {
         &self.values[self.columns.len() + self.stations..]
     }
@@ -72,20 +72,20 @@ impl Row {
         self.get(Observable::Time).unwrap_or(0.0)
     }
 
-    /// One value, where there is such a column.
+    /// Value of a column, if it exists.
     pub fn get(&self, which: Observable) -> Option<f64> {
         let place = self.columns.iter().position(|column| *column == which)?;
         Some(self.values[place])
     }
 
-    /// Sets one value, where there is such a column.
+    /// Sets the value of a column, if it exists.
     pub fn set(&mut self, which: Observable, value: f64) {
         if let Some(place) = self.columns.iter().position(|column| *column == which) {
             self.values[place] = value;
         }
     }
 
-    /// Each value but those of probes with what it is.
+    /// Each observable with its value.
     pub fn each(&self) -> impl Iterator<Item = (Observable, f64)> {
         self.columns.iter().copied().zip(self.values.iter().copied())
     }

@@ -1,4 +1,4 @@
-//! Quantities at each port, in each accumulator, at each wall, of what holds the beam, and at rest in each bladder.
+//! Quantities of each port, accumulator, wall and reaction, and, for states at rest, of each bladder.
 
 use super::look::Look;
 use super::probes::{Column, key};
@@ -7,7 +7,7 @@ use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, touching};
 
-/// Columns of all ports, accumulators, walls and reactions of a system; at rest, those that a state at rest has.
+/// Columns of all ports, accumulators, walls and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<Column> {
     let mut all = of_network(system, at_rest);
     all.extend(reactions::columns(system));
@@ -79,7 +79,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
     all
 }
 
-/// The mean pressure of every bladder: fields say it of what moves.
+/// Mean pressure of every bladder; only for states at rest, because runs record pressures as fields.
 fn bladders(per_row: usize) -> impl Iterator<Item = Column> {
     (0..2 * per_row).map(move |bladder| {
         let label = bladder_label(bladder, per_row);
@@ -91,18 +91,17 @@ fn bladders(per_row: usize) -> impl Iterator<Item = Column> {
     })
 }
 
-/// Of each column while something moves, the port of which it is the volume, where it is one: that is an integral and no part of a state.
+/// For each column of a run: the port whose volume it is, if any. This volume is an integral and not part of a state.
 pub fn integrated(system: &System) -> Vec<Option<usize>> {
     let ports = system.model.wet.as_ref().map_or(0, ports::count);
     let volume = |column: usize| (column < 4 * ports && column % 4 == 3).then_some(column / 4);
     (0..columns(system, false).len()).map(volume).collect()
 }
 
-/// Columns of flows and pressures of ports and of pressures in accumulators, while something moves: their places among all, and their names
-/// with units.
+/// Columns of a run for flows and pressures of ports and for pressures in accumulators: their indices, and their names with units.
 pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
     let ports = 4 * system.model.wet.as_ref().map_or(0, ports::count);
-    let told = move |place: usize| {
+    let is_flow_or_pressure = move |place: usize| {
         if place < ports {
             place % 4 < 2
         } else {
@@ -110,11 +109,11 @@ pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
         }
     };
     let all = of_network(system, false).into_iter().enumerate();
-    all.filter(move |(place, _)| told(*place))
+    all.filter(move |(place, _)| is_flow_or_pressure(*place))
         .map(|(place, one)| (place, key(&one.name, one.unit)))
 }
 
-/// Their values in a state; without integrals those of a state at rest.
+/// Writes the values in a state; without integrals those of a state at rest.
 pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
     let mut out = out.iter_mut();
     let mut put = |value: f64| {
@@ -159,7 +158,7 @@ fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f
     }
 }
 
-/// What the columns of a name begin with where no other has taken that: letters and digits of it, in lower case.
+/// Default first part of column names for `name`: its letters and digits in lower case.
 pub fn begin(kind: &str, name: &str) -> String {
     let plain = |c: char| match c.is_alphanumeric() {
         true => c.to_ascii_lowercase(),
@@ -168,7 +167,8 @@ pub fn begin(kind: &str, name: &str) -> String {
     format!("{kind}_{}", name.chars().map(plain).collect::<String>())
 }
 
-/// Each name with what its columns begin with: letters and digits of it, and a number where that is taken.
+/// Each name with the first part of its column names: letters and digits, followed by a number if that is already in
+/// use.
 fn short<'a>(kind: &str, names: impl Iterator<Item = &'a String>) -> Vec<(&'a String, String)> {
     let mut all: Vec<(&String, String)> = vec![];
     for name in names {

@@ -1,4 +1,4 @@
-//! Cells of sections that shear, whose ends tell strains of a beam that is straight between them: those of fourth order.
+//! Fourth-order strains of cells whose sections shear.
 
 use super::fourth::{arc, bends_its_cells, shares};
 use crate::case::schema::Effect;
@@ -7,24 +7,24 @@ use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
-/// [E79] of [E63]: θ, ε and γ of a cell are its means. Its ends tell `(λ, γ) = (d3·e_t, d3·e_n)`, λ = 1 + ε, as if θ were the same all over it;
-/// sections that turn within the cell make more of both,
+/// [E79] for [E63]: θ, ε and γ of a cell are means. Its end points give `(λ, γ) = (d3·e_t, d3·e_n)`, λ = 1 + ε, for a constant θ.
+/// Sections that rotate within the cell increase both,
 ///
 /// ```text
 /// (λ, γ)_c gains (λ, γ)_c h²/24 mean(κ²) + h/24 Σ_i κ_i (Δγ_i, -Δλ_i)        Δ from the cell before node i to that behind, i the cell's nodes
 /// small rotations   e gains g h²/24 mean(u1''²)      h u1''_i = Δu1'_i         γ is the mean
 /// ```
 ///
-/// which leaves out what is of the order `h^4`: of the mean of r' = λ e_t + γ e_n, `h²/12 θ' (γ', -λ')` is what λ and γ change while sections turn.
-/// An end, and a node between segments that pressure stretches apart, has no Δ: the cell's other node stands for it. Forces and moments are
-/// derivatives of the energy: those of [E79] with `N λ + V γ`, and
+/// with an error of order `h^4`: in the mean of r' = λ e_t + γ e_n, the term `h²/12 θ' (γ', -λ')` is the variation of λ and γ while
+/// sections rotate. An end, and a node between segments whose stretches by pressure differ, has no Δ; that of the cell's other node is
+/// used. Forces and moments are derivatives of the energy: those of [E79] with `N λ + V γ`, and
 ///
 /// ```text
 /// (N, V) of the cell behind node i gains κ_i h/24 (-ΣV, ΣN), of that before it the opposite, ΣN and ΣV over both
 /// M_i gains (ΣN Δγ_i - ΣV Δλ_i) h/24
 /// ```
 ///
-/// where what acts on nodes and turns sections goes with λ and γ of the ends.
+/// where forces on nodes and moments on sections are work-conjugate to λ and γ of the end points.
 pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.model.kinematics != Kinematics::FiniteRotation {
         for c in 0..system.mesh.cells {
@@ -58,7 +58,7 @@ fn change<T: Scalar>(system: &System, shape: &Shape<T>, node: usize) -> Planar<T
     (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.h / 24.0))
 }
 
-/// The cells beside a node between cells, with its weight in each.
+/// Cells adjacent to an inner node, with its weight in each.
 #[inline]
 fn beside(system: &System, node: usize) -> [(usize, f64); 2] {
     let weight = |node: usize, other: usize| match (smooth(system, node), smooth(system, other)) {
@@ -69,14 +69,15 @@ fn beside(system: &System, node: usize) -> [(usize, f64); 2] {
     [(node - 1, weight(node, node - 1)), (node, weight(node, node + 1))]
 }
 
-/// Whether λ is smooth at a node.
+/// True if λ is smooth at a node.
 fn smooth(system: &System, node: usize) -> bool {
     let mesh = &system.mesh;
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     node > 0 && node < mesh.cells && !(pressed && node.is_multiple_of(mesh.cells_per_segment))
 }
 
-/// What N and V, elastic parts, do by [`strains`]: to the moments of nodes, to section forces of cells.
+/// Forces conjugate to [`strains`]: adds the effect of the elastic N and V to the moments of nodes and to the section
+/// forces of cells.
 pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if !bends_its_cells(system) {
         return;
@@ -119,7 +120,7 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     }
 }
 
-/// By how much the line of a cell is longer than its ends are apart, for small rotations, a share of that.
+/// Excess of the length of a cell's line over the distance of its ends, relative to it, for small rotations.
 #[inline]
 pub fn of_line<T: Scalar>(system: &System, shape: &Shape<T>, cell: usize) -> T {
     let mut sum = T::zero();
@@ -132,7 +133,7 @@ pub fn of_line<T: Scalar>(system: &System, shape: &Shape<T>, cell: usize) -> T {
     sum
 }
 
-/// Its rate [1/s].
+/// Rate of this relative excess [1/s].
 pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h;
     let of = |node: usize| {
@@ -145,7 +146,7 @@ pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     of(cell) + of(cell + 1)
 }
 
-/// Weight of a node in [`of_line`]: at an end `u1''` is not known.
+/// Weight of a node in [`of_line`]; zero at an end, where `u1''` is unknown.
 #[inline]
 fn line_share(cells: usize, cell: usize, node: usize) -> f64 {
     if node == 0 || node == cells {

@@ -1,4 +1,4 @@
-//! What surrounds the beam: drag, inertia and stream of the fluid that it moves through.
+//! Surroundings of the beam: drag, inertia and stream of the ambient fluid.
 
 use super::solid::angle_rate;
 use crate::case::schema::Effect;
@@ -7,9 +7,10 @@ use crate::discrete::{System, TimeData, Workspace};
 use crate::model::{Kinematics, Surroundings};
 use crate::numerics::{Planar, Scalar};
 
-/// Forces of the surroundings on a node of so much length, each with the account of its work; none where it is stored.
+/// Passes the forces of the surroundings on a node of the given length to `each`, with the balance entry of their work;
+/// none for stored energy.
 ///
-/// Those of a stream are loads, inertia included: their work is what the stream does.
+/// Forces of a stream are loads, including its inertia: their work is that of the stream.
 #[inline]
 pub fn forces<T: Scalar>(
     system: &System,
@@ -50,14 +51,14 @@ pub fn forces<T: Scalar>(
     }
 }
 
-/// `[E47]` Drag of what the beam moves through, per length, on the velocity across it (Morison et al. 1950), linear and the same in all
-/// directions where the motion turns, so that it is smooth and never without a slope:
+/// `[E47]` Drag per length by the transverse velocity (Morison et al. 1950). Near a reversal of motion it is linear and isotropic, so
+/// that it is smooth and always has a slope:
 ///
 /// ```text
 /// b = -c₂ [(√(v_n² + v_s²) - v_s) v_n e_n + v_s v]        v_n = v·e_n        v_s a millionth of the largest v1 that the case expects
 /// ```
 ///
-/// v is the velocity against a stream, where there is one, and v_s then a millionth of the stream's if that is more.
+/// v is the velocity relative to a stream, if there is one; v_s is then at least a millionth of the stream velocity.
 fn quadratic_drag<T: Scalar>(
     system: &System,
     now: &TimeData,
@@ -74,21 +75,21 @@ fn quadratic_drag<T: Scalar>(
     (normal.times(across * beyond) + v * slow) * -coefficient
 }
 
-/// `[E53]` Inertia of the fluid around the beam, per length and added mass: what it takes to speed up what moves across with it,
+/// `[E53]` Inertia of the ambient fluid that moves transversely with the beam, per length and added mass:
 ///
 /// ```text
 /// b = -m_a (d/dt (v·e_n)) e_n        d/dt (v·e_n) = v_t·e_n + v·e_n,t
 /// ```
 ///
-/// v against the stream, whose own acceleration is [`swept`]. Its power in still fluid is -d/dt (m_a v_n²/2). It is Lighthill's reactive
-/// force (1971) on a slender body without what the flow carries along it: in a stream along the beam half of the force at first order.
+/// v is relative to the stream, whose own acceleration is in [`swept`]. In still fluid its power is -d/dt (m_a v_n²/2). It is Lighthill's
+/// reactive force (1971) on a slender body without convection along it, which is half of the force at first order in an axial stream.
 fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let tangent = node_tangent(system, w, node);
     let normal = tangent.normal();
     let speeding = w.motion.a[node].dot(normal);
     let across = if system.model.kinematics == Kinematics::FiniteRotation {
         let v = felt_velocity(system, now, w, node) - Planar::constant(now.stream);
-        // e_n turns as e_t does, (e_n)_t = φ_t e_t
+        // e_n rotates with e_t, (e_n)_t = φ_t e_t
         speeding + v.dot(tangent) * turning(system, w, node)
     } else {
         speeding
@@ -96,8 +97,8 @@ fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: u
     normal.times(across)
 }
 
-/// Force of a stream that speeds up, per length, on what it flows around: that which its pressure has on the displaced fluid in its place,
-/// and the added mass (Froude and Krylov; Morison et al. 1950):
+/// Force of an accelerating stream on the beam, per length: the pressure force on the displaced volume, and the added mass (Froude and
+/// Krylov; Morison et al. 1950):
 ///
 /// ```text
 /// b = ρ h_s w_s U_t + m_a (U_t·e_n) e_n
@@ -114,7 +115,7 @@ fn swept<T: Scalar>(
     normal.times(speeding.dot(normal) * around.added_mass) + speeding * around.displaced
 }
 
-/// `m_a (v·e_n)²/2` per length: energy of the fluid that moves across with a node.
+/// Energy `m_a (v·e_n)²/2` per length of the fluid that moves transversely with a node.
 pub fn kinetic(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
     let around = system
         .model
@@ -130,24 +131,24 @@ pub fn kinetic(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize)
 /// Rate of the angle of [`node_tangent`] [1/s].
 fn turning<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
     let (before, after) = (node.saturating_sub(1), node.min(system.mesh.cells - 1));
-    // the mean of two unit vectors halves the angle between them
+    // the direction of the mean of two unit vectors is at the mean of their angles
     (angle_rate(system, w, before) + angle_rate(system, w, after)) * 0.5
 }
 
-/// Unit tangent at a node: along the mean of those of its cells.
+/// Unit tangent at a node, in the direction of the mean of its cells' tangents.
 #[inline]
 pub fn node_tangent<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> Planar<T> {
     let cells = [node.saturating_sub(1), node.min(system.mesh.cells - 1)];
     mean_direction(cells.map(|c| w.shape.tangent[c]))
 }
 
-/// Unit vector along the mean of two.
+/// Unit vector in the direction of the mean of two.
 #[inline(always)]
 pub fn mean_direction<T: Scalar>([one, other]: [Planar<T>; 2]) -> Planar<T> {
     (one + other).unit()
 }
 
-/// Velocity with which a node meets what surrounds the beam: its own; along a beam that does not stretch that of its frame, [E28].
+/// Velocity of a node relative to fluid at rest; its axial part in an inextensible beam is that of the frame, [E28].
 #[inline]
 fn felt_velocity<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let own = w.motion.v[node];

@@ -1,16 +1,17 @@
-//! The beam that does not move across: a bar.
+//! Bar: a beam without transverse motion.
 
 use super::solid::normal_force;
 use crate::discrete::{System, Workspace};
 use crate::numerics::Scalar;
 
-/// `[E24]` A bar can only stretch; what bends it is taken up by whatever keeps it straight:
+/// `[E24]` A bar can only stretch; bending loads are balanced by the constraint that keeps it straight:
 ///
 /// ```text
 /// λ - 1 = u3'    N = EA (u3' - λ_p) + EA τ_a u3'_t    n = (0, N)    m a3 = b_z + N'
 /// ```
 ///
-/// It is [`super::solid`] with u1 = 0, exact where nothing acts across and upper and lower pressures are alike.
+/// It equals [`super::solid`] with u1 = 0, and is exact without transverse loads and with equal upper and lower
+/// pressures.
 pub fn kinematics<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {
@@ -20,14 +21,14 @@ pub fn kinematics<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// Rate of stretch, where the damping depends on it.
+/// Rate of stretch, if damping depends on it.
 pub fn rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     if system.model.section.axial_damping_time > 0.0 {
         strain_rates(system, w);
     }
 }
 
-/// Rate of stretch, always.
+/// Rate of stretch in any case.
 pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     for c in 0..system.mesh.cells {

@@ -1,4 +1,4 @@
-//! Moments, and the shear that keeps sections across the beam.
+//! Moments, and the shear forces of sections that remain perpendicular to the beam.
 
 use super::solid::node_stretch;
 use super::{fourth, relaxation};
@@ -6,9 +6,9 @@ use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
 
-/// Moments and the shear that follows from them, `[E12]`.
+/// Moments, `[E12]`.
 ///
-/// `[E59]` A beam that is curved at rest, by κ_0 (loads of the kind `rest_curvature_1_m`), with the weights of forces, [E46]:
+/// `[E59]` Rest curvature κ_0 of the beam (loads of the kind `rest_curvature_1_m`), with the weights of forces, [E46]:
 ///
 /// ```text
 /// M = EI (α - α_p - κ_0)      EI τ_b (κ - κ_0)_t      P_loads gains -Σ h_i M_total κ_0,t
@@ -71,7 +71,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     }
 }
 
-/// Moment and curvature of an end at which the moment is given.
+/// Moment and curvature of an end with given moment.
 fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut Workspace<T>) {
     let Some(end) = now.end(node).filter(|end| end.slope.is_none()) else {
         return;
@@ -104,7 +104,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     }
 }
 
-/// Shear, `[E12]`.
+/// Shear forces, `[E12]`.
 pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let forces = &mut w.forces;
@@ -131,7 +131,7 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// By how much the moment, viscous part included, falls over a cell [N m].
+/// Decrease of the moment over a cell, including its viscous part [N m].
 #[inline]
 pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
     let mut drop = w.forces.moment[c] - w.forces.moment[c + 1];
@@ -151,7 +151,7 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
     }
 }
 
-/// `alpha_p` at a node: the mean of the segments on its two sides (the transpose of the mean moment's weights).
+/// `alpha_p` at a node: mean of the segments on both sides (the transpose of the mean moment's weights).
 #[inline]
 pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
     if !presses(system) {
@@ -165,7 +165,7 @@ pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: us
     }
 }
 
-/// Whether pressure bends the beam.
+/// True if pressure bends the beam.
 #[inline]
 fn presses(system: &System) -> bool {
     system.fluid.is_some() && system.model.effects.has(Effect::PressureToCurvature)

@@ -1,4 +1,4 @@
-//! Pressures, what they do to the beam, and the flows they drive.
+//! Pressures, their strains of the beam, and flows.
 
 use std::ops::Range;
 
@@ -8,13 +8,13 @@ use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::{Compression, Storage, Wet};
 use crate::numerics::Scalar;
 
-/// `[E8]` Pressure of each cell from its stored area, and each bladder's mean (A.15, A.16 solved for p):
+/// `[E8]` Pressure of each cell from its area, and the mean of each bladder (A.15, A.16 solved for p):
 ///
 /// ```text
 /// p = (a1 - R A_M(Mbar_j) - A_N(Nbar_j))/a_p
 /// ```
 ///
-/// A bladder that keeps its volume has one pressure, one that shares its pressure one area, `[E23]`.
+/// A bladder that keeps its volume has one pressure; a bladder that shares its pressure has one area, `[E23]`.
 pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -62,7 +62,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// The same where fluid is compressed, [E54], with what drives its flow, [E55].
+/// Pressures of a compressible fluid in a bladder, [E54], and the potentials of its flow, [E55].
 #[inline(never)] // so that its constants are not made where fluid is not
 fn compressed<T: Scalar>(
     wet: &Wet,
@@ -99,7 +99,7 @@ fn compressed<T: Scalar>(
     in_walls
 }
 
-/// Pressure of the fluid, pressure that strains the walls, and area change of a cell by what it stores.
+/// Pressure of the fluid, pressure on the walls, and area change of a cell, from its content.
 #[inline]
 fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, imposed: T) -> (T, T, T) {
     let law = &wet.area;
@@ -116,7 +116,7 @@ fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, impos
     }
 }
 
-/// Pressure that strains the walls of a cell by that of the fluid in it: the inverse of [`pressed`].
+/// Pressure on the walls of a cell from that of its fluid: the inverse of [`pressed`].
 #[inline]
 fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
     match &wet.closing {
@@ -125,7 +125,7 @@ fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
     }
 }
 
-/// Pressure of the fluid in a cell whose walls are strained by a pressure.
+/// Pressure of the fluid in a cell from that on its walls.
 #[inline]
 fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
     match &wet.closing {
@@ -134,7 +134,7 @@ fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
     }
 }
 
-/// Stretch and curvature of each segment due to pressure, `[E3]`.
+/// Stretch and curvature of each segment by pressure, `[E3]`.
 pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let Some(wet) = &system.model.wet else { return };
     let effects = &system.model.effects;
@@ -153,7 +153,7 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// Pressure at a place.
+/// Pressure at a cell, junction or port.
 #[inline]
 pub fn pressure_at<T: Scalar>(place: Place, now: &TimeData, w: &Workspace<T>) -> T {
     match place {
@@ -188,7 +188,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     for &[k, from, to] in &fluid.sorted.between_cells {
         let [k, from, to] = [k, from, to].map(|number| number as usize);
         let drop = driven_by[from] - driven_by[to];
-        // [E55], which Newton's iteration follows down to vacuum
+        // [E55], which allows Newton's iteration to reach vacuum
         let q = drop * now.conductance[k];
         if !compressed {
             own.drop[k] = drop;
@@ -234,7 +234,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// What drives flow over a link: the drop over it and what its pump adds.
+/// Driving pressure of a link: the pressure drop plus the pressure of its pump.
 #[inline]
 pub fn driving<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
     let drop = w.fluid.drop[k];
@@ -244,14 +244,14 @@ pub fn driving<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: 
     }
 }
 
-/// `[E64]` Pressure drop between two places, and the mean density between them over that at ambient pressure, where fluid is compressed:
+/// `[E64]` Pressure drop between two places of a compressible fluid, and the mean density between them relative to ambient density:
 ///
 /// ```text
 /// r̄² = (Ψ_a - Ψ_b)/(h_a - h_b)      D = r̄ (h_a - h_b) = (Ψ_a - Ψ_b)/r̄      q = r̄ Q
 /// ```
 ///
-/// Q is the volume that flows at that density. Then `Q = D/R` is [E55], and `q (h_a - h_b) = Q D`: all that lies between the places takes
-/// the pressure drop D under the flow Q as it does of incompressible fluid, in energy too.
+/// Q is the volume flow at that density. Then `Q = D/R` is [E55], and `q (h_a - h_b) = Q D`: all elements between the places respond to
+/// the pressure drop D and the flow Q as with incompressible fluid, also in energy.
 #[inline]
 pub fn along<T: Scalar>(wet: &Wet, from: Place, to: Place, now: &TimeData, w: &Workspace<T>) -> (T, Option<T>) {
     let (a, b) = (pressure_at(from, now, w), pressure_at(to, now, w));
@@ -267,7 +267,7 @@ pub fn along<T: Scalar>(wet: &Wet, from: Place, to: Place, now: &TimeData, w: &W
     }
 }
 
-/// What [`along`] says of a link, into the workspace.
+/// Writes the result of [`along`] for a link to the workspace.
 #[inline]
 pub fn look_along<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &mut Workspace<T>, k: usize) {
     let (drop, density) = along(wet, link.from, link.to, now, w);
@@ -277,7 +277,7 @@ pub fn look_along<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &mut
     }
 }
 
-/// `Ψ` at a place.
+/// Potential `Ψ` at a place.
 #[inline]
 fn potential_at<T: Scalar>(compression: &Compression, place: Place, now: &TimeData, w: &Workspace<T>) -> T {
     match place {
@@ -300,7 +300,7 @@ pub fn over_bridge<T: Scalar>(
     (bridge_drops(drop, w.fluid.bridge[k]), density)
 }
 
-/// Flow through a bridge, counted at ambient density [m^3/s].
+/// Flow through a bridge, at ambient density [m^3/s].
 #[inline]
 pub fn through_bridge<T: Scalar>(wet: &Wet, fluid: &FluidMesh, k: usize, now: &TimeData, w: &Workspace<T>) -> T {
     let valve = &wet.network.bridges[fluid.bridges[k].number].valve;
@@ -310,8 +310,8 @@ pub fn through_bridge<T: Scalar>(wet: &Wet, fluid: &FluidMesh, k: usize, now: &T
     density.map_or(volume, |density| volume * density)
 }
 
-/// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge, `d` between its ports and `w` over the
-/// turbine: `(d - w)/2` and `(-d - w)/2`.
+/// `[E10]` Pressure drops over the two pairs of valves of a symmetric bridge: `(d - w)/2` and `(-d - w)/2`, with `d`
+/// between its ports and `w` over the turbine.
 #[inline]
 pub fn bridge_drops<T: Scalar>(d: T, turbine: T) -> (T, T) {
     ((d - turbine) * 0.5, (-d - turbine) * 0.5)

@@ -1,4 +1,4 @@
-//! A beam whose mesh leaves out what is of fourth order.
+//! Beam with a discretization error of fourth order.
 
 use super::arcs;
 use super::bending::pressure_curvature;
@@ -9,23 +9,25 @@ use crate::error::{Code, Violation};
 use crate::model::{Kinematics, Model};
 use crate::numerics::Scalar;
 
-/// `[E77]` Between nodes `κ` and in cells `λ` are means, over the hat of a node and over the cell: what their squares leave out of the elastic
-/// energy is that of their differences,
+/// `[E77]` `κ` at nodes and `λ` in cells are means, over the hat function of a node and over the cell. The elastic energy that their
+/// squares miss is that of their differences,
 ///
 /// ```text
 /// E = EI/2 Σ h_i e_i² + EI h/2 Σ_c g_c (e_{c+1} - e_c)²      e_i = κ_i - α_p - κ_0      g = 1/6, 1/4 beside a slope that is given
 ///   + EA/2 Σ h e_c² + EA h/2 Σ_i g_i (e_i+ - e_i-)²          e_c = λ_c - 1 - λ_p        g = 1/12, 1/8 beside an end
 /// ```
 ///
-/// which, with loads and masses as in [E78], leaves out of the Lagrangian what is of the order `h^4`, at ends too. Forces and moments are its derivatives,
+/// With loads and masses as in [E78], the error of the Lagrangian is of order `h^4`, also at ends. Forces and moments are its
+/// derivatives,
 ///
 /// ```text
 /// M_i = EI [e_i - (h/h_i) (g_i (e_{i+1} - e_i) - g_{i-1} (e_i - e_{i-1}))]      N_c likewise
 /// ```
 ///
-/// so that balances and reciprocity stay exact; at a node M is then `M - h² M''/12`, whose mean over a segment is that of M. Jumps of pressure
-/// between segments are in `α_p` and `λ_p`, and e is smooth across them. Where the moment is given, e of the end follows from it, and the curvature
-/// that turns the end is the mean `κ_n = α_p + κ_0 + (2 M_n/EI + e_{n-1})/3`; its part of the energy is `h_n M_n (κ_n - α_p - κ_0)/2`.
+/// so that balances and reciprocity remain exact. At a node M is then `M - h² M''/12`, whose mean over a segment is that of M. Jumps of
+/// pressure between segments are contained in `α_p` and `λ_p`, across which e is smooth. At an end with given moment, e follows from it.
+/// The curvature that determines the end's angle is the mean `κ_n = α_p + κ_0 + (2 M_n/EI + e_{n-1})/3`; its part of the energy is
+/// `h_n M_n (κ_n - α_p - κ_0)/2`.
 pub fn moments<T: Scalar>(mesh: &Mesh, now: &TimeData, moment: &mut [T]) {
     let last = mesh.nodes - 1;
     let [held_at_root, held_at_tip] = [0, 1].map(|end: usize| now.ends[end].slope.is_some());
@@ -47,7 +49,7 @@ pub fn moments<T: Scalar>(mesh: &Mesh, now: &TimeData, moment: &mut [T]) {
     }
 }
 
-/// Normal forces of cells, likewise; of sections that shear V, and what resists their turning.
+/// Same correction for values of cells: normal forces, and with shear V and the rotary inertia of sections.
 pub fn of_cells<T: Scalar>(values: &mut [T]) {
     let last = values.len() - 1;
     let mut before = T::zero();
@@ -59,13 +61,13 @@ pub fn of_cells<T: Scalar>(values: &mut [T]) {
     values[last] += before;
 }
 
-/// `g` of the node behind cell `c` of those up to `last`.
+/// Weight `g` of the node behind cell `c`, for cells up to `last`.
 #[inline]
 pub fn cell_weight(c: usize, last: usize) -> f64 {
     if c == 0 || c + 1 == last { 0.125 } else { 1.0 / 12.0 }
 }
 
-/// Sum over cells of the mean squares of what has these means: `Σ x_c² + Σ_i g_i (x_i+ - x_i-)²`.
+/// Sum over cells of the mean squares of a function with these cell means: `Σ x_c² + Σ_i g_i (x_i+ - x_i-)²`.
 pub fn squares(means: &[f64]) -> f64 {
     let last = means.len() - 1;
     let apart = means.windows(2).enumerate();
@@ -73,14 +75,14 @@ pub fn squares(means: &[f64]) -> f64 {
     means.iter().map(|x| x * x).sum::<f64>() + within.sum::<f64>()
 }
 
-/// `[E79]` Between the ends of a cell the line of a beam that bends is longer than their distance, and steeper and less steep than straight:
+/// `[E79]` In a bent cell the line between the ends is longer than their distance:
 ///
 /// ```text
 /// λ_c gains λ_c h²/24 mean(κ²)      for small rotations   e gains g h²/24 mean(κ²)      mean(κ²) = (κ_c² + κ_{c+1}²)/2
 /// ```
 ///
-/// beside an end whose moment is given that of the other node, κ of the end being no unknown. What N does by it is a moment,
-/// `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the cells beside the node.
+/// In the cell at an end with given moment, only the other node counts, because κ of the end is not an unknown. The conjugate effect of N
+/// is a moment, `M_i gains (h/h_i) h²/24 κ_i Σ_c N_c λ_c` over the adjacent cells.
 pub fn arcs<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if !bends_its_cells(system) || !system.model.effects.has(Effect::AxialStretch) {
         return;
@@ -99,7 +101,7 @@ pub fn arcs<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// Whether [`arcs`] tells of this beam: it bends, and stretch knows of it.
+/// True if [`arcs`] applies to this beam: it bends, and its stretch depends on bending.
 pub fn bends_its_cells(system: &System) -> bool {
     let tension = matches!(
         system.model.kinematics,
@@ -108,14 +110,14 @@ pub fn bends_its_cells(system: &System) -> bool {
     system.mesh.fourth && tension && !system.model.published()
 }
 
-/// By how much a cell's line is longer than its ends are apart, a share of that.
+/// Excess of the length of a cell's line over the distance of its ends, relative to it.
 #[inline]
 pub fn arc<T: Scalar>(system: &System, now: &TimeData, kappa: &[T], cell: usize) -> T {
     let [left, right] = shares(system, now, cell);
     (kappa[cell].squared() * left + kappa[cell + 1].squared() * right) * (system.mesh.h * system.mesh.h / 48.0)
 }
 
-/// The same of a beam that turns little, whether or not its sections shear, and its rate [1/s].
+/// Relative excess as in [`arc`] for small rotations, with or without shear, and its rate [1/s].
 pub fn small_arc(system: &System, now: &TimeData, w: &Workspace<f64>, cell: usize) -> [f64; 2] {
     if system.model.effects.has(Effect::Shear) {
         return [
@@ -141,7 +143,7 @@ pub fn shares(system: &System, now: &TimeData, cell: usize) -> [f64; 2] {
     }
 }
 
-/// What N does by [`arcs`], where sections stay across the beam.
+/// Moments by N that are conjugate to [`arcs`], without shear.
 pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if !bends_its_cells(system) || system.model.effects.has(Effect::Shear) {
         return;
@@ -161,17 +163,17 @@ pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace
     }
 }
 
-/// Elastic curvature of the node beside an end, from moments that are not yet [`moments`].
+/// Elastic curvature of the node beside an end, from moments before the correction by [`moments`].
 pub fn beside<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
     w.forces.moment[neighbour(system, node)] * (1.0 / system.model.section.bending_stiffness)
 }
 
-/// The node beside an end.
+/// Index of the node beside an end.
 pub fn neighbour(system: &System, node: usize) -> usize {
     if node == 0 { 1 } else { system.mesh.nodes - 2 }
 }
 
-/// `e_i = α_i - α_p - κ_0` of a node.
+/// Elastic curvature `e_i = α_i - α_p - κ_0` of a node.
 pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
     let mut alpha = w.shape.kappa[node];
     if system.model.published() {
@@ -180,12 +182,12 @@ pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspa
     alpha - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
 }
 
-/// Energy of bending at a node [J].
+/// Bending energy at a node [J].
 pub fn of_bending(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
     0.5 * system.mesh.node_length(node) * w.forces.moment[node] * elastic_curvature(system, now, w, node)
 }
 
-/// `e_c = λ_c - 1 - λ_p` of a cell.
+/// Elastic stretch `e_c = λ_c - 1 - λ_p` of a cell.
 pub fn elastic_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let free = if pressed {
@@ -196,12 +198,12 @@ pub fn elastic_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 
     w.shape.strain[cell] - free
 }
 
-/// Energy of stretch in a cell [J].
+/// Stretch energy in a cell [J].
 pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
     0.5 * system.mesh.h * w.forces.normal[cell] * elastic_stretch(system, w, cell)
 }
 
-/// What fourth order is refused for.
+/// Error if a model does not allow fourth order.
 pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;

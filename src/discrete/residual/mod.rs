@@ -1,4 +1,4 @@
-//! The semi-discrete equations in the paper's order: what lies between two instants is nothing but this.
+//! The semi-discrete equations, in the paper's order.
 
 pub mod arcs;
 pub mod around;
@@ -22,20 +22,20 @@ use crate::numerics::Scalar;
 
 pub use unpack::unpack;
 
-/// Everything up to forces and flows: fills the workspace from the state (SI units, not scaled).
+/// Evaluates everything up to forces and flows: fills the workspace from the state (SI units, not scaled).
 pub fn evaluate<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     until_strains(system, now, y, yp, w);
     beyond_strains(system, now, w);
 }
 
-/// Up to the strains due to pressure.
+/// Evaluates everything up to the strains by pressure.
 pub fn until_strains<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     unpack(system, now, y, yp, w);
     fluid::pressures(system, w);
     fluid::pressure_strains(system, w);
 }
 
-/// What follows from these strains.
+/// Evaluates the quantities that depend on the strains by pressure.
 pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     nonlinear::forces(system, w);
     let sheared = system.model.effects.has(Effect::Shear);
@@ -88,7 +88,7 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     fluid::flows(system, now, w);
 }
 
-/// What balances and samples need besides: velocities and rates of strain, whether or not an equation depends on them.
+/// Completes velocities and rates of strain for balances and samples, also if no equation depends on them.
 pub fn complete<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Workspace<T>) {
     unpack::complete_velocities(system, now, yp, w);
     match system.model.kinematics {
@@ -98,13 +98,13 @@ pub fn complete<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Wo
     }
 }
 
-/// The residual `F(t, y, y')`, one equation an unknown, in SI units.
+/// Evaluates the residual `F(t, y, y')`, one equation per unknown, in SI units.
 pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>, r: &mut [T]) {
     evaluate(system, now, y, yp, w);
     equations(system, now, y, yp, w, r);
 }
 
-/// The residual after everything has been evaluated.
+/// Computes the residual from an evaluated workspace.
 pub fn equations<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     momentum::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);

@@ -1,4 +1,4 @@
-//! Momentum of nodes, and what acts on them.
+//! Momentum balance of nodes, and the forces on them.
 
 use super::{around, fourth};
 use crate::discrete::attached::at_node;
@@ -7,21 +7,21 @@ use crate::discrete::{System, TimeData, Workspace, bodies, touching};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
 
-/// `[E14]` Momentum of each node (A.5), in the conservative form telescoping:
+/// `[E14]` Momentum of each node (A.5); the conservative form telescopes:
 ///
 /// ```text
 /// m h_i a_i = h_i (b_i - c v_i) + n_{i+1/2} - n_{i-1/2} (+ end force) (+ c_i, published)
 /// ```
 ///
-/// `[E27]` Without axial inertia the beam is carried along by its frame, [E22], and its waves are left out; inertia of the
-/// sections' rotation is then that of `m y11 |d3_t|²/2`, whose parts along x and z are apart:
+/// `[E27]` Without axial inertia the beam moves axially with its frame, [E22], without axial waves. The rotary inertia of sections is
+/// then that of `m y11 |d3_t|²/2`, whose parts in x and z are independent:
 ///
 /// ```text
 /// m h_i U_i'' = h_i (b_z,i - c v3_i) + n_z,i+1/2 - n_z,i-1/2        n_x gains m y11 x'_tt, n_z nothing
 /// ```
 ///
-/// The force `-m U''` does work on displacements relative to the frame: `P_ends` gains `-Σ h_i m U_i'' (v3_i - U_i')`, and the
-/// kinetic energy along is that of the frame, `Σ h_i m U_i'²/2`.
+/// The force `-m U''` does work on displacements relative to the frame: `P_ends` gains `-Σ h_i m U_i'' (v3_i - U_i')`. The kinetic energy
+/// of axial motion is that of the frame, `Σ h_i m U_i'²/2`.
 pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let last = system.mesh.nodes - 1;
     if system.stands_alone && system.layout.inertia {
@@ -37,7 +37,7 @@ pub fn momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r:
     }
 }
 
-/// Momentum of one node.
+/// Momentum balance of one node.
 fn node_momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, i: usize, r: &mut [T]) {
     let (l, mesh) = (&system.layout, &system.mesh);
     let mut f = Planar::zero();
@@ -60,7 +60,8 @@ fn node_momentum<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, i
     }
 }
 
-/// The same along one axis of all nodes between the ends of a beam with inertia that stands alone.
+/// Momentum balance of all inner nodes in one direction, for a beam with inertia on which only loads, ends and sections
+/// act.
 #[inline(always)]
 fn inner_momentum<T: Scalar, const AXIS: usize>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (mesh, line) = (&system.mesh, &system.layout.lines[AXIS]);
@@ -85,8 +86,8 @@ fn inner_momentum<T: Scalar, const AXIS: usize>(system: &System, now: &TimeData,
     }
 }
 
-/// What acts on a node besides its sections, each force with the account of the balance of energy that its work goes to, [E19]; none
-/// where it is stored, [E49].
+/// Forces on a node other than section forces, each with the entry of the energy balance that contains its work, [E19]; none for stored
+/// energy, [E49].
 #[inline(always)]
 pub fn outer_forces<T: Scalar>(
     system: &System,
@@ -122,8 +123,8 @@ pub fn outer_forces<T: Scalar>(
     }
 }
 
-/// Force given at an end node: dead, plus follower section forces `N e_t + V e_n` at the end's angle (A.53, A.54),
-/// which act on the body with the sign of the outward section.
+/// Given force at an end node: the dead force plus follower section forces `N e_t + V e_n` at the end's angle (A.53,
+/// A.54), which act on the body with the sign of the outward section.
 pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> Planar<T> {
     let last = system.mesh.nodes - 1;
     let end = &now.ends[usize::from(node == last)];
@@ -142,7 +143,7 @@ pub fn end_force<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, n
     dead + own
 }
 
-/// `N e_t + V e_n` at a place with this tangent, or this angle of a beam that turns little.
+/// Force `N e_t + V e_n` at a place with this tangent, or, for small rotations, this angle.
 #[inline]
 pub fn follower<T: Scalar>(
     system: &System,
@@ -155,7 +156,7 @@ pub fn follower<T: Scalar>(
             let tangent = tangent();
             tangent * normal + tangent.normal() * shear
         }
-        // n_x = g N φ - V, n_z = N, as [E26] has it in every section.
+        // n_x = g N φ - V, n_z = N, as in every section by [E26].
         Kinematics::SmallRotation => Planar::new(angle() * normal - shear, T::constant(normal)),
         Kinematics::Linear | Kinematics::Bar => Planar::constant(Planar { x: -shear, z: normal }),
     }
@@ -173,7 +174,7 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>,
     tangent_beyond(w, cell, node, half)
 }
 
-/// Unit tangent `by` beyond the midpoint of a cell, towards or away from a node at one of its ends: `φ = φ_c - by κ_node`.
+/// Unit tangent at a distance `by` from the midpoint of a cell, towards or away from a node at one of its ends: `φ = φ_c - by κ_node`.
 #[inline]
 pub fn tangent_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> Planar<T> {
     if let Some(angle) = w.shape.sections.angle.get(cell) {
@@ -184,14 +185,14 @@ pub fn tangent_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by:
     tangent.times(cosine) - tangent.normal().times(sine)
 }
 
-/// The same angle of a beam that turns little.
+/// Angle at the same place for small rotations.
 #[inline]
 pub fn angle_beyond<T: Scalar>(w: &Workspace<T>, cell: usize, node: usize, by: f64) -> T {
     let angle = w.shape.sections.angle.get(cell).copied();
     angle.unwrap_or(w.shape.d3[cell].x) - w.shape.kappa[node] * by
 }
 
-/// Angle at an end of a beam that turns little, as [`end_tangent`] has it.
+/// Angle at an end for small rotations, corresponding to [`end_tangent`].
 fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
     let at_tip = node + 1 == system.mesh.nodes;
     if let Some(slope) = now.ends[usize::from(at_tip)].slope {
@@ -201,7 +202,7 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
     angle_beyond(w, cell, node, half * system.mesh.h)
 }
 
-/// `[E15]` What the published form adds to the conservative one at nodes:
+/// `[E15]` Forces of the published form in addition to the conservative one, at nodes:
 ///
 /// ```text
 /// c_i = h_i (κ_i - M_i/EI) (V^ e_t(φ^) - N^ e_n(φ^))        ^ mean of the neighbouring cells
@@ -212,7 +213,7 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
     }
     let mut added = std::mem::take(&mut w.forces.formulation);
     added.fill(Planar::zero());
-    // normal forces and shears at nodes first
+    // starts with normal and shear forces at nodes
     let forces = &w.forces;
     let mut normal = [&forces.normal[..], &[], &forces.relaxing_normal];
     if system.damped {
@@ -234,7 +235,7 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
     w.forces.formulation = added;
 }
 
-/// Adds to nodes the means of what their cells have, if these have any.
+/// Adds to nodes the means of the adjacent cells' values, if there are any.
 #[inline(always)]
 fn add_means<T: Scalar>(cells: &[T], nodes: &mut [Planar<T>], into: impl Fn(&mut Planar<T>) -> &mut T) {
     let (Some((first, last)), [root, inner @ .., tip]) = (cells.first().zip(cells.last()), nodes) else {
@@ -247,7 +248,7 @@ fn add_means<T: Scalar>(cells: &[T], nodes: &mut [Planar<T>], into: impl Fn(&mut
     }
 }
 
-/// From `(N^, V^)` to the force of [`published_forces`], by `κ_i - M_i/EI`.
+/// Converts `(N^, V^)` to the force of [`published_forces`], with the factor `κ_i - M_i/EI`.
 #[inline(always)]
 fn turn_excess<T: Scalar>(
     system: &System,

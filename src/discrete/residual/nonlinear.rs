@@ -1,4 +1,4 @@
-//! The section at finite strain: what its energy adds to forces and areas.
+//! Sections at finite strain: contributions of their energy to forces and areas.
 
 use super::rows::mean_of_nodes;
 use crate::discrete::ledger::pressure_rates;
@@ -6,7 +6,7 @@ use crate::discrete::{System, Workspace};
 use crate::model::{ROWS, Wet};
 use crate::numerics::{Dual, Scalar};
 
-/// The energy of [`crate::model::StrainEnergy`] on the mesh: a segment is one cell of the section, with the means of [E16] for its strains,
+/// Energy of [`crate::model::StrainEnergy`] on the mesh: a segment is one cell of the section, with the means of [E16] as strains,
 ///
 /// ```text
 /// y = (Nbar/EA, Mbar/EI, p_u, p_d)      E gains Σ l_seg P      Nbar, Mbar the means of what is linear in N and M
@@ -14,7 +14,7 @@ use crate::numerics::{Dual, Scalar};
 /// a1_R gains R am mean(M) + an N of these, and loses (∂P/∂p_R)/(φ_b l_b)
 /// ```
 ///
-/// the weights those with which pressure bends the beam, and their transpose: so all are derivatives of one energy.
+/// The weights are those of bending by pressure, and their transpose: all contributions are derivatives of one energy.
 pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let Some((wet, law)) = system.model.strain_energy() else {
         return;
@@ -43,14 +43,15 @@ pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// The areas that are unknown with those that follow, [`forces`].
+/// Equations of the unknown areas, which must equal those of [`forces`].
 pub fn areas<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     for (bladder, row) in system.layout.coupling.nonlinear_area.clone().enumerate() {
         r[row] = w.coupling.excess_area[bladder] - w.coupling.nonlinear_area[bladder];
     }
 }
 
-/// Energy of the section beyond its quadratic part [J]: `Σ l_seg P + l_b Σ p a_x`, `a_x` what it does to areas.
+/// Energy of the section beyond its quadratic part [J]: `Σ l_seg P + l_b Σ p a_x`, with its contribution `a_x` to
+/// areas.
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let Some((wet, _)) = system.model.strain_energy() else {
         return 0.0;
@@ -59,7 +60,7 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     w.coupling.nonlinear_energy.iter().sum::<f64>() + wet.bladder_length * pressures.map(|(p, a)| p * a).sum::<f64>()
 }
 
-/// y of a segment.
+/// Strains and pressures y of a segment.
 fn state<T: Scalar>(system: &System, wet: &Wet, w: &Workspace<T>, j: usize) -> [T; 4] {
     let section = &system.model.section;
     let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
@@ -71,7 +72,7 @@ fn state<T: Scalar>(system: &System, wet: &Wet, w: &Workspace<T>, j: usize) -> [
     ]
 }
 
-/// Its rate; needs [`crate::discrete::ledger::complete`].
+/// Rate of y; requires [`crate::discrete::ledger::complete`].
 fn rate(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> [f64; 4] {
     let section = &system.model.section;
     let [upper, lower] = pressure_rates(system, wet, w, j);
@@ -83,7 +84,7 @@ fn rate(system: &System, wet: &Wet, w: &Workspace<f64>, j: usize) -> [f64; 4] {
     ]
 }
 
-/// What finite strain adds to the rate of curvature of an end with a given moment [1/(m s)].
+/// Contribution of finite strain to the rate of curvature of an end with given moment [1/(m s)].
 pub fn end_rate(system: &System, w: &Workspace<f64>, node: usize) -> f64 {
     let Some((wet, law)) = system.model.strain_energy() else {
         return 0.0;
@@ -97,8 +98,8 @@ pub fn end_rate(system: &System, w: &Workspace<f64>, node: usize) -> f64 {
     -law.at(moving).moment.derivative[0] / system.model.section.bending_stiffness
 }
 
-/// How far the segment that is farthest out lies in what is known of the section's energy, 1 at the border, with its rate.
-/// Needs [`crate::discrete::ledger::complete`].
+/// Largest distance of a segment from the origin of its strain ellipsoid, 1 at the limit of the section's energy, and its rate.
+/// Requires [`crate::discrete::ledger::complete`].
 pub fn outermost(system: &System, w: &Workspace<f64>) -> [f64; 2] {
     let Some((wet, law)) = system.model.strain_energy() else {
         return [0.0; 2];

@@ -1,11 +1,11 @@
-//! The solid that relaxes.
+//! Stress relaxation of the solid.
 
 use super::solid::node_stretch;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
 
-/// `[E58]` Generalised Maxwell solid: beside the spring of the long term branches of a spring, g_k times as stiff, and a dashpot in series,
-/// on the strains of the beam; what pressure does to bladders keeps to the long term:
+/// `[E58]` Generalized Maxwell solid: the long-term spring in parallel with branches, each a spring with stiffness ratio g_k in series
+/// with a dashpot. The branches act on the strains of the beam; the response of bladders to pressure keeps its long-term value:
 ///
 /// ```text
 /// M_total = M + EI Σ g_k (κ - κ_k)      dκ_k/dt = (κ - κ_k)/τ_k
@@ -14,7 +14,8 @@ use crate::numerics::Scalar;
 /// E gains Σ h_i EI g_k (κ - κ_k)²/2 + Σ h EA g_k (ε - ε_k)²/2        D = Σ h_i EI g_k (κ - κ_k) dκ_k/dt + Σ h EA g_k (ε - ε_k) dε_k/dt
 /// ```
 ///
-/// κ stands beyond the curvature at rest, [E59]. For g_k → ∞ at g_k τ_k fixed it is Kelvin and Voigt's. Where an end's moment is given, α = s κ the measure of curvature of [E12],
+/// κ is relative to the rest curvature, [E59]. For g_k → ∞ at constant g_k τ_k this is the Kelvin-Voigt solid. At an end with given
+/// moment, with the curvature measure α = s κ of [E12],
 ///
 /// ```text
 /// κ = (M/EI + α_p + Σ g_k κ_k)/(s + Σ g_k)
@@ -38,7 +39,7 @@ pub fn rows<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mu
     }
 }
 
-/// Parts of normal forces that relax.
+/// Relaxing parts of normal forces.
 pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let stiffness = system.model.section.axial_stiffness;
     relaxing(
@@ -50,7 +51,7 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     );
 }
 
-/// Parts of shear forces that relax.
+/// Relaxing parts of shear forces.
 pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let stiffness = system.model.section.shear_stiffness;
     relaxing(
@@ -62,7 +63,7 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     );
 }
 
-/// Parts of moments that relax.
+/// Relaxing parts of moments.
 pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let stiffness = system.model.section.bending_stiffness;
     relaxing(
@@ -74,7 +75,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     );
 }
 
-/// Strain of a place beyond that at rest.
+/// Strain at a place relative to that at rest.
 #[inline]
 fn beyond<T: Scalar>(strain: &[T], rest: &[f64], place: usize) -> T {
     match rest.get(place) {
@@ -92,13 +93,13 @@ fn relaxing<T: Scalar>(system: &System, stiffness: f64, (strain, rest): (&[T], &
     }
 }
 
-/// Curvature of a node whose moment is given, `α = M/EI + α_p` in the long term.
+/// Curvature of a node with given moment; `α = M/EI + α_p` in the long term.
 pub fn curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize, alpha: T, stretch: T) -> T {
     let (remembered, ratios) = remembered(system, &w.relaxed.curvature, now.rest_curvature(node), node);
     (alpha + remembered) / (stretch + ratios)
 }
 
-/// Its rate.
+/// Rate of this curvature.
 pub fn curvature_rate(
     system: &System,
     now: &TimeData,
@@ -123,7 +124,7 @@ fn remembered<T: Scalar>(system: &System, kept: &[T], rest: f64, node: usize) ->
     (sum, ratios)
 }
 
-/// Energy stored in the branches [J], and what they dissipate [W].
+/// Energy stored in the branches [J], and their dissipation [W].
 pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
     let (mesh, section, relaxed) = (&system.mesh, &system.model.section, &w.relaxed);
     let mut sums = [0.0; 2];
@@ -159,8 +160,8 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
     sums
 }
 
-/// Gives the branches of a state `y` (SI) the strains in which a beam of this shape and these pressures is relaxed; `w` holds them, of the same
-/// system or of one without branches. A given moment is then all elastic.
+/// Sets the branches of a state `y` (SI) to the relaxed strains of a beam with this shape and these pressures. `w` contains the strains,
+/// for the same system or for one without branches. A given moment is then entirely elastic.
 pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]) {
     let (own, last) = (&system.layout.relaxation, system.mesh.nodes - 1);
     for (unknown, strain) in own.stretch.clone().zip(w.shape.strain.iter().cycle()) {

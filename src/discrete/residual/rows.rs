@@ -1,4 +1,4 @@
-//! The equations beside those of momentum, one block after the other.
+//! Equations other than momentum, block by block.
 
 use super::fluid::{driving, over_bridge};
 use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
@@ -7,7 +7,7 @@ use crate::model::LumpedKind;
 use crate::model::network::Feed;
 use crate::numerics::Scalar;
 
-/// `u' = v`, where velocities are unknowns.
+/// `u' = v`, for velocities that are unknowns.
 pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
     for (u, v) in system.layout.moved_blocks() {
         for ((r, rate), velocity) in r[u.clone()].iter_mut().zip(&yp[u]).zip(&y[v]) {
@@ -16,7 +16,7 @@ pub fn motion<T: Scalar>(system: &System, y: &[T], yp: &[T], r: &mut [T]) {
     }
 }
 
-/// `[E16]` Means over each segment, with the weights whose transpose spreads the pressure strains:
+/// `[E16]` Means over each segment; the transpose of the weights distributes the strains by pressure:
 ///
 /// ```text
 /// Mbar_j = Σ w_ji M_i    w = (1/2, 1, .., 1, 1/2)/K        Nbar_j = mean of N over the cells
@@ -31,12 +31,12 @@ pub fn means<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// `Mbar` of a segment.
+/// Mean moment `Mbar` of a segment.
 pub fn mean_moment<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
     mean_of_nodes(system, &w.forces.moment, segment)
 }
 
-/// Mean over a segment of what stands at nodes, with the weights of [`means`].
+/// Mean of nodal values over a segment, with the weights of [`means`].
 pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
     let [at_edge, inside] = [0, 1].map(|i| system.mesh.moment_weight(i));
@@ -48,7 +48,7 @@ pub fn mean_of_nodes<T: Scalar>(system: &System, values: &[T], segment: usize) -
     mean + own[k] * at_edge
 }
 
-/// `Nbar` of a segment.
+/// Mean normal force `Nbar` of a segment.
 pub fn mean_force<T: Scalar>(system: &System, w: &Workspace<T>, segment: usize) -> T {
     let k = system.mesh.cells_per_segment;
     let mut force = T::zero();
@@ -70,8 +70,8 @@ pub fn storage<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// Volume of each lumped network whose pressure is unknown, `[E25]`; that of a network that is fed is unknown but for what ports of
-/// prescribed volume have let in. The integrals of their rates, which nothing follows from, go along.
+/// Volume of each lumped network with unknown pressure, `[E25]`. The volume of a fed network is an unknown relative to the volume
+/// injected by ports of prescribed volume. Also the integrals of these ports' flow rates, on which nothing else depends.
 pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
@@ -101,8 +101,9 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     }
 }
 
-/// Flows into a junction sum to zero, into an accumulator to the rate of its volume. Where only tubes with inertia lead on from some junctions, the level of their
-/// pressures follows from accelerations, and the sum over them keeps to zero by itself: `Σ q + Σ q'/ω = 0`, ω the characteristic frequency, in place of the first one's.
+/// Flows into a junction sum to zero, into an accumulator to the rate of its volume. In a group of junctions from which only tubes with
+/// inertia lead, accelerations determine the pressure level. The equation of the first junction is then `Σ q + Σ q'/ω = 0` over the
+/// group, with the characteristic frequency ω; it keeps the sum at zero.
 pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let rows = system.layout.network.junction.clone();
     r[rows.clone()].copy_from_slice(&w.fluid.junction_inflow);
@@ -133,16 +134,17 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     }
 }
 
-/// `[E66]` Flow of each tube in which it does not creep, [E51]. Where fluid is compressed it is written in `y = q/√r̄` and `k_i = j_i/√r̄`, r̄ and D of
-/// [E64], viscosity and losses at the mean density:
+/// `[E66]` Flow of each tube with non-creeping flow, [E51]. For a compressible fluid the unknowns are `y = q/√r̄` and `k_i = j_i/√r̄`,
+/// with r̄ and D of [E64], viscosity and losses at the mean density:
 ///
 /// ```text
 /// √r̄ I dy/dt + Σ_i r_i (y - k_i)/√r̄ + Δp_loss(q)/r̄ + (R_half + R/o) Q = D      Q = y/√r̄      dk_i/dt = n_i (ν/r²) (y - k_i)/r̄
 /// ```
 ///
-/// so that what is stored, `I y²/2 + Σ r_i r² k_i²/(2 n_i ν)`, changes by `Q D` less what is lost, whatever the density does. Behind a check
-/// valve it is the flow which [E7] lets through, `Q = q_v(R, Δ)`, written as `Q = q_v(R + κ, Δ + κ Q)`. With κ what inertia and the memory of
-/// friction resist along an implicit step, the right-hand side does not depend on Q there, and Newton's iteration does not see the valve snap.
+/// so that the stored energy, `I y²/2 + Σ r_i r² k_i²/(2 n_i ν)`, changes by `Q D` less the losses for any density. With a check valve
+/// the flow is that of [E7], `Q = q_v(R, Δ)`, written as `Q = q_v(R + κ, Δ + κ Q)`. κ is the resistance of inertia and friction memory
+/// along an implicit step. Then the right-hand side does not depend on Q, and Newton's iteration is insensitive to the switching of the
+/// valve.
 pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let Some(fluid) = &system.fluid else { return };
     let own = &system.layout.network;
@@ -172,7 +174,7 @@ pub fn tubes<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &m
     }
 }
 
-/// What is left of what drives the flow of a tube that does not creep, for its check valve and all linear resistance [Pa].
+/// Remaining driving pressure of a tube with non-creeping flow, for its check valve and all linear resistances [Pa].
 #[inline]
 pub fn driven<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
     let mut left = driving(link, now, w, k);
@@ -194,7 +196,7 @@ pub fn driven<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: u
     left - root.map_or(lags, |root| lags / root)
 }
 
-/// `[E18]` What flows through the valves of a bridge flows through its turbine:
+/// `[E18]` The flow through the valves of a bridge equals that through its turbine:
 /// `q_v((d - w)/2) + q_v((-d - w)/2) = G w`.
 pub fn bridges<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mut [T]) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {

@@ -1,4 +1,4 @@
-//! The beam that shears: its sections turn by angles of their own.
+//! Beam with shear: sections rotate by their own angles.
 
 use super::bending::total_moment_drop;
 use super::solid::{couple, lines, normal_force};
@@ -9,8 +9,8 @@ use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
-/// `[E63]` The section of each cell has an angle θ of its own, of which moments know, and γ is how far the beam's line has turned from it
-/// (Reissner, ZAMP 23, 795-804, 1972; V and γ in the sense of [E12]):
+/// `[E63]` The section of each cell has its own angle θ, which determines moments; γ is the rotation of the beam's line relative to the
+/// section (Reissner, ZAMP 23, 795-804, 1972; signs of V and γ as in [E12]):
 ///
 /// ```text
 /// e_t = (sin θ, cos θ)    e_n = (-cos θ, sin θ)    λ - 1 -> ε = d3·e_t - 1    γ = d3·e_n    κ = -θ'
@@ -20,8 +20,8 @@ use crate::numerics::{Planar, Scalar};
 /// E gains Σ h kGA γ²/2, and has Σ h m y11 θ_t²/2        V gains kGA τ_b γ_t with the damping of bending
 /// ```
 ///
-/// It comes from the potential `∫ (N²/2EA + V²/2kGA + M²/2EI)`: `N δε + V δγ + M δκ` with `δε = δd3·e_t - γ δθ`, `δγ = δd3·e_n + (1 + ε) δθ`.
-/// For kGA → ∞, γ → 0 and V is what [E12] has, off by the order of `EI/(kGA l²)`. For small rotations, with g as in [E26],
+/// The potential is `∫ (N²/2EA + V²/2kGA + M²/2EI)`: `N δε + V δγ + M δκ` with `δε = δd3·e_t - γ δθ`, `δγ = δd3·e_n + (1 + ε) δθ`. For
+/// kGA → ∞, γ → 0 and V equals that of [E12] up to the order of `EI/(kGA l²)`. For small rotations, with g as in [E26],
 ///
 /// ```text
 /// ε = u3' + g u1'²/2    γ = θ - u1'    n_x = g N u1' - V    n_z = N    m y11 θ_tt = -M' - V - (m b1_z + g u1' m b1_x)
@@ -63,7 +63,7 @@ fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     }
 }
 
-/// Rates of stretch and shear: `ε_t = d3_t·e_t - γ θ_t`, `γ_t = d3_t·e_n + (1 + ε) θ_t`. Those of angles are unknown themselves.
+/// Rates of stretch and shear: `ε_t = d3_t·e_t - γ θ_t`, `γ_t = d3_t·e_n + (1 + ε) θ_t`. Rates of angles are unknowns.
 pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
@@ -82,7 +82,7 @@ pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// Shear forces, section forces, and what turns sections.
+/// Shear forces, section forces, and moments that rotate sections.
 pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     shears(system, now, w);
     section_forces(system, now, w);
@@ -120,7 +120,7 @@ fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// Section forces in lab axes, and what turns sections, [E63].
+/// Section forces in lab axes, and moments that rotate sections, [E63].
 fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let h = system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
@@ -159,7 +159,7 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
 }
 
 impl<T: Scalar> Sections<T> {
-    /// `(γ, 1 + ε)` of the ends of a cell whose ε is this.
+    /// `(γ, 1 + ε)` from the end points of a cell with the strain ε.
     #[inline]
     pub fn of_ends(&self, cell: usize, strain: T) -> Planar<T> {
         match self.line.get(cell) {
@@ -169,7 +169,7 @@ impl<T: Scalar> Sections<T> {
     }
 }
 
-/// The balance of moments of each section.
+/// Balance of moments of each section.
 pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let section = &system.model.section;
     let resists = system.model.effects.has(Effect::RotaryInertia);

@@ -1,4 +1,4 @@
-//! The beam that turns little: von Karman's, and the linear one.
+//! Beam with small rotations: von Karman's and the linear one.
 
 use super::bending::total_moment_drop;
 use super::solid::{self, couple, curvature_rates, normal_force};
@@ -16,8 +16,8 @@ use crate::numerics::{Planar, Scalar};
 /// n_x = g N φ - V + r    n_z = N    r = m b1_z + g φ m b1_x + m y11 φ_tt
 /// ```
 ///
-/// from the potential ∫ (N²/2EA + M²/2EI): `N δe + M δκ = (g N φ - V) δu1' + N δu3' - (M δφ)'`. Relative to finite
-/// rotations it leaves out terms of the order φ².
+/// from the potential ∫ (N²/2EA + M²/2EI): `N δe + M δκ = (g N φ - V) δu1' + N δu3' - (M δφ)'`. Compared with finite
+/// rotations it omits terms of order φ².
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
@@ -40,7 +40,7 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     }
 }
 
-/// `κ` at nodes from the angles of cells and prescribed slopes.
+/// Curvature `κ` at nodes, from the angles of cells and prescribed slopes.
 fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
@@ -55,14 +55,14 @@ fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     }
 }
 
-/// Rates of strain, where damping depends on them.
+/// Rates of strain, if damping depends on them.
 pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.damped {
         strain_rates(system, now, w);
     }
 }
 
-/// Rates of strain, always: `e_t = u3'_t + g φ φ_t`, `φ_t = u1'_t`.
+/// Rates of strain in any case: `e_t = u3'_t + g φ φ_t`, `φ_t = u1'_t`.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
@@ -83,7 +83,7 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
     curvature_rates(system, now, w);
 }
 
-/// Normal forces: elastic, or where the beam does not stretch those of statics, `[E28]`.
+/// Normal forces: elastic, or for an inextensible beam those of statics, `[E28]`.
 pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.model.effects.has(Effect::AxialStretch) {
         solid::normal_forces(system, w);
@@ -94,8 +94,8 @@ pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspa
     }
 }
 
-/// Displacement and velocity along of a beam that does not stretch, from the end that is held on, `[E28]`; with the rates
-/// of stretch by pressure in each segment.
+/// Axial displacement and velocity of an inextensible beam, from the held end, `[E28]`, with the rates of stretch by pressure of each
+/// segment.
 pub fn foreshorten(
     system: &System,
     now: &TimeData,

@@ -15,7 +15,7 @@ use crate::numerics::{Planar, Scalar, wide};
 /// κ_i = -(φ_{i+1/2} - φ_{i-1/2})/h    κ_0 = -(φ_{1/2} - φ_0)/(h/2)    κ_n = -(φ_n - φ_{n-1/2})/(h/2)
 /// ```
 ///
-/// Angles enter as differences only, from cross and dot products, so that any number of turns is fine.
+/// Only differences of angles appear, from cross and dot products, so that any number of full turns is admissible.
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.cells;
@@ -36,7 +36,7 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     }
 }
 
-/// `κ` between cells.
+/// Curvature `κ` between cells.
 #[inline(always)]
 fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: f64, kappa: &mut [T]) {
     for (kappa, pair) in kappa.iter_mut().zip(tangent.windows(2)) {
@@ -44,8 +44,8 @@ fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: f64, kappa: &mut [T]) {
     }
 }
 
-/// Directors, lengths and tangents of the lines of cells; `strain` makes the strain of each from `u'`, by which its director differs from that
-/// at rest, and sets its section.
+/// Directors, lengths and tangents of the lines of cells. `strain` computes the strain of each cell from the change `u'` of its director,
+/// and sets its section.
 #[inline(always)]
 pub fn lines<T: Scalar>(
     system: &System,
@@ -70,16 +70,16 @@ pub fn lines<T: Scalar>(
     }
 }
 
-/// The line of a cell.
+/// Line of a cell.
 #[derive(Clone, Copy, Debug)]
 pub struct Line<T> {
-    /// `d3`.
+    /// Director `d3`.
     pub d3: Planar<T>,
-    /// `λ`.
+    /// Stretch `λ`.
     pub stretch: T,
-    /// `1/λ`.
+    /// Inverse stretch `1/λ`.
     pub per_stretch: T,
-    /// `e_t`.
+    /// Unit tangent `e_t`.
     pub tangent: Planar<T>,
 }
 
@@ -97,7 +97,7 @@ impl<T: Scalar> Line<T> {
     }
 }
 
-/// Rates of stretch, angle and curvature, where something depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
+/// Rates of stretch, angle and curvature, if any force depends on them: `λ_t = e_t·d3_t`, `φ_t = d1·d3_t/λ²`.
 pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let turned = system.turns_with_its_line() && system.layout.lines[1].v.is_some();
     if turned || system.damped {
@@ -108,7 +108,7 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// Rates of stretch, angle and curvature, always.
+/// Rates of stretch, angle and curvature in any case.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     line_rates(system, w);
     curvature_rates(system, now, w);
@@ -132,14 +132,14 @@ fn line_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// `φ_t` of a cell's line [1/s].
+/// Rotation rate `φ_t` of a cell's line [1/s].
 #[inline]
 pub fn angle_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
     let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h);
     w.shape.tangent[c].cross(d3_t) * w.shape.per_stretch[c]
 }
 
-/// `κ_t` at nodes from the turning of cells and prescribed slopes.
+/// Curvature rate `κ_t` at nodes, from the rotation rates of cells and prescribed slopes.
 pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.nodes - 1;
@@ -155,14 +155,14 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Works
     }
 }
 
-/// `[E12]` Normal force, moment and shear (A.31-A.33), elastic and viscous parts:
+/// `[E12]` Normal force, moment and shear force (A.31-A.33), elastic and viscous parts:
 ///
 /// ```text
 /// N = EA (λ - 1 - λ_p)      M = EI (α - α_p)      α = κ (conservative), λ κ (published)
 /// V = -(M_total)'/λ         N_total = N + EA τ_a λ_t      M_total = M + EI τ_b κ_t
 /// ```
 ///
-/// At an end with given moment M is the value and the curvature follows.
+/// At an end with given moment, M is this moment and determines the curvature.
 pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ea = section.axial_stiffness;
@@ -192,7 +192,7 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     }
 }
 
-/// `N_total` of a cell [N].
+/// Total normal force `N_total` of a cell [N].
 #[inline]
 pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
     let mut force = w.forces.normal[c];
@@ -219,7 +219,7 @@ pub fn couple<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, c: u
     }
 }
 
-/// `λ` at a node: mean of the neighbouring cells.
+/// Stretch `λ` at a node: mean of the adjacent cells.
 #[inline]
 pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T {
     if node == 0 {
@@ -231,7 +231,7 @@ pub fn node_stretch<T: Scalar>(w: &Workspace<T>, node: usize, last: usize) -> T 
     }
 }
 
-/// `[E13]` Section force in lab axes, rotary part included:
+/// `[E13]` Section force in lab axes, including the rotary part:
 ///
 /// ```text
 /// n = N_total e_t + V e_n + r d1         e_n = (-cos φ, sin φ),  d1 = λ (cos φ, -sin φ)
@@ -274,7 +274,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     }
 }
 
-/// `N e_t + V e_n` of each cell.
+/// Section force `N e_t + V e_n` of each cell.
 #[inline(always)]
 fn turned<T: Scalar>(tangent: &[Planar<T>], [normal, shear]: [&[T]; 2], force: &mut [Planar<T>]) {
     for (((force, tangent), normal), shear) in force.iter_mut().zip(tangent).zip(normal).zip(shear) {
@@ -282,7 +282,7 @@ fn turned<T: Scalar>(tangent: &[Planar<T>], [normal, shear]: [&[T]; 2], force: &
     }
 }
 
-/// What resists the turning of sections, in [`section_forces`].
+/// Adds the rotary inertia of sections in [`section_forces`].
 fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let inertia = section.mass_per_length * section.gyration_radius_squared;
@@ -296,7 +296,7 @@ fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         }
         return;
     }
-    // Of λ φ_tt + 2 λ_t φ_t the published term has λ r d1 whole, and the conservative one φ_tt alone over λ.
+    // `across` is λ φ_tt + 2 λ_t φ_t: the published form uses all of it, the conservative form only φ_tt, divided by λ
     let across = |c: usize| tangent[c].cross((a[c + 1] - a[c]) * inverse);
     if system.model.published() {
         for c in 0..cells {

@@ -1,4 +1,4 @@
-//! From the vector of unknowns to displacements, velocities, means and areas; driven ends filled in.
+//! Conversion of the unknowns to displacements, velocities, means and areas, including driven ends.
 
 use std::ops::Range;
 
@@ -11,25 +11,25 @@ use crate::functions::signals::Jet;
 use crate::model::LumpedKind;
 use crate::numerics::{Planar, Scalar, wide};
 
-/// Copies the state into the workspace; what an end prescribes comes from its signal, with exact rates.
+/// Copies the state to the workspace. Prescribed values of ends come from their signals, with exact rates.
 ///
-/// `[E22]` Displacements are unknown relative to the straight line through the motions that the ends prescribe:
+/// `[E22]` Unknown displacements are relative to the straight line through the prescribed motions of the ends:
 ///
 /// ```text
 /// u_i = U_i + y_i     v_i = U'_i + y'_i     U_i = u(0) + (u(l_s) - u(0)) θ_i/l_s, or that of the one driven end
 /// ```
 ///
-/// So the integrator's error in a motion as a whole cannot stretch the beam between a node that is driven exactly and
-/// its neighbour that is integrated.
+/// The integrator's error of a common motion thus cannot stretch the beam between an exactly driven node and its integrated neighbor.
 ///
-/// What cells and accumulators hold is unknown relative to their shares of what ports of prescribed volume V have let in, by compliance C:
+/// Unknown contents of cells and accumulators are relative to their shares, by compliance C, of the volume V injected by ports of
+/// prescribed volume:
 ///
 /// ```text
 /// Δs c_k = V C_k/ΣC + Δs y_k     Δs c'_k = V' C_k/ΣC + Δs y'_k
 /// ```
 ///
-/// So what has come in is the signal and no integral of its rate: where nothing else comes in or leaves, `Σ Δs y` does not change. The
-/// pressure of a lumped network, [E25], is counted from V/C likewise.
+/// The injected volume is thus exactly the signal, not an integral of its rate: without other flow in or out, `Σ Δs y` is constant. The
+/// pressure of a lumped network, [E25], is relative to V/C in the same way.
 pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &mut Workspace<T>) {
     let l = &system.layout;
     move_nodes(system, now, y, yp, &mut w.motion);
@@ -99,7 +99,7 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     }
 }
 
-/// Axial velocities that no equation takes, because nothing but waves depends on them; for balances and samples.
+/// Completes axial velocities that appear in no equation, because only waves depend on them, for balances and samples.
 pub fn complete_velocities<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Workspace<T>) {
     let along = &system.layout.lines[1];
     if along.v.is_some() || !system.layout.inertia {
@@ -111,14 +111,14 @@ pub fn complete_velocities<T: Scalar>(system: &System, now: &TimeData, yp: &[T],
     }
 }
 
-/// Values of a block; where it has no unknowns the target keeps its own.
+/// Copies the values of a block; without unknowns the target remains unchanged.
 fn copy<T: Scalar>(target: &mut [T], source: &[T], block: &Range<usize>) {
     if !block.is_empty() {
         target.copy_from_slice(&source[block.clone()]);
     }
 }
 
-/// How nodes move: what is unknown of it, and their frames.
+/// Sets the motion of nodes from the unknowns and the frames.
 fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], motion: &mut Motion<T>) {
     let l = &system.layout;
     let moves = |line: &Line| !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]);
@@ -151,7 +151,8 @@ fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], mot
     }
 }
 
-/// Puts together what vectors are along both axes, zero where nothing is said, and adds what a frame gives to all nodes, driven ones too.
+/// Assembles vectors from their transverse and axial components, zero where there is none, and adds the motion of the frame to all nodes,
+/// including driven ones.
 #[inline(always)]
 fn lay<T: Scalar>(own: &mut [Planar<T>], lines: &[Line; 2], from: [Option<&[T]>; 2], given: [Option<f64>; 2]) {
     let [across, along] = lines.each_ref().map(|line| &line.free);
@@ -169,12 +170,12 @@ fn lay<T: Scalar>(own: &mut [Planar<T>], lines: &[Line; 2], from: [Option<&[T]>;
     let nodes = own.len();
     for (axis, line) in lines.iter().enumerate() {
         let free = &line.free;
-        let told = if both.is_empty() {
+        let done = if both.is_empty() {
             free.start..free.start
         } else {
             both.clone()
         };
-        for node in (free.start..told.start).chain(told.end..free.end) {
+        for node in (free.start..done.start).chain(done.end..free.end) {
             own[node][axis] = from[axis].map_or(T::zero(), |from| from[node - free.start]) + shift[axis];
         }
         if let Some(given) = given[axis] {

@@ -1,4 +1,4 @@
-//! How a mesh carries the displacements and the velocities that a beam begins with.
+//! Mesh errors of the initial displacements and velocities of a beam.
 
 use crate::case::schema::Case;
 use crate::case::{Rotation, Translation};
@@ -10,10 +10,10 @@ use crate::model::Model;
 use super::ratio;
 use super::vibrations::Vibrations;
 
-/// How much finer the mesh is whose energy one is compared with.
+/// Refinement of the mesh whose energy serves as reference.
 const FINER: usize = 4;
 
-/// A displacement or a velocity at the start.
+/// An initial displacement or velocity.
 pub(super) struct Begun<'a> {
     key: &'static str,
     profile: &'a Profile,
@@ -26,16 +26,16 @@ enum What {
     Velocity,
 }
 
-/// What holds a displacement at the ends.
+/// End conditions of a displacement.
 struct Held {
-    /// Displacements of root and tip [m], where they are given.
+    /// Displacements of root and tip [m], if given.
     ends: [Option<f64>; 2],
-    /// Slopes there over the length, where they are given, of what bends; what stretches has none.
+    /// Slopes of root and tip times the length, if given, for bending; none for stretch.
     slopes: Option<[Option<f64>; 2]>,
 }
 
 impl<'a> Begun<'a> {
-    /// All that a case gives.
+    /// Initial displacements and velocities of a case.
     pub fn all(case: &'a Case, system: &System) -> Vec<Self> {
         let start = &case.start;
         let given = [
@@ -64,12 +64,12 @@ impl<'a> Begun<'a> {
         given.into_iter().filter_map(of).collect()
     }
 
-    /// Where it stands in the case.
+    /// JSON pointer in the case.
     pub fn pointer(&self) -> String {
         format!("/start/{}", self.key)
     }
 
-    /// What the mesh leaves out of it, and in words what that is.
+    /// Relative mesh error, at the start and during the motion, and its description.
     pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
         let there = self.at_once(cells);
         match self.vibrations.as_ref().map(|v| v.left_out(cells)) {
@@ -78,12 +78,12 @@ impl<'a> Begun<'a> {
         }
     }
 
-    /// What of that is so from the beginning.
+    /// Relative mesh error at the start, and its description.
     pub fn at_once(&self, cells: usize) -> (f64, &'static str) {
         match &self.what {
             What::Displacement(held) => {
                 let between = of_lines(self.profile, cells);
-                // one that the mesh does not see has no energy to judge
+                // a displacement that the mesh does not resolve has no meaningful energy
                 let energy = if between > super::LIMIT {
                     0.0
                 } else {
@@ -121,14 +121,14 @@ impl Held {
         }
     }
 
-    /// Change of the root of the elastic energy from a mesh to a finer one. A kink in what bends, a jump in what stretches, have
-    /// all the energy that a mesh can give them.
+    /// Relative change of the root of the elastic energy between a mesh and a finer one. For a kink in bending or a jump in stretch this
+    /// change remains large on any mesh.
     fn energy_left_out(&self, profile: &Profile, cells: usize) -> f64 {
         let [(here, scale), (there, _)] = [cells, FINER * cells].map(|cells| self.energy(profile, cells));
         ratio((there.sqrt() - here.sqrt()).abs(), there.sqrt(), scale)
     }
 
-    /// Elastic energy on a mesh, times 2 over the stiffness, the length being 1, and what round-off counts beside.
+    /// Elastic energy on a mesh, times 2 over the stiffness, for length 1, and the scale of its rounding errors.
     ///
     /// ```text
     /// φ = Δu/h    stretch  Σ h φ²    bending  Σ h_i κ_i²,  κ_i = Δφ/h,  κ_0 = (φ_{1/2} - φ_0)/(h/2) where the slope is given
@@ -153,8 +153,8 @@ impl Held {
     }
 }
 
-/// Largest distance of a function from the lines through its values at the nodes, over its largest distance from the line
-/// through its ends: moving and turning the beam as a whole costs no mesh anything.
+/// Largest distance of a function from the lines through its nodal values, over its largest distance from the line through its ends. A
+/// rigid motion of the beam thus has no error.
 fn of_lines(profile: &Profile, cells: usize) -> f64 {
     let integrals = Integrals::of(profile);
     let line = |a: f64, b: f64, x: f64| {
@@ -173,8 +173,8 @@ fn of_lines(profile: &Profile, cells: usize) -> f64 {
     ratio(lost, whole, largest)
 }
 
-/// What a mesh does to the root of the kinetic energy: by what lies between the velocity v and its lines w on the mesh, and by lumping
-/// the mass of these, one beside the other, for they may have opposite signs by chance:
+/// Relative mesh error of the root of the kinetic energy: by the difference of the velocity v and its lines w on the mesh, and by lumping
+/// their mass. Both are added, because opposite signs would be accidental:
 ///
 /// ```text
 /// 1 - (1 - ∫(v - w)²/∫v²)^(1/2) + |(Σ h_i w_i²)^(1/2) - (∫w²)^(1/2)|/(∫v²)^(1/2)

@@ -1,11 +1,11 @@
-//! How the ends of a beam at rest share what acts on it.
+//! Distribution of static loads to the ends of a beam.
 
-/// `M` or `N` over a part of a cell: at both ends, and its mean.
+/// `M` or `N` over part of a cell: at both ends, and the mean.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Part {
     pub a: f64,
     pub b: f64,
-    /// Number of the cell.
+    /// Index of the cell.
     pub cell: usize,
     pub from: f64,
     pub mean: f64,
@@ -17,7 +17,7 @@ impl Part {
         (self.b - self.a) * self.mean
     }
 
-    /// `∫ M²` of the parabola through both ends that has the mean.
+    /// `∫ M²` of the parabola through both end values with the given mean.
     pub fn square(&self) -> f64 {
         let middle = self.middle();
         let ends = 2.0 * (self.from * self.from + self.to * self.to) - self.from * self.to;
@@ -35,25 +35,25 @@ impl Part {
     }
 }
 
-/// What may be added to the moments of a beam that the root alone holds, its length being 1.
+/// Functions that may be added to the moments of a cantilever held at the root, for length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Function {
-    /// A moment at the tip; or a normal force.
+    /// A moment at the tip, or a normal force.
     Constant,
     /// A force at the tip.
     Line,
-    /// Inertia of a beam that moves across.
+    /// Inertia of a beam in transverse motion.
     Moving,
-    /// Inertia of a beam that turns about its root.
+    /// Inertia of a beam that rotates about its root.
     TurningAboutRoot,
-    /// Inertia of a beam that turns about its tip.
+    /// Inertia of a beam that rotates about its tip.
     TurningAboutTip,
-    /// Inertia of a beam that moves along.
+    /// Inertia of a beam in axial motion.
     Along,
 }
 
 impl Function {
-    /// `M`, with `M'' = 1, x, 1 - x` for what moves across.
+    /// `M`, with `M'' = 1, x, 1 - x` for transverse motions.
     fn value(self, x: f64) -> f64 {
         let y = 1.0 - x;
         match self {
@@ -80,8 +80,9 @@ impl Function {
     }
 }
 
-/// Adds to the moments (or normal forces) of a beam that the root alone holds what its ends make of them. What an end does not hold is
-/// zero there; the beam moves as a whole where nothing keeps it from it; the rest is what makes `∫ M²` least (Castigliano).
+/// Adds the effect of the end conditions to the moments (or normal forces) of a cantilever held at the root. Force and moment are zero
+/// where an end is not held. The beam accelerates as a rigid body if nothing holds it. The remaining unknowns minimize `∫ M²`
+/// (Castigliano).
 pub(super) fn hold(held: &[[bool; 3]; 2], bends: bool, shear: f64, parts: &mut [Part]) {
     let (Some(first), Some(last)) = (parts.first(), parts.last()) else {
         return;
@@ -161,7 +162,7 @@ pub(super) fn hold(held: &[[bool; 3]; 2], bends: bool, shear: f64, parts: &mut [
     }
 }
 
-/// Solves a few equations, the right side last in each row; what they leave open is 0.
+/// Solves a small linear system with the right-hand side last in each row; undetermined unknowns are 0.
 fn solved(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     let mut pivots = vec![];

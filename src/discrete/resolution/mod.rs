@@ -1,9 +1,8 @@
-//! What a mesh does not see of loads and of the start.
+//! Resolution of loads and initial values by the mesh.
 //!
-//! Loads reach the mesh with the force and the moment that they have, so that M is right at nodes; how it goes between two nodes is
-//! left out. Each shape is judged by what that does to the beam: a narrow load far from what holds the beam is nothing but its force,
-//! a wave shorter than a cell is all bending between the nodes. What a beam begins with is judged by its energy, and by what becomes of
-//! its short waves while they run.
+//! Loads on the mesh have their exact force and moment, so that M is exact at nodes; its variation between two nodes is lost. Each shape
+//! is judged by its effect on the beam. A narrow load far from supports acts only by its force. A wave shorter than a cell only causes
+//! bending between the nodes. Initial values are judged by their energy, and by the phase errors of their short waves during a run.
 
 mod begun;
 mod held;
@@ -24,53 +23,53 @@ use begun::Begun;
 pub use ports::JumpIntoBladder;
 use statics::Shape;
 
-/// Share of a shape's effect beyond which leaving it out is told.
+/// Relative mesh error of a shape's effect above which there is a warning.
 pub const LIMIT: f64 = 0.05;
 
-/// Cells in a segment, or in a bladder, up to which a mesh that resolves is looked for.
+/// Largest number of cells per segment, or per bladder, in the search for a sufficient mesh.
 const FINEST: usize = 1024;
 
-/// How much of one shape the mesh leaves out.
+/// Mesh error of one shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Where it stands in the case; of several loads that act together, of the first.
+    /// JSON pointer in the case; that of the first load if several act together.
     pub pointer: String,
-    /// What is left out, in words.
+    /// Description of the lost quantity.
     pub what: &'static str,
-    /// The share of it that is left out.
+    /// Relative mesh error.
     pub left_out: f64,
-    /// Cells in a segment, or in a bladder, that leave out less than [`LIMIT`]; nothing where no mesh up to the finest does.
+    /// Number of cells per segment, or per bladder, with an error below [`LIMIT`]; none if even the finest mesh exceeds it.
     pub wanted: Option<usize>,
-    /// Setting of the mesh that decides.
+    /// Mesh setting that determines the error.
     pub setting: &'static str,
-    /// Whether a state at rest leaves it out too; otherwise it belongs to what changes in time.
+    /// True if the error also affects a state at rest; false if it affects only changes in time.
     pub at_rest: bool,
 }
 
-/// What so many cells leave out of one shape.
+/// Mesh error of one shape for a given number of cells.
 pub(super) struct LeftOut {
-    /// The share of it.
+    /// Relative mesh error.
     pub share: f64,
-    /// In words.
+    /// Description of the lost quantity.
     pub what: &'static str,
-    /// As [`Finding::at_rest`].
+    /// Same as [`Finding::at_rest`].
     pub at_rest: bool,
 }
 
 impl From<(f64, &'static str)> for LeftOut {
-    /// Of a shape that a state at rest has too.
+    /// For a shape that also exists in a state at rest.
     fn from((share, what): (f64, &'static str)) -> Self {
         let at_rest = true;
         Self { share, what, at_rest }
     }
 }
 
-/// Everything that the mesh of a system leaves out of the shapes of its case, by more than [`LIMIT`] or not.
+/// Mesh errors of all shapes of a case, above or below [`LIMIT`].
 pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
     of_beam_and_bladders(case, system, true)
 }
 
-/// What is left out from the beginning, or also what becomes of it later.
+/// Mesh errors at the start, and, if `later`, also those during the motion.
 fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Finding> {
     let (segments, cells) = (system.mesh.segments, system.mesh.cells_per_segment);
     let along = "/mesh/cells_per_segment";
@@ -109,21 +108,22 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Findin
     all
 }
 
-/// Ports through which the largest flow grows without limit as the mesh is refined: their pressure jumps where the fluid has no inertia.
+/// Ports whose largest flow grows without limit as the mesh is refined: their pressure jumps, and the fluid has no inertia.
 pub fn jumps_into_bladders(case: &Case, model: &Model) -> Vec<JumpIntoBladder> {
     let diffuses = model.effects.has(Effect::FlowAlongBladders) && !model.effects.has(Effect::BladderInertia);
     let wet = model.wet.as_ref().filter(|_| diffuses);
     wet.map(|wet| ports::jumps_into_bladders(case, wet)).unwrap_or_default()
 }
 
-/// What the mesh leaves out by more than [`LIMIT`].
+/// Mesh errors above [`LIMIT`].
 pub fn unresolved(case: &Case, system: &System) -> Vec<Finding> {
     let mut all = findings(case, system);
     all.retain(|finding| finding.left_out > LIMIT);
     all
 }
 
-/// Cells that resolve every shape as it is given, in a segment and in a bladder; those of the case where they do, or where none do.
+/// Numbers of cells per segment and per bladder that resolve every shape as given; those of the case if they suffice, or if no number
+/// does.
 pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
     let all = of_beam_and_bladders(case, system, false);
     ["/mesh/cells_per_segment", "/mesh/cells_per_bladder"].map(|setting| {
@@ -132,20 +132,20 @@ pub fn cells_that_resolve(case: &Case, system: &System) -> [usize; 2] {
     })
 }
 
-/// A warning for every shape that is not resolved.
+/// A warning for every unresolved shape.
 pub fn warnings(case: &Case, system: &System) -> Vec<String> {
-    told(unresolved(case, system))
+    warnings_of(unresolved(case, system))
 }
 
-/// A warning for every shape that is not resolved and that a state at rest has too.
+/// A warning for every unresolved shape that also exists in a state at rest.
 pub fn warnings_at_rest(case: &Case, system: &System) -> Vec<String> {
     let mut all = unresolved(case, system);
     all.retain(|finding| finding.at_rest);
-    told(all)
+    warnings_of(all)
 }
 
-fn told(findings: Vec<Finding>) -> Vec<String> {
-    let told = |finding: Finding| {
+fn warnings_of(findings: Vec<Finding>) -> Vec<String> {
+    let warning = |finding: Finding| {
         let advice = match finding.wanted {
             Some(cells) => format!("{cells} in {} resolve it", finding.setting),
             None => format!("{FINEST} in {} would not resolve it", finding.setting),
@@ -157,7 +157,7 @@ fn told(findings: Vec<Finding>) -> Vec<String> {
             100.0 * finding.left_out.min(9.99)
         ))
     };
-    findings.into_iter().map(told).collect()
+    findings.into_iter().map(warning).collect()
 }
 
 fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl Fn(usize) -> LeftOut) -> Finding {
@@ -181,13 +181,13 @@ fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl 
     }
 }
 
-/// Loads along the beam that take part: those of one time function together, for they act together.
+/// Active loads along the beam, combined if they have a common time function.
 fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
     let mut groups: Vec<(Option<&Signal>, Shape)> = vec![];
-    // what bends at rest turns every cell exactly as far as it should
+    // the rotation of every cell by rest curvature is exact
     for (k, written) in case.loads.iter().enumerate().filter(|(_, load)| !load.is_rest()) {
         let signal = written.distributed().map(|(_, load)| &load.signal);
-        // Loads that never change act together whatever their values.
+        // Constant loads act together, whatever their values.
         let (signal, constant) = match signal {
             Some(Signal::Constant(value)) => (None, *value),
             signal => (signal, 1.0),
@@ -211,7 +211,7 @@ fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
         .collect()
 }
 
-/// What taking means over cells changes of a pressure: of the root of its mean square, or of its largest value, whichever is more.
+/// Relative error of a pressure by averaging over cells: that of its root mean square, or of its largest value, whichever is larger.
 fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
     let means = shapes::in_cells(profile, cells);
     let square = change(means.iter().map(|p| p * p).sum::<f64>() / cells as f64, profile);
@@ -225,14 +225,14 @@ fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
     }
 }
 
-/// Change of a root of a mean square.
+/// Relative error of a root mean square.
 fn change(on_mesh: f64, profile: &Profile) -> f64 {
     let square = Profile::Product(vec![profile.clone(), profile.clone()]);
     let exact = Integrals::of(&square).moments(0.0, 1.0)[0].max(0.0).sqrt();
     ratio((on_mesh.sqrt() - exact).abs(), exact, exact)
 }
 
-/// A share of something that may vanish to round-off.
+/// Ratio to a quantity that may vanish up to rounding errors.
 fn ratio(part: f64, whole: f64, scale: f64) -> f64 {
     let floor = 1e-12 * scale;
     if whole <= floor { 0.0 } else { part / whole }
@@ -243,7 +243,8 @@ mod tests {
     use super::*;
     use crate::functions::signals::Polynomial;
 
-    /// Goal: a pressure that is largest between two cells: its root mean square is off by 9 %, its largest value by a third.
+    /// Goal: for a pressure with its maximum between two cells, the error of the root mean square is 9 %, that of the largest value a
+    /// third.
     #[test]
     fn largest_values_between_cells_are_missed() {
         let hill = Profile::Polynomial(Polynomial {

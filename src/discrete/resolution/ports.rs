@@ -1,4 +1,4 @@
-//! Pressures and flows of ports that change faster than they get through a cell of the bladder behind them, and pressures that fall along
+//! Resolution of port pressures and flows: changes faster than diffusion through a cell of the adjacent bladder, and pressure drops along
 //! such a cell.
 
 use std::cmp::Reverse;
@@ -12,36 +12,37 @@ use crate::functions::signals::{Clock, Signal};
 use crate::model::network::{Feed, LinkKind, Node, PressurePort, Source};
 use crate::model::{Model, Storage, Wet, characteristic};
 
-/// Part of the depth that a wave gets into a bladder which half a cell of that depth leaves out; measured with 1 to 32 cells.
+/// Mesh error relative to the penetration depth of a wave in a bladder, for half a cell of that depth; measured with 1 to 32 cells.
 const LEFT_OUT: f64 = 1.0 / 3.0;
-/// A jump makes the beam ring along; the overshoot of the pressure has this multiple of the first frequency, measured.
+/// Frequency of the pressure overshoot after a jump, which excites axial vibrations of the beam, relative to the first
+/// axial frequency; measured.
 const RUNG: f64 = 3.0;
-/// A change is like a jump where it takes less than this angle of the first vibration along.
+/// Phase angle of the first axial vibration below which a change acts like a jump.
 const SUDDEN: f64 = 1.5;
-/// Length of a bladder over the depth of that ringing from which on the fluid damps it.
+/// Ratio of bladder length to penetration depth of that vibration above which the fluid damps it.
 const DAMPED: f64 = 2.0;
-/// What comes back to less than this part of its largest value is a pulse.
+/// A signal that returns below this fraction of its largest value is a pulse.
 const BACK: f64 = 0.5;
 
-/// What a port or a pump does to the bladders behind it.
+/// Effect of a port or a pump on the adjacent bladders.
 pub struct Port {
     pointer: String,
-    /// Length of a bladder over the depth that what goes to and fro gets into one; 0: nothing does.
+    /// Ratio of bladder length to the penetration depth of an oscillating signal; 0 without oscillation.
     depths: f64,
-    /// Of a flow through to another port, what its pressure falls by along the bladder behind this one, over the largest pressure.
+    /// Pressure drop along the adjacent bladder by a flow to another port, relative to the largest pressure.
     falls: f64,
-    /// Of a pressure that changes and stays, half a bladder over the depth that the change gets into it by the end of the run.
+    /// For a pressure that changes and stays: half the bladder length over the penetration depth of the change at the end of the run.
     lag: f64,
 }
 
 impl Port {
-    /// Where it stands in the case.
+    /// JSON pointer in the case.
     pub fn pointer(&self) -> String {
         self.pointer.clone()
     }
 
-    /// Share of the pressure behind the port that so many cells along a bladder leave out, and in words what that is. A flow through has
-    /// its largest pressure in the middle of the first cell, half a cell from the port.
+    /// Relative error of the pressure behind the port for a number of cells along a bladder, and its description. For a flow to another
+    /// port, the largest pressure on the mesh is that in the middle of the first cell, half a cell from the port.
     pub(super) fn left_out(&self, cells: usize) -> LeftOut {
         let swings = (LEFT_OUT * self.depths / cells as f64).min(1.0);
         let flows = 0.5 * self.falls / cells as f64;
@@ -61,15 +62,15 @@ impl Port {
     }
 }
 
-/// Of every port and of every pump at a bladder, what its pressure or flow does. Where that goes to and fro, the depth in a bladder is
+/// Effects of all ports, and of pumps and turbines at bladders. The penetration depth of an oscillation in a bladder is
 ///
 /// ```text
 /// a_p dp/dt = (q1b/μ) d²p/ds²     δ = (q1b/(μ a_p ω))^(1/2),   ω of its highest tone, its shortest time, or of
 ///                                                            the beam that a jump makes ring
 /// ```
 ///
-/// Where it differs from another port's, a bladder's pressure falls by `|p - p'| r/R`, r the resistance of a bladder, R that of the easiest
-/// way to the other one.
+/// If the pressure differs from that of another port, it drops by `|p - p'| r/R` along a bladder. r is the resistance of a bladder, R
+/// that of the easiest path to the other port.
 pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     let end = case.time.end_s;
     let network = &wet.network;
@@ -82,7 +83,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
             begins || time.is_some() || signal.first_jump(end).is_some()
         };
         let rung = ringing.filter(sudden).map(|first| RUNG * first);
-        // fluid that gets in no further than that does not make the beam ring
+        // fluid motion that does not penetrate further does not excite the beam
         let rung = rung.filter(|omega| in_depths(*omega) < DAMPED);
         let tones = fastest(signal, end).into_iter().chain(rung);
         tones.reduce(f64::max).map_or(0.0, in_depths)
@@ -131,7 +132,8 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
         .filter(|(_, at_bladder)| *at_bladder);
     let turbines = turbines.map(|(turbine, _)| Port {
         pointer: format!("the turbine \"{}\"", turbine.name),
-        // little of a pressure falls in a bladder before a turbine of much more resistance; a half is measured
+        // only a small part of the pressure drop is in a bladder before a turbine of much higher resistance; the factor
+        // 0.5 is measured
         depths: 0.5 * tone * bladder / (bladder + 1.0 / turbine.conductance),
         falls: 0.0,
         lag: 0.0,
@@ -139,20 +141,21 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     ports.chain(pumps).chain(turbines).collect()
 }
 
-/// True if a port has another pressure at the start than the fluid behind it.
+/// True if the pressure of a port at the start differs from that of the fluid behind it.
 fn begins_with_jump(case: &Case, signal: &Signal) -> bool {
     let within = 0.5 * signal.smooth_intervals(case.time.end_s)[0].1;
     let first = signal.jet(Clock { t: 0.0, within }).value;
     case.start.pressures.is_empty() && first != case.held_at_start(signal)
 }
 
-/// Of every port of pressure at a bladder, half the bladder's length over the depth to which its change has come by the end of the run:
+/// For each pressure port at a bladder: half the bladder's length over the penetration depth of its pressure change at the end of the
+/// run:
 ///
 /// ```text
 /// p(x, t)/p_port = erfc(x/(4 D t)^(1/2)) = 1 - x/(π D t)^(1/2) + ...       D = q1b/(μ a_p)
 /// ```
 ///
-/// with t since nine tenths of the change were reached, a quarter of the time before at least.
+/// where t is the time since nine tenths of the change were reached, at least a quarter of the time before.
 fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
     const SAMPLES: usize = 200;
     const REACHED: f64 = 0.9;
@@ -182,7 +185,7 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
     network.ports.iter().zip(open).map(lag).collect()
 }
 
-/// Of every port of pressure, the end of a bladder that it is at, with nothing in between.
+/// For each pressure port: the bladder end to which it is directly connected, if any.
 fn at_open_ends(wet: &Wet) -> Vec<Option<(usize, BladderEnd)>> {
     let network = &wet.network;
     let mut open = vec![None; network.ports.len()];
@@ -197,24 +200,25 @@ fn at_open_ends(wet: &Wet) -> Vec<Option<(usize, BladderEnd)>> {
     open
 }
 
-/// A port whose pressure jumps at the open end of a bladder. After a jump by Δp the flow is, as long as the pressure has not come through,
+/// A port whose pressure jumps at the open end of a bladder. After a jump by Δp, until the pressure has penetrated the bladder, the flow
+/// is
 ///
 /// ```text
 /// q(t) = Δp (q1b/μ)/(π D t)^(1/2)       D = q1b/(μ a_p)
 /// ```
 ///
-/// so that there is no largest flow. On a mesh it is `2 Δp q1b/(μ Δs)`.
+/// and therefore unbounded. On a mesh its largest value is `2 Δp q1b/(μ Δs)`.
 pub struct JumpIntoBladder {
-    /// Number of the port among those of pressure.
+    /// Number of the port among the pressure ports.
     pub port: usize,
-    /// Its name.
+    /// Name of the port.
     pub name: String,
     /// Times of the first and the last jump [s].
     pub times: [f64; 2],
 }
 
 impl JumpIntoBladder {
-    /// Of a port at an end of a bladder; none where pressure does not diffuse along the bladder, or does not jump.
+    /// Jump of a port at a bladder end; none if pressure does not diffuse along the bladder, or does not jump.
     fn new(case: &Case, wet: &Wet, port: usize, (bladder, end): (usize, BladderEnd)) -> Option<Self> {
         let PressurePort { name, pressure, .. } = &wet.network.ports[port];
         let begins = match case.start.pressures.is_empty() {
@@ -229,14 +233,14 @@ impl JumpIntoBladder {
     }
 }
 
-/// Every port whose pressure jumps at the open end of a bladder along which pressure diffuses.
+/// All ports whose pressure jumps at the open end of a bladder in which pressure diffuses.
 pub fn jumps_into_bladders(case: &Case, wet: &Wet) -> Vec<JumpIntoBladder> {
     let open = at_open_ends(wet).into_iter().enumerate();
     open.filter_map(|(port, open)| JumpIntoBladder::new(case, wet, port, open?))
         .collect()
 }
 
-/// Pressure that the case gives at the start at an end of a bladder [Pa].
+/// Pressure given by the case at a bladder end at the start [Pa].
 fn given_at_start(case: &Case, wet: &Wet, bladder: usize, end: BladderEnd) -> f64 {
     let own = |label: &i64| bladder_index(*label, wet.per_row) == Some(bladder);
     let given = case
@@ -249,9 +253,9 @@ fn given_at_start(case: &Case, wet: &Wet, bladder: usize, end: BladderEnd) -> f6
     given.map_or(0.0, |one| one.pressure_pa.value(place))
 }
 
-/// Of every port, those of pressure first, the largest fall along the bladder behind it, over the largest pressure: from a port of
-/// pressure `|p - p'| r/R`; from one of flow that goes out at a port of pressure `q r/(q R + p')`, and `2 r/R` where it is taken out as
-/// a flow, as half of what falls between the two is above the mean at least.
+/// Largest pressure drop along the adjacent bladder for each port (pressure ports first), relative to the largest pressure. For a
+/// pressure port it is `|p - p'| r/R`. For a flow to a pressure port it is `q r/(q R + p')`. For a flow to another flow port it is
+/// `2 r/R`, because at least half of the drop between both is above the mean.
 fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     let network = &wet.network;
     let bladder = wet.bladder_length / network.bladder_mobility;
@@ -268,7 +272,7 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
         others
             .filter_map(|&(j, way)| Some((network.ports.get(j)?, way)))
             .filter(|(other, _)| other.pressure != port.pressure)
-            // a flow has its largest pressure where it comes from
+            // the largest pressure of a flow is at its source
             .filter(|(other, _)| size(&other.pressure) <= size(&port.pressure))
             .map(|(other, way)| difference(&port.pressure, &other.pressure) / largest * bladder / way)
             .fold(0.0, f64::max)
@@ -288,7 +292,7 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
     pressures.chain(flows).collect()
 }
 
-/// Whether one flow comes in while the other may go out; of volumes, of whose rates there are no bounds, always.
+/// True if one flow may enter while the other one leaves; always true for volumes, whose rates are unbounded.
 fn against(a: &Feed, b: &Feed, end: f64) -> bool {
     let (Feed::Flow(a), Feed::Flow(b)) = (a, b) else {
         return true;
@@ -297,7 +301,7 @@ fn against(a: &Feed, b: &Feed, end: f64) -> bool {
     (a.high > 0.0 && b.low < 0.0) || (a.low < 0.0 && b.high > 0.0)
 }
 
-/// Of every port, those of pressure first, the ports to which a way leads through a bladder, with the resistance of the easiest.
+/// For each port (pressure ports first): the ports connected to it via a bladder, with the resistance of the easiest path.
 fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<(usize, f64)>> {
     let network = &wet.network;
     let (ports, bladders) = (network.ports.len(), network.component_of_bladder.len());
@@ -326,13 +330,13 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<(usize, f64)>> {
     for (number, &place) in ends.iter().enumerate() {
         ends_at.entry(place).or_default().push(number);
     }
-    // what it reaches is often little of a large network
+    // often only a small part of a large network is reachable
     let from = |start: usize| {
         let mut far = HashMap::from([(start, 0.0_f64)]);
-        // the nearest place first (Dijkstra); what is not negative is in order of its bits
+        // the nearest place first (Dijkstra); the bits of nonnegative numbers have the same order as the numbers
         let mut next = BinaryHeap::from([Reverse((0, start))]);
         while let Some(Reverse((bits, a))) = next.pop() {
-            // a way does not lead through another port, whose pressure is given
+            // a path does not lead through another port, whose pressure is given
             let here = f64::from_bits(bits);
             if here > far[&a] || (a < ports && a != start) {
                 continue;
@@ -361,7 +365,8 @@ fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<(usize, f64)>> {
         .collect()
 }
 
-/// Angular frequency of what goes to and fro [1/s], of a pulse one over its time; none of what comes and stays.
+/// Angular frequency of an oscillating signal [1/s]; for a pulse the inverse of its duration; none for a change that
+/// stays.
 fn fastest(signal: &Signal, end: f64) -> Option<f64> {
     let tone = signal.highest_tone_hz().map(|f| TAU * f);
     let back = signal.value(end).abs() < BACK * signal.largest(end).value;

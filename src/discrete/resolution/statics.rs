@@ -1,4 +1,4 @@
-//! What a load does to a beam at rest, and what of it a mesh leaves out.
+//! Static response of a beam to a load, and its mesh error.
 
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Integrals;
@@ -9,19 +9,19 @@ use super::held::{self, Part};
 use super::ratio;
 use crate::discrete::shapes;
 
-/// Parts of a cell in which its moments are looked at.
+/// Number of parts of a cell in which its moments are evaluated.
 const PARTS: f64 = 8.0;
 
-/// Such parts at most, however many waves there are.
+/// Maximum number of such parts, whatever the number of waves.
 const MOST: f64 = 64.0;
 
-/// Loads of one time function that bend the beam, stretch it, or turn it where it is bent.
+/// Loads with a common time function that bend the beam, stretch it, or rotate it if it is bent.
 pub(super) struct Shape {
-    /// Of the first load.
+    /// JSON pointer of the first load.
     pub pointer: String,
-    /// With the factor of each, a length of the beam being 1: forces per length times `l_s`, moments per length as they are.
+    /// Loads with their factors, for a beam of length 1: forces per length times `l_s`, moments per length unchanged.
     loads: Vec<(Load, f64)>,
-    /// Whether u1, slope and u3 are held at root and tip.
+    /// True for given u1, slope and u3 at root and tip.
     held: [[bool; 3]; 2],
 }
 
@@ -47,12 +47,12 @@ impl Shape {
         }
     }
 
-    /// Whether it acts across.
+    /// True if the loads act transversely.
     pub fn bends(&self) -> bool {
         self.loads[0].0.kind != LoadKind::ForceZ
     }
 
-    /// What a mesh leaves out of it, in words.
+    /// Description of the quantity lost on a mesh.
     pub fn what(&self) -> &'static str {
         if self.bends() {
             "the bending moment of this load between the nodes"
@@ -61,7 +61,8 @@ impl Shape {
         }
     }
 
-    /// Whether both do the same kind of thing to a straight beam. A first moment across turns only what is bent.
+    /// True if both have the same kind of effect on a straight beam. A transverse first moment acts only on a bent
+    /// beam.
     pub fn acts_with(&self, other: &Self) -> bool {
         let kind = |shape: &Self| match shape.loads[0].0.kind {
             LoadKind::ForceX | LoadKind::MomentZ | LoadKind::RestCurvature => 0,
@@ -75,8 +76,8 @@ impl Shape {
         self.loads.extend(other.loads);
     }
 
-    /// Share of the moments or normal forces of a beam at rest that a mesh of so many cells leaves out: the largest change of an angle,
-    /// that is of `∫ M` from the root on, over the largest angle; and the change of the root of the mean square, that is of the energy.
+    /// Relative error of the static moments or normal forces on a mesh. It is the larger of two errors: the largest change of an angle,
+    /// i.e. of `∫ M` from the root, over the largest angle; and the change of the root mean square, i.e. of the energy.
     ///
     /// ```text
     /// on the mesh   ∫_c M = h (M_c + M_{c+1})/2, ∫_c M² = h (M_c² + M_{c+1}²)/2        N_c = mean of N
@@ -107,7 +108,7 @@ impl Shape {
         ratio(most_off, largest, scale).max(ratio((on_mesh - exact).abs(), exact, scale))
     }
 
-    /// M or N of a beam that the root alone holds, the shear force at the root, and the largest load.
+    /// M or N of a cantilever held at the root, its shear force at the root, and the largest load.
     ///
     /// ```text
     /// V' = -p, M'' = p, M' = -c        N' = -p
@@ -156,7 +157,7 @@ impl Shape {
     }
 }
 
-/// Cells, divided at knots and evenly.
+/// Divides cells at knots and evenly.
 fn divided(integrals: &[Integrals], cells: usize) -> Vec<Part> {
     let mut parts = vec![];
     for cell in 0..cells {

@@ -1,4 +1,4 @@
-//! Of how many short waves a shape consists, and what a mesh does to them while they swing.
+//! Short waves in initial values, and their phase errors on a mesh.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -9,35 +9,35 @@ use crate::discrete::straight::{self, Mode};
 use crate::functions::profile::Profile;
 use crate::model::Model;
 
-/// Vibrations into which a shape is taken apart.
+/// Number of modes in the expansion of a shape.
 const MODES: usize = 96;
-/// The first ones, which a run follows and judges by itself.
+/// Number of first modes that are excluded, because a run monitors them itself.
 const FOLLOWED: usize = 4;
-/// Cells on which shape and vibrations are compared, eight a half-wave of the shortest.
+/// Number of cells for the expansion: eight per half-wave of the shortest mode.
 const CELLS: usize = 8 * MODES;
-/// Part of a shape below which a vibration in it is round-off.
+/// Relative amplitude below which a mode is rounding error.
 const NOTHING: f64 = 1e-9;
 
-/// What a shape excites in a straight beam without bladders, and for how long it swings.
+/// Modal content of a shape in a straight beam without bladders, with the duration of its vibrations.
 pub(super) struct Vibrations {
-    /// Wave number times length, and what is in it, as a displacement.
+    /// Wave number times length, and amplitude as a displacement, of each mode.
     content: Vec<(f64, f64)>,
-    /// Whether it bends; or stretches.
+    /// True for bending, false for stretch.
     bends: bool,
     /// Unit of the frequencies: `(EI/m)^(1/2)/l²` or `(EA/m)^(1/2)/l` [1/s].
     unit: f64,
-    /// Of a solid that relaxes.
+    /// Branches of a solid with stress relaxation.
     relaxation: Vec<Branch>,
-    /// Of damping: drag per mass [1/s], and the time of the material [s].
+    /// Damping: drag per mass [1/s], and damping time of the material [s].
     damping: [f64; 2],
     /// End of the run [s].
     end: f64,
-    /// Whether the mesh is of fourth order.
+    /// True if the mesh is of fourth order.
     fourth: bool,
 }
 
 impl Vibrations {
-    /// Of a displacement, or of a velocity, over the length.
+    /// Expands a displacement or a velocity along the beam.
     pub fn new(profile: &Profile, displacement: bool, bends: bool, model: &Model, end: f64, fourth: bool) -> Self {
         let s = &model.section;
         let length = model.length;
@@ -87,15 +87,16 @@ impl Vibrations {
         }
     }
 
-    /// Share of the motion, in the mean square, that so many cells have at another place at the end of the run. The first vibrations
-    /// are not counted. Waves between nodes are slowed down,
+    /// Relative mean square of the motion that is out of place at the end of the run, on a mesh of the given number of cells. The first
+    /// modes are excluded. Waves on a mesh are too slow,
     ///
     /// ```text
     /// stretch  ω_h = ω sin x/x,   bending  ω_h = ω (sin x/x)²,   x = β h/2        lost: 2 sin(δ/2),  δ = (ω - ω_h) t
     /// ```
     ///
-    /// t the run, or the time in which damping takes them; beyond half a cell they are not there at all. A phase beyond half a turn is any.
-    /// Those of fourth order, [E77], are as much faster as their energy is more: by `(1 + 2 sin²x/3)^(1/2)` and `(1 + sin²x/3)^(1/2)`.
+    /// t is the duration of the run, or the decay time. Waves shorter than two cells are lost entirely. A phase error above a quarter
+    /// turn counts as uncorrelated. Waves on a fourth-order mesh, [E77], are faster because of their higher energy: by
+    /// `(1 + 2 sin²x/3)^(1/2)` and `(1 + sin²x/3)^(1/2)`.
     pub fn left_out(&self, cells: usize) -> f64 {
         let (mut lost, mut whole) = (0.0, 0.0);
         for (k, &(beta, amplitude)) in self.content.iter().enumerate() {
@@ -133,7 +134,7 @@ impl Vibrations {
     }
 }
 
-/// `Σ f g` and `Σ g²` over nodes, half at the ends.
+/// `Σ f g` and `Σ g²` over nodes, with half weights at the ends.
 fn products(f: &[f64], g: impl Fn(f64) -> f64) -> [f64; 2] {
     let mut sums = [0.0; 2];
     for (k, value) in f.iter().enumerate() {

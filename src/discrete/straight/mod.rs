@@ -1,4 +1,4 @@
-//! Vibrations of a straight beam without bladders between its ends, in units of its length, mass per length and stiffness.
+//! Modes of a straight beam without bladders, for given end conditions, in units of its length, mass per length and stiffness.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,10 +6,10 @@ use nalgebra::Matrix4;
 
 use crate::case::{ResolvedEnd, Rotation, Translation};
 
-/// Below this exponent a wave that dies away from an end is gone.
+/// Exponent below which an evanescent wave is neglected.
 const GONE: f64 = -40.0;
 
-/// `a cos βx + b sin βx + c e^{-βx} + d e^{-β(1-x)}`, the length being 1.
+/// Mode `a cos βx + b sin βx + c e^{-βx} + d e^{-β(1-x)}` for length 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Mode {
     /// Wave number times length.
@@ -18,7 +18,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Displacement at a share of the length.
+    /// Displacement at a fraction of the length.
     pub fn at(&self, x: f64) -> f64 {
         let [a, b, c, d] = self.factors;
         let (sin, cos) = (self.beta * x).sin_cos();
@@ -34,7 +34,7 @@ impl Mode {
     }
 }
 
-/// Motions of the beam as a whole that its ends let it do, across each other.
+/// Orthogonal rigid motions that the end conditions permit.
 pub fn rigid(ends: &[ResolvedEnd; 2], bends: bool) -> Vec<fn(f64) -> f64> {
     let [root, tip] = [0, 1].map(|end| {
         let end = &ends[end];
@@ -51,7 +51,7 @@ pub fn rigid(ends: &[ResolvedEnd; 2], bends: bool) -> Vec<fn(f64) -> f64> {
     }
 }
 
-/// So many that stretch: waves between ends that are held or let go.
+/// The first `count` axial modes, for held or free ends.
 pub fn axial(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
     let held = [0, 1].map(|end| matches!(ends[end].axial, Translation::Displacement(_)));
     let shift = if held[0] == held[1] { 0.0 } else { FRAC_PI_2 };
@@ -66,7 +66,8 @@ pub fn axial(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
     (1..=count).map(one).collect()
 }
 
-/// So many of Euler's beam; rigid motions left out. Wave numbers are π apart but for the first.
+/// The first `count` modes of an Euler-Bernoulli beam, without rigid motions. Wave numbers differ by about π, except
+/// for the first.
 pub fn bending(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
     let held = [0, 1].map(|end| held_across(&ends[end]));
     let value = |beta: f64| conditions(&held, beta).determinant();
@@ -100,7 +101,7 @@ pub fn bending(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
     modes
 }
 
-/// Whether the displacement across is given at an end, and the slope.
+/// True for a given transverse displacement, and for a given slope, of an end.
 fn held_across(end: &ResolvedEnd) -> [bool; 2] {
     [
         matches!(end.transverse, Translation::Displacement(_)),
@@ -108,7 +109,7 @@ fn held_across(end: &ResolvedEnd) -> [bool; 2] {
     ]
 }
 
-/// `u = 0` or `u''' = 0`, `u' = 0` or `u'' = 0` at both ends, over powers of β.
+/// Conditions `u = 0` or `u''' = 0`, `u' = 0` or `u'' = 0` at both ends, divided by powers of β.
 fn conditions(held: &[[bool; 2]; 2], beta: f64) -> Matrix4<f64> {
     let rows = [0, 1].map(|end| {
         let (sin, cos) = (beta * end as f64).sin_cos();
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
     use crate::case::schema::Case;
 
-    /// Ends by their names.
+    /// Ends from their names.
     pub(super) fn ends(root: &str, tip: &str) -> [ResolvedEnd; 2] {
         let text = format!(
             r#"{{"name": "x", "beam": {{"length_m": 1, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1e9,
@@ -145,8 +146,8 @@ mod tests {
         [case.ends.root.resolve(), case.ends.tip.resolve()]
     }
 
-    /// Source: roots of `cos β cosh β = -1`, `= 1`, of `tan β = tanh β` and of `sin β`. Goal: every vibration is found, none twice, to
-    /// what forty halvings leave.
+    /// Source: roots of `cos β cosh β = -1`, `= 1`, of `tan β = tanh β` and of `sin β`. Goal: every mode is found exactly once, with the
+    /// accuracy of forty bisections.
     #[test]
     fn wave_numbers_are_those_of_the_books() {
         const MODES: usize = 96;

@@ -1,4 +1,4 @@
-//! Values and derivatives of every form of signal over a span of time, by interval arithmetic on the composition.
+//! Enclosures of all signal forms over a time span, by interval arithmetic on the composition.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -68,7 +68,7 @@ impl Bounded for Signal {
     }
 }
 
-/// The first and last crest, trough and zero of `sin(ω t + φ)` in `[from, to]`.
+/// First and last extremum and zero of `sin(ω t + φ)` in `[from, to]`.
 pub fn crests(omega: f64, phase: f64, from: f64, to: f64, visit: &mut dyn FnMut(f64)) {
     for quarter in [0.0, FRAC_PI_2] {
         let first = ((omega * from + phase - quarter) / PI).ceil();
@@ -129,17 +129,17 @@ impl Sine {
     }
 }
 
-/// Hull of what a function does at both ends and at those of the given places that lie inside: its range where they are all at
-/// which a derivative can be extreme.
+/// Hull of a function's values at both ends and at the given interior places. This is its range if the places include
+/// all extrema of its value and derivatives.
 fn hull(at: impl Fn(f64) -> Jet, from: f64, to: f64, extreme: impl IntoIterator<Item = f64>) -> Span {
     let ends = Span::at(at(from)).hull(Span::at(at(to)));
     let inside = extreme.into_iter().filter(|x| from < *x && *x < to);
     inside.fold(ends, |all, x| all.hull(Span::at(at(x))))
 }
 
-/// `ln(2 + sqrt 3)`: where the acceleration of a logistic step is extreme.
+/// `ln(2 + sqrt 3)`: extremum of the acceleration of a logistic step.
 const SIGMOID_ACCELERATION: f64 = 1.316_957_896_924_816_6;
-/// `ln(5 + 2 sqrt 6)`: where its third derivative is.
+/// `ln(5 + 2 sqrt 6)`: extremum of its third derivative.
 const SIGMOID_JERK: f64 = 2.292_431_669_561_178;
 
 impl Sigmoid {
@@ -161,7 +161,8 @@ impl Sigmoid {
     }
 }
 
-/// Where acceleration (first, last) and the other derivatives of a smooth step are extreme: `(1 ± 1/sqrt 3)/2` and a half.
+/// Extrema of the derivatives of a smooth step: of the acceleration (first, last), `(1 ± 1/sqrt 3)/2`, and of the
+/// others, 1/2.
 const STEP_EXTREMES: [f64; 3] = [0.211_324_865_405_187_1, 0.5, 0.788_675_134_594_812_9];
 
 impl Ramp {
@@ -189,7 +190,7 @@ impl Ramp {
 }
 
 impl Polynomial {
-    /// By Taylor's series about the middle.
+    /// Encloses by a Taylor series about the middle.
     pub(super) fn span(&self, from: f64, to: f64) -> Span {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let mut c = self.coefficients.clone();
@@ -219,7 +220,7 @@ impl Polynomial {
 }
 
 impl Table {
-    /// All that it does in `[from, to]`; of one that repeats itself by the parts of a period that this meets.
+    /// Encloses the table in `[from, to]`; a repeated table by the parts of its period inside.
     fn span(&self, from: f64, to: f64) -> Span {
         let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
             return self.curve.span(from, to);
@@ -238,7 +239,7 @@ impl Table {
 }
 
 impl crate::functions::curve::Curve {
-    /// All that the curve does in `[from, to]`, piece by piece.
+    /// Encloses the curve in `[from, to]`, piece by piece.
     pub(super) fn span(&self, from: f64, to: f64) -> Span {
         let knots = self.knots();
         let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else {

@@ -1,29 +1,30 @@
-//! What a signal leaves of free vibration: a bound on how far an oscillator that it acts on is from following it at rest.
+//! Bound of the free vibration excited by a signal: the deviation of an oscillator from its static response.
 //!
 //! ```text
 //! q'' + w² q = w² s,  r = q - s:   r(t) = -∫ s'(τ) cos w(t - τ) dτ,  jumps of s and of the value held before it among s'
 //! ```
-//! For every `w >= ω` and all times `|r|` is at most what this gives, in units of the signal. It is a sum over the tones
+//! The result bounds `|r|` for all `w >= ω` and all times, in units of the signal. It is a sum over the tones
 //! `g E(t) sin(W t + φ)` of the signal:
 //!
-//! - A start apart from what was held leaves `|s(0) - held|`, one at a rate `|s'(0)|/ω`.
-//! - A steady slow tone, `W < 0.4 ω`: `r'' + w² r = g W² sin(W t + φ)` is solved by the forced `g c sin(W t + φ)`,
-//!   `c = W²/(w² - W²)`, and the free vibration that makes it start from nothing: in all `g c (2 + W/w)`.
-//! - A slow tone whose amplitude `E` changes from 0: `s' = g Re[G e^(iWτ)]`, `|G^(k)| <= |E^(k+1)| + W |E^(k)|`, against `cos w(t - τ)`
-//!   leaves frequencies `w ± W`. Integrated by parts `k` times, boundaries and jumps of order `m` are divided by `(w - W)^(m+1)`, the
-//!   integral that is left by `(w - W)^k`; at `τ = t` the two frequencies cancel in first order but for `W/(w² - W²)`. The least of
-//!   `k` = 0 to 3 counts. With `W = 0` this is the bound by total variations of a signal that is no sine.
-//! - A fast tone, `W >= 0.4 ω`, may be in resonance with some `w >= ω`: `g (|E| + ∫ |E'| + W ∫ |E|)`, which grows in time.
+//! - A start away from the value `held` before it contributes `|s(0) - held|`; an initial rate contributes `|s'(0)|/ω`.
+//! - A steady slow tone, `W < 0.4 ω`: `r'' + w² r = g W² sin(W t + φ)` has the forced solution `g c sin(W t + φ)`,
+//!   `c = W²/(w² - W²)`. The free vibration cancels it at the start. Together they are at most `g c (2 + W/w)`.
+//! - A slow tone with an amplitude `E` that changes from 0: `s' = g Re[G e^(iWτ)]`, `|G^(k)| <= |E^(k+1)| + W |E^(k)|`.
+//!   The product with `cos w(t - τ)` has the frequencies `w ± W`. After `k` integrations by parts, boundary terms and
+//!   jumps of order `m` are divided by `(w - W)^(m+1)`, the remaining integral by `(w - W)^k`. At `τ = t` the two
+//!   frequencies cancel to first order except for `W/(w² - W²)`. The result is the smallest bound of `k` = 0 to 3. For
+//!   `W = 0` it is the bound by total variations of a signal without sines.
+//! - A fast tone, `W >= 0.4 ω`, may resonate with some `w >= ω`: `g (|E| + ∫ |E'| + W ∫ |E|)`, which grows in time.
 
 use super::interval::Bounded;
 use super::tones::{Envelope, Factor, Tone};
 use super::variation::Variation;
 use crate::functions::signals::{RampShape, Signal};
 
-/// Tones at this part of a frequency and above may be in resonance with it.
+/// Ratio of a tone's frequency to `ω` above which resonance is possible.
 pub const NEAR: f64 = 0.4;
 
-/// A signal ready to be asked at several frequencies.
+/// A signal prepared for evaluation at several frequencies.
 #[derive(Clone, Debug)]
 pub struct Excitation {
     /// `|s(0) - held|`, `|s'(0)|` and `|s''(0)|`.
@@ -41,7 +42,7 @@ struct Part {
 }
 
 impl Excitation {
-    /// Of a signal until `end` [s], with the value `held` before.
+    /// Excitation by a signal until `end` [s], with the value `held` before the start.
     pub fn of(signal: &Signal, end: f64, held: f64) -> Self {
         let mut breaks = vec![];
         signal.breaks(end, &mut breaks);
@@ -68,19 +69,19 @@ impl Excitation {
         }
     }
 
-    /// The bound for every angular frequency from `omega` [1/s] on, in units of the signal.
+    /// Upper bound for all angular frequencies from `omega` [1/s], in units of the signal.
     pub fn above(&self, omega: f64) -> f64 {
         let tones: f64 = self.tones.iter().map(|part| part.above(omega)).sum();
         self.start[0] + self.start[1] / omega + tones
     }
 
-    /// The same bound for an oscillator that the acceleration acts on, in units of the signal over s².
+    /// Upper bound for an oscillator driven by the acceleration, in units of the signal over s².
     pub fn waves_above(&self, omega: f64) -> f64 {
         let tones: f64 = self.tones.iter().map(|part| part.waves_above(omega)).sum();
         self.start[1] * omega + self.start[2] + tones
     }
 
-    /// Whether a tone may be in resonance with a frequency from `omega` [1/s] on.
+    /// True if a tone may resonate with a frequency from `omega` [1/s].
     pub fn resonates(&self, omega: f64) -> bool {
         self.tones
             .iter()
@@ -110,7 +111,8 @@ impl Part {
         self.gain * (self.steady(w) + changing.above(self.omega, w))
     }
 
-    /// `(E e^(iWt))'' = (E'' + 2 i W E' - W² E) e^(iWt)`: the last as above, the others by what is known of `E''` and `E'`.
+    /// `(E e^(iWt))'' = (E'' + 2 i W E' - W² E) e^(iWt)`: the last term as above, the others by bounds of `E''` and
+    /// `E'`.
     fn waves_above(&self, w: f64) -> f64 {
         let (v, big) = (&self.envelope, self.omega);
         let [i0, i1, i2, i3] = v.integral;
@@ -133,29 +135,29 @@ impl Part {
         kicks + big * big * self.above(w) + self.gain * (begins + rest.above(big, w))
     }
 
-    /// Of a slow tone as strong as it is at the start.
+    /// Contribution of a slow tone with the constant amplitude at its start.
     fn steady(&self, w: f64) -> f64 {
         let big = self.omega;
         big * big / (w * w - big * big) * (2.0 + big / w) * self.envelope.start[0]
     }
 }
 
-/// An amplitude that begins with nothing.
+/// An amplitude that starts from zero.
 struct Changing {
-    /// Largest magnitudes, from that of the value on.
+    /// Largest magnitudes of value and derivatives.
     size: [f64; 4],
-    /// Magnitudes at the start, from that of the rate on.
+    /// Magnitudes of the derivatives at the start.
     start: [f64; 3],
-    /// Sums of jumps, from those of the value on.
+    /// Sums of the jumps of value and derivatives.
     jumps: [f64; 4],
-    /// `∫ |E^(k)|` from k = 1 on.
+    /// `∫ |E^(k)|`, k = 1 to 4.
     integral: [f64; 4],
     /// `∫ |E|`.
     around: f64,
 }
 
 impl Changing {
-    /// What it leaves at `w` when it swings with the frequency `big`.
+    /// Bound at `w` for a tone of frequency `big`.
     fn above(&self, big: f64, w: f64) -> f64 {
         let ([e0, e1, e2, e3], [s1, s2, s3]) = (self.size, self.start);
         let ([j0, j1, j2, j3], [i1, i2, i3, i4]) = (self.jumps, self.integral);
@@ -178,7 +180,7 @@ impl Changing {
     }
 }
 
-/// `∫ |E''''| dt` between jumps, where it is known.
+/// `∫ |E''''| dt` between jumps; infinite if unknown.
 fn fourth(envelope: &Envelope) -> f64 {
     match envelope.0.as_slice() {
         [] => 0.0,
@@ -188,7 +190,8 @@ fn fourth(envelope: &Envelope) -> f64 {
     }
 }
 
-/// A smooth step's third derivative goes from 60 to -30 and back, that of a logistic step by 5/12 in all.
+/// The third derivative of a smooth step varies from 60 to -30 and back; that of a logistic step has a total variation
+/// of 5/12.
 fn fourth_of(signal: &Signal) -> f64 {
     match signal {
         Signal::Constant(_) | Signal::Table(_) => 0.0,

@@ -1,29 +1,29 @@
-//! Intervals of numbers, and of values with their derivatives, with the rules of calculus.
+//! Intervals of numbers, and of values with derivatives, with the rules of calculus.
 
 use crate::functions::jet::Jet;
 
-/// All numbers from `low` to `high`.
+/// Closed interval from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// Least.
+    /// Lower end.
     pub low: f64,
-    /// Largest.
+    /// Upper end.
     pub high: f64,
 }
 
 impl Interval {
-    /// Holds nothing.
+    /// Empty interval.
     pub const EMPTY: Self = Self {
         low: f64::INFINITY,
         high: f64::NEG_INFINITY,
     };
 
-    /// One number.
+    /// Interval of one number.
     pub fn point(x: f64) -> Self {
         Self::between(x, x)
     }
 
-    /// Between two numbers, in any order; everything where one of them is none.
+    /// Interval between two numbers in any order; the whole line if one is NaN.
     pub fn between(a: f64, b: f64) -> Self {
         if a.is_nan() || b.is_nan() {
             return Self {
@@ -42,12 +42,12 @@ impl Interval {
         self.high.max(-self.low)
     }
 
-    /// Least magnitude.
+    /// Smallest magnitude.
     pub fn least(self) -> f64 {
         self.low.max(-self.high).max(0.0)
     }
 
-    /// Least interval that holds both.
+    /// Smallest interval that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self {
             low: self.low.min(other.low),
@@ -55,7 +55,7 @@ impl Interval {
         }
     }
 
-    /// What both hold of a number that both hold; round-off may part them, then the other counts.
+    /// Intersection of two enclosures of the same number; `other` if rounding errors make it empty.
     pub fn narrowed(self, other: Self) -> Self {
         let both = Self {
             low: self.low.max(other.low),
@@ -64,12 +64,12 @@ impl Interval {
         if both.low <= both.high { both } else { other }
     }
 
-    /// `factor` times this.
+    /// Interval times `factor`.
     pub fn scaled(self, factor: f64) -> Self {
         Self::between(factor * self.low, factor * self.high)
     }
 
-    /// Wider by a part of its size, which covers round-off.
+    /// Interval widened by a fraction of its size, to cover rounding errors.
     pub fn widened(self, part: f64) -> Self {
         let more = part * self.size();
         Self {
@@ -83,7 +83,7 @@ impl std::ops::Add for Interval {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         let (low, high) = (self.low + other.low, self.high + other.high);
-        // infinities that meet
+        // sum of opposite infinities
         Self {
             low: if low.is_nan() { f64::NEG_INFINITY } else { low },
             high: if high.is_nan() { f64::INFINITY } else { high },
@@ -99,37 +99,38 @@ impl std::ops::Mul for Interval {
     }
 }
 
-/// Value and first three derivatives, each somewhere in its interval.
+/// Enclosures of a value and its first three derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span(pub [Interval; 4]);
 
 impl Span {
-    /// Holds nothing.
+    /// Empty span.
     pub const EMPTY: Self = Self([Interval::EMPTY; 4]);
 
-    /// Of a sum.
+    /// Span of a sum.
     pub fn sum(terms: impl Iterator<Item = Self>) -> Self {
         terms.reduce(|a, b| a + b).unwrap_or(Self::at(Jet::default()))
     }
 
-    /// Of a product.
+    /// Span of a product.
     pub fn product(factors: impl Iterator<Item = Self>) -> Self {
         factors.reduce(|a, b| a * b).unwrap_or(Self::at(Jet::constant(1.0)))
     }
 
-    /// One instant.
+    /// Span of one instant.
     pub fn at(jet: Jet) -> Self {
         Self([jet.value, jet.rate, jet.acceleration, jet.jerk].map(Interval::point))
     }
 
-    /// Least span that holds both.
+    /// Smallest span that contains both.
     pub fn hull(self, other: Self) -> Self {
         Self(std::array::from_fn(|k| self.0[k].hull(other.0[k])))
     }
 
-    /// Narrower by what the ends and the middle of the piece `[a, b]` of a function tell, whose second derivative is continuous
-    /// there: a derivative that keeps its sign leaves the ends, else Taylor's formula about the middle.
-    pub fn told(self, [first, middle, last]: [Jet; 3], half: f64) -> Self {
+    /// Narrows the span of a piece `[a, b]` by the function at its ends and middle; the second derivative must be
+    /// continuous there. A quantity with a derivative of constant sign is between its end values; others use Taylor's
+    /// formula about the middle.
+    pub fn narrowed_by(self, [first, middle, last]: [Jet; 3], half: f64) -> Self {
         let [value, rate, acceleration, jerk] = self.0;
         let around = Interval { low: -half, high: half };
         let bend = Interval {
@@ -163,7 +164,7 @@ impl std::ops::Add for Span {
     }
 }
 
-/// Leibniz' rule, as for [`Jet`].
+/// Leibniz rule, as for [`Jet`].
 impl std::ops::Mul for Span {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
@@ -177,25 +178,25 @@ impl std::ops::Mul for Span {
     }
 }
 
-/// A function of one variable that can be bounded: piecewise smooth, its pieces parted by breaks.
+/// A piecewise smooth function of one variable with enclosures. Breaks separate its pieces.
 pub trait Bounded {
-    /// Values and derivatives at `x`, on the branch that holds at `within`.
+    /// Value and derivatives at `x`, on the branch that contains `within`.
     fn exactly(&self, x: f64, within: f64) -> Jet;
 
-    /// All values and derivatives on every branch that `[from, to]` touches inside.
+    /// Encloses values and derivatives on every branch inside `[from, to]`.
     fn span(&self, from: f64, to: f64) -> Span;
 
-    /// Whether [`Self::span`] is as narrow as it can be.
+    /// True if [`Self::span`] is as narrow as possible.
     fn is_elementary(&self) -> bool;
 
     /// Appends breaks in any order, at least those up to `to`.
     fn parted(&self, to: f64, out: &mut Vec<f64>);
 
-    /// Appends breaks, and joins at which only the third derivative jumps.
+    /// Appends breaks, and points where only the third derivative jumps.
     fn joined(&self, to: f64, out: &mut Vec<f64>) {
         self.parted(to, out);
     }
 
-    /// Calls for places in `[from, to]` where the function may be large.
+    /// Visits places in `[from, to]` where the function may be large.
     fn crests(&self, from: f64, to: f64, visit: &mut dyn FnMut(f64));
 }

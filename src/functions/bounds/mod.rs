@@ -1,11 +1,11 @@
-//! Bounds of functions of time that hold between the instants, too: a signal is a composition of known functions, so interval
-//! arithmetic on the same composition encloses it and its derivatives.
+//! Rigorous bounds of functions of time, also between samples: interval arithmetic on the composition of a signal
+//! encloses it and its derivatives.
 //!
-//! Every bound is an upper bound, never missed. Forms of one function (sine, ramp, step, table) have exact ones; of sums, products
-//! and polynomials it is at most 0.1 % above a value that the signal takes, 10 % where hundreds of pieces had to be looked at, and
-//! more only where the limit of the search is reached first: sums of many cycles of sines without a common period, where the
-//! sum of the amplitudes is nearly reached anyway, and signals whose terms cancel to round-off. Variations are at most 10 %
-//! wide under the same conditions.
+//! All bounds are upper bounds. They are exact for a single sine, ramp, step or table. For sums, products and
+//! polynomials a bound is at most 0.1 % above a value that the signal reaches, or 10 % after hundreds of pieces. It is
+//! wider only if the search reaches its limit: for many cycles of sines without common period, which nearly reach the
+//! sum of their amplitudes anyway, and for terms that cancel to rounding error. Variations are at most 10 % too large
+//! under the same conditions.
 
 mod enclose;
 mod excites;
@@ -27,39 +27,39 @@ use search::{Search, overflows, reached, sizes};
 pub use stretches::{Stretch, merged};
 pub use variation::Variation;
 
-/// Places in a cycle, and in what has none, at which a signal is looked at for how long it lasts.
+/// Sample points per cycle, or in a signal without cycles, for the duration of a signal.
 const PLACES: f64 = 32.0;
-/// Such places at most, however many cycles there are.
+/// Largest number of sample points.
 const MOST_PLACES: f64 = 65_536.0;
-/// Steps of this part of 1 come near every part of it, and to none twice.
+/// Golden ratio: multiples of it modulo 1 are evenly distributed and never repeat.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Largest magnitudes of a signal over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sizes {
-    /// Of its value.
+    /// Largest value.
     pub value: f64,
-    /// Of its rate [1/s].
+    /// Largest rate [1/s].
     pub rate: f64,
-    /// Of its acceleration [1/s^2].
+    /// Largest acceleration [1/s^2].
     pub acceleration: f64,
-    /// Of its third derivative [1/s^3].
+    /// Largest third derivative [1/s^3].
     pub jerk: f64,
-    /// Whether the search ended by its limit: these are bounds then, too, but may be wide.
+    /// True if the search reached its limit: the bounds are valid but may be wide.
     pub limited: bool,
 }
 
-/// Where a signal leaves given limits, or may.
+/// A possible violation of given limits by a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Excess {
-    /// When [s].
+    /// Time [s].
     pub t: f64,
-    /// What it is there.
+    /// Value.
     pub value: f64,
 }
 
 impl Signal {
-    /// All values between two instants [s].
+    /// Range of the values between two instants [s].
     pub fn range(&self, from: f64, to: f64) -> Interval {
         let to = self.repeats_within(from, to);
         let (range, limited) = search::range(&Search::new(self, from, to));
@@ -97,7 +97,7 @@ impl Signal {
         }
     }
 
-    /// Magnitudes that it does reach until `end` [s]: lower bounds of those of [`Self::largest`].
+    /// Magnitudes that the signal reaches until `end` [s]: lower bounds of those of [`Self::largest`].
     pub fn reaches(&self, end: f64) -> Sizes {
         let to = self.repeats_within(0.0, end);
         let [value, rate, acceleration, jerk] = reached(&Search::new(self, 0.0, to));
@@ -110,8 +110,8 @@ impl Signal {
         }
     }
 
-    /// Largest jumps of value, rate, acceleration and jerk until `end` [s]: from rest at the value `held` at the start, and
-    /// between smooth branches.
+    /// Largest jumps of value, rate, acceleration and jerk until `end` [s]: at the start from rest at the value `held`,
+    /// and between smooth branches.
     pub fn jumps(&self, end: f64, held: f64) -> [f64; 4] {
         let mut jumps = [0.0_f64; 4];
         let mut before = [held, 0.0, 0.0, 0.0];
@@ -129,19 +129,19 @@ impl Signal {
         jumps
     }
 
-    /// How it makes oscillators swing until `end` [s], from rest at the value `held`.
+    /// Excitation of oscillators until `end` [s], from rest at the value `held`.
     pub fn excitation(&self, end: f64, held: f64) -> Excitation {
         Excitation::of(self, end, held)
     }
 
-    /// The highest frequency of its sines [Hz]; those of factors add.
+    /// Highest frequency of its sines [Hz]; frequencies of factors add.
     pub fn highest_tone_hz(&self) -> Option<f64> {
         let tones = tones::Tone::all(self).into_iter();
         let heard = tones.filter(|tone| tone.gain != 0.0 && tone.omega > 0.0);
         heard.map(|tone| tone.omega / TAU).reduce(f64::max)
     }
 
-    /// `∫ |s| dt` until `end` [s]; sines count as if they were always at their crest.
+    /// `∫ |s| dt` until `end` [s], an upper bound; sines count with their amplitude.
     pub fn impulse(&self, end: f64) -> f64 {
         let tones = tones::Tone::all(self).into_iter();
         tones
@@ -152,7 +152,8 @@ impl Signal {
             .sum()
     }
 
-    /// A bound of `|∫ s dt|` from 0 to any instant until `end` [s]: of each tone `(2 |E| + ∫ |E'| dt)/W`, or that of [`Self::impulse`].
+    /// Upper bound of `|∫ s dt|` from 0 to any instant until `end` [s]: for each tone `(2 |E| + ∫ |E'| dt)/W`, or its
+    /// part of [`Self::impulse`].
     pub fn largest_integral(&self, end: f64) -> f64 {
         let of = |tone: &tones::Tone| {
             let (size, moved, amount) = match tone.envelope.0.as_slice() {
@@ -171,9 +172,9 @@ impl Signal {
         tones::Tone::all(self).iter().map(of).sum()
     }
 
-    /// Its largest magnitude until `end` [s], and that times how long it lasts in units of `time` [s], `∫ |s| dt`, where that is less: of a
-    /// pulse. Between breaks the integral is a sum over places that follow its highest tone, an estimate; [`Self::impulse`], a bound,
-    /// counts what terms cancel.
+    /// Largest magnitude until `end` [s], and the smaller of it and `∫ |s| dt` over `time` [s], which is smaller for
+    /// short pulses. The integral is an estimate from samples that resolve the highest tone; [`Self::impulse`] is a
+    /// bound, but ignores cancellation of terms.
     pub fn lasting(&self, end: f64, time: f64) -> [f64; 2] {
         let size = self.largest(end).value;
         let tone = self.highest_tone_hz().unwrap_or(0.0);
@@ -181,7 +182,7 @@ impl Signal {
             let places = (PLACES * ((to - from) * tone + 1.0)).min(MOST_PLACES).ceil();
             let within = |k: f64| match places < MOST_PLACES {
                 true => 0.5,
-                // more cycles than places, evenly, would be met at the same phase again and again
+                // with more cycles than samples, a regular spacing would sample a single phase
                 false => (k * GOLDEN).fract(),
             };
             let at = |k: f64| from + (to - from) * (k + within(k)) / places;
@@ -192,8 +193,8 @@ impl Signal {
         [size, size.min(amount / time)]
     }
 
-    /// Where its value is first found beyond the limits until `end` [s]; none where it is certain, or after long search likely, that
-    /// it stays within.
+    /// First found violation of the limits until `end` [s]; none if the value certainly, or after a long search
+    /// probably, stays within.
     pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<Excess> {
         let to = self.repeats_within(0.0, end);
         let search = Search::new(self, 0.0, to);
@@ -209,13 +210,13 @@ impl Signal {
         })
     }
 
-    /// An instant at which value, rate or acceleration is no finite number, or may be, until `end` [s].
+    /// An instant until `end` [s] at which value, rate or acceleration is or may be infinite or NaN.
     pub fn overflows(&self, end: f64) -> Option<f64> {
         let to = self.repeats_within(0.0, end);
         overflows(&Search::new(self, 0.0, to))
     }
 
-    /// An instant until `end` [s] at which it is nearly as large as it gets.
+    /// An instant until `end` [s] at which the magnitude is nearly the largest.
     pub fn peak(&self, end: f64) -> f64 {
         let to = self.repeats_within(0.0, end);
         Search::new(self, 0.0, to).size(0).place

@@ -1,18 +1,18 @@
-//! Time scales of signals: when they repeat, how fast they change.
+//! Time scales of signals: common periods, and rates of change.
 
 use std::f64::consts::TAU;
 
 use crate::functions::signals::{Polynomial, Signal};
 
-/// Cycles of the slowest sine in a common period, at most.
+/// Largest number of cycles of the slowest sine in a common period.
 const MOST_CYCLES: f64 = 64.0;
-/// Part of a cycle that sines may drift against each other in the span.
+/// Largest phase drift between sines over the span, in cycles.
 const DRIFT: f64 = 1e-7;
-/// Slopes of a logistic step beyond which it is at rest to the last digit.
+/// Multiple of the reciprocal steepness beyond which a logistic step is constant to machine precision.
 pub(super) const AT_REST: f64 = 45.0;
 
 impl Signal {
-    /// An end of the span up to which the signal takes all values that it takes until `to`.
+    /// End of a shorter span in which the signal takes all values that it takes until `to`.
     pub(super) fn repeats_within(&self, from: f64, to: f64) -> f64 {
         let mut frequencies = vec![];
         let mut rest = from;
@@ -31,7 +31,7 @@ impl Signal {
         common.map_or(to, |n| (rest + f64::from(n) / slowest * (1.0 + 1e-9)).min(to))
     }
 
-    /// From when on nothing changes but sines and tables that repeat, and their frequencies [Hz].
+    /// Time after which only sines and repeated tables change, and their frequencies [Hz].
     fn settles(&self, end: f64, rest: &mut f64, frequencies: &mut Vec<f64>) {
         match self {
             _ if self.is_constant() => {}
@@ -51,12 +51,12 @@ impl Signal {
         }
     }
 
-    /// Shortest time scale until `end` [s]: as [`Self::fastest_period_s`], and of polynomials.
+    /// Shortest time scale until `end` [s]: [`Self::fastest_period_s`], extended to polynomials.
     pub fn shortest_time_s(&self, end: f64) -> Option<f64> {
         self.scale(end, false)
     }
 
-    /// As [`Self::shortest_time_s`], but only of what no switching time marks, as [`Self::fastest_unmarked_period_s`].
+    /// [`Self::shortest_time_s`] without changes that switching times mark, as in [`Self::fastest_unmarked_period_s`].
     pub fn shortest_unmarked_time_s(&self, end: f64) -> Option<f64> {
         self.scale(end, true)
     }
@@ -81,8 +81,8 @@ impl Signal {
 }
 
 impl Polynomial {
-    /// `2 π` times the least quotient of the largest rate, acceleration and jerk by their largest rates: each is the period of a
-    /// sine.
+    /// `2 π` times the smallest ratio of largest rate to largest acceleration, or of acceleration to jerk. Each ratio
+    /// gives the period of a sine.
     pub(super) fn scale(&self, end: f64) -> Option<f64> {
         if self.coefficients.len() < 3 {
             return None;

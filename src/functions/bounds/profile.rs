@@ -1,4 +1,4 @@
-//! Bounds of functions of place: the same arithmetic.
+//! Rigorous bounds of functions of place.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -10,34 +10,34 @@ use crate::functions::jet::Jet;
 use crate::functions::profile::Profile;
 
 impl Profile {
-    /// All values between two places in [0, 1].
+    /// Range of the values between two places in [0, 1].
     pub fn range(&self, from: f64, to: f64) -> Interval {
         search::range(&Search::new(self, from, to)).0
     }
 
-    /// Largest magnitude along the whole length.
+    /// Largest magnitude over the whole length.
     pub fn size(&self) -> f64 {
         self.range(0.0, 1.0).size()
     }
 
-    /// Largest magnitude of the slope by `x`.
+    /// Largest magnitude of the slope with respect to `x`.
     pub fn steepness(&self) -> f64 {
         sizes(&Search::new(self, 0.0, 1.0)).0[1]
     }
 
-    /// A place at which value, slope or curvature is no finite number, or may be.
+    /// A place at which value, slope or curvature is or may be infinite or NaN.
     pub fn overflows(&self) -> Option<f64> {
         overflows(&Search::new(self, 0.0, 1.0))
     }
 
-    /// `∫ max(profile, 0) dx` and `∫ max(-profile, 0) dx`, upper bounds.
+    /// Upper bounds of `∫ max(profile, 0) dx` and `∫ max(-profile, 0) dx`.
     pub fn amounts(&self) -> [f64; 2] {
         let range = self.range(0.0, 1.0);
         let amount = self.amount();
         [range.high, -range.low].map(|most| most.max(0.0).min(amount))
     }
 
-    /// `∫ |profile| dx`, an upper bound.
+    /// Upper bound of `∫ |profile| dx`.
     pub fn amount(&self) -> f64 {
         match self {
             Self::Constant(value) => value.abs(),

@@ -1,9 +1,9 @@
-//! The largest of a quantity over a span, by halving first the piece that promises most.
+//! Branch-and-bound search for the largest value of a quantity over a span.
 //!
-//! Of every piece an upper bound is known ([`Bounded::span`], narrowed by what its ends and middle tell), of some places the
-//! quantity itself. The piece of the highest bound is halved, at a break where it holds one, until that bound is close to the
-//! largest value found; what is returned is the bound, so nothing between two places is missed. Work is limited: when the limit
-//! comes first, the bound that is reached then is returned.
+//! Each piece has an upper bound ([`Bounded::span`], narrowed by its ends and middle); sampled places have exact
+//! values. The piece with the highest bound is halved, at a break if it has one, until that bound is close to the
+//! largest value found. The bound is returned, so values between samples are covered. If the search reaches its limit
+//! of pieces, it returns the current bound.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -11,23 +11,23 @@ use std::collections::BinaryHeap;
 use super::interval::{Bounded, Interval, Span};
 use crate::functions::jet::Jet;
 
-/// Pieces that are looked at, at most.
+/// Largest number of pieces.
 const MOST_PIECES: usize = 1500;
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
-    /// Nowhere is the quantity above this.
+    /// Upper bound of the quantity.
     pub bound: f64,
-    /// The largest value found.
+    /// Largest value found.
     pub reached: f64,
-    /// Where.
+    /// Place of the largest value found.
     pub place: f64,
-    /// Whether the search ended by its limit.
+    /// True if the search reached its limit.
     pub limited: bool,
 }
 
-/// A function over `[from, to]` with its breaks inside.
+/// A function over `[from, to]` with its interior breaks.
 pub struct Search<'f, F: Bounded + ?Sized> {
     function: &'f F,
     from: f64,
@@ -35,7 +35,7 @@ pub struct Search<'f, F: Bounded + ?Sized> {
     breaks: Vec<f64>,
 }
 
-/// How much of the bound may be more than what is found, by the pieces looked at so far.
+/// Accepted gap between bound and largest value found, relative, by the number of pieces.
 pub fn slack(pieces: usize) -> f64 {
     match pieces {
         0..100 => 1e-3,
@@ -48,7 +48,7 @@ struct Piece {
     bound: f64,
     from: f64,
     to: f64,
-    /// Breaks inside, as places in the list.
+    /// Index range of the breaks inside.
     inside: (usize, usize),
 }
 
@@ -70,14 +70,14 @@ impl Ord for Piece {
 }
 
 impl<'f, F: Bounded + ?Sized> Search<'f, F> {
-    /// Over `[from, to]`, which is not empty.
+    /// Search over `[from, to]`, which is not empty.
     pub fn new(function: &'f F, from: f64, to: f64) -> Self {
         let mut breaks = vec![];
         function.parted(to, &mut breaks);
         Self::at(function, from, to, breaks)
     }
 
-    /// Over `[from, to]`, with pieces that end at joins, too.
+    /// Search over `[from, to]` with pieces that also end at jumps of the third derivative.
     pub fn joined(function: &'f F, from: f64, to: f64) -> Self {
         let mut breaks = vec![];
         function.joined(to, &mut breaks);
@@ -98,14 +98,15 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
         }
     }
 
-    /// The pieces between breaks.
+    /// Pieces between breaks.
     pub fn smooth(&self) -> impl Iterator<Item = (f64, f64)> {
         let stops = self.breaks.iter().copied().chain([self.to]);
         let starts = [self.from].into_iter().chain(self.breaks.iter().copied());
         starts.zip(stops)
     }
 
-    /// The largest of a quantity: `most` of a span, `value` of an instant. It ends when `enough(found so far, bound, pieces)`.
+    /// Largest value of a quantity, given as bound `most` over a span and as `value` at an instant. Ends when
+    /// `enough(found, bound, pieces)` is true.
     pub fn largest(
         &self,
         most: impl Fn(&Span) -> f64,
@@ -150,7 +151,7 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
         found
     }
 
-    /// The largest magnitude of value (0), rate (1), acceleration (2) or jerk (3).
+    /// Largest magnitude of value (0), rate (1), acceleration (2) or jerk (3).
     pub fn size(&self, k: usize) -> Found {
         self.largest(
             |span| span.0[k].size(),
@@ -177,7 +178,7 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
         };
         let smooth = inside.0 >= inside.1;
         let span = if smooth {
-            let (span, jets) = told(f, from, to);
+            let (span, jets) = span_with_jets(f, from, to);
             for (t, jet) in [from, 0.5 * (from + to), to].iter().zip(&jets) {
                 seen(*t, jet);
             }
@@ -200,18 +201,18 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
     }
 }
 
-/// The span of a piece without breaks, with its ends and middle.
-pub fn told<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) {
+/// Span of a piece without breaks, with the function at its ends and middle.
+pub fn span_with_jets<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) {
     let middle = 0.5 * (from + to);
     let jets = [from, middle, to].map(|t| f.exactly(t, middle));
     let span = f.span(from, to);
     if f.is_elementary() {
         return (span, jets);
     }
-    (span.told(jets, 0.5 * (to - from)), jets)
+    (span.narrowed_by(jets, 0.5 * (to - from)), jets)
 }
 
-/// The range of the value, each end at most [`slack`] of the size beyond what is taken, and whether the search was limited.
+/// Range of the value and a flag for a limited search. Each end is at most [`slack`] of the size beyond the true one.
 pub fn range<F: Bounded + ?Sized>(search: &Search<F>) -> (Interval, bool) {
     let rough = search.function.span(search.from, search.to).0[0];
     if search.function.is_elementary() || rough.low == rough.high {
@@ -228,7 +229,7 @@ pub fn range<F: Bounded + ?Sized>(search: &Search<F>) -> (Interval, bool) {
     (range.widened(ROUND_OFF), low.limited || high.limited)
 }
 
-/// Largest magnitudes of value, rate, acceleration and jerk: upper bounds; and whether the search for one was limited.
+/// Upper bounds of the largest magnitudes of value, rate, acceleration and jerk, and a flag for a limited search.
 pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> ([f64; 4], bool) {
     if search.function.is_elementary() {
         let span = search.function.span(search.from, search.to);
@@ -247,7 +248,7 @@ pub fn reached<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
     std::array::from_fn(|k| search.size(k).reached)
 }
 
-/// A place at which value, first or second derivative is no finite number, or may be.
+/// A place at which value, first or second derivative is or may be infinite or NaN.
 pub fn overflows<F: Bounded + ?Sized>(search: &Search<F>) -> Option<f64> {
     let found = search.largest(
         |span| span.0[..3].iter().map(|i| i.size()).fold(0.0, f64::max),
@@ -264,5 +265,5 @@ pub fn overflows<F: Bounded + ?Sized>(search: &Search<F>) -> Option<f64> {
     (!found.bound.is_finite()).then_some(found.place)
 }
 
-/// Relative, of what sums of many terms may lose.
+/// Relative rounding error of sums of many terms.
 pub const ROUND_OFF: f64 = 1e-12;

@@ -1,38 +1,40 @@
-//! How fast a signal changes, stretch by stretch: a step that is over in a millisecond is no reason for short steps in the ten
+//! Time scales of a signal by stretches of time: a step of one millisecond does not require short time steps in the ten
 //! seconds around it.
 //!
-//! Outside its stretches a signal is at rest to the last digit, so that nothing can be missed there:
+//! Outside its stretches a signal is constant to machine precision, so no change is missed:
 //!
-//! - a logistic step beyond 45 slopes on either side (`e^-45 = 3e-20`); nearer than 12 slopes, where all but `6e-6` of it happens, its
-//!   time scale is `4/k`, in the tails between, plain exponentials that error tests see, 16 times that;
-//! - a polynomial where all its variation is below round-off of its largest value;
-//! - a spline beyond its ends; in each piece, which is a cubic, the time scale is the distance of the points;
-//! - a product where a factor keeps it so;
-//! - a sine, never; its start, where it is shorter than a period, is a stretch of its own.
+//! - Logistic step: constant beyond 45 reciprocal slopes on either side (`e^-45 = 3e-20`). Within 12 of them, where all
+//!   but `6e-6` of it happens, the time scale is `4/k`. In the exponential tails between, which error tests resolve, it
+//!   is 16 times that.
+//! - Polynomial: constant where its variation is below the rounding error of its largest value.
+//! - Spline: constant beyond its ends. In each piece, a cubic, the time scale is the distance of the points.
+//! - Product: constant where a factor keeps it constant.
+//! - Sine: never constant; a smooth start shorter than a period is a stretch of its own.
 
 use super::interval::Bounded;
 use super::period::AT_REST;
 use crate::functions::curve::Interpolation;
 use crate::functions::signals::{Polynomial, Sigmoid, Signal, Sine};
 
-/// Slopes of a logistic step within which it happens.
+/// Half width of the main part of a logistic step, in reciprocal slopes.
 const HAPPENS: f64 = 12.0;
-/// How much longer the time scale of its tails is.
+/// Time scale of the tails over that of the main part.
 const TAIL: f64 = 16.0;
-/// Halvings of the run in search of where a polynomial rests.
+/// Largest number of halvings in the search for constant parts of a polynomial.
 const HALVINGS: u32 = 12;
 
-/// A stretch from the end of the one before to its own.
+/// A stretch of time that begins at the end of the previous one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Its end [s].
+    /// End [s].
     pub to: f64,
-    /// Shortest time scale [s]; infinite where nothing changes.
+    /// Shortest time scale [s]; infinite if constant.
     pub scale: f64,
 }
 
 impl Signal {
-    /// Shortest time scales of what no switching time marks, as [`Self::shortest_unmarked_time_s`], stretch by stretch from 0 to `end` [s].
+    /// Shortest time scales without changes that switching times mark, as in [`Self::shortest_unmarked_time_s`], for
+    /// stretches from 0 to `end` [s].
     pub fn stretches(&self, end: f64) -> Vec<Stretch> {
         let whole = |scale: Option<f64>| up_to(end, [(end, scale.unwrap_or(f64::INFINITY))]);
         match self {
@@ -58,7 +60,7 @@ impl Signal {
 }
 
 impl Signal {
-    /// Time scales of a product, but none where a factor keeps it at rest, before and after a burst.
+    /// Time scales of a product, infinite where a factor keeps it constant, such as before and after a burst.
     fn without_rests(&self, end: f64, all: &[Stretch]) -> Vec<Stretch> {
         let mut ends: Vec<f64> = all.iter().map(|stretch| stretch.to).collect();
         self.breaks(end, &mut ends);
@@ -80,7 +82,7 @@ impl Signal {
     }
 }
 
-/// Stretches of two at once; `both` gives the time scale where each has one.
+/// Merges the stretches of two signals; `both` combines their time scales.
 pub fn merged(a: &[Stretch], b: &[Stretch], both: impl Fn(f64, f64) -> f64) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
@@ -103,7 +105,7 @@ fn together(end: f64, parts: &[Signal], both: impl Fn(f64, f64) -> f64) -> Vec<S
         .fold(rest, |all, part| merged(&all, &part.stretches(end), &both))
 }
 
-/// Stretches with their ends and time scales, as far as they lie in the run; nothing changes after the last.
+/// Stretches from ends and time scales within the run; constant after the last.
 fn up_to(end: f64, ends: impl IntoIterator<Item = (f64, f64)>) -> Vec<Stretch> {
     let mut all = vec![];
     for (to, scale) in ends {
@@ -160,7 +162,7 @@ impl Polynomial {
         all
     }
 
-    /// Halves what is not at rest down to the time scale.
+    /// Halves intervals that are not constant, down to the time scale.
     fn part(&self, all: &mut Vec<Stretch>, [from, to]: [f64; 2], [scale, largest]: [f64; 2], halvings: u32) {
         let value = Bounded::span(&Signal::Polynomial(self.clone()), from, to).0[0];
         if value.high - value.low <= f64::EPSILON * largest {

@@ -1,5 +1,5 @@
-//! A signal as a sum of sines, each of an amplitude that changes in time:
-//! `s = Σ g E(t) sin(W t + φ)`, `E` a product of what is no sine, `W = 0` and `φ = π/2` where there is none.
+//! Decomposition of a signal into sines with time-dependent amplitudes: `s = Σ g E(t) sin(W t + φ)`. `E` is a product
+//! of factors without sines. A term without sine has `W = 0` and `φ = π/2`.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -8,13 +8,13 @@ use super::search::{Search, sizes};
 use crate::functions::jet::{Clock, Jet};
 use crate::functions::signals::{Ramp, RampShape, Signal};
 
-/// Sums that multiply out to more tones than this stay products.
+/// Largest number of tones; products with more are not expanded.
 const MOST_TONES: usize = 64;
 
 /// A factor of an envelope.
 #[derive(Clone, Debug)]
 pub enum Factor<'a> {
-    /// Of the signal itself.
+    /// A signal.
     Given(&'a Signal),
     /// The smooth start of a sine.
     Start(Ramp),
@@ -29,11 +29,11 @@ pub struct Tone<'a> {
     pub omega: f64,
     /// Phase `φ` [rad].
     pub phase: f64,
-    /// `E`; 1 where it is empty.
+    /// Envelope `E`; 1 if empty.
     pub envelope: Envelope<'a>,
 }
 
-/// A product.
+/// A product of factors.
 #[derive(Clone, Debug, Default)]
 pub struct Envelope<'a>(pub Vec<Factor<'a>>);
 
@@ -47,7 +47,7 @@ impl<'a> Tone<'a> {
         }
     }
 
-    /// All tones of a signal.
+    /// Returns all tones of a signal.
     pub fn all(signal: &'a Signal) -> Vec<Self> {
         match signal {
             Signal::Constant(value) => vec![Self::steady(*value)],
@@ -88,7 +88,7 @@ impl<'a> Tone<'a> {
         }
     }
 
-    /// Something that is no sine.
+    /// Tone of a signal without sines.
     fn slow(signal: &'a Signal) -> Self {
         Self {
             envelope: Envelope(vec![Factor::Given(signal)]),
@@ -102,7 +102,7 @@ impl<'a> Tone<'a> {
         let envelope = Envelope(factors.collect());
         let gain = self.gain * other.gain;
         let tone = |gain: f64, omega: f64, phase: f64| match omega {
-            // sin(-x) = sin(x + π), and a sine that does not move is a number
+            // sin(-x) = sin(x + π); a sine of zero frequency is a number
             0.0 => Self {
                 gain: gain * phase.sin(),
                 envelope: envelope.clone(),
@@ -127,8 +127,8 @@ impl<'a> Tone<'a> {
     }
 }
 
-/// A constant, and bounds of value and derivatives of what is added to it, from the sum of the sizes of all tones: many
-/// cycles of sines without a common period come close to that.
+/// A constant, and bounds of value and derivatives of the rest, from the sum of the magnitudes of all tones. Many
+/// cycles of sines without common period come close to these bounds.
 pub fn together(signal: &Signal, from: f64, to: f64) -> (f64, [f64; 4]) {
     const BINOMIAL: [[f64; 4]; 4] = [
         [1.0, 0.0, 0.0, 0.0],
@@ -158,7 +158,7 @@ pub fn together(signal: &Signal, from: f64, to: f64) -> (f64, [f64; 4]) {
     (offset, most)
 }
 
-/// Whether there is a sine in it.
+/// True if the signal contains a sine.
 fn has_sines(signal: &Signal) -> bool {
     match signal {
         Signal::Sine(sine) => sine.frequency_hz > 0.0,

@@ -1,15 +1,15 @@
-//! How much a function goes up and down in all: integrals of the magnitudes of its derivatives.
+//! Total variation of a function: integrals of the magnitudes of its derivatives.
 
 use std::collections::BinaryHeap;
 
 use super::interval::{Bounded, Interval};
-use super::search::{ROUND_OFF, Search, sizes, told};
+use super::search::{ROUND_OFF, Search, sizes, span_with_jets};
 use crate::functions::jet::Jet;
 
-/// Pieces that are looked at, at most, beyond those between breaks.
+/// Largest number of additional pieces.
 const MOST_PIECES: usize = 400;
 
-/// Part of an integral that may be more than it is.
+/// Accepted relative excess of an integral.
 const SLACK: f64 = 0.1;
 
 /// Upper bounds over `[0, end]`.
@@ -26,7 +26,7 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Of a function.
+    /// Variation of a function.
     pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
         Self {
             size: sizes(&Search::new(function, 0.0, end)).0,
@@ -34,12 +34,12 @@ impl Variation {
         }
     }
 
-    /// Only `∫ |s| dt`.
+    /// Upper bound of `∫ |s| dt` only.
     pub fn amount<F: Bounded + ?Sized>(function: &F, end: f64) -> f64 {
         Self::summed(function, end, 1).integral[0]
     }
 
-    /// Integrals, the first few of them to their accuracy.
+    /// Integrals; the first `orders` of them to their accuracy.
     fn summed<F: Bounded + ?Sized>(function: &F, end: f64, orders: usize) -> Self {
         let search = Search::joined(function, 0.0, end);
         let mut v = Self::default();
@@ -82,7 +82,7 @@ impl Variation {
                 heap.push(half.weighed(&v.integral, orders));
             }
         }
-        // afresh: what was taken off may have been much larger than what is left
+        // sum again: repeated subtraction may leave rounding errors larger than the result
         heap.iter().for_each(|open| add(&mut settled, 1.0, &open.part.integral));
         v.integral = settled.map(|x| x * (1.0 + ROUND_OFF));
         v
@@ -101,14 +101,14 @@ struct Part {
     to: f64,
     ends: [Jet; 2],
     integral: [f64; 4],
-    /// What of the integrals may be too much.
+    /// Upper bounds of the excess of the integrals.
     gap: [f64; 4],
 }
 
 impl Part {
-    /// A derivative that keeps its sign integrates to a difference.
+    /// A derivative of constant sign integrates to a difference.
     fn of<F: Bounded + ?Sized>(function: &F, from: f64, to: f64) -> Self {
-        let (span, [first, _, last]) = told(function, from, to);
+        let (span, [first, _, last]) = span_with_jets(function, from, to);
         let length = to - from;
         let (mut integral, mut gap) = ([0.0; 4], [0.0; 4]);
         let differences = [

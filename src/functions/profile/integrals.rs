@@ -1,4 +1,4 @@
-//! Exact integrals of a profile over an interval, times 1, t and t^2.
+//! Exact integrals of a profile over an interval, weighted with 1, t and t^2.
 
 use std::f64::consts::{PI, TAU};
 
@@ -7,33 +7,33 @@ use super::{Polynomial, Profile, Wave};
 use crate::functions::curve::Interpolation;
 use crate::numerics::gauss::Gauss;
 
-/// Turns of half a wave that one piece is divided into before waves are integrated in closed form.
+/// Half waves in a piece above which waves are integrated in closed form.
 const HALF_WAVES: f64 = 64.0;
 
-/// Half waves into which a piece is divided at most where no closed form is at hand.
+/// Largest number of half waves in a piece for quadrature without closed form.
 const MOST_HALF_WAVES: f64 = 65_536.0;
 
-/// Points of the largest rule; exact to degree 127.
+/// Points of the largest rule, which is exact to degree 127.
 const MOST_POINTS: usize = 64;
 
-/// A profile with what its integration needs: the knots between which it is smooth, and how it goes there.
+/// A profile with data for its integration: the knots between its smooth pieces, and its form there.
 ///
-/// Between two knots a profile is a sum of polynomials times waves. Gauss' rule integrates polynomials exactly and, with ten points
-/// more than these need, half a wave to round-off: its error is of the order `(pi/2)^20/20!^2`. Very many waves are integrated
-/// by parts.
+/// Between two knots a profile is a sum of polynomials times waves. Gauss quadrature integrates polynomials exactly.
+/// With ten additional points it integrates half a wave to machine precision: its error is of the order
+/// `(pi/2)^20/20!^2`. Large numbers of waves are integrated by parts.
 #[derive(Clone, Debug)]
 pub struct Integrals<'a> {
     profile: &'a Profile,
     knots: Vec<f64>,
-    /// Largest rate of the waves' phase [rad] by x.
+    /// Largest phase rate of the waves with respect to x [rad].
     turning: f64,
     rule: Gauss,
-    /// Pieces that the degree alone asks for.
+    /// Pieces required by the degree alone.
     parts: f64,
 }
 
 impl<'a> Integrals<'a> {
-    /// Of a profile.
+    /// Integrals of a profile.
     pub fn of(profile: &'a Profile) -> Self {
         let mut knots = vec![];
         profile.add_knots(&mut knots);
@@ -64,7 +64,7 @@ impl<'a> Integrals<'a> {
         sum
     }
 
-    /// Integrals over [a, b] against the two hat functions: that which is 1 at `a`, and that which is 1 at `b`.
+    /// Integrals over [a, b] weighted with the two hat functions that are 1 at `a` and at `b`.
     pub fn hats(&self, a: f64, b: f64) -> (f64, f64) {
         let [whole, right, _] = self.moments(a, b);
         (whole - right, right)
@@ -77,7 +77,7 @@ impl<'a> Integrals<'a> {
             .unwrap_or_else(|| self.moments(a, b)[0] / (b - a))
     }
 
-    /// Half waves in an interval of the given length, at most.
+    /// Largest number of half waves in an interval of the given length.
     pub fn half_waves(&self, length: f64) -> f64 {
         self.turning * length / PI
     }
@@ -89,7 +89,7 @@ impl<'a> Integrals<'a> {
         &self.knots[first..end.max(first)]
     }
 
-    /// Calls `smooth` with every interval between two knots of [a, b].
+    /// Calls `smooth` for every interval between two knots of [a, b].
     fn each_piece(&self, a: f64, b: f64, mut smooth: impl FnMut(f64, f64)) {
         let mut from = a;
         for &knot in self.knots_in(a, b) {
@@ -99,7 +99,7 @@ impl<'a> Integrals<'a> {
         smooth(from, b);
     }
 
-    /// The moments over an interval without knots.
+    /// Moments over an interval without knots.
     fn piece(&self, p: f64, q: f64) -> [f64; 3] {
         let half_waves = self.half_waves(q - p);
         if half_waves > HALF_WAVES
@@ -124,7 +124,7 @@ impl<'a> Integrals<'a> {
 }
 
 impl Profile {
-    /// The value of a profile that is the same everywhere.
+    /// Value of a uniform profile; none for others.
     pub fn uniform(&self) -> Option<f64> {
         match self {
             Self::Constant(value) => Some(*value),
@@ -140,7 +140,7 @@ impl Profile {
         }
     }
 
-    /// Adds the places at which it is not smooth.
+    /// Appends the places where the profile is not smooth.
     fn add_knots(&self, knots: &mut Vec<f64>) {
         match self {
             Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Polynomial(_) => {}
@@ -149,7 +149,7 @@ impl Profile {
         }
     }
 
-    /// Degree of its polynomials and rate of its waves' phase [rad] by x, at most, between knots.
+    /// Largest polynomial degree and largest phase rate of the waves with respect to x [rad], between knots.
     fn character(&self) -> (usize, f64) {
         let larger = |(d, r): (usize, f64), (e, s): (usize, f64)| (d.max(e), r.max(s));
         match self {

@@ -79,7 +79,7 @@ pub struct PlaceTable {
     pub positions: Vec<f64>,
     /// Values there.
     pub values: Vec<f64>,
-    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// Interpolation between the points, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
     pub(super) curve: Curve,
@@ -96,7 +96,7 @@ struct PlaceTableText {
     /// Values there.
     #[schemars(length(min = 1))]
     values: Vec<f64>,
-    /// What happens in between, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
+    /// Interpolation between the points, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     #[serde(default)]
     interpolation: Interpolation,
@@ -124,7 +124,7 @@ impl From<PlaceTable> for PlaceTableText {
 }
 
 impl PlaceTable {
-    /// Through points; those that do not make a curve make a profile that is zero.
+    /// Table through points; zero if the points do not define a curve.
     pub fn new(positions: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
         let curve = Curve::through(&positions, &values, interpolation).unwrap_or_default();
         Self {
@@ -135,7 +135,7 @@ impl PlaceTable {
         }
     }
 
-    /// Whether the points make a curve.
+    /// True if the points define a curve.
     pub fn is_sound(&self) -> bool {
         self.curve != Curve::default()
     }
@@ -151,7 +151,7 @@ impl Profile {
         self.jet(x).value
     }
 
-    /// True where it is a number, the same everywhere.
+    /// True for a constant.
     pub fn is_uniform(&self) -> bool {
         matches!(self, Self::Constant(_))
     }
@@ -161,7 +161,7 @@ impl Profile {
         self.jet(x).rate
     }
 
-    /// How far a spline in it swings beyond its points, over the range of their values; 0 without one.
+    /// Largest overshoot of a spline in the profile, relative to the range of its values; 0 without splines.
     pub fn overshoot(&self) -> f64 {
         match self {
             Self::Table(table) => table.curve.overshoot(),
@@ -170,7 +170,7 @@ impl Profile {
         }
     }
 
-    /// Value, first and second derivative by `x`.
+    /// Value and derivatives with respect to `x`.
     pub fn jet(&self, x: f64) -> Jet {
         match self {
             Self::Constant(value) => Jet::constant(*value),

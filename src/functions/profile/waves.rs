@@ -1,22 +1,22 @@
-//! A smooth piece of a profile as polynomials times waves, and its integrals in closed form.
+//! A smooth piece of a profile as a sum of polynomials times waves, with integrals in closed form.
 
 use std::f64::consts::{PI, TAU};
 
 use super::{Polynomial, Profile, Wave};
 use crate::numerics::gauss::Gauss;
 
-/// Waves beyond which a product is not written out.
+/// Largest number of waves in an expanded product.
 const MOST: usize = 64;
 
-/// Coefficients of a polynomial in t, real and imaginary parts.
+/// Coefficients of a polynomial in t, as real and imaginary parts.
 type Coefficients = Vec<(f64, f64)>;
 
-/// `Re Σ c_k(t) exp(i θ_k t)`, t in [0, 1] along the piece, every θ_k once and none negative.
+/// `Re Σ c_k(t) exp(i θ_k t)`, t in [0, 1] along the piece; all θ_k are distinct and nonnegative.
 #[derive(Clone, Debug)]
 pub(super) struct Waves(Vec<(f64, Coefficients)>);
 
 impl Waves {
-    /// A profile between `p` and `q`, where it has no knots; nothing where it is a product of too many waves.
+    /// Expands a profile between `p` and `q` without knots; none for a sum or product of too many waves.
     pub fn of(profile: &Profile, p: f64, q: f64) -> Option<Self> {
         let length = q - p;
         let wave = |wave: &Wave, quarter: f64| {
@@ -34,7 +34,7 @@ impl Waves {
             Profile::Sine(sine) => wave(sine, 0.5 * PI),
             Profile::Polynomial(Polynomial { coefficients }) => real(shifted(coefficients, p, length)),
             Profile::Table(table) => {
-                // The cubic of the piece, by its derivatives in the middle: there the piece is the same on either side.
+                // The cubic of the piece, from its derivatives in the middle.
                 let jet = table.curve.at(0.5 * (p + q));
                 let half = 0.5 * length;
                 let about = [jet.value, jet.rate * half, jet.acceleration * half * half / 2.0];
@@ -113,14 +113,13 @@ impl Waves {
     }
 }
 
-/// `Re ∫ c(t) e^{iθt} dt` over [0, 1]: by parts where waves are short against the polynomial, which then ends after as many terms as
-/// it has,
+/// `Re ∫ c(t) e^{iθt} dt` over [0, 1]. For waves short against the polynomial, by parts, a finite sum:
 ///
 /// ```text
 /// ∫ c e^{iθt} = [e^{iθt} (c/(iθ) - c'/(iθ)² + c''/(iθ)³ - ..)]
 /// ```
 ///
-/// else by Gauss' rule on half waves.
+/// Otherwise by Gauss quadrature on half waves.
 fn integral(theta: f64, c: &[(f64, f64)]) -> f64 {
     let degree = c.len().saturating_sub(1);
     if theta > (2 * degree * degree).max(64) as f64 {

@@ -1,17 +1,17 @@
-//! Corrections with the factors of an earlier start, where values have changed by little since.
+//! Simplified Newton iteration with the factors of an earlier start, for values that have changed little since.
 
 use super::{Newton, Start, StartOptions};
 use crate::dae::Dae;
 use crate::numerics::kernels;
 
-/// Corrections with factors of an earlier start, at most.
+/// Maximum number of corrections with factors of an earlier start.
 const CHORDS: u16 = 8;
 
-/// Contraction beyond which factors of an earlier start are given up.
+/// Contraction rate above which factors of an earlier start are discarded.
 const SLOW: f64 = 0.2;
 
 impl<D: Dae> Newton<'_, D> {
-    /// The start, if corrections with the factors of an earlier one lead to it; else values are as before.
+    /// Returns the start if the iteration with the factors of an earlier one converges; otherwise restores the values.
     pub(super) fn with_old_factors(&mut self, options: &StartOptions) -> Option<Start> {
         if !self.room.factored {
             return None;
@@ -50,7 +50,7 @@ impl<D: Dae> Newton<'_, D> {
             if !(finite && rate <= SLOW) {
                 return None;
             }
-            // before there is a rate the worst that is let pass is taken for it
+            // until a contraction rate is measured, assume the largest accepted one
             let rate = if last.is_finite() { rate } else { SLOW };
             if rate / (1.0 - rate) * size <= options.tolerance {
                 return Some(Start {
@@ -65,7 +65,8 @@ impl<D: Dae> Newton<'_, D> {
         None
     }
 
-    /// Takes a correction, which becomes relative to 1 + |z|. Masks of 0 and 1 in place of a choice let this go several at a time.
+    /// Subtracts a correction and then divides it by 1 + |z|. Masks of 0 and 1 replace branches, so that several entries are processed at
+    /// once.
     fn correct(&mut self, correction: &mut [f64]) {
         let masks = self.room.y_seeds.iter().zip(&self.room.yp_seeds);
         let values = self.y.iter_mut().zip(self.yp.iter_mut());

@@ -1,9 +1,9 @@
 //! Consistent initial values by Newton's iteration.
 
 mod chords;
-mod told;
+mod options;
 
-pub use told::{Start, StartError, StartOptions};
+pub use options::{Start, StartError, StartOptions};
 
 use super::not_finite;
 use crate::dae::{Dae, EvaluationError, Seeds};
@@ -12,12 +12,12 @@ use crate::sparse::{Klu, KluError};
 
 /// Solves `F(t, y, y') = 0` for the algebraic unknowns and the derivatives of the differential ones.
 ///
-/// Differential unknowns in `y` are kept, the other entries are first guesses; derivatives of algebraic unknowns are set
-/// to 0. Newton's iteration is damped by the natural monotonicity test (Deuflhard): a step is taken when the correction
-/// that would follow with the same matrix is smaller, which does not depend on how equations are scaled. It ends when
-/// corrections are below the tolerance, or no longer decreasing and no larger than what round-off of the residual explains.
+/// Differential unknowns in `y` are kept, the other entries are initial guesses. Derivatives of algebraic unknowns are set to 0. Newton's
+/// iteration is damped by the natural monotonicity test (Deuflhard). It accepts a step if the next correction with the same matrix is
+/// smaller; this test is independent of the scaling of equations. The iteration ends if corrections are below the tolerance, or if they
+/// no longer decrease and are within the rounding error of the residual.
 ///
-/// On failure `y` and `yp` hold the last iterate. Panics when they have another length than `dae.len()`.
+/// After an error `y` and `yp` contain the last iterate. Panics if their length differs from `dae.len()`.
 pub fn consistent_start<D: Dae>(
     dae: &mut D,
     t: f64,
@@ -28,20 +28,20 @@ pub fn consistent_start<D: Dae>(
     Starter::new(dae)?.start(dae, t, y, yp, options)
 }
 
-/// Corrections this small that decrease no more are round-off, whatever the estimate of it.
+/// Corrections below this size that no longer decrease count as rounding error, whatever its estimate.
 const ROUND_OFF: f64 = 1e-8;
 
-/// Rounding errors of one term of a residual, in units of the last place.
+/// Rounding error of one term of a residual, in units of the last place.
 const ROUNDINGS: f64 = 16.0;
 
-/// What consistent starts of one system share: the analysis of its pattern, room, the factors of the last one.
+/// Data shared by consistent starts of one system: analysis of its pattern, work space, factors of the last start.
 pub struct Starter {
     differential: Vec<bool>,
     y_seeds: Vec<f64>,
     yp_seeds: Vec<f64>,
     values: Vec<f64>,
     klu: Klu,
-    /// Whether the factors are those of a start that was found.
+    /// True if the factors belong to a successful start.
     factored: bool,
     residual: Vec<f64>,
     correction: Vec<f64>,
@@ -49,10 +49,10 @@ pub struct Starter {
 }
 
 impl Starter {
-    /// Room for starts of a system, and of all with its pattern.
+    /// Allocates work space for starts of a system, and of all systems with the same pattern.
     ///
     /// # Errors
-    /// When the pattern determines no unknown.
+    /// If the pattern is structurally singular.
     pub fn new<D: Dae>(dae: &D) -> Result<Self, StartError> {
         let n = dae.len();
         let differential = dae.differential().to_vec();
@@ -73,17 +73,17 @@ impl Starter {
         })
     }
 
-    /// Forgets the factors: the next start is found as by a new one, bit for bit.
+    /// Discards the factors: the next start is bitwise identical to that of a new `Starter`.
     pub fn forget(&mut self) {
         self.klu.forget();
         self.factored = false;
     }
 
-    /// As [`consistent_start`]. Where there are factors of an earlier start they are tried first: corrections with them end when what is left is below
-    /// the tolerance, and are dropped where they do not contract well.
+    /// Like [`consistent_start`], but tries the factors of an earlier start first, if there are any. Corrections with them end if the
+    /// remaining error is below the tolerance. They are discarded if they do not contract well.
     ///
     /// # Errors
-    /// When there is no start near the guess, or none could be found.
+    /// If there is no start near the guess, or none is found.
     pub fn start<D: Dae>(
         &mut self,
         dae: &mut D,
@@ -116,7 +116,7 @@ impl Starter {
     }
 }
 
-/// The iteration: unknowns z are y where algebraic, y' where differential.
+/// Newton's iteration. The unknowns z are y (algebraic) or y' (differential).
 struct Newton<'a, D: Dae> {
     dae: &'a mut D,
     t: f64,
@@ -164,7 +164,7 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    /// Goes the longest fraction of the correction that passes the monotonicity test; returns the fraction.
+    /// Applies the largest fraction of the correction that passes the monotonicity test; returns the fraction.
     fn damped_step(
         &mut self,
         correction: &[f64],
@@ -182,7 +182,7 @@ impl<D: Dae> Newton<'_, D> {
                     let mut next = self.room.residual.clone();
                     let small = self.room.klu.solve(&mut next)
                         && self.norm(&next, &from) <= (1.0 - 0.25 * damping) * self.norm(correction, &from);
-                    // near the end round-off decides the test, not the direction
+                    // near convergence rounding errors decide the test, not the direction
                     if small || size <= ROUND_OFF {
                         return Ok(damping);
                     }
@@ -200,7 +200,7 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    /// Takes the last correction too and reports.
+    /// Applies the last correction as well, unless it increases the residual, and returns the start.
     fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartError> {
         let from = self.unknowns();
         let before = kernels::max_abs(&self.room.residual);
@@ -232,7 +232,7 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    /// Newton's correction, to be subtracted: `J dz = F`.
+    /// Computes Newton's correction, to be subtracted: `J dz = F`.
     fn correction(&mut self) -> Result<Vec<f64>, StartError> {
         let seeds = Seeds::Columns {
             y: &self.room.y_seeds,
@@ -256,8 +256,8 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    /// Size of the correction that round-off of the residual alone would ask for: with rates of areas among z it is far above
-    /// that of z where a network equalises in nanoseconds.
+    /// Size of the correction caused by rounding errors of the residual. It is far above the rounding error of z if z contains rates of
+    /// areas and a network equalizes in nanoseconds.
     ///
     /// ```text
     /// J dz = 16 ε |∂F/∂y| |y|
@@ -280,7 +280,7 @@ impl<D: Dae> Newton<'_, D> {
         Ok(self.size(&noise).max(ROUND_OFF))
     }
 
-    /// The present z.
+    /// Returns the present z.
     fn unknowns(&self) -> Vec<f64> {
         (0..self.y.len()).map(|i| self.unknown(i)).collect()
     }
@@ -292,7 +292,7 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    /// A correction relative to 1 + |z|.
+    /// Returns a correction relative to 1 + |z|.
     fn relative(&self, correction: &[f64]) -> Vec<f64> {
         self.unknowns()
             .iter()
@@ -331,7 +331,7 @@ impl<D: Dae> Newton<'_, D> {
     }
 }
 
-/// Position of the largest entry by absolute value.
+/// Index of the entry with the largest absolute value.
 fn largest(x: &[f64]) -> Option<usize> {
     x.iter()
         .enumerate()

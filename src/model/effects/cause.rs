@@ -1,4 +1,4 @@
-//! Why an effect is simulated or not; words stand in `Display` alone.
+//! Reasons for each effect decision; the text is in `Display` only.
 
 use std::fmt::{self, Display, Formatter};
 
@@ -6,151 +6,151 @@ use super::obstacles::Obstacle;
 use crate::case::schema::Effect;
 use crate::error::numbers::significant;
 
-/// What decided on an effect.
+/// Reason for a decision on an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
-    /// The full model was asked for.
+    /// The full model is requested.
     Full,
-    /// It was asked for by name.
+    /// Switched on by name.
     Asked,
-    /// It was left out by name.
+    /// Switched off by name.
     LeftOut,
-    /// It was to be left out, and cannot be.
+    /// Switched off by name, which an obstacle prevents.
     Refused(Obstacle),
-    /// It comes by name only, and was not asked for.
+    /// Off unless switched on by name.
     Unasked,
-    /// A port's flow enters a junction where only tubes meet, whose inertia does not let it.
+    /// A port's flow enters a junction of tubes only, whose inertia prevents it.
     FedJunction,
     /// The published form has no shear.
     Unsheared,
     /// The fluid has no mass.
     Massless,
-    /// The case gives it, or not.
+    /// The case gives the effect's data, or does not.
     Given(bool),
-    /// The case gives bladders and fluid, or not.
+    /// The case gives bladders and fluid, or does not.
     Filled(bool),
-    /// It has no meaning without another.
+    /// Requires another effect, which is off.
     Needs(Effect),
     /// The reciprocal coupling has no kinks.
     NoKinks,
-    /// Something in the case has a meaning only with it.
+    /// The case contains an input that requires the effect.
     Obstacle(Obstacle),
-    /// Without it an instability might not show.
+    /// Omitting it might hide an instability.
     Unstable(String),
-    /// It is kept whatever its number.
+    /// Kept regardless of its number.
     Kept(Keeps),
-    /// Its number beside the tolerance.
+    /// Number compared with the tolerance.
     Weighed(Weighed),
-    /// Nothing acts across: part of the buckling load that compression reaches.
+    /// No load acts across; fraction of the buckling load reached by compression.
     Straight(f64),
-    /// All bladders, so many, are sealed.
+    /// All bladders are sealed; their number.
     Sealed(usize),
-    /// Some of all bladders are sealed, and the others are weighed.
+    /// Some bladders are sealed, and the leakage of the others decides.
     PartlySealed {
-        /// Of all.
+        /// Number of sealed bladders.
         sealed: usize,
-        /// All.
+        /// Number of all bladders.
         all: usize,
-        /// What the others leak.
+        /// Leakage of the others.
         leaks: Weighed,
     },
 }
 
-/// A number that decides.
+/// A number with its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed {
-    /// What it is.
+    /// Kind of number.
     pub what: Number,
     /// Its value.
     pub value: f64,
-    /// Below this the effect may be left out.
+    /// Value below which the effect may be omitted.
     pub tolerance: f64,
 }
 
 impl Weighed {
-    /// Whether the effect stays; what is unknown does.
+    /// True if the effect is kept; an unknown number keeps it.
     pub fn on(&self) -> bool {
         self.value.is_nan() || self.value >= self.tolerance
     }
 }
 
-/// Numbers that decide.
+/// Numbers that decide on effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
     /// Square of the largest angle.
     Rotation,
-    /// How much bending draws in over the stretch.
+    /// Shortening by bending over stretch.
     DrawnIn,
     /// Normal force over the buckling load.
     NormalForce,
-    /// Stretch over how much bending draws in.
+    /// Stretch over shortening by bending.
     Stretch,
     /// Inertia of bending over its stiffness.
     BendingInertia,
     /// Axial waves over the stretch without them.
     AxialWaves,
-    /// Phase of the second bending mode in the whole run.
+    /// Phase of the second bending mode over the whole run.
     RotaryInertia,
-    /// Shear in the second bending mode, at rest and in the whole run.
+    /// Shear in the second bending mode, at rest and over the whole run.
     Shear,
-    /// What leaks in the whole run.
+    /// Leakage over the whole run.
     Leakage,
-    /// A bladder's own time against that of the motion.
+    /// Time constant of a bladder over that of the motion.
     LagAlongBladders,
-    /// Inertia of the fluid in a tube over its resistance, at most.
+    /// Largest inertia of the fluid in a tube over its resistance.
     Inertance,
-    /// Inertia of the fluid along bladders over what takes up its flow, at most.
+    /// Largest inertia of the fluid along bladders over the storage that receives its flow.
     Sloshing,
-    /// Error of a steady profile in a tube or a bladder, at most.
+    /// Largest error of a steady velocity profile in a tube or a bladder.
     UnsteadyFriction,
-    /// Losses of a tube over its laminar friction, at most.
+    /// Largest losses of a tube over its laminar friction.
     TubeLosses,
-    /// What pressure does over what loads do.
+    /// Strains by pressure over those by loads.
     PressureStrain,
-    /// Larger of dm/am, dn/an.
+    /// Larger of dm/am and dn/an.
     Asymmetry,
-    /// What compression stores over what the walls of bladders do.
+    /// Storage by compression over storage by bladder walls.
     Compression,
-    /// Energy beyond the quadratic part over the quadratic one, at most.
+    /// Largest energy beyond the quadratic part over the quadratic energy.
     StrainEnergy,
 }
 
-/// What keeps an effect.
+/// Reasons to keep an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keeps {
     /// The rows of bladders differ.
     RowsDiffer,
-    /// Something acts near or above the first bending frequency.
+    /// A load acts near or above the first bending frequency.
     Resonance,
-    /// Driven ends act by inertia.
+    /// Driven ends load the beam by inertia.
     DrivenEnds,
-    /// The ends do not hold the beam.
+    /// The ends do not support the beam.
     NotHeld,
-    /// Something acts suddenly.
+    /// A load acts suddenly.
     Sudden,
-    /// Ports or turbines take fluid.
+    /// Ports or turbines exchange fluid.
     Fed,
-    /// Something that has a meaning only with it is asked for by name.
+    /// An effect that requires it is switched on by name.
     AskedWithInertia,
-    /// It is all that the fluid dissipates.
+    /// It is the only dissipation of the fluid.
     Dissipation,
-    /// The start has differences along a bladder.
+    /// The initial pressure differs along a bladder.
     UnevenStart,
-    /// It makes pressure.
+    /// It generates pressure.
     MakesPressure,
     /// The fluid is a gas.
     Gas,
-    /// Something is attached to the beam, which the scene's numbers do not know.
+    /// Attachments, which the scene's numbers exclude.
     Attachments,
-    /// The beam may strike walls, which the scene's numbers do not know.
+    /// Contacts, which the scene's numbers exclude.
     Contacts,
-    /// A fluid is around the beam, which the scene's numbers do not know.
+    /// Ambient fluid, which the scene's numbers exclude.
     Surroundings,
-    /// The beam is curved at rest, which the scene's numbers do not know.
+    /// Rest curvature, which the scene's numbers exclude.
     RestCurvature,
-    /// The solid relaxes, which the scene's numbers do not know.
+    /// Relaxation of the solid, which the scene's numbers exclude.
     Viscoelasticity,
-    /// The section is not linear at the scene's loads.
+    /// The section is nonlinear at the scene's loads.
     FiniteStrain,
 }
 

@@ -1,4 +1,4 @@
-//! One decision after the other, each from those before it.
+//! Decides on effects one by one; each decision depends on the earlier ones.
 
 use super::cause::{Cause, Keeps, Number, Weighed};
 use super::obstacles::{self, Obstacle};
@@ -10,16 +10,16 @@ use crate::case::schema::{
 use crate::error::{Code, Violation};
 use crate::model::Network;
 
-/// What decisions are made from.
+/// State of the effect chooser.
 pub(super) struct Chooser<'a> {
     pub case: &'a Case,
-    /// That of the bladders.
+    /// Network of the bladders.
     pub network: Option<&'a Network>,
-    /// What automatic choices look at; without it everything is kept.
+    /// Scene for automatic choices; none keeps every effect.
     pub scene: Option<&'a Scene<'a>>,
     choices: EffectChoices,
     tolerance: f64,
-    /// What is decided so far.
+    /// Decisions so far.
     set: EffectSet,
 }
 
@@ -46,13 +46,13 @@ impl<'a> Chooser<'a> {
         self.set
     }
 
-    /// Of an effect that is there where the case gives it, and only there: whether it does.
+    /// True or false for an effect that is on exactly where the case gives its data; none for others.
     fn given(&self, effect: Effect) -> Option<bool> {
         given(effect, self.case, self.network.filter(|_| self.set.has(Effect::Fluid)))
     }
 
-    /// Where an effect has no meaning it is off, whatever was asked; where something stands against leaving it out it stays, and the
-    /// case is refused if that was asked for.
+    /// Decides on an effect. It is off where a required effect or input is missing, whatever the choice. It stays on
+    /// where an obstacle prevents omission; the case is rejected if omission was requested.
     fn decide(&mut self, effect: Effect) -> (bool, Cause) {
         if let Err(why) = self.possible(effect) {
             if self.choices.of(effect) == Choice::On {
@@ -63,8 +63,9 @@ impl<'a> Chooser<'a> {
         self.decide_possible(effect)
     }
 
-    /// Refuses an effect that is asked for by name where the case itself leaves it without a meaning: what it needs is off by name,
-    /// what it is about is not given, or it is not simulated with what is. Where the program leaves out what it needs it goes along.
+    /// Rejects an effect that is switched on by name while the case itself rules it out: a required effect is off by
+    /// name, its data are missing, or the form has no such effect. If the program omits a required effect, the named
+    /// effect is omitted without error.
     fn contradicts(&mut self, effect: Effect, why: &Cause) {
         let (what, hint) = match why {
             Cause::Needs(missing) => {
@@ -97,7 +98,8 @@ impl<'a> Chooser<'a> {
         self.refuse(effect, &what, &hint);
     }
 
-    /// What is off by name, of an effect that is off and of all that it needs; but the fluid, which takes along all that is about it.
+    /// The effect switched off by name that disables `missing`, directly or through required effects. None for the
+    /// fluid, which disables all its effects.
     fn off_by_name(&self, missing: Effect) -> Option<Effect> {
         match self.set.decision(missing).cause {
             Cause::LeftOut if missing == Effect::Fluid => None,
@@ -138,7 +140,7 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// Whether an effect has a meaning.
+    /// Reason that rules an effect out, as an error.
     fn possible(&self, effect: Effect) -> Result<(), Cause> {
         if let Some(missing) = needs(effect).iter().find(|needed| !self.set.has(**needed)) {
             return Err(Cause::Needs(*missing));
@@ -160,13 +162,14 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// Whether something is asked for by name that has a meaning only with inertia in tubes.
+    /// True if an effect that requires tube inertia is switched on by name.
     fn asked_with_inertia(&self) -> bool {
         let with = [Effect::BladderInertia, Effect::UnsteadyFriction];
         with.iter().any(|&effect| self.choices.of(effect) == Choice::On)
     }
 
-    /// Whether fluid may swing along bladders in proportion to its number, which is told then: nothing that is decided already stands against it, nor a choice by name.
+    /// The sloshing number, if inertia along bladders is still possible: no choice by name and no earlier decision
+    /// excludes it.
     fn may_swing(&self, scene: &Scene) -> Option<f64> {
         let bladders = Effect::BladderInertia;
         let massless = self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
@@ -176,7 +179,7 @@ impl<'a> Chooser<'a> {
         (!massless && !off && !unasked).then(|| scene.sloshing(self.tolerance))
     }
 
-    /// Whether a port's flow enters a junction of tubes alone, in which nothing is compressed that would take it up.
+    /// True if a port's flow enters a junction of tubes only, without compression to store it.
     fn feeds_junction(&self) -> bool {
         let stores = self.set.has(Effect::Compressibility);
         !stores && self.network.is_some_and(|network| network.fed_junction().is_some())
@@ -186,7 +189,7 @@ impl<'a> Chooser<'a> {
         self.case.fluid.as_ref()
     }
 
-    /// What stands against leaving an effect out.
+    /// Obstacle to omitting an effect.
     fn obstacle(&self, effect: Effect) -> Option<Obstacle> {
         let (case, network) = (self.case, self.network);
         let [across, turning] = [Effect::TransverseMotion, Effect::FiniteRotation].map(|e| self.set.has(e));
@@ -205,7 +208,7 @@ impl<'a> Chooser<'a> {
         }
     }
 
-    /// What the program chooses by itself.
+    /// Automatic choice for an effect.
     fn automatic(&self, effect: Effect, scene: &Scene) -> (bool, Cause) {
         let kept = |keeps: Keeps| (true, Cause::Kept(keeps));
         let unstable = |why: String| (true, Cause::Unstable(why));
@@ -218,7 +221,7 @@ impl<'a> Chooser<'a> {
             let weighed = weighed(what, value);
             (weighed.on(), Cause::Weighed(weighed))
         };
-        // what bends is not left out where that might hide an instability or a resonance
+        // keep bending effects whose omission might hide an instability or a resonance
         let bending = |choice: (bool, Cause)| match scene.unstable() {
             _ if choice.0 => choice,
             Some(why) => unstable(why),
@@ -269,7 +272,7 @@ impl<'a> Chooser<'a> {
                 match self.network.map_or((0, 0), count) {
                     _ if scene.fed() => kept(Keeps::Fed),
                     (sealed, all) if sealed == all => (true, Cause::Sealed(all)),
-                    // what bends a beam that nothing acts on across is the flow alone, however little
+                    // without loads across, only the flow bends the beam, however small
                     _ if !scene.mirrored() && obstacles::transverse_motion(self.case).is_none() => {
                         kept(Keeps::RowsDiffer)
                     }
@@ -322,13 +325,13 @@ impl<'a> Chooser<'a> {
                 weigh(Number::Asymmetry, m.max(n))
             }
             Effect::Fluid => (true, Cause::Filled(true)),
-            // all others are there where the case gives them
+            // all others are on where the case gives their data
             _ => (true, Cause::Given(true)),
         }
     }
 }
 
-/// Whether numbers of a beam that nothing is attached to decide on an effect.
+/// True if numbers for a beam without attachments decide on an effect.
 fn by_motion(effect: Effect) -> bool {
     use Effect::*;
     let by_fluid = [

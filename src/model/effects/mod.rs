@@ -1,15 +1,16 @@
-//! Which effects are simulated, chosen once, each with what decided.
+//! Choice of the simulated effects, each with its reason.
 //!
 //! ```text
-//! table       what each effect needs, and whether a case gives it
-//! choose      one decision after the other: what an effect needs, what stands against leaving it out, what the program chooses
-//! scene       the numbers by which the program chooses
-//! obstacles   what has a meaning only with an effect
-//! cause       why it was decided so
+//! table       effects required by each effect, and data of a case for it
+//! choose      decisions in order: requirements, obstacles, automatic choices
+//! scene       numbers for automatic choices
+//! obstacles   inputs of a case that require an effect
+//! cause       reasons for decisions
 //! ```
 //!
-//! A new effect needs: its physics in a module of its own, a line of the list in [`crate::case::schema`], and its place in
-//! [`crate::discrete::residual::evaluate`]; the compiler then names the rest: what it needs in `table`, and what decides in `choose`; `docs/effects.md` has a row for each.
+//! A new effect needs a physics module, a line of the list in [`crate::case::schema`], and a place in
+//! [`crate::discrete::residual::evaluate`]. The compiler then reports the missing entries in `table` (requirements) and
+//! `choose` (decision). `docs/effects.md` has a row for each effect.
 
 mod cause;
 mod choose;
@@ -27,14 +28,14 @@ pub use obstacles::Obstacle;
 pub use scene::Scene;
 pub use table::needs;
 
-/// A decision with what decided.
+/// A decision with its reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
     /// The effect.
     pub effect: Effect,
-    /// Whether it is simulated.
+    /// True if it is simulated.
     pub on: bool,
-    /// Why.
+    /// Reason.
     pub cause: Cause,
 }
 
@@ -45,34 +46,34 @@ pub struct EffectSet {
     on: u64,
     /// Every decision, in the order of [`Effect::ALL`].
     pub decisions: Vec<Decision>,
-    /// Why a case is refused: effects that were to be left out and cannot be.
+    /// Errors of a case: effects switched off by name that cannot be omitted.
     pub refusals: Vec<Violation>,
 }
 
 impl EffectSet {
-    /// Everything that a case describes; `network` is that of its bladders.
+    /// All effects that a case describes; `network` is that of its bladders.
     pub fn whole(case: &Case, network: Option<&Network>) -> Self {
         Chooser::new(case, network, None).all()
     }
 
-    /// Chooses the effects of a case for the scene it describes: what it names as it says, the rest so that what is left out
-    /// changes results by less than `effects_tolerance`.
+    /// Chooses the effects of a case for its scene. Named choices apply as given. Of the others, those are omitted that
+    /// change results by less than `effects_tolerance`.
     pub fn choose(case: &Case, network: Option<&Network>, scene: &Scene) -> Self {
         Chooser::new(case, network, Some(scene)).all()
     }
 
-    /// Whether the model contains an effect.
+    /// True if the model contains an effect.
     #[inline]
     pub const fn has(&self, effect: Effect) -> bool {
         self.on & bit(effect) != 0
     }
 
-    /// What was decided on an effect, which an equilibrium may leave out beyond that.
+    /// Decision on an effect. An equilibrium may omit further effects.
     pub fn decision(&self, effect: Effect) -> &Decision {
         &self.decisions[effect as usize]
     }
 
-    /// The same without inertia of the solid.
+    /// Removes inertia of the solid.
     pub fn at_rest(mut self) -> Self {
         for inertia in [Effect::SolidInertia, Effect::AxialInertia, Effect::RotaryInertia] {
             self.on &= !bit(inertia);
@@ -80,7 +81,7 @@ impl EffectSet {
         self
     }
 
-    /// The same without unsteady friction, unless that is asked for by name.
+    /// Removes unsteady friction, unless it is switched on by name.
     pub fn forgetting(mut self) -> Self {
         let memory = Effect::UnsteadyFriction;
         if self.decision(memory).cause != Cause::Asked {

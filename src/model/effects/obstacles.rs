@@ -1,4 +1,4 @@
-//! What stands against leaving an effect out: something in the case that has a meaning only with it.
+//! Obstacles to omitting an effect: inputs of a case that require it.
 
 use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
@@ -6,12 +6,12 @@ use crate::functions::profile::Profile;
 use crate::model::network::{AccumulatorLaw, Feed};
 use crate::model::{LumpedNetwork, Network};
 
-/// Why an effect must stay, and what to do.
+/// Reason that an effect must stay, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Obstacle {
-    /// One clause.
+    /// Reason, as one clause.
     pub what: String,
-    /// What to do.
+    /// Remedy.
     pub hint: String,
 }
 
@@ -22,7 +22,7 @@ fn obstacle(what: impl Into<String>, hint: &str) -> Option<Obstacle> {
     })
 }
 
-/// Nothing may move or load the beam across.
+/// Obstacle: a motion or load across the beam.
 pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     const HINT: &str = "remove it, or leave transverse_motion on";
     let across = |load: &Load| match load {
@@ -78,7 +78,7 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     None
 }
 
-/// The published form is one of finite rotations.
+/// Obstacle: the published form, which has finite rotations.
 pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
     if case.formulation == Formulation::Conservative {
         return None;
@@ -89,13 +89,13 @@ pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
     )
 }
 
-/// Finite rotations turn the normal force with the beam.
+/// Obstacle: finite rotations, which turn the normal force with the beam.
 pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
     let turns = finite_rotation.then_some("finite_rotation is on, which turns the normal force with the beam")?;
     obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
 }
 
-/// Dashpots at places resist the motion of their nodes alone.
+/// Obstacle: a dashpot or a lossy wall, which acts only on moving masses.
 pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     if let Some(wall) = lossy(case) {
         return obstacle(
@@ -114,7 +114,7 @@ pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     )
 }
 
-/// Sections that shear have rates to be resisted only with the inertia of their own.
+/// Obstacle: an attachment that resists the rotation of shearing sections, which have rates only with rotary inertia.
 pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
     let turned = |a: &Attachment| a.is_eccentric() || a.rotary_inertia_kg_m2 > 0.0;
     let k = case.attachments.iter().position(turned).filter(|_| sheared)?;
@@ -124,7 +124,8 @@ pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
     )
 }
 
-/// Something must carry the beam along.
+/// Obstacle: axial motion that the remaining equations do not determine, or that an attachment, a wall or ambient fluid
+/// resists.
 pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     let inert = case
         .surroundings
@@ -165,13 +166,13 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     )
 }
 
-/// A wall that loses energy.
+/// First wall with damping or friction.
 fn lossy(case: &Case) -> Option<&Contact> {
     let lossy = |wall: &&Contact| wall.damping_s_m > 0.0 || wall.friction_coefficient > 0.0;
     case.contacts.iter().find(lossy)
 }
 
-/// The normal force must follow from the loads.
+/// Obstacle: a normal force that does not follow from the loads.
 pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool) -> Option<Obstacle> {
     const HINT: &str = "leave axial_stretch on";
     if !transverse_motion {
@@ -220,7 +221,7 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     }
 }
 
-/// A prescribed flow must have somewhere to go.
+/// Obstacle: a prescribed flow or a pump.
 pub fn flow(network: &Network) -> Option<Obstacle> {
     if let Some(source) = network.sources.first() {
         let given = match source.feed {
@@ -236,7 +237,7 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
     None
 }
 
-/// A tank must have something to store.
+/// Obstacle: a rigid tank, which stores only compressed fluid.
 pub fn compressibility(network: &Network) -> Option<Obstacle> {
     let rigid = |law| matches!(law, AccumulatorLaw::Rigid { .. });
     let tank = network.accumulators.iter().find(|one| rigid(one.law))?;
@@ -244,7 +245,7 @@ pub fn compressibility(network: &Network) -> Option<Obstacle> {
     obstacle(what, "remove the tank, or leave compressibility on")
 }
 
-/// Every network must be able to have one pressure.
+/// Obstacle: a network that cannot have a single pressure.
 pub fn network_pressure_differences(network: &Network) -> Option<Obstacle> {
     let why = LumpedNetwork::all(network).find_map(Result::err)?;
     obstacle(why, "remove it, or leave network_pressure_differences on")

@@ -1,12 +1,12 @@
-//! All effects that the program knows: which others each needs, and which of them a case gives. `docs/effects.md` has what each adds, brings with it and
-//! costs, and what decides.
+//! Table of all effects: required effects, and effects given by a case. `docs/effects.md` lists the benefit, the cost
+//! and the decision rule of each.
 
 use Effect::*;
 
 use crate::case::schema::{Case, Effect, Load};
 use crate::model::Network;
 
-/// Other effects without which an effect has no meaning.
+/// Effects that an effect requires.
 pub fn needs(effect: Effect) -> &'static [Effect] {
     match effect {
         TransverseMotion | AxialStretch | SolidInertia | Fluid | Damping | Viscoelasticity | Loads | Gravity
@@ -37,7 +37,8 @@ fn gravity(load: &Load) -> bool {
     matches!(load, Load::Gravity { .. })
 }
 
-/// Whether a case gives an effect, with the network of its bladders where they hold fluid; none of effects that a case or the program chooses.
+/// True or false for an effect that is on exactly where the case gives its data; none for effects that the case or the
+/// program chooses. `network` is that of the bladders, if they contain fluid.
 pub fn given(effect: Effect, case: &Case, network: Option<&Network>) -> Option<bool> {
     Some(match effect {
         Damping => {

@@ -1,10 +1,10 @@
-//! Vessels at points of the network that take in fluid as their pressure rises.
+//! Accumulators: vessels that store fluid under pressure.
 
 use crate::case::schema::{Accumulator as Written, AccumulatorKind};
 use crate::numerics::Scalar;
 
-/// `[E60]` An accumulator at a junction: the volume V that it holds beyond that at ambient pressure is an unknown, in place of the
-/// junction's pressure p,
+/// `[E60]` An accumulator at a junction. Its volume V beyond that at ambient pressure replaces the junction's pressure
+/// p as unknown:
 ///
 /// ```text
 /// dV/dt = Σ q
@@ -13,14 +13,14 @@ use crate::numerics::Scalar;
 /// rigid     V = 0                                      E = 0
 /// ```
 ///
-/// `V_0` the volume of the gas above the fluid at the ambient pressure `p_0`, which presses it together by `p_abs V^n` = const;
-/// `n = 1`: `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing. What fluid that is compressed
-/// does in it is [`crate::model::Compression::in_vessel`]; a rigid tank stores nothing else.
+/// `V_0` is the gas volume at ambient pressure `p_0`; the gas obeys `p_abs V^n` = const. For `n = 1`,
+/// `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing. For compressible
+/// fluid see [`crate::model::Compression::in_vessel`]; a rigid tank stores only compressed fluid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Accumulator {
-    /// Its name.
+    /// Name.
     pub name: String,
-    /// Number of the junction that it is.
+    /// Index of its junction.
     pub junction: usize,
     /// Gauge pressure at the start [Pa].
     pub start_pressure: f64,
@@ -28,22 +28,22 @@ pub struct Accumulator {
     pub law: AccumulatorLaw,
 }
 
-/// Pressure of an accumulator by what it holds.
+/// Pressure of an accumulator as a function of its volume.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AccumulatorLaw {
-    /// Of elastic walls.
+    /// Elastic walls.
     Elastic {
         /// `C` [m^3/Pa].
         compliance: f64,
-        /// Fluid in it at ambient pressure [m^3], which counts where that is compressed.
+        /// Fluid volume at ambient pressure [m^3], used for compressible fluid.
         holds: f64,
     },
-    /// Of a tank whose walls do not give way.
+    /// A tank with rigid walls.
     Rigid {
-        /// Fluid in it at ambient pressure [m^3].
+        /// Fluid volume at ambient pressure [m^3].
         holds: f64,
     },
-    /// Of gas above the fluid.
+    /// Gas above the fluid.
     Gas {
         /// `V_0` [m^3].
         volume: f64,
@@ -51,13 +51,13 @@ pub enum AccumulatorLaw {
         ambient: f64,
         /// `n`.
         exponent: f64,
-        /// Fluid of tubes that end in it, at ambient pressure [m^3], which counts where that is compressed.
+        /// Fluid volume of tubes that end in it, at ambient pressure [m^3], used for compressible fluid.
         holds: f64,
     },
 }
 
 impl AccumulatorLaw {
-    /// As a case writes it; `ambient` is the absolute ambient pressure [Pa].
+    /// Law of a case's accumulator; `ambient` is the absolute ambient pressure [Pa].
     pub(super) fn new(written: &Written, ambient: f64) -> Self {
         match written.kind {
             AccumulatorKind::Elastic {
@@ -80,21 +80,21 @@ impl AccumulatorLaw {
         }
     }
 
-    /// Fluid in it at ambient pressure [m^3].
+    /// Fluid volume at ambient pressure [m^3].
     pub fn volume_at_rest(&self) -> f64 {
         match *self {
             Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. } => holds,
         }
     }
 
-    /// The same with more fluid in it at ambient pressure [m^3].
+    /// Adds fluid volume at ambient pressure [m^3].
     pub fn holding(mut self, more: f64) -> Self {
         let (Self::Elastic { holds, .. } | Self::Rigid { holds } | Self::Gas { holds, .. }) = &mut self;
         *holds += more;
         self
     }
 
-    /// Gauge pressure [Pa] by the volume [m^3]; not a number where there is no gas left, and in a tank, whose volume says nothing of it.
+    /// Gauge pressure [Pa] at a volume [m^3]. NaN if no gas volume is left, and for a rigid tank.
     #[inline]
     pub fn pressure<T: Scalar>(&self, volume: T) -> T {
         match *self {
@@ -117,7 +117,7 @@ impl AccumulatorLaw {
         }
     }
 
-    /// Volume [m^3] by gauge pressure [Pa].
+    /// Volume [m^3] at a gauge pressure [Pa].
     pub fn volume(&self, pressure: f64) -> f64 {
         match *self {
             Self::Elastic { compliance, .. } => compliance * pressure,
@@ -131,7 +131,7 @@ impl AccumulatorLaw {
         }
     }
 
-    /// Volume taken in per pressure [m^3/Pa] at a gauge pressure [Pa].
+    /// Compliance dV/dp [m^3/Pa] at a gauge pressure [Pa].
     pub fn compliance(&self, pressure: f64) -> f64 {
         match *self {
             Self::Elastic { compliance, .. } => compliance,
@@ -145,7 +145,7 @@ impl AccumulatorLaw {
         }
     }
 
-    /// Energy that it stores, `∫ p dV` from ambient pressure on [J].
+    /// Stored energy `∫ p dV` from ambient pressure [J].
     pub fn energy(&self, volume: f64) -> f64 {
         match *self {
             Self::Elastic { compliance, .. } => 0.5 * volume * volume / compliance,
@@ -173,7 +173,7 @@ mod tests {
     use super::*;
     use crate::numerics::Dual;
 
-    /// Goal: pressure, volume, compliance and energy are of one law.
+    /// Goal: pressure, volume, compliance and energy are consistent.
     #[test]
     fn laws_agree_with_themselves() {
         let gas = |exponent| AccumulatorLaw::Gas {

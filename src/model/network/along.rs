@@ -1,31 +1,32 @@
-//! What flow along a bladder needs beyond the resistance of creeping flow.
+//! Flow along a bladder beyond the resistance of creeping flow.
 
 use super::ladder::Ladder;
 use super::tube::FlowLaw;
 use crate::case::schema::{Bladders, CrossSection, Effect, Fluid};
 use crate::model::{EffectSet, duct};
 
-/// `[E74]` Momentum along a bladder of rest area `A_0`, over the length Δs between two cells' middles, β and r of its cross-section, [E73], and its ladder, [E72]:
+/// `[E74]` Momentum along a bladder with the area `A_0` at rest, over the length Δs between the centers of two cells. β
+/// and r are those of its cross-section, [E73], the ladder is [E72]:
 ///
 /// ```text
 /// I dq/dt + Σ_i r_i (q - j_i) + (μ Δs/q1b) q = p_a - p_b        I = ρ Δs/A_0, without the branches β of it
 /// ```
 ///
-/// The half cell at an end of a bladder adds its part to the flow of what is joined there.
+/// The half cell at a bladder's end adds its part to the flow in the link there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlongBladder {
     /// `ρ/A_0` [kg/m^5].
     inertance: f64,
     /// β.
     momentum: f64,
-    /// Memory of friction in a length of 1 m.
+    /// Unsteady friction for a length of 1 m.
     memory: Option<Ladder>,
     /// `ν/r²` [1/s].
     pub viscous_rate: f64,
 }
 
 impl AlongBladder {
-    /// Of the bladders of a case, everything included; none where the fluid has no mass.
+    /// Law for the bladders of a case, with all effects; none for massless fluid.
     pub(super) fn new(bladders: &Bladders, fluid: &Fluid) -> Option<Self> {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
         let section = bladders.cross_section.clone().unwrap_or(CrossSection::Rectangle {
@@ -45,7 +46,7 @@ impl AlongBladder {
         })
     }
 
-    /// What effects leave of it.
+    /// Applies the choice of effects; none without inertia along bladders.
     pub(in crate::model) fn reduced(mut self, effects: &EffectSet) -> Option<Self> {
         if !effects.has(Effect::UnsteadyFriction) {
             self.memory = None;
@@ -58,7 +59,7 @@ impl AlongBladder {
         self.momentum * self.inertance
     }
 
-    /// Along a length [m].
+    /// Flow law for a length [m].
     pub fn over(&self, length: f64) -> FlowLaw {
         let inertance = match self.memory {
             Some(_) => self.inertance,

@@ -1,16 +1,17 @@
-//! Check valves and relief valves: what opens under a pressure drop, by itself.
+//! Check valves and relief valves, which open under a pressure drop.
 
 use crate::case::schema::CheckValve as Written;
 use crate::numerics::{Scalar, ramp};
 
-/// `[E7]` A valve that opens from its cracking pressure `p_c ≥ 0` on, over a range w of pressure:
+/// `[E7]` A valve that opens at its cracking pressure `p_c ≥ 0`, over a pressure range w:
 ///
 /// ```text
 /// q(Δ) = G_r Δ + (G_f - G_r) s(Δ - p_c)        s(x) = 0 below 0,  x²/(2w) up to w,  x - w/2 beyond
 /// ```
 ///
-/// Its slope is continuous, between `G_r` and `G_f`; `q(0) = 0` and `q Δ ≥ 0`, so that it dissipates. In pieces it is linear or quadratic:
-/// its inverse, and it behind a resistance, are closed forms too. A relief valve is one with a high cracking pressure.
+/// The slope is continuous, between `G_r` and `G_f`. The valve dissipates: `q(0) = 0` and `q Δ ≥ 0`. The law is
+/// piecewise linear or quadratic, so its inverse and its series with a resistance have closed forms. A relief valve is
+/// a check valve with a high cracking pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CheckValve {
     /// `p_c` [Pa].
@@ -35,24 +36,24 @@ impl From<&Written> for CheckValve {
 }
 
 impl CheckValve {
-    /// Flow under the pressure drop `drop`.
+    /// Flow under a pressure drop.
     #[inline]
     pub fn flow<T: Scalar>(&self, drop: T) -> T {
         drop.lift(|drop| self.at(drop))
     }
 
-    /// Flow under a pressure drop over the valve and a resistance [Pa s/m^3] before it.
+    /// Flow under the pressure drop over the valve and a resistance [Pa s/m^3] in series.
     #[inline]
     pub fn flow_behind<T: Scalar>(&self, resistance: f64, drop: T) -> T {
         drop.lift(|drop| self.behind(resistance, drop))
     }
 
-    /// Flow and its slope behind a resistance [Pa s/m^3], under the drop over both.
+    /// Flow and its slope under the pressure drop over the valve and a resistance [Pa s/m^3] in series.
     pub fn flow_and_slope(&self, resistance: f64, drop: f64) -> (f64, f64) {
         self.behind(resistance, drop)
     }
 
-    /// The pressure drop that a flow takes.
+    /// Pressure drop at a flow.
     #[inline]
     pub fn drop<T: Scalar>(&self, flow: T) -> T {
         flow.lift(|flow| {
@@ -61,7 +62,7 @@ impl CheckValve {
         })
     }
 
-    /// Whether it is shut under a flow, but for its leakage.
+    /// True if the valve is shut at a flow, except for leakage.
     pub fn is_shut(&self, flow: f64) -> bool {
         flow <= self.reverse * self.cracking_pressure
     }
@@ -78,24 +79,24 @@ impl CheckValve {
         (self.reverse * drop + more * open, self.reverse + more * share)
     }
 
-    /// The part of a pressure drop that falls over the valve behind a resistance R: the root of `x + R q(x) = Δ`.
+    /// Pressure drop over the valve in series with a resistance R: the root of `x + R q(x) = Δ`.
     fn share(&self, resistance: f64, drop: f64) -> f64 {
         self.root(1.0, resistance, drop)
     }
 
-    /// The root of `q(x) = q`.
+    /// Root of `q(x) = q`.
     fn drop_of(&self, flow: f64) -> f64 {
         self.root(0.0, 1.0, flow)
     }
 
-    /// The root of `a x + b q(x) = c`, piece by piece.
+    /// Root of `a x + b q(x) = c`, piecewise.
     fn root(&self, a: f64, b: f64, c: f64) -> f64 {
         let (shut, begin) = (a + b * self.reverse, self.cracking_pressure);
         let over = c - shut * begin;
         if over <= 0.0 {
             return c / shut;
         }
-        // shut x + half x² = over, x from the beginning of the opening on
+        // shut x + half x² = over, x measured from the cracking pressure
         let half = 0.5 * b * (self.forward - self.reverse) / self.width;
         let x = 2.0 * over / (shut + (shut * shut + 4.0 * half * over).sqrt());
         if x < self.width {
@@ -133,7 +134,8 @@ mod tests {
     ];
     const DROPS: [f64; 12] = [-1e6, -3e3, -1.0, 0.0, 1e-9, 0.5, 5.0, 10.0, 2e3, 2.2e3, 2.5e3, 1e6];
 
-    /// Goal: behind a resistance the flow takes both drops together, and the inverse is the inverse, in all pieces and at their seams.
+    /// Goal: the drops over valve and resistance add up, and the inverse is exact, in all pieces and at their
+    /// boundaries.
     #[test]
     fn roots_are_roots() {
         for valve in VALVES {
@@ -149,7 +151,7 @@ mod tests {
                     let q: f64 = valve.flow_behind(resistance, drop);
                     let left = drop - resistance * q;
                     let off = valve.flow(left) - q;
-                    // what round-off of the larger of both drops makes of a flow
+                    // rounding error of the flow from that of the larger drop
                     let noise = 1e-14 * (drop.abs() + resistance * q.abs()) * valve.forward;
                     assert!(
                         off.abs() <= noise + 1e-12 * q.abs(),
@@ -160,7 +162,7 @@ mod tests {
         }
     }
 
-    /// Goal: slopes are derivatives, away from the seams, where they are continuous.
+    /// Goal: slopes are derivatives, away from the piece boundaries, where they are continuous.
     #[test]
     fn slopes_are_derivatives() {
         for valve in VALVES {

@@ -1,11 +1,11 @@
-//! What is joined to what, not through ports; and what is joined by tubes with inertia alone.
+//! Connected components of a network, and groups of junctions connected only through tubes with inertia.
 
 use std::collections::BTreeSet;
 
 use super::{Network, Node};
 use crate::numerics::sets::Sets;
 
-/// Numbers the connected components of bladders and junctions, and finds those that a port or a source touches.
+/// Numbers the connected components of bladders and junctions, and lists those with a port or a source.
 pub(super) fn find(network: &mut Network, bladders: usize) {
     let links = network.links.iter().filter(|l| !l.is_shut()).map(|l| (l.from, l.to));
     let joined: Vec<_> = links.chain(network.bridges.iter().map(|b| (b.from, b.to))).collect();
@@ -21,7 +21,7 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
             sets.join(a, b);
         }
     }
-    // the root of a component is its first member
+    // the root of a set is its first member
     let mut component = vec![];
     for i in 0..slots {
         let first = sets.root(i);
@@ -44,25 +44,25 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
     network.component_of_bladder = component;
 }
 
-/// What one component consists of; ascending numbers.
+/// Members of one component, as ascending indices.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Component {
     /// Bladders.
     pub bladders: Vec<usize>,
     /// Junctions.
     pub junctions: Vec<usize>,
-    /// Links that touch it, shut ones too.
+    /// Links that touch it, including shut ones.
     pub links: Vec<usize>,
-    /// Whether a bridge touches it.
+    /// True if a bridge touches it.
     pub bridged: bool,
-    /// Whether an accumulator is in it.
+    /// True if it contains an accumulator.
     pub accumulates: bool,
-    /// Sources that feed it.
+    /// Sources into it.
     pub sources: Vec<usize>,
 }
 
 impl Component {
-    /// All of a network, in order.
+    /// Returns all components of a network, in order.
     pub fn all(network: &Network) -> Vec<Self> {
         let mut all = vec![Self::default(); network.components];
         for (bladder, &of) in network.component_of_bladder.iter().enumerate() {
@@ -93,8 +93,9 @@ impl Component {
     }
 }
 
-/// Groups of junctions that are joined by what has no inertia, and from which tubes with inertia alone lead on: no vessel stores there, and no bladder and no
-/// port is reached without a tube. Flows into a group sum to zero, and the level of its pressures follows from accelerations.
+/// Groups of junctions joined by links without inertia, and connected to the rest only by tubes with inertia. A group
+/// contains no accumulator, and touches no bladder or port directly. Flows into a group sum to zero, and its pressure
+/// level follows from accelerations.
 pub fn adrift(network: &Network) -> Vec<Vec<usize>> {
     let held = network.junctions.len();
     let slot = |node: Node| match node {

@@ -1,8 +1,8 @@
-//! Places where tubes with inertia end and little else stores: their own fluid, compressed, decides the pressure there.
+//! Ends of tubes with inertia where only the compressed fluid of the tubes stores, and vessels.
 
 use super::{AccumulatorLaw, Link, Network, Node};
 
-/// A group of junctions where tubes with inertia alone meet, or a vessel.
+/// A vessel, or a group of junctions connected only by tubes with inertia.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TubeEnd {
     /// Its junctions.
@@ -13,12 +13,12 @@ pub struct TubeEnd {
     pub inertance: f64,
     /// True if a check valve may shut one of them.
     pub check_valve: bool,
-    /// The law of the vessel; none of a group of junctions.
+    /// Law of the vessel; none for a group of junctions.
     pub vessel: Option<AccumulatorLaw>,
 }
 
 impl Network {
-    /// Every such place.
+    /// Returns all tube ends.
     pub fn tube_ends(&self) -> Vec<TubeEnd> {
         let groups = self.adrift().into_iter().map(|group| (group, None));
         let vessels = self.accumulators.iter().map(|one| (vec![one.junction], Some(one.law)));
@@ -35,7 +35,7 @@ impl Network {
         groups.chain(vessels).map(end).collect()
     }
 
-    /// Tubes with inertia that end at a junction, shut ones too.
+    /// Tubes with inertia that end at a junction, including shut ones.
     pub fn tubes_at(&self, junction: usize) -> impl Iterator<Item = &Link> {
         let here = Node::Junction(junction);
         self.links
@@ -43,8 +43,9 @@ impl Network {
             .filter(move |link| link.inertance() > 0.0 && (link.from == here || link.to == here))
     }
 
-    /// `[E65]` Volume of the halves of all tubes with inertia that meet at a junction, shut ones too [m^3]. Where fluid is compressed, that stores there:
-    /// alone, so that the pressure follows from what has come together, or beside the walls of a vessel.
+    /// `[E65]` Volume of the halves of all tubes with inertia that end at a junction, including shut ones [m^3].
+    /// Compressed fluid is stored there: either alone, so that its content determines the pressure, or in parallel to
+    /// the walls of a vessel.
     pub fn halves_of_tubes(&self, junction: usize) -> f64 {
         let here = Node::Junction(junction);
         let volume = |link: &Link| {

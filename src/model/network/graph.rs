@@ -1,4 +1,5 @@
-//! From the resolved network of a case to the graph: a pressure of its own where several things meet, a cell or a port elsewhere.
+//! Builds the graph from the resolved network of a case. A point with several attachments gets its own pressure; others
+//! are a cell or a port.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 
-/// What is attached to a point.
+/// An attachment to a point.
 enum Thing<'a> {
     Tube { to: Point, tube: &'a Tube<'a> },
     Turbine { to: Point, index: usize },
@@ -20,7 +21,7 @@ enum Thing<'a> {
     Accumulator { index: usize },
 }
 
-/// The graph of a network whose permeabilities are scaled by `factor`.
+/// Graph of a network with permeabilities scaled by `factor`.
 pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Bladders) -> Network {
     let viscosity = fluid.viscosity_pa_s;
     let permeability = bladder_permeability(bladders);
@@ -105,12 +106,12 @@ fn permeability(bore: Bore) -> f64 {
     }
 }
 
-/// Radius of a tube, or of the round one of its permeability [m].
+/// Radius of a tube, or of the circular tube of equal permeability [m].
 fn radius(tube: &Tube) -> f64 {
     tube.radius_m.unwrap_or_else(|| duct::radius(permeability(tube.bore)))
 }
 
-/// Everything that is attached, point by point; pressures are put among the ports.
+/// All attachments, sorted by point; adds prescribed pressures to the ports.
 fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Point, Thing<'a>)> {
     let mut things = vec![];
     for tube in wiring.chain_tubes.iter().chain(&wiring.tubes) {
@@ -146,8 +147,8 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Poi
     things
 }
 
-/// The node of every point where something is attached. Where several things meet, or a real rectifier needs a pressure, that
-/// is a junction or a port, into which a bladder opens.
+/// Node of every point with attachments. A point with several attachments, or with a rectifier of check valves, becomes
+/// a junction or a port into which a bladder opens.
 fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> BTreeMap<Point, Node> {
     let real = |index: usize| matches!(wiring.turbines[index].1.rectifier, Rectifier::CheckValves(_));
     let mut meeting: BTreeMap<Point, (usize, bool)> = BTreeMap::new();
@@ -190,7 +191,7 @@ fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> B
     meeting.into_iter().map(node).collect()
 }
 
-/// A bladder's end that is a junction or a port.
+/// Link from a bladder's end to a junction or a port.
 fn opening(cell: Node, here: Node) -> Link {
     Link {
         from: cell,
@@ -205,7 +206,7 @@ fn opening(cell: Node, here: Node) -> Link {
     }
 }
 
-/// A turbine between two points, behind check valves where it has some.
+/// Adds a turbine between two points, with a bridge of check valves if it has one.
 fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &Rectifier) {
     match rectifier {
         Rectifier::Ideal => network.links.push(Link {

@@ -1,6 +1,7 @@
-//! Friction with a memory: a passive network of resistances beside inertances.
+//! Unsteady friction: a passive network of resistances and inertances in parallel.
 
-/// Rates `n_i` and weights `m_i` of Kagawa et al. (Trans. JSME B 49, 1983) for Zielke's weighting function, `W(τ) = Σ m_i exp(-n_i τ)`.
+/// Rates `n_i` and weights `m_i` of Kagawa et al. (Trans. JSME B 49, 1983) for Zielke's weighting function,
+/// `W(τ) = Σ m_i exp(-n_i τ)`.
 static KAGAWA: [(f64, f64); BRANCHES] = [
     (26.3744, 1.0),
     (72.8033, 1.16725),
@@ -17,15 +18,16 @@ static KAGAWA: [(f64, f64); BRANCHES] = [
 /// Branches of a ladder.
 pub const BRANCHES: usize = 10;
 
-/// `[E72]` The branches of [E51] for a duct of any section, area A, perimeter P, β the mean of the squared velocity of its steady profile over its
-/// mean's square, `r = 2A/P`:
+/// `[E72]` The branches of [E51] for a duct of any cross-section, with area A, perimeter P and `r = 2A/P`. β is the
+/// momentum factor of its steady profile, [E73]:
 ///
 /// ```text
 /// r_i = √b (8 μ l/(A r²)) m_i/2        rates b n_i ν/r²        b = 1/(9 (β - 1)²)
 /// ```
 ///
-/// With that the inertance is β of a plug's where flow changes slowly, and where it changes fast friction is that of the layer at the wall, `P √(ρ μ iω)/A²` a
-/// length: both ends are exact. A round duct has β = 4/3, b = 1. Rectangles of all shapes have their impedance to 0.7 % up to `r √(ω/ν) = 100`.
+/// Both limits are exact. For slow changes the inertance is β times that of plug flow. For fast changes friction is
+/// that of the wall layer, `P √(ρ μ iω)/A²` per length. A round duct has β = 4/3, b = 1. The impedance of rectangles of
+/// any aspect ratio is accurate to 0.7 % up to `r √(ω/ν) = 100`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ladder {
     /// `√b 8 μ l/(A r²)` [Pa s/m^3].
@@ -35,12 +37,12 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Of a round duct: its laminar resistance [Pa s/m^3] and `ν/r²` [1/s].
+    /// Ladder of a round duct with its laminar resistance [Pa s/m^3] and `ν/r²` [1/s].
     pub fn round(resistance: f64, rate: f64) -> Self {
         Self { resistance, rate }
     }
 
-    /// Of a duct with a steady profile of this β; `8 μ l/(A r²)` [Pa s/m^3] and `ν/r²` [1/s] of `r = 2A/P`.
+    /// Ladder of a duct with momentum factor β, `8 μ l/(A r²)` [Pa s/m^3] and `ν/r²` [1/s], `r = 2A/P`.
     pub fn of_profile(momentum: f64, resistance: f64, rate: f64) -> Self {
         let faster = (3.0 * (momentum - 1.0)).recip();
         Self {
@@ -49,7 +51,7 @@ impl Ladder {
         }
     }
 
-    /// Of a part of the length.
+    /// Ladder of a fraction of the length.
     pub fn over(self, part: f64) -> Self {
         Self {
             resistance: part * self.resistance,
@@ -57,7 +59,7 @@ impl Ladder {
         }
     }
 
-    /// Resistances [Pa s/m^3] and rates [1/s] of its branches.
+    /// Resistances [Pa s/m^3] and rates [1/s] of the branches.
     pub fn branches(self) -> impl Iterator<Item = (f64, f64)> {
         KAGAWA
             .iter()

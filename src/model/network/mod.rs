@@ -1,14 +1,14 @@
 //! The network as a graph: bladder ends, junctions and ports joined by conductances.
 //!
 //! ```text
-//! graph        the graph of what a case has resolved: a pressure of its own where several things meet
-//! components   what is joined to what
-//! tube         what flow in a tube needs beyond creeping
-//! along        what flow along a bladder does
-//! ladder       friction with a memory
-//! check_valve  valves that open by themselves
-//! ends         where tubes with inertia end and little else stores
-//! accumulator  vessels that take in fluid as their pressure rises
+//! graph        graph of a resolved case
+//! components   connected components
+//! tube         inertia, unsteady friction and losses in tubes
+//! along        flow along a bladder
+//! ladder       unsteady friction
+//! check_valve  check valves and relief valves
+//! ends         ends of tubes with inertia
+//! accumulator  vessels that store fluid under pressure
 //! ```
 
 mod accumulator;
@@ -41,7 +41,7 @@ pub enum Node {
     Cell {
         /// Bladder, `0..n`: upper row first.
         bladder: usize,
-        /// Which of its ends.
+        /// End of the bladder.
         end: BladderEnd,
     },
     /// A junction without storage; its pressure is an unknown.
@@ -50,10 +50,10 @@ pub enum Node {
     Port(usize),
 }
 
-/// What resists the flow along a link besides half cells.
+/// Kind of resistance of a link, besides half cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinkKind {
-    /// Nothing: a bladder's end that is a junction or a port.
+    /// No resistance: a bladder's end at a junction or a port.
     Opening,
     /// A tube.
     Tube,
@@ -61,52 +61,52 @@ pub enum LinkKind {
     Turbine(usize),
 }
 
-/// `[E6]` Two points and what lies between them (A.13, A.67), a valve of opening `o` and a pump included:
+/// `[E6]` A link between two points (A.13, A.67), with the opening `o` of its valve and its pump:
 ///
 /// ```text
 /// q = g (p_a - p_b + p_pump)    g = o/(o (R_half,a + R_half,b + R_pump) + R)    R = μ l_c/q1c
 /// ```
 ///
-/// A check valve in it is in series with all of that, [E7].
+/// A check valve is in series with all of these, [E7].
 #[derive(Clone, Debug)]
 pub struct Link {
-    /// Where positive flow comes from.
+    /// Start of positive flow.
     pub from: Node,
-    /// Where it goes to.
+    /// End of positive flow.
     pub to: Node,
     /// Resistance between the points, half cells excluded [Pa s/m^3].
     pub resistance: f64,
-    /// Opening of the valve; `None`: always open.
+    /// Opening of the valve; `None`: no valve.
     pub opening: Option<Signal>,
-    /// What it is.
+    /// Kind of link.
     pub kind: LinkKind,
-    /// Radius of a tube, or of the round one of its permeability [m]; 0 of what is none.
+    /// Radius of a tube, or of the circular tube of equal permeability [m]; 0 for other links.
     pub radius: f64,
-    /// Inertia and losses of a tube in which flow does not creep.
+    /// Inertia and losses of a tube; none for creeping flow.
     pub tube: Option<TubeFlow>,
-    /// Check valve in it.
+    /// Check valve.
     pub check_valve: Option<CheckValve>,
-    /// Pump in it.
+    /// Pump.
     pub pump: Option<Pump>,
 }
 
-/// A pump by a straight curve: the pressure that it adds falls with its flow.
+/// A pump with a linear curve: its pressure decreases with flow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pump {
-    /// `p_pump`, the pressure that it adds where nothing flows [Pa].
+    /// `p_pump`, pressure at zero flow [Pa].
     pub pressure: Signal,
-    /// `R_pump`: what that falls by with flow [Pa s/m^3].
+    /// `R_pump`, decrease of the pressure per flow [Pa s/m^3].
     pub resistance: f64,
 }
 
 impl Link {
-    /// A valve that never opens.
+    /// True if its valve never opens.
     pub fn is_shut(&self) -> bool {
         let shut = |o: &Signal| o.is_constant() && o.value(0.0) <= 0.0;
         self.opening.as_ref().is_some_and(shut)
     }
 
-    /// Inertance of the fluid in it [kg/m^4]; 0 where it has none.
+    /// Inertance of the fluid [kg/m^4]; 0 without inertia.
     pub fn inertance(&self) -> f64 {
         self.tube.map_or(0.0, |tube| tube.law.inertance)
     }
@@ -115,37 +115,37 @@ impl Link {
 /// Prescribed flow into a cell or a junction.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// Where it enters: a cell or a junction.
+    /// Cell or junction that it feeds.
     pub into: Node,
-    /// What is given of it.
+    /// Prescribed quantity.
     pub feed: Feed,
     /// Name.
     pub name: String,
 }
 
-/// What a source gives.
+/// Prescribed quantity of a source.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Feed {
-    /// Its flow [m^3/s].
+    /// Flow [m^3/s].
     Flow(Signal),
-    /// The volume that it has let in [m^3], of which its flow is the rate.
+    /// Injected volume [m^3]; the flow is its rate.
     Volume(Signal),
 }
 
 impl Feed {
-    /// The signal.
+    /// Prescribed signal.
     pub const fn signal(&self) -> &Signal {
         let (Self::Flow(signal) | Self::Volume(signal)) = self;
         signal
     }
 
-    /// The signal.
+    /// Prescribed signal, mutable.
     pub const fn signal_mut(&mut self) -> &mut Signal {
         let (Self::Flow(signal) | Self::Volume(signal)) = self;
         signal
     }
 
-    /// The largest flow from t = 0 to an end [m^3/s].
+    /// Largest flow between t = 0 and `end` [m^3/s].
     pub fn largest_flow(&self, end: f64) -> f64 {
         match self {
             Self::Flow(flow) => flow.largest(end).value,
@@ -166,11 +166,11 @@ pub struct PressurePort {
 /// A bridge of four equal real check valves in front of a turbine, between two junctions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bridge {
-    /// One port: a junction or a pressure port.
+    /// First terminal: a junction or a pressure port.
     pub from: Node,
-    /// The other.
+    /// Second terminal.
     pub to: Node,
-    /// Turbine that it feeds.
+    /// Index of its turbine.
     pub turbine: usize,
     /// Law of one valve.
     pub valve: CheckValve,
@@ -190,7 +190,7 @@ pub struct Turbine {
 pub struct Network {
     /// `q1b/mu`, permeability factor included [m^4/(Pa s)].
     pub bladder_mobility: f64,
-    /// Momentum along bladders; none of fluid that creeps there.
+    /// Momentum along bladders; none for creeping flow.
     pub along_bladders: Option<AlongBladder>,
     /// Conductances between points.
     pub links: Vec<Link>,
@@ -204,11 +204,11 @@ pub struct Network {
     pub turbines: Vec<Turbine>,
     /// Real rectifiers.
     pub bridges: Vec<Bridge>,
-    /// Accumulators, each the whole of a junction.
+    /// Accumulators, each at its own junction.
     pub accumulators: Vec<Accumulator>,
-    /// Whether nothing flows in, however volumes that sources give grow: for equilibria.
+    /// True if prescribed volumes inject no flow: for equilibria.
     pub still: bool,
-    /// Whether steps follow volumes that sources give where nothing else asks for it: for runs, whose work is an integral.
+    /// True if time steps resolve prescribed volumes even without other reasons: for runs, which integrate their work.
     pub paced: bool,
     /// Component of each bladder; components are joined by links, not through pressure ports.
     pub component_of_bladder: Vec<usize>,
@@ -216,19 +216,19 @@ pub struct Network {
     pub component_of_junction: Vec<usize>,
     /// Number of components.
     pub components: usize,
-    /// Components that a port or a source touches.
+    /// Components with a port or a source.
     pub open: Vec<usize>,
-    /// Chains of bladders as written: the network coordinate follows them.
+    /// Chains of bladders in their order in the case, which the network coordinate follows.
     pub chains: Vec<Vec<usize>>,
     /// Tubes of all chains and free tubes, `n_c`.
     pub tubes: usize,
 }
 
 impl Network {
-    /// That of the bladders of a case; none of a dry beam.
+    /// Network of the bladders of a case; none for a dry beam.
     ///
     /// # Errors
-    /// Of [`Wiring::of`].
+    /// Returns the errors of [`Wiring::of`].
     pub fn of(case: &Case) -> Result<Option<Self>> {
         let Some((fluid, bladders)) = case.fluid.as_ref().zip(case.bladders.as_ref()) else {
             return Ok(None);
@@ -237,17 +237,17 @@ impl Network {
         Ok(Some(graph::graph(&Wiring::of(case)?, factor, fluid, bladders)))
     }
 
-    /// True when no port or flow source touches the component.
+    /// True if no port or source touches the component.
     pub fn is_closed(&self, component: usize) -> bool {
         self.open_number(component).is_none()
     }
 
-    /// Number of a component among those that are open.
+    /// Index of a component among the open ones.
     pub fn open_number(&self, component: usize) -> Option<usize> {
         self.open.binary_search(&component).ok()
     }
 
-    /// Whether a port of given pressure is joined to a component: what comes in leaves again.
+    /// True if a pressure port is joined to a component, so that fluid can leave it.
     pub fn lets_out(&self, component: usize) -> bool {
         let inside = |node: Node| self.component_of(node) == Some(component);
         let port = |node: Node| matches!(node, Node::Port(_));
@@ -256,7 +256,7 @@ impl Network {
         ways.any(|(a, b)| inside(a) && port(b) || port(a) && inside(b))
     }
 
-    /// Of each bladder, whether nothing can ever flow into it or out of it.
+    /// For each bladder, true if nothing ever flows into it or out of it.
     pub fn sealed(&self) -> impl Iterator<Item = bool> + use<> {
         let mut sealed = vec![true; self.component_of_bladder.len()];
         let links = self.links.iter().filter(|l| !l.is_shut());
@@ -269,25 +269,25 @@ impl Network {
         sealed.into_iter()
     }
 
-    /// A prescribed flow into junctions from which only tubes lead on: their inertia does not let it follow at once.
+    /// First source into a group of junctions with tubes only, whose inertia prevents a prescribed flow.
     pub fn fed_junction(&self) -> Option<&Source> {
         let adrift = self.adrift();
         let fed = |source: &&Source| adrift.iter().flatten().any(|&j| Node::Junction(j) == source.into);
         self.sources.iter().find(fed)
     }
 
-    /// Groups of junctions that are joined by what has no inertia, and from which tubes with inertia alone lead on.
+    /// Groups of junctions joined by links without inertia, and connected to the rest only by tubes with inertia.
     pub fn adrift(&self) -> Vec<Vec<usize>> {
         components::adrift(self)
     }
 
-    /// Whether something drives flow whose pressure nothing tells beforehand: sources, pumps.
+    /// True if sources or pumps drive flow at a pressure that is unknown in advance.
     pub fn pumped(&self) -> bool {
         !self.sources.is_empty() || self.links.iter().any(|link| link.pump.is_some())
     }
 
-    /// A bound of the pressure that sources make [Pa], each all by itself in the one bladder that it fills, or on its way out through
-    /// everything that it is joined to, if there is a way out that no valve shuts by itself.
+    /// Upper bound of the pressure by sources [Pa]. Each fills one bladder alone, or drives its flow through all links
+    /// of its component in series if these lead to a port and have no valves.
     pub(super) fn pumped_pressure(&self, wet: &Wet, end: f64) -> f64 {
         let bladder = wet.bladder_length / self.bladder_mobility;
         let of = |source: &Source| {
@@ -314,7 +314,7 @@ impl Network {
         self.sources.iter().map(of).sum()
     }
 
-    /// Volume that everything joined to a point takes in per pressure, at ambient pressure [m^3/Pa].
+    /// Compliance of the component of a point, at ambient pressure [m^3/Pa].
     pub fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
         let own = self.component_of(node);
         let here = |component: &&usize| Some(**component) == own;
@@ -327,8 +327,8 @@ impl Network {
             + vessels.map(|one| wet.vessel_compliance(&one.law, 0.0)).sum::<f64>()
     }
 
-    /// The most that prescribed flows bring into one of the networks that have tubes until `end` [s]: no more than that has to pass
-    /// one of these [m^3/s].
+    /// Largest prescribed flow into a component with tubes until `end` [s]: an upper bound of the prescribed flow
+    /// through a tube [m^3/s].
     pub fn fed_tubes(&self, end: f64) -> f64 {
         let mut fed = vec![0.0; self.components];
         for source in &self.sources {
@@ -348,8 +348,8 @@ impl Network {
         tubes.filter_map(of).map(|component| fed[component]).fold(0.0, f64::max)
     }
 
-    /// What all links, valves open, and a bladder between two cells of a length [m] let through together under one pressure
-    /// difference [m^3/(s Pa)]: an upper bound of what flows by it.
+    /// Sum of the conductances of all links with open valves, and of a bladder between two cells of length `cell` [m],
+    /// in [m^3/(s Pa)]. An upper bound of the flow per pressure difference.
     pub fn conductance(&self, cell: f64) -> f64 {
         let within = self.bladder_mobility / cell;
         let of = |link: &Link| {

@@ -1,4 +1,4 @@
-//! What flow in a round tube needs beyond the resistance of creeping flow: inertia, friction with a memory, turbulence, losses.
+//! Flow in a round tube beyond creeping flow: inertia, unsteady friction, turbulence, losses.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -10,16 +10,17 @@ use crate::case::wiring::Tube;
 use crate::model::{EffectSet, duct};
 use crate::numerics::Scalar;
 
-/// Inertance of creeping laminar flow over that of a plug: mean of the squared velocity of Poiseuille's profile over its mean's square.
+/// Momentum factor of Poiseuille's profile: its inertance over that of plug flow.
 const PARABOLIC: f64 = 4.0 / 3.0;
 
-/// Reynolds number below which Churchill's factor is that of laminar flow to the last digit.
+/// Reynolds number below which Churchill's factor equals the laminar one to machine precision.
 const LAMINAR: f64 = 100.0;
 
-/// Flow below which losses are smooth through zero, over that of Reynolds number 1.
+/// Reynolds number below which losses are smoothed through zero flow.
 const SLOW: f64 = 1e-3;
 
-/// `[E51]` Flow q of a round tube, radius r, area `A = π r²`, through a valve of opening o; R of `[E6]`, `R_0 = 8 μ l/(π r⁴)`:
+/// `[E51]` Flow q of a round tube of radius r and area `A = π r²`, in series with a valve of opening o; R as in `[E6]`,
+/// `R_0 = 8 μ l/(π r⁴)`:
 ///
 /// ```text
 /// o [I dq/dt + Σ_i r_i (q - j_i) + Δp_loss(q) + R_half q - (p_a - p_b)] + R q = 0
@@ -27,26 +28,27 @@ const SLOW: f64 = 1e-3;
 /// I = ρ l/A, without the branches 4/3 of it: the inertance of Poiseuille's profile
 /// ```
 ///
-/// The branches stand for the memory of laminar friction (Zielke 1968), each a resistance beside an inertance `r_i r²/(n_i ν)`: a passive
-/// network, which stores `I q²/2 + Σ r_i r² j_i²/(2 n_i ν)` and dissipates `(R/o) q² + q Δp_loss + Σ r_i (q - j_i)²`.
+/// The branches model unsteady laminar friction (Zielke 1968). Each is a resistance in parallel to an inertance
+/// `r_i r²/(n_i ν)`. This passive network stores `I q²/2 + Σ r_i r² j_i²/(2 n_i ν)` and dissipates
+/// `(R/o) q² + q Δp_loss + Σ r_i (q - j_i)²`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeFlow {
     /// `A l` [m^3].
     pub volume: f64,
     /// `ν/r²` [1/s].
     pub viscous_rate: f64,
-    /// The law.
+    /// Flow law.
     pub law: FlowLaw,
 }
 
-/// What the flow between two places needs beyond resistance: of a tube, of a part of a bladder, or of both behind each other.
+/// Flow law beyond resistance: of a tube, of a part of a bladder, or of both in series.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlowLaw {
-    /// `I` [kg/m^4]; 0 where the fluid has no inertia.
+    /// `I` [kg/m^4]; 0 without inertia.
     pub inertance: f64,
-    /// Memory of the tube's friction.
+    /// Unsteady friction in the tube.
     pub in_tube: Option<Ladder>,
-    /// Memory of that in bladders.
+    /// Unsteady friction in bladders.
     pub in_bladders: Option<Ladder>,
     losses: Option<Losses>,
 }
@@ -58,7 +60,7 @@ pub struct FlowLaw {
 /// f = 8 [(8/Re)^12 + (a + b)^(-3/2)]^(1/12)      a = (2.457 ln(1/((7/Re)^0.9 + 0.27 e/D)))^16      b = (37530/Re)^16
 /// ```
 ///
-/// Churchill, Chem. Eng. 84 (1977) 91; K counts both ends, bends and orifices.
+/// Churchill, Chem. Eng. 84 (1977) 91. K includes both ends, bends and orifices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Losses {
     /// Reynolds number over flow [s/m^3].
@@ -71,7 +73,7 @@ struct Losses {
     roughness: f64,
 }
 
-/// Churchill's friction factor over that of laminar flow, `f Re/64`, and its derivative by Re, at `Re >= 0`.
+/// Churchill's friction factor over the laminar one, `f Re/64`, and its derivative by Re, for `Re >= 0`.
 pub fn friction_ratio(reynolds: f64, roughness: f64) -> (f64, f64) {
     if reynolds < LAMINAR {
         return (1.0, 0.0);
@@ -91,7 +93,7 @@ pub fn friction_ratio(reynolds: f64, roughness: f64) -> (f64, f64) {
 }
 
 impl TubeFlow {
-    /// Of a tube of a case with its radius [m], everything included.
+    /// Law of a tube with its radius [m], with all effects.
     pub(super) fn new(tube: &Tube, radius: f64, fluid: &Fluid) -> Self {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
         let area = PI * radius * radius;
@@ -114,7 +116,7 @@ impl TubeFlow {
         }
     }
 
-    /// What effects leave of it; nothing where flow creeps.
+    /// Applies the choice of effects; none for creeping flow.
     pub(in crate::model) fn reduced(mut self, effects: &EffectSet) -> Option<Self> {
         let has = |effect| effects.has(effect);
         let (inertia, losses) = (has(Effect::TubeInertia), has(Effect::TubeLosses));
@@ -129,14 +131,14 @@ impl TubeFlow {
         (inertia || losses).then_some(self)
     }
 
-    /// Inertance of Poiseuille's profile [kg/m^4], of a tube from which no effect is left out.
+    /// Inertance of Poiseuille's profile [kg/m^4], for a tube with all effects.
     pub fn steady_inertance(&self) -> f64 {
         PARABOLIC * self.law.inertance
     }
 }
 
 impl FlowLaw {
-    /// Of a part of a bladder [kg/m^4].
+    /// Law of a part of a bladder with inertance [kg/m^4].
     pub(super) fn of_bladder(inertance: f64, memory: Option<Ladder>) -> Self {
         Self {
             inertance,
@@ -145,7 +147,7 @@ impl FlowLaw {
         }
     }
 
-    /// The same behind a part of a bladder.
+    /// This law in series with a part of a bladder.
     pub fn behind(self, part: &Self) -> Self {
         Self {
             inertance: self.inertance + part.inertance,
@@ -154,8 +156,8 @@ impl FlowLaw {
         }
     }
 
-    /// What inertia and the memory of friction add to the pressure drop over a change of flow along an implicit step, `I c_j + Σ r_i
-    /// c_j/(c_j + n_i ν/r²)` [Pa s/m^3].
+    /// Derivative of the pressure drop by inertia and unsteady friction with respect to flow in an implicit step,
+    /// `I c_j + Σ r_i c_j/(c_j + n_i ν/r²)` [Pa s/m^3].
     pub fn resistance_along_a_step(&self, cj: f64) -> f64 {
         let memory = |(resistance, rate): (f64, f64)| resistance * cj / (cj + rate);
         self.inertance * cj + self.branches().map(memory).sum::<f64>()
@@ -169,8 +171,8 @@ impl FlowLaw {
             .flat_map(|(_, ladder)| ladder.branches())
     }
 
-    /// The ladders of tube and bladders, with where their branches are among all, the first of which has this number: what goes through branches in
-    /// every residual does so ladder by ladder.
+    /// Ladders of tube and bladders with the index ranges of their branches, the first of which has the index `first`.
+    /// Residuals iterate over branches by ladder.
     #[inline]
     pub fn ladders(&self, first: usize) -> [Option<(Range<usize>, Ladder)>; 2] {
         let behind = first + self.in_tube.map_or(0, |_| BRANCHES);
@@ -200,13 +202,13 @@ impl Losses {
 }
 
 impl Network {
-    /// Number of a link among the tubes.
+    /// Index of a link among the tubes.
     pub fn tube(&self, link: usize) -> usize {
         let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);
         tubes.count()
     }
 
-    /// The same of every link; what is no tube has that of the next one.
+    /// [`Self::tube`] of every link; a link that is no tube has the index of the next tube.
     pub fn tube_numbers(&self) -> Vec<usize> {
         let count = |before: &mut usize, link: &Link| {
             let number = *before;
@@ -221,7 +223,7 @@ impl Network {
 mod tests {
     use super::*;
 
-    /// Goal: the derivative that Newton's iteration takes is that of the loss, in all regimes.
+    /// Goal: the derivative for Newton's iteration is that of the loss, in all regimes.
     #[test]
     fn slopes_of_losses_are_their_derivatives() {
         let losses = Losses {

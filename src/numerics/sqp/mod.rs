@@ -1,4 +1,4 @@
-//! The least value of a smooth function between bounds, under inequalities: sequential quadratic programming.
+//! Minimization of a smooth function with bounds and inequalities: sequential quadratic programming.
 //!
 //! ```text
 //! min f(x),  0 <= x <= 1,  c(x) <= 0
@@ -7,102 +7,102 @@
 //! B                                              of the Lagrangian f + λ·c, by Powell's damped form of BFGS (1978)
 //! ```
 //!
-//! Nocedal & Wright, Numerical Optimization, chapter 18. Written here since the crates that there are know neither a place that cannot be
-//! evaluated, at which a step has to be shortened, nor the error of a simulated value, below which its fall says nothing, and keep the
-//! multipliers to themselves. Numbers are few: the step is found by Hildreth's ascent over the multipliers, one after the other.
+//! Nocedal & Wright, Numerical Optimization, chapter 18. Available crates do not shorten steps to points that cannot be
+//! evaluated, ignore the error of simulated values, and do not return multipliers. There are few variables: Hildreth's
+//! method finds the step by coordinate ascent over the multipliers.
 
 use nalgebra::{DMatrix, DVector};
 
-/// What there is at a place.
+/// Function values and gradients at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// The value that is to be least, of size 1 or so.
+    /// Objective, scaled to the order of 1.
     pub value: f64,
-    /// Its slopes.
+    /// Gradient of the objective.
     pub slope: DVector<f64>,
-    /// What must not be above 0, likewise.
+    /// Values of the inequalities, which must not exceed 0, scaled to the order of 1.
     pub inequalities: DVector<f64>,
-    /// Their slopes, a row each.
+    /// Gradients of the inequalities, one per row.
     pub slopes: DMatrix<f64>,
 }
 
 impl Point {
-    /// How far inequalities are from being held, together.
+    /// Sum of the violations of all inequalities.
     pub fn violation(&self) -> f64 {
         self.inequalities.iter().map(|c| c.max(0.0)).sum()
     }
 }
 
-/// How a search ended.
+/// Outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// At a least value under the inequalities.
+    /// Converged to a minimum under the inequalities.
     Found,
-    /// Where no step lowers the value further, though its slopes say so: they are not those of the value to all digits.
+    /// No step lowers the objective, although its gradient predicts it: the gradient is inaccurate.
     Stuck,
-    /// Where no step brings the inequalities nearer to being held.
+    /// Inequalities are violated, and no step reduces the violation.
     Apart,
-    /// After as many steps as were allowed.
+    /// Reached the limit of steps.
     Unfinished,
 }
 
-/// What was found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Minimum {
-    /// Where.
+    /// Variables.
     pub x: Vec<f64>,
-    /// What is there.
+    /// Values and gradients there.
     pub at: Point,
-    /// By how much the value would fall for each unit by which an inequality were let go.
+    /// Lagrange multipliers: decrease of the objective per unit of relaxation of each inequality.
     pub multipliers: Vec<f64>,
-    /// The same of the bounds: above 0 at the upper, below 0 at the lower, 0 between them.
+    /// Multipliers of the bounds: positive at the upper bound, negative at the lower bound, 0 between them.
     pub at_bounds: Vec<f64>,
-    /// How the search ended.
+    /// Outcome of the search.
     pub ended: Ended,
-    /// Steps that were taken.
+    /// Number of steps.
     pub steps: usize,
 }
 
-/// How a search goes.
+/// Options of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// Steps at most.
+    /// Largest number of steps.
     pub steps: usize,
-    /// A step that is shorter ends the search.
+    /// Step size below which the search ends.
     pub close: f64,
-    /// Error of the values: a fall by less says nothing.
+    /// Error of the values; smaller decreases are not significant.
     pub noise: f64,
 }
 
-/// Inequalities may be off by this.
+/// Tolerance of the inequalities.
 pub const HELD: f64 = 1e-6;
-/// A place that is nearer to a bound lies at it.
+/// Distance from a bound below which a variable is at the bound.
 const AT: f64 = 1e-9;
-/// Share of a step that ends a search which ends one that has still to come within its inequalities.
+/// Factor on the final step size while inequalities are violated.
 const NOTHING: f64 = 1e-3;
-/// First step at most, and every step.
+/// Largest first step, and largest step.
 const FIRST: f64 = 0.15;
 const LONGEST: f64 = 0.5;
-/// Share of the foretold fall that a step must bring.
+/// Smallest accepted ratio of actual to predicted decrease.
 const WORTH: f64 = 1e-4;
-/// A shortened step, and how often.
+/// Reduction of a rejected step, and of a step to a point that cannot be evaluated.
 const SHORTER: f64 = 0.5;
 const FAILED: f64 = 0.25;
-/// What is tried beyond the last step, times its length.
+/// Largest step relative to the previous one, and the largest number of reductions.
 const LONGER: f64 = 2.0;
 const CUTS: usize = 10;
-/// Price of what is not held: at first, and at most.
+/// Penalty of violations: initial and largest value.
 const PRICE: [f64; 2] = [10.0, 1e7];
-/// Share of the curvature that an update keeps at least.
+/// Smallest share of the curvature kept by an update.
 const KEPT: f64 = 0.2;
-/// Rounds over the multipliers at most, and a change of the step that ends them.
+/// Largest number of rounds over the multipliers, and the change of the step that ends them.
 const ROUNDS: usize = 20_000;
 const SETTLED: f64 = 1e-14;
 
-/// What is asked for a place; nothing where there is nothing to be had.
+/// Function that evaluates a point; none if it cannot be evaluated.
 pub type Evaluate<'a> = dyn FnMut(&[f64]) -> Option<Point> + 'a;
 
-/// Searches from a start; nothing where there is nothing to be had there.
+/// Searches from a start; none if the start cannot be evaluated.
 pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -> Option<Minimum> {
     let mut x: Vec<f64> = start.iter().map(|x| x.clamp(0.0, 1.0)).collect();
     let mut at = evaluate(&x)?;
@@ -149,7 +149,7 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
                     next = Some((to, there));
                     break;
                 }
-                // along a curved limit the whole step leads beyond it, the nearer to the least value the surer (Maratos)
+                // along a curved limit the full step violates it, above all near the minimum (Maratos)
                 Some(there) if part == 1.0 && there.violation() > step.left + HELD => {
                     let to = moved(&step.bent(&x, &at, &there, &b, [price, reach]), 1.0);
                     next = evaluate(&to).filter(|there| falls(there, 1.0)).map(|there| (to, there));
@@ -171,7 +171,7 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
                 (false, false) => Ended::Stuck,
             });
         };
-        // where a part of a step was all that could be gone, the next one need not be tried much longer
+        // after a shortened step, limit the next one to a small multiple of its length
         reach = match part < 1.0 {
             true => (LONGER * part * length).max(LONGER * options.close),
             false => reach.max(LONGER * length).min(LONGEST),
@@ -185,7 +185,7 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
     }
 }
 
-/// A place within the bounds; at one where it is as near to it as steps are found.
+/// Moves a variable at or near a bound onto it.
 fn snapped(x: f64) -> f64 {
     match x {
         x if x <= AT => 0.0,
@@ -194,7 +194,7 @@ fn snapped(x: f64) -> f64 {
     }
 }
 
-/// Takes a change of slopes `y` over a step `s` into the curvature.
+/// Updates the curvature `b` with the change `y` of the gradient over a step `s` (damped BFGS).
 fn update(b: &mut DMatrix<f64>, s: &DVector<f64>, y: DVector<f64>, fresh: bool) {
     let (along, square) = (s.dot(&y), s.norm_squared());
     if square == 0.0 {
@@ -213,18 +213,18 @@ fn update(b: &mut DMatrix<f64>, s: &DVector<f64>, y: DVector<f64>, fresh: bool) 
     *b += &y * y.transpose() / s.dot(&y) - &bs * bs.transpose() / own;
 }
 
-/// A step with its multipliers.
+/// A step with multipliers.
 struct Step {
     d: DVector<f64>,
     multipliers: Vec<f64>,
     at_bounds: Vec<f64>,
-    /// What inequalities would be violated by after it, as far as slopes tell.
+    /// Sum of the violations after the step, to first order.
     left: f64,
 }
 
 impl Step {
-    /// The best where `b` is the curvature. The price goes up until inequalities are held by the step, as far as they can be, and above
-    /// every multiplier.
+    /// Best step for the curvature `b`. Raises the penalty until the step satisfies the inequalities as far as
+    /// possible, and the penalty exceeds all multipliers.
     fn of(x: &[f64], at: &Point, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
         loop {
             let step = Self::at_price(x, at, b, [*price, reach]);
@@ -277,7 +277,7 @@ impl Step {
         for k in 0..n {
             d[k] = d[k].clamp(-x[k], 1.0 - x[k]);
         }
-        // what holds a step back that is as long as any may be is no bound
+        // a variable limited by the step length has no bound multiplier
         let between = |k: usize| f64::from(u8::from(d[k].abs() < reach));
         let at_bounds = (0..n).map(|k| between(k) * (lambda[m + 2 * k] - lambda[m + 2 * k + 1]));
         let left = (&at.inequalities + &at.slopes * &d).iter().map(|c| c.max(0.0)).sum();
@@ -289,7 +289,7 @@ impl Step {
         }
     }
 
-    /// The step anew, with what inequalities are where this one leads to: the correction of second order (Nocedal & Wright, 18.3).
+    /// Second-order correction: the step with the inequalities at the end of this step (Nocedal & Wright, 18.3).
     fn bent(&self, x: &[f64], at: &Point, there: &Point, b: &DMatrix<f64>, limits: [f64; 2]) -> DVector<f64> {
         let bent = Point {
             inequalities: &there.inequalities - &at.slopes * &self.d,
@@ -298,7 +298,7 @@ impl Step {
         Self::at_price(x, &bent, b, limits).d
     }
 
-    /// How much the priced value falls along it, to first order.
+    /// Predicted decrease of the penalized objective, to first order.
     fn fall(&self, at: &Point, price: f64) -> f64 {
         -at.slope.dot(&self.d) + price * (at.violation() - self.left)
     }

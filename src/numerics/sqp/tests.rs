@@ -22,7 +22,7 @@ fn rosenbrock(x: &[f64]) -> Point {
     free(100.0 * (b - a * a).powi(2) + (1.0 - a).powi(2), &[4.0 * da, 4.0 * db])
 }
 
-/// Goal: a curved valley is followed to its end, beside places without a value too.
+/// Goal: the search follows a curved valley to its end, also next to points that cannot be evaluated.
 #[test]
 fn valleys_are_followed_to_their_end() {
     for wall in [2.0, 0.55] {
@@ -75,7 +75,8 @@ fn inequalities_are_held() {
     }
 }
 
-/// Goal: what would leave the bounds stays at one, with what that costs; what cannot be held is told.
+/// Goal: a variable that would leave its bounds stays at a bound, with its multiplier; contradictory inequalities are
+/// reported.
 #[test]
 fn bounds_hold_and_contradictions_are_told() {
     let plane = |x: &[f64]| free(x[0] + (x[1] - 0.25).powi(2), &[1.0, 2.0 * (x[1] - 0.25)]);
@@ -95,7 +96,7 @@ fn bounds_hold_and_contradictions_are_told() {
     assert!(found.ended == Ended::Apart && found.at.violation() > 0.5, "{found:?}");
 }
 
-/// Goal: values with an error of 1e-5 do not keep the search from where the slopes vanish.
+/// Goal: errors of 1e-5 in the values do not prevent convergence to a stationary point.
 #[test]
 fn errors_of_values_are_passed_over() {
     let options = Options {
@@ -114,8 +115,8 @@ fn errors_of_values_are_passed_over() {
     );
 }
 
-/// Source: Maratos (1978): along a curved limit whole steps raise value and violation, however near the least value is; halved again and again they took a
-/// thousand designs.
+/// Source: Maratos (1978): along a curved limit full steps raise objective and violation, arbitrarily close to the
+/// minimum. Without second-order correction, halved steps needed a thousand designs.
 #[test]
 fn curved_limits_are_followed() {
     let problem = |x: &[f64]| {

@@ -1,4 +1,4 @@
-//! What an ablation leaves behind: `effects.csv`, `effects.json`, `effects.svg`, and its words.
+//! Output files of an ablation, `effects.csv`, `effects.json` and `effects.svg`, and its text.
 
 mod table;
 
@@ -16,24 +16,25 @@ use crate::study::effects::{Ablation, Verdict};
 
 pub use table::{csv, sentence, table};
 
-/// One row an effect and quantity.
+/// One row per effect and quantity.
 pub const CSV: &str = "effects.csv";
-/// Everything.
+/// Complete result.
 pub const JSON: &str = "effects.json";
 /// Changes and work.
 pub const PICTURE: &str = "effects.svg";
 
-/// What bars and columns show: a quantity, or of each effect the one that changes most.
+/// Quantity shown in bars and columns.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// A quantity of the full model.
     Quantity(String),
-    /// The one that changes most.
+    /// For each effect the quantity that changes most.
     Largest,
 }
 
 impl Shown {
-    /// What was asked for; by default the deflection of the tip, else how far it moves along.
+    /// Chooses the requested quantity. Without a request: the transverse displacement of the tip, else the axial one, else the largest
+    /// change.
     pub fn choose(found: &Ablation, asked: Option<&str>) -> Self {
         let known = |name: &&str| found.measures.iter().any(|m| m.name == *name);
         let first = || {
@@ -48,7 +49,7 @@ impl Shown {
         }
     }
 
-    /// In words.
+    /// Name of the quantity in text.
     pub fn words(&self) -> &str {
         match self {
             Self::Quantity(name) => name,
@@ -56,7 +57,7 @@ impl Shown {
         }
     }
 
-    /// Its change.
+    /// Change of the quantity.
     pub fn change(&self, compared: &Compared) -> Option<f64> {
         match self {
             Self::Quantity(name) => compared.changes.get(name).copied(),
@@ -64,7 +65,7 @@ impl Shown {
         }
     }
 
-    /// The integrator's own error in it: the least of all where no quantity is named.
+    /// Integrator's own error in the quantity; for [`Shown::Largest`] the smallest own error of all quantities.
     pub fn own(&self, found: &Ablation) -> Option<f64> {
         let own = |m: &Measure| m.own;
         match self {
@@ -74,19 +75,19 @@ impl Shown {
     }
 }
 
-/// The text of `effects.json`; what is not finite is null.
+/// Text of `effects.json`; numbers that are not finite are null.
 pub fn json(found: &Ablation) -> String {
     results::told(found, Some(&sentence(found)))
 }
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &Shown) -> Result<Vec<PathBuf>> {
     let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
     files.extend(ablation::draw(&bars(found, shown)).map(|text| (PICTURE, text)));
     folder.fill(files)
 }
 
-/// The picture's data.
+/// Data of the picture.
 pub fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
     let bar = |name: &str, compared: &Compared, verdict: Option<Verdict>| Bar {
         name: name.into(),

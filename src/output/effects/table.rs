@@ -1,4 +1,4 @@
-//! The table of an ablation, for the terminal and as CSV, and the sentence at its end.
+//! Table of an ablation, for the terminal and as CSV, and its closing sentence.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ use crate::study::effects::{Ablation, Row, Verdict};
 
 const HEADINGS: &str = "<left out | <verdict | change | largest | <in | unknowns | steps | work | time | <decides";
 
-/// The table in a measure: each effect, what is left out by nobody, and how changes are to be read.
+/// Table of the changes of one quantity: one line per effect, the combined choices, and a legend.
 pub fn table(found: &Ablation, shown: &Shown) -> String {
     let full = &found.full;
     let mut text = format!("{}: what each effect does, to {}\n", found.case, shown.words());
@@ -71,7 +71,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     text
 }
 
-/// What stands beside the effects: the case's own choice, the program's and what is recommended, as far as they were run.
+/// Runs besides those of single effects: the case's own choice, the program's and the recommended one, if they exist.
 pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
     let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
     let all = [
@@ -114,7 +114,7 @@ fn name(row: &Row) -> String {
     }
 }
 
-/// The verdict, or that there is none.
+/// Verdict of an effect, or `not run`.
 fn said(row: &Row) -> &'static str {
     match &row.left_out {
         Some(c) if c.trial.ending == Ending::Skipped => "not run",
@@ -122,7 +122,7 @@ fn said(row: &Row) -> &'static str {
     }
 }
 
-/// A verdict in words.
+/// Word for a verdict.
 pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Needed => "needed",
@@ -165,7 +165,7 @@ fn line(found: &Ablation, shown: &Shown, name: &str, verdict: &str, c: &Compared
     ]
 }
 
-/// `Leave out rotary_inertia: ... "effects": {...}`
+/// Recommendation with the JSON of the key `effects`: `Without rotary_inertia the model needs ... "effects": {...}`
 pub fn sentence(found: &Ablation) -> String {
     let Some(r) = &found.recommendation else {
         return "Nothing can be recommended: the full model did not run to the end.".into();
@@ -188,7 +188,7 @@ pub fn sentence(found: &Ablation) -> String {
     text
 }
 
-/// `effects.csv`: one row an effect and quantity; one without changes for an effect that was not run or did not finish.
+/// Text of `effects.csv`: one row per effect and quantity. An effect that was not run or did not finish has one row without changes.
 pub fn csv(found: &Ablation) -> String {
     let headings = "left_out,verdict,reason,auto,number,without,takes,unknowns,steps,residual_evaluations,jacobian_evaluations,\
                     factorizations,wall_min [s],repeats,work_ratio,wall_ratio,quantity,size,change,own_error";
@@ -217,7 +217,7 @@ pub fn csv(found: &Ablation) -> String {
     records::text(headings.split(','), rows)
 }
 
-/// What a comparison took and found, one row a quantity; one without where there is none.
+/// Cost and changes of a comparison, one row per quantity; a single row without changes if there are none.
 fn cells(found: &Ablation, c: &Compared) -> Vec<[String; 13]> {
     let n = &c.trial.counters;
     let row = |name: &str, numbers: [Option<f64>; 3]| {

@@ -1,4 +1,4 @@
-//! What a load path leaves behind: `path.csv`, `shapes.csv`, `equilibrium.json`, `path.svg`, and its words.
+//! Output files of a load path, `path.csv`, `shapes.csv`, `equilibrium.json` and `path.svg`, and its text.
 
 mod words;
 
@@ -24,23 +24,23 @@ use crate::study::refine::meshes::Meshes;
 
 pub use words::words;
 
-/// One row a state.
+/// One row per state.
 pub const CSV: &str = "path.csv";
-/// Positions of all nodes, two columns a state.
+/// Positions of all nodes, two columns per state.
 pub const SHAPES: &str = "shapes.csv";
-/// Everything about the last state and the way to it.
+/// The last state and the path to it.
 pub const JSON: &str = "equilibrium.json";
-/// Share of the loads over displacement, and shapes.
+/// Load factor over displacement, and shapes.
 pub const PICTURE: &str = "path.svg";
 
-/// Shapes in the picture.
+/// Largest number of shapes in the picture.
 const DRAWN: usize = 16;
 
-/// A path with what it is of.
+/// A load path with its context.
 pub struct Found<'a> {
     /// The case.
     pub case: &'a Case,
-    /// What was asked.
+    /// Requested options.
     pub options: &'a Options,
     /// The path.
     pub path: &'a Path,
@@ -48,15 +48,15 @@ pub struct Found<'a> {
     pub columns: &'a [Column],
     /// Wall time [s].
     pub wall_s: f64,
-    /// What to think of first.
+    /// Warnings.
     pub warnings: &'a [String],
-    /// Derivatives of the last state's columns by parameters of the case.
+    /// Derivatives of the last state's columns with respect to parameters of the case.
     pub sensitivities: &'a [Sensitivity],
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     pub accuracy: Option<&'a Accuracy>,
-    /// What meshes do to the last state, where none was.
+    /// Effect of the mesh on the last state, if no accuracy was requested.
     pub meshes: Option<&'a Meshes>,
-    /// What uncertain numbers leave open of the last state.
+    /// Uncertainty bands of the last state.
     pub bands: Bands,
 }
 
@@ -111,7 +111,7 @@ pub fn json(found: &Found) -> String {
     })
 }
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
     let case = found.case.written();
     let mut files = vec![
@@ -124,7 +124,7 @@ pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
     folder.fill_with(&case, files)
 }
 
-/// One row a state; which stage it belongs to, from 1, where there are several.
+/// One row per state, with its stage (from 1) if there are several.
 fn table(found: &Found) -> String {
     let several = !found.options.via_s.is_empty();
     let columns = found.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit));
@@ -144,7 +144,7 @@ fn table(found: &Found) -> String {
     records::text(columns.chain(["unstable_modes [1]".into()]).chain(stage), rows)
 }
 
-/// One row a node: `theta [m]`, then x and z of every state.
+/// One row per node: `theta [m]`, then x and z of every state.
 fn shapes(found: &Found) -> String {
     let states = &found.path.states;
     let length = found.case.beam.length_m;
@@ -159,7 +159,7 @@ fn shapes(found: &Found) -> String {
     records::text(["theta [m]".into()].into_iter().chain(columns), rows)
 }
 
-/// What the loads are those of.
+/// Description of the loads.
 fn about(options: &Options) -> String {
     let all = options.via_s.iter().chain([&options.at_s]);
     let instants: Vec<String> = all.map(|at| format!("{} s", shortest(*at))).collect();
@@ -169,11 +169,11 @@ fn about(options: &Options) -> String {
     }
 }
 
-/// Share of the loads over displacement, unbroken where stable, and shapes on the way.
+/// Picture of the load factor over displacement (solid where stable), and of shapes along the path.
 fn drawn(found: &Found) -> Option<String> {
     let states = &found.path.states;
     let stable = |k: usize| states[k].stability.as_ref().is_none_or(|s| s.unstable == 0);
-    // of probes the deflection: ends may be held
+    // of probes only the deflection, since ends may be held
     let shown = |name: &str| match Observable::named(name) {
         Some(one) => one.role() == Role::Headline,
         None => name.ends_with("_u1"),
@@ -231,7 +231,7 @@ fn drawn(found: &Found) -> Option<String> {
     picture.svg()
 }
 
-/// Some shapes of the path, from blue to red, equally scaled along and across.
+/// Some shapes of the path, from blue to red, with equal scales along and across.
 fn shapes_drawn(found: &Found, width: f64) -> Option<Panel> {
     let states = &found.path.states;
     let chosen: Vec<&State> = states

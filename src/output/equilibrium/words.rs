@@ -1,4 +1,4 @@
-//! A load path in words.
+//! Text of a load path.
 
 use super::Found;
 use crate::discrete::quantities::probes::is_stress;
@@ -9,17 +9,17 @@ use crate::run::equilibrium::State;
 use crate::run::record::Column;
 use crate::study::refine::meshes::Meshes;
 
-/// Rows of the table at most.
+/// Largest number of rows in the table.
 const ROWS: usize = 12;
-/// Derivatives that are told at most.
+/// Largest number of derivatives listed.
 const DERIVATIVES: usize = 60;
-/// What of the largest number of a unit is round-off.
+/// Fraction of the largest value in a unit below which values are round-off.
 const ROUND_OFF: f64 = 1e-12;
-/// A pressure that is none [Pa], and a force [N].
+/// Largest pressure [Pa] and force [N] that count as zero.
 const NO_PRESSURE: f64 = 1e-9;
 const NO_FORCE: f64 = 1e-15;
 
-/// A table of the path, what happened on it, the last state, derivatives.
+/// Table of the path, its events, the last state, and derivatives.
 pub fn words(found: &Found) -> String {
     let path = found.path;
     if path.states.is_empty() {
@@ -68,7 +68,7 @@ pub fn words(found: &Found) -> String {
             significant(s.parameter.value, 6)
         ));
         let derivatives = found.columns.iter().zip(&s.row).skip(1);
-        // of many bladders most may stay as they are
+        // omits bladders that do not change
         let told = |column: &Column, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
         let mut lines: Vec<_> = derivatives
             .map(|(column, derivative)| {
@@ -113,7 +113,7 @@ fn last_with_errors(found: &Found) -> String {
     }
 }
 
-/// Which loads the last state bears.
+/// Loads of the last state.
 fn reached(found: &Found, last: &State) -> String {
     let (share, at) = (significant(last.share, 6), |t: &f64| significant(*t, 6));
     let via: Vec<String> = found.options.via_s.iter().map(at).collect();
@@ -128,7 +128,7 @@ fn reached(found: &Found, last: &State) -> String {
     )
 }
 
-/// Some of the states, first and last among them.
+/// Some of the states, the last among them.
 fn table(found: &Found) -> String {
     let columns: Vec<(usize, String)> = found
         .columns
@@ -157,12 +157,12 @@ fn table(found: &Found) -> String {
     columns::table(&format!("{headings}unstable"), lines)
 }
 
-/// Whether it is the pressure of one bladder.
+/// True for the pressure of one bladder.
 fn is_bladder(column: &Column) -> bool {
     column.name.starts_with("bladder_") && column.unit == "Pa"
 }
 
-/// What is round-off in a unit: a part of the largest number of all states, and what no beam shows.
+/// Round-off limit in a unit: a fraction of the largest value of all states, and at least a constant per unit.
 fn floor(found: &Found, unit: &str) -> f64 {
     let least = match unit {
         "m" => 0.01 * ROUND_OFF * found.case.beam.length_m,
@@ -171,14 +171,14 @@ fn floor(found: &Found, unit: &str) -> f64 {
         "N" => NO_FORCE,
         _ => 0.0,
     };
-    // stresses of the solid say nothing of pressures
+    // stresses of the solid share the unit of pressures, but are no measure of them
     let alike = |k: &usize| found.columns[*k].unit == unit && !is_stress(&found.columns[*k].name);
     let rows = found.path.states.iter().map(|state| &state.row);
     let all = rows.flat_map(|row| (1..row.len()).filter(alike).map(|k| ROUND_OFF * row[k].abs()));
     all.fold(least, f64::max)
 }
 
-/// Whether nothing moves or presses in any state.
+/// True if no state has a displacement, angle, pressure or force.
 fn loads_nothing(found: &Found) -> bool {
     ["m", "rad", "Pa", "N"].iter().all(|unit| {
         let least = floor(found, unit);

@@ -1,13 +1,13 @@
-//! Which of the recorded times: all, ranges, single ones, every so many.
+//! Chooses recorded times: all, ranges, single times, every n-th.
 
 use crate::error::{Error, Result};
 
-/// Numbers of the instants in `times` that `list` names (`0.1,0.45:0.5` [s]; absent: all), thinned to every `every`-th.
+/// Indices of the instants in `times` that `list` names (`0.1,0.45:0.5` [s]; absent: all), thinned to every `every`-th.
 ///
-/// A single time takes the nearest instant, a range all from its start to its end.
+/// A single time selects the nearest instant, a range all instants from its start to its end.
 ///
 /// # Errors
-/// [`Error::Usage`] when the list cannot be read, leaves the recorded span, or holds no instant.
+/// [`Error::Usage`] if the list cannot be read, exceeds the recorded span, or contains no instant.
 pub fn choose(times: &[f64], list: Option<&str>, every: usize) -> Result<Vec<usize>> {
     let mut chosen: Vec<usize> = match list {
         None => (0..times.len()).collect(),
@@ -37,7 +37,7 @@ fn named(times: &[f64], piece: &str) -> Result<Vec<usize>> {
         )))
     };
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|t| t.is_finite());
-    // A time typed with fewer digits than recorded may lie a little outside.
+    // A time typed with fewer digits than recorded may be slightly outside.
     let slack = 1e-9 * (last - first);
     let recorded = |t: f64| t >= first - slack && t <= last + slack;
     match piece.split_once(':') {

@@ -1,9 +1,9 @@
-//! A result in other programs' formats: tables of the fields, surfaces that move.
+//! Exports a result to other formats: tables of the fields, and moving surfaces.
 //!
 //! ```text
-//! instants  which of the recorded times
-//! staged    a folder that appears whole
-//! tables    csv/: one table a field
+//! instants  choice of recorded times
+//! staged    a folder whose files appear together
+//! tables    csv/: one table per field
 //! vtk       vtk/: beam, bladders and tubes as surfaces and lines in space
 //! ```
 
@@ -20,14 +20,14 @@ use super::reading;
 use crate::error::{Error, Result};
 use crate::study::compare::Recording;
 
-/// What was written in one format.
+/// Files written in one format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
-    /// The file to open, or the folder of them.
+    /// File to open, or folder of the files.
     pub path: PathBuf,
     /// Number of files.
     pub files: usize,
-    /// Their size [bytes].
+    /// Total size of the files [bytes].
     pub bytes: u64,
 }
 
@@ -49,7 +49,7 @@ impl Written {
 /// Reads a result folder with its fields.
 ///
 /// # Errors
-/// [`Error::Usage`] when it is none, or when its run has not come to an end; [`Error::Output`] when a file cannot be read.
+/// [`Error::Usage`] if `dir` is no result folder or its run has not ended; [`Error::Output`] if a file cannot be read.
 pub fn read(dir: &Path) -> Result<Recording> {
     let usage = |what: &str| Err(Error::Usage(format!("{} {what}", dir.display())));
     if let Some(what) = Kind::no_run(dir) {

@@ -1,4 +1,4 @@
-//! A folder of files that appear when all are written.
+//! A folder whose files appear only when all are written.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,14 +8,14 @@ use tempfile::TempDir;
 use crate::error::Result;
 use crate::output::folder::{entries, fault, name_of};
 
-/// Files on their way into a folder; what is dropped before [`Staged::place`] leaves nothing.
+/// Files on their way into a folder. If dropped before [`Staged::place`], they leave nothing behind.
 pub struct Staged {
     inside: TempDir,
     target: PathBuf,
 }
 
 impl Staged {
-    /// For the folder `name` in another, which is made.
+    /// Prepares files for the folder `name` in `result`, which is created if necessary.
     pub fn new(result: &Path, name: &str) -> Result<Self> {
         fs::create_dir_all(result).map_err(|e| fault("create", result, e))?;
         let inside = tempfile::Builder::new().prefix(".export-").tempdir_in(result);
@@ -25,17 +25,17 @@ impl Staged {
         })
     }
 
-    /// Where files are written first.
+    /// Path at which a file is written first.
     pub fn path(&self, name: &str) -> PathBuf {
         self.inside.path().join(name)
     }
 
-    /// The folder in which they end.
+    /// The final folder.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Puts the files into their folder, in place of `older` ones by name; others there stay.
+    /// Moves the files into their folder. Removes files with `older` names there first; others stay.
     pub fn place(self, older: impl Fn(&str) -> bool) -> Result<()> {
         fs::create_dir_all(&self.target).map_err(|e| fault("create", &self.target, e))?;
         for path in entries(&self.target)?.iter().filter(|path| older(&name_of(path))) {

@@ -1,4 +1,4 @@
-//! `csv/FIELD.csv`: a row an instant, a column a place, times first.
+//! `csv/FIELD.csv`: one row per instant, one column per place, times first.
 
 use std::path::Path;
 
@@ -10,10 +10,10 @@ use crate::output::history::HistoryWriter;
 use crate::output::numbers::shortest;
 use crate::study::compare::{Array, Recording};
 
-/// Writes one table a field into `dir/csv`.
+/// Writes one table per field into `dir/csv`.
 ///
-/// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, `s` from the
-/// bladder's inlet. The unit of the values stands in the field's name, which is the file's.
+/// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, with `s` from the bladder's
+/// inlet. The name of the field, which is also that of the file, contains the unit.
 pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written> {
     let staged = Staged::new(dir, TABLES)?;
     let mut written = Written::new(staged.target().to_path_buf());
@@ -35,8 +35,8 @@ pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written
     Ok(written)
 }
 
-/// Names of a field's places. Fields of equal length lie at the same places: nodes, cells of the beam, cells of the fluid
-/// ([`crate::run::record::Field::axis`] is not kept in the file of arrays; names tell).
+/// Names of the places of a field: nodes, cells of the beam, or cells of the fluid. The file of arrays does not contain
+/// [`crate::run::record::Field::axis`], so length and name of the field decide.
 fn places(from: &Recording, field: &Array) -> Vec<String> {
     let fluid = ["pressure_pa", "area_change_m2"].contains(&field.name.as_str());
     if let Some(bladders) = from.axis("bladder").filter(|b| fluid && b.len() == field.len) {

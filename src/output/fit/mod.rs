@@ -1,4 +1,4 @@
-//! What a fit leaves behind: `fit.json`, `fit.csv`, `fit.svg`, `fitted-case.json`, and its words.
+//! Output files of a fit, `fit.json`, `fit.csv`, `fit.svg` and `fitted-case.json`, and its text.
 
 mod words;
 
@@ -18,19 +18,19 @@ use crate::study::fit::problem::{Abscissa, Problem};
 
 pub use words::{comparison, words};
 
-/// Everything that was found.
+/// Complete result.
 pub const JSON: &str = "fit.json";
 /// Data, model, residual and weight, row by row.
 pub const CSV: &str = "fit.csv";
-/// Data over model, and residuals.
+/// Data with the model, and residuals.
 pub const PICTURE: &str = "fit.svg";
 /// The case with the estimates.
 pub const FITTED: &str = "fitted-case.json";
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 ///
 /// # Errors
-/// Something cannot be written.
+/// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Result<()> {
     let (own, fitted) = (problem.case.written(), found.case.written());
     let mut files = vec![
@@ -43,7 +43,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Re
     folder.fill_with_both([&own, &fitted], files).map(|_| ())
 }
 
-/// Names with units, and values, of what stands beside the rows.
+/// Columns beside the observations: names with units, and values.
 fn beside(problem: &Problem) -> Vec<(String, Vec<f64>)> {
     match &problem.abscissa {
         Abscissa::Time(instants) => vec![("t [s]".into(), instants.clone())],
@@ -54,7 +54,7 @@ fn beside(problem: &Problem) -> Vec<(String, Vec<f64>)> {
     }
 }
 
-/// Places of the observations of a column, by row.
+/// Index of the observation of a column in each row, if there is one.
 fn places(problem: &Problem, column: usize) -> Vec<Option<usize>> {
     let mut all = vec![None; problem.rows()];
     for (place, one) in problem.of(column) {
@@ -134,7 +134,7 @@ fn drawn(problem: &Problem, found: &Fitted) -> Option<String> {
     Picture::stacked(format!("{}, fitted", found.fit.case), about, panels.flatten()).svg()
 }
 
-/// Panels of one quantity: data with the model, and residuals with two standard deviations of the noise where it is known.
+/// Panels of one quantity: data with the model, and residuals with two standard deviations of the noise, if known.
 fn over_data(
     (name, unit): (&str, &str),
     x: &PictureAxis,
@@ -170,7 +170,7 @@ fn over_data(
     ]
 }
 
-/// The picture of a run over data: its curves are given by name, time [s] and value.
+/// Picture of a run over data; `curve` returns time [s] and value of a quantity by its name.
 pub fn picture(found: &Beside, curve: impl Fn(&str) -> Vec<(f64, f64)>) -> Option<String> {
     let panels = found.columns.iter().flat_map(|column| {
         let at = |values: &mut dyn Iterator<Item = f64>| column.times_s.iter().copied().zip(values).collect();

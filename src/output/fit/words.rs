@@ -1,4 +1,4 @@
-//! A fit, and a run over data, in words.
+//! Text of a fit, and of a run over data.
 
 use crate::error::{listed, visible};
 use crate::output::columns::{table, warnings};
@@ -7,10 +7,10 @@ use crate::study::fit::beside::Beside;
 use crate::study::fit::found::{Bound, Estimate, Fit};
 use crate::study::fit::robust::Loss;
 
-/// Correlations of at least this are told.
+/// Smallest magnitude of a correlation that is listed.
 const TOLD: f64 = 0.9;
 
-/// Estimates with their errors, what the data leave, what to know.
+/// Estimates with their errors, statistics of the residuals, and warnings.
 pub fn words(fit: &Fit) -> String {
     let spent = duration(fit.wall_s);
     let mut text = format!(
@@ -101,7 +101,7 @@ fn correlations(fit: &Fit) -> String {
     text
 }
 
-/// How many searches came to the same.
+/// Number of searches that reached the least sum of squares.
 fn starts(fit: &Fit) -> String {
     let found: Vec<f64> = fit.starts.iter().filter_map(|start| start.chi_square).collect();
     let best = found.iter().copied().fold(f64::INFINITY, f64::min);
@@ -116,7 +116,7 @@ fn starts(fit: &Fit) -> String {
     )
 }
 
-/// The estimate that the simulator's own error would move most.
+/// The estimate that changes most with a finer simulation, relative to its standard error.
 fn worst(fit: &Fit) -> Option<String> {
     let moved = fit
         .parameters
@@ -132,7 +132,7 @@ fn worst(fit: &Fit) -> Option<String> {
     ))
 }
 
-/// A run over data.
+/// Table of a run beside data.
 pub fn comparison(found: &Beside) -> String {
     let headings = "<run less data | values | rms | largest | at | bias | rms, relative | largest, relative | R²";
     let line = |column: &crate::study::fit::beside::Column| {

@@ -1,5 +1,5 @@
-//! What stability leaves behind: `floquet.csv`, `floquet.json`, `floquet.svg` of one case, `map.csv`, `map.json`, `map.svg` of
-//! a map, and their words.
+//! Output files of a stability analysis, `floquet.csv`, `floquet.json` and `floquet.svg` of one case, `map.csv`, `map.json` and `map.svg`
+//! of a map, and their text.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -18,7 +18,7 @@ use crate::results::cycles::{Cycle, Floquet, Map};
 use crate::study::refine::meshes::Meshes;
 use crate::study::stability::Sheet;
 
-/// The text of `floquet.csv`: one row a multiplier.
+/// Text of `floquet.csv`: one row per multiplier.
 pub fn csv(floquet: &Floquet) -> String {
     let headings = "real part [1],imaginary part [1],modulus [1],growth rate [1/s],frequency [Hz],part,share of energy [1],\
                     numerical damping [1/s],residual [1]";
@@ -33,7 +33,7 @@ pub fn csv(floquet: &Floquet) -> String {
     records::text(headings.split(','), rows)
 }
 
-/// The table and the verdict.
+/// Table of the multipliers, and the verdict.
 pub fn words(found: &Cycle) -> String {
     let Floquet {
         multipliers,
@@ -97,7 +97,7 @@ pub fn write(folder: &mut ResultFolder, found: &Cycle) -> Result<Vec<PathBuf>> {
     folder.fill(files)
 }
 
-/// The text of `map.csv`: one row a point.
+/// Text of `map.csv`: one row per point.
 pub fn map_csv(map: &Map) -> String {
     let headings = "permeability factor [1],frequency [Hz],amplitude [m],growth rate [1/s],real part [1],imaginary part [1],verdict";
     let mut rows = vec![];
@@ -122,7 +122,7 @@ pub fn map_csv(map: &Map) -> String {
     records::text(headings.split(','), rows)
 }
 
-/// For each sheet the least amplitude that grows, and where.
+/// For each sheet the smallest amplitude that grows, and the fastest growth.
 pub fn map_words(map: &Map) -> String {
     let mut text = String::new();
     for sheet in &map.sheets {
@@ -173,10 +173,10 @@ pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<Vec<PathBuf>> {
     folder.fill(files)
 }
 
-/// Multipliers with a name in the picture.
+/// Largest number of multipliers named in the picture.
 const NAMED: usize = 6;
 
-/// Multipliers about the unit circle.
+/// Picture of the multipliers and the unit circle.
 fn multipliers(found: &Cycle) -> Option<String> {
     let all = &found.floquet.multipliers;
     let reach = 1.15 * all.first()?.modulus.max(1.0);
@@ -216,13 +216,13 @@ fn multipliers(found: &Cycle) -> Option<String> {
     Picture::stacked(title, &*found.floquet.verdict.words, [panel]).svg()
 }
 
-/// Growth over the largest one below which a point counts as stable in the picture.
+/// Fraction of the largest growth below which a point is drawn as stable.
 const NOTHING: f64 = 2e-3;
 const UNSTABLE: Colour = Colour(0xb5, 0x2b, 0x2b);
 const STABLE: Colour = Colour(0xee, 0xf2, 0xf6);
 const MISSING: Colour = Colour(0xc9, 0xcd, 0xd2);
 
-/// Growth over frequency and amplitude of the shaking, a panel a permeability; dashed: Mathieu's equation.
+/// Picture of the growth over frequency and amplitude of the shaking, one panel per permeability; dashed: Mathieu's equation.
 fn tongues(map: &Map) -> Option<String> {
     let range = |all: &[f64]| {
         let (first, last) = (*all.first()?, *all.last()?);

@@ -1,4 +1,4 @@
-//! The case of a result, and the tables it names.
+//! Case of a result, and its tables.
 
 use std::fs;
 use std::path::PathBuf;
@@ -8,8 +8,8 @@ use crate::case::{Written, is_table};
 use crate::error::Result;
 
 impl ResultFolder {
-    /// Writes the case: its tables first, so that one that is there has all it names; then those go that it does not name. The disk has it
-    /// from [`ResultFolder::secure`] on.
+    /// Writes the case after its tables, so that an existing case always has all its tables; then removes all other tables. The files are
+    /// on the disk after [`ResultFolder::secure`].
     pub fn write_case(&self, case: &Written) -> Result<()> {
         self.write_tables(case)?;
         self.write_once(CASE, &case.json)?;
@@ -24,7 +24,7 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Writes a file unless it is there, as one of its own, with the same text.
+    /// Writes a file, unless a regular file with the same text is there.
     fn write_once(&self, name: &str, text: &str) -> Result<()> {
         let path = self.path(name);
         let own = fs::symlink_metadata(&path).is_ok_and(|there| there.is_file());

@@ -1,4 +1,4 @@
-//! Files of a folder that have their names, but are not on the disk itself yet: the disk is waited for once for all of them.
+//! Files of a folder that have their final names but are not yet safe on the disk. One wait for the disk covers all of them.
 
 use std::fs::File;
 use std::io::Write as _;
@@ -11,16 +11,16 @@ use super::whole::{Wait, Whole, at_once};
 use super::{ResultFolder, fault};
 use crate::error::Result;
 
-/// What a folder has still to bring to the disk.
+/// Files that are not yet synced to the disk.
 #[derive(Debug, Default)]
 pub(super) struct Laid {
     files: Mutex<Vec<Whole>>,
-    /// What is being brought there.
+    /// Thread that syncs files to the disk.
     behind: Mutex<Option<JoinHandle<Result<()>>>>,
 }
 
 impl ResultFolder {
-    /// Writes a file whole or not at all, for everyone but a failing disk: [`ResultFolder::secure`] brings it there.
+    /// Writes a file completely or not at all, unless the disk fails. [`ResultFolder::secure`] syncs it to the disk.
     pub fn lay(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
         self.tell_origin()?;
         let target = self.path(name);
@@ -30,19 +30,19 @@ impl ResultFolder {
         Ok(target)
     }
 
-    /// Files that were laid, for whoever brings them to the disk along with others.
+    /// Takes the laid files, to sync them to the disk along with others.
     pub(crate) fn laid(&self) -> Vec<Whole> {
         held(&self.laid.files, mem::take)
     }
 
-    /// Brings files that were laid, and the names of all files, to the disk itself.
+    /// Syncs laid files, and the names of all files, to the disk.
     pub fn secure(&self) -> Result<()> {
         self.tell_origin()?;
         let brought = bring(&self.laid(), &self.dir);
         self.secured_behind().and(brought)
     }
 
-    /// The same while other things are done; [`ResultFolder::secure`] waits for it, and tells what became of it.
+    /// Does the work of [`ResultFolder::secure`] in a thread. The next [`ResultFolder::secure`] waits for it and returns its error.
     pub fn secure_behind(&self) -> Result<()> {
         self.tell_origin()?;
         self.secured_behind()?;
@@ -50,7 +50,7 @@ impl ResultFolder {
         let there = Arc::clone(&files);
         match Builder::new().spawn(move || bring(&held(&there, mem::take), &dir)) {
             Ok(behind) => held(&self.laid.behind, |place| *place = Some(behind)),
-            // the system grants no thread
+            // the system cannot start a thread
             Err(_) => bring(&held(&files, mem::take), &self.dir)?,
         }
         Ok(())
@@ -63,7 +63,7 @@ impl ResultFolder {
         })
     }
 
-    /// Leaves nothing behind, whatever became of it.
+    /// Syncs the rest to the disk and waits for the thread; ignores errors.
     pub(super) fn settle(&self) {
         let files = self.laid();
         if !files.is_empty() {
@@ -73,7 +73,7 @@ impl ResultFolder {
     }
 }
 
-/// Brings files and the names in a folder to the disk itself.
+/// Syncs files and the names in a folder to the disk.
 fn bring(files: &[Whole], dir: &Path) -> Result<()> {
     let names = || {
         let sync = || File::open(dir)?.sync_all();

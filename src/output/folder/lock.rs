@@ -1,4 +1,4 @@
-//! One writer a folder, held by the kernel: what a killed program leaves behind does not lock anyone out.
+//! One writer per folder. The kernel holds the lock, so a killed program does not leave a folder locked.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Seek as _, Write as _};
@@ -8,29 +8,29 @@ use std::path::{Path, PathBuf};
 use super::{fault, unlink};
 use crate::error::Result;
 
-/// The file that is locked; it says who holds it and goes with the lock.
+/// The locked file. It names the holder and is removed with the lock.
 pub const LOCK: &str = ".slcbeam.lock";
 
-/// Attempts to lock a file that others take away at the same time.
+/// Attempts to lock a file that others remove at the same time.
 const ATTEMPTS: usize = 100;
 
-/// What file systems without locks answer on Linux: ENOLCK, ENOSYS, EOPNOTSUPP.
+/// Errors of file systems without locks on Linux: ENOLCK, ENOSYS, EOPNOTSUPP.
 const LOCKLESS: [i32; 3] = [37, 38, 95];
 
 /// The right to write into a folder.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
-    /// None where the file system knows no locks.
+    /// `None` if the file system has no locks.
     file: Option<File>,
 }
 
 impl Lock {
-    /// Takes the lock of a folder, at once or not at all.
+    /// Locks a folder immediately, or fails.
     ///
     /// # Errors
     ///
-    /// Another process holds it, which the message names; or the file cannot be made.
+    /// Another process holds the lock (the message names it), or the file cannot be created.
     pub fn take(dir: &Path) -> Result<Self> {
         let path = dir.join(LOCK);
         let take = || -> io::Result<Option<File>> {
@@ -60,7 +60,7 @@ impl Lock {
                     }
                     Err(TryLockError::Error(e)) => return Err(e),
                 }
-                // whoever held it may have taken the file away after it was opened here
+                // the previous holder may have removed the file after it was opened here
                 if same(&file, &path) {
                     file.set_len(0)?;
                     file.rewind()?;
@@ -80,14 +80,14 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // taken away while it is still held, so that nobody locks a file that is about to go
+        // removed while still locked, so that nobody locks a file that is about to disappear
         if self.file.as_ref().is_some_and(|file| same(file, &self.path)) {
             let _ = fs::remove_file(&self.path);
         }
     }
 }
 
-/// Whether a path still leads to an open file.
+/// True if a path still refers to an open file.
 fn same(file: &File, path: &Path) -> bool {
     let (Ok(here), Ok(there)) = (file.metadata(), fs::metadata(path)) else {
         return false;

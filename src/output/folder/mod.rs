@@ -1,4 +1,4 @@
-//! The result folder: one writer at a time, no file half written, nothing of others taken.
+//! The result folder: one writer at a time, no incomplete file, no foreign file removed.
 
 mod cased;
 mod laid;
@@ -23,23 +23,23 @@ pub(crate) use whole::{
 };
 pub use whole::{replace, replace_alike};
 
-/// The case as resolved.
+/// The resolved case.
 pub const CASE: &str = "case.json";
-/// What came out, in numbers; written after history and arrays, so that its presence says that these are whole.
+/// Results as numbers. Written after history and arrays: its presence means that these are complete.
 pub const SUMMARY: &str = "summary.json";
-/// One row an output time.
+/// One row per output time.
 pub const HISTORY: &str = "history.csv";
-/// What is left of output times that the history leaves out.
+/// Statistics over output times that the history leaves out.
 pub const ENVELOPE: &str = "envelope.csv";
-/// Derivatives of the history's columns, one row an output time.
+/// Derivatives of the history's columns, one row per output time.
 pub const SENSITIVITIES: &str = "sensitivities.csv";
 /// Arrays over time and space.
 pub const FIELDS: &str = "fields.npz";
-/// Raw arrays while a run is under way.
+/// Raw arrays during a run.
 pub const RAW_FIELDS: &str = "fields.part";
-/// Where an interrupted run goes on.
+/// State from which an interrupted run resumes.
 pub const CHECKPOINT: &str = "checkpoint.json";
-/// The checkpoint before it, for when that is damaged.
+/// The previous checkpoint, used if the newest is damaged.
 pub const CHECKPOINT_BEFORE: &str = "checkpoint-before.json";
 /// The page made by `slcbeam report`.
 pub const REPORT: &str = "report.html";
@@ -49,9 +49,9 @@ pub const TABLES: &str = "csv";
 pub const VTK: &str = "vtk";
 /// Pictures.
 pub const PICTURES: [&str; 4] = ["deflection.svg", "pressure.svg", "history.svg", "energy.svg"];
-/// How the names of folders begin in which candidates are recorded.
+/// Prefix of the folders in which candidates are recorded.
 const CANDIDATE: &str = ".next-";
-/// Files of a run; the summary goes first: without it the rest does not pass for a finished run.
+/// Files of a run. The summary is removed first: without it the others do not count as a finished run.
 pub const RUN_FILES: [&str; 12] = [
     SUMMARY,
     CHECKPOINT,
@@ -67,13 +67,13 @@ pub const RUN_FILES: [&str; 12] = [
     PICTURES[3],
 ];
 
-/// A folder that holds one result, or will. While this lives, no other process writes into it by this program.
+/// A folder for one result. While this value lives, no other process of this program writes into the folder.
 #[derive(Debug)]
 pub struct ResultFolder {
     dir: PathBuf,
     kind: Kind,
     older: Option<Kind>,
-    /// Whether it was made here; it goes again if nothing comes into it.
+    /// True if the folder was created here. It is removed on drop if it is empty.
     made: bool,
     lock: Option<Lock>,
     origin: origin::Origin,
@@ -81,12 +81,12 @@ pub struct ResultFolder {
 }
 
 impl ResultFolder {
-    /// Makes the folder and its parents, or takes one that is empty or holds an older result of the same command, which stays
-    /// untouched until [`ResultFolder::clear`].
+    /// Creates the folder and its parents, or claims a folder that is empty or has an older result of the same command. The older result
+    /// stays until [`ResultFolder::clear`].
     ///
     /// # Errors
     ///
-    /// It holds something else and `force` is not given, another process writes into it, or it cannot be made.
+    /// The folder has other content and `force` is not given, another process writes into it, or it cannot be created.
     pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
         let made = !dir.exists();
         if made && dir.is_symlink() {
@@ -98,7 +98,7 @@ impl ResultFolder {
         let older = Kind::within(dir);
         if !force {
             let why = match older {
-                // a run that has not ended may be that of a cycle
+                // a run that has not ended may belong to a cycle
                 Some(Kind::Run) if kind == Kind::Cycle && !dir.join(SUMMARY).exists() => None,
                 Some(older) if older == kind => foreign(dir, kind)?,
                 Some(older) => Some(format!("it holds the result of `slcbeam {}`", older.command())),
@@ -123,7 +123,7 @@ impl ResultFolder {
         Ok(folder)
     }
 
-    /// Removes what a killed process had half written here, which is hidden; what cannot be removed does no harm.
+    /// Removes hidden incomplete files of a killed process; ignores those that cannot be removed.
     fn sweep(&self) {
         let own = |half: &str| {
             let name = half.rsplit_once('.').map_or(half, |(name, _)| name);
@@ -140,11 +140,11 @@ impl ResultFolder {
         }
     }
 
-    /// Takes the folder of a run that was interrupted.
+    /// Claims the folder of an interrupted run.
     ///
     /// # Errors
     ///
-    /// There is none, or another process writes into it.
+    /// There is no run, or another process writes into the folder.
     pub fn again(dir: &Path) -> Result<Self> {
         if Kind::within(dir) != Some(Kind::Run) {
             return Err(Error::Usage(format!("{} holds no run to go on with", dir.display())));
@@ -154,7 +154,7 @@ impl ResultFolder {
         Ok(folder)
     }
 
-    /// Where it is.
+    /// Path of the folder.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
@@ -164,7 +164,7 @@ impl ResultFolder {
         self.dir.join(name)
     }
 
-    /// Writes a file whole or not at all: under another name first, safe on disk, then renamed.
+    /// Writes a file completely or not at all: under a hidden name first, then renamed when safe on disk.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
         self.tell_origin()?;
         let target = self.path(name);
@@ -172,7 +172,7 @@ impl ResultFolder {
         Ok(target)
     }
 
-    /// Writes files, each as [`ResultFolder::write`], with what was laid before; the disk is waited for once.
+    /// Writes files, each as [`ResultFolder::write`], together with laid files; waits for the disk once.
     fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<Vec<PathBuf>> {
         self.tell_origin()?;
         let fill = |(name, bytes): &(&str, T)| Whole::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
@@ -183,8 +183,9 @@ impl ResultFolder {
         Ok(files.iter().map(|(name, _)| self.path(name)).collect())
     }
 
-    /// Writes all files of a result that has no run in place of an older one: its numbers, its sign, then its pictures. Returns their
-    /// paths. A picture that cannot be written costs no number, and the page and pictures of an older result never stay beside new numbers.
+    /// Writes all files of a result without a run in place of an older one: numbers, the file that identifies the kind, then pictures.
+    /// Returns their paths. If a picture cannot be written, the numbers stay. Page and pictures of an older result never remain beside new
+    /// numbers.
     pub fn fill<T: AsRef<[u8]>>(&mut self, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
         if self.older.is_some_and(|older| older != self.kind) {
             self.clear()?;
@@ -205,7 +206,7 @@ impl ResultFolder {
         Ok(written)
     }
 
-    /// Writes all files of a result that has no run with its case, as [`ResultFolder::fill`].
+    /// Writes all files of a result without a run, with its case, as [`ResultFolder::fill`].
     pub fn fill_with<T: AsRef<[u8]>>(&mut self, case: &Written, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
         self.write_tables(case)?;
         let written = self.fill(files)?;
@@ -213,7 +214,7 @@ impl ResultFolder {
         Ok(written)
     }
 
-    /// The same of a result that has another case, whose tables stand beside those of its own.
+    /// Writes a result with a second case, whose tables are stored beside those of its own, as [`ResultFolder::fill_with`].
     pub fn fill_with_both<T: AsRef<[u8]>>(
         &mut self,
         [own, other]: [&Written; 2],
@@ -225,12 +226,12 @@ impl ResultFolder {
         self.fill_with(&both, files)
     }
 
-    /// Removes one file, if it is there.
+    /// Removes a file, if it exists.
     pub fn remove(&self, name: &str) -> Result<()> {
         remove(&self.path(name)).map(|_| ())
     }
 
-    /// Removes files; whether any was there.
+    /// Removes files. Returns true if any existed.
     pub fn remove_all(&self, names: &[&str]) -> Result<bool> {
         let mut any = false;
         for name in names {
@@ -239,7 +240,7 @@ impl ResultFolder {
         Ok(any)
     }
 
-    /// Removes the raw arrays of a run, if they are there.
+    /// Removes the raw arrays of a run, if they exist.
     pub fn remove_raw(&self) -> Result<()> {
         let raw = self.path(RAW_FIELDS);
         match fs::remove_dir_all(&raw) {
@@ -248,11 +249,11 @@ impl ResultFolder {
         }
     }
 
-    /// Removes the files of an older result, by name; whatever else lies there stays.
+    /// Removes the files of an older result by name; all others stay.
     pub fn clear(&mut self) -> Result<()> {
         self.tell_origin()?;
         let Some(older) = self.older else { return Ok(()) };
-        // A history stays until another run's is begun, which empties it: by it the folder is known for a run's, whenever this ends.
+        // A history stays until another run begins and empties it. Until then it identifies the folder as that of a run.
         let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);
         for name in older.files().into_iter().chain([REPORT]).filter(|name| !stays(name)) {
             self.remove(name)?;
@@ -263,7 +264,7 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Removes what was exported from an older or shorter result, which would pass for the new one's.
+    /// Removes exports of an older or shorter result, which could be mistaken for those of the new one.
     pub fn remove_exports(&self) -> Result<()> {
         for (name, endings) in [(TABLES, &["csv"][..]), (VTK, &["vtp", "vtm", "pvd"])] {
             remove_folder_of(&self.path(name), endings)?;
@@ -271,7 +272,7 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Moves the older result into a folder of its own beside this one, which is returned; `None` where there is none.
+    /// Moves the older result into a new folder beside this one and returns its path; `None` if there is no older result.
     pub fn set_aside(&mut self) -> Result<Option<PathBuf>> {
         let Some(older) = self.older.take() else {
             return Ok(None);
@@ -289,7 +290,7 @@ impl ResultFolder {
         let aside = (0..).map(name).find(|dir| !dir.exists()).unwrap_or_else(|| name(0));
         fs::create_dir_all(&aside).map_err(|e| fault("create", &aside, e))?;
         let names = [RAW_FIELDS, TABLES, VTK, CASE, ORIGIN, REPORT];
-        // the sign last, so that what was cut short does not pass for a result
+        // the identifying file last, so that an incomplete move does not count as a result
         let all = names.into_iter().chain(older.files().into_iter().rev());
         for from in self.tables()?.into_iter().chain(all.map(|name| self.path(name))) {
             if let Some(name) = from.file_name().filter(|_| from.exists()) {
@@ -299,14 +300,14 @@ impl ResultFolder {
         Ok(Some(aside))
     }
 
-    /// A folder inside this one for a result that may take its place; removed when dropped.
+    /// Creates a folder inside this one for a result that may replace it; removed when dropped.
     pub fn candidate(&self) -> Result<tempfile::TempDir> {
         let inside = tempfile::Builder::new().prefix(CANDIDATE).tempdir_in(&self.dir);
         inside.map_err(|e| fault("create", &self.dir, e))
     }
 
-    /// Takes over the result in another folder of the same file system, in place of its own. Its summary goes first and comes last: without one
-    /// nothing passes for a result.
+    /// Replaces the result by that of another folder on the same file system. The summary is removed first and moved last: without it
+    /// nothing counts as a result.
     pub fn replace(&mut self, with: &Path) -> Result<()> {
         self.clear()?;
         self.remove_all(&[SUMMARY, CHECKPOINT_BEFORE, CHECKPOINT])?;
@@ -327,13 +328,13 @@ impl Drop for ResultFolder {
         self.settle();
         self.lock.take();
         if self.made {
-            // only an empty one can be removed so
+            // removes only an empty folder
             let _ = fs::remove_dir(&self.dir);
         }
     }
 }
 
-/// An output error with its place.
+/// An output error with its path.
 pub(crate) fn fault(action: &'static str, path: &Path, source: io::Error) -> Error {
     Error::Output {
         action,
@@ -342,7 +343,7 @@ pub(crate) fn fault(action: &'static str, path: &Path, source: io::Error) -> Err
     }
 }
 
-/// Removes a file; whether it was there.
+/// Removes a file. Returns true if it existed.
 fn remove(path: &Path) -> Result<bool> {
     match fs::remove_file(path) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(fault("remove", path, e)),
@@ -350,7 +351,7 @@ fn remove(path: &Path) -> Result<bool> {
     }
 }
 
-/// Removes a folder that holds nothing but files with these endings.
+/// Removes a folder if it contains only files with these endings.
 fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
     let Ok(entries) = entries(dir) else { return Ok(()) };
     let ours = |path: &PathBuf| path.is_file() && path.extension().is_some_and(|x| endings.iter().any(|e| x == *e));
@@ -360,8 +361,8 @@ fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
     fs::remove_dir_all(dir).map_err(|e| fault("remove", dir, e))
 }
 
-/// Why the sign of a kind in a folder is not that of a result of this program, if it is not: a JSON object with a case, or, of a run
-/// that was interrupted, a history that begins with time.
+/// Reason why the identifying file of a kind is foreign; `None` if it belongs to this program. It is then a JSON object with a case or, for
+/// an interrupted run, a history that begins with time.
 fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
     let sign = dir.join(kind.sign());
     if !sign.exists() {
@@ -374,14 +375,14 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
 }
 
 fn history_begins_with_time(path: &Path) -> bool {
-    // one that was killed at once has nothing in it yet
+    // a run that was killed immediately leaves an empty file
     let mut begin = vec![];
     open(path)
         .and_then(|file| file.take(5).read_to_end(&mut begin))
         .is_ok_and(|_| begin.is_empty() || begin == b"t [s]")
 }
 
-/// Hidden files do not count: systems leave them everywhere.
+/// True if a folder has visible files. Hidden files do not count: systems create them everywhere.
 fn has_files(dir: &Path) -> Result<bool> {
     Ok(entries(dir)?.iter().any(|path| !name_of(path).starts_with('.')))
 }

@@ -1,4 +1,4 @@
-//! Of which case file the result in a folder is.
+//! Case file to which the result in a folder belongs.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use super::{CASE, ResultFolder, text_of};
 use crate::case::Case;
 use crate::error::Result;
 
-/// The file that says it: the path from here to the case file, so that both may be moved together.
+/// File with the relative path from the folder to the case file. Both can be moved together.
 pub const ORIGIN: &str = ".slcbeam.case";
 
-/// The case file of what is about to be written, and whether the folder says so by now.
+/// Case file of the next result, and whether the folder already names it.
 #[derive(Debug, Default)]
 pub(super) struct Origin {
-    /// The way to it, where one is known.
+    /// Path to the case file, if known.
     file: Option<String>,
-    /// Whether what the folder says holds on: a run goes on, a result's own case is run.
+    /// True if the recorded path stays: a run resumes, or the case in the folder itself is run.
     pub(super) stays: bool,
     told: AtomicBool,
 }
 
 impl ResultFolder {
-    /// What is written from now on is of this case's file. A result's own case leaves what is there.
+    /// Assigns the next results to the file of this case. A case in the folder itself leaves the recorded path as it is.
     #[must_use]
     pub fn of(mut self, case: &Case) -> Self {
         self.origin.file = way(&self.dir, &case.source.path);
@@ -30,7 +30,7 @@ impl ResultFolder {
         self
     }
 
-    /// Tells it, once; where it is not known nothing is told any more.
+    /// Records the path once; removes an old record if the path is unknown.
     pub(super) fn tell_origin(&self) -> Result<()> {
         if self.origin.stays || self.origin.told.swap(true, Ordering::Relaxed) {
             return Ok(());
@@ -42,7 +42,7 @@ impl ResultFolder {
     }
 }
 
-/// The other case file of which the result in a folder is; nothing where it is of this one or says the same, or where it is not known.
+/// The recorded case file of a folder; `None` if it is the file of `case`, has the same content, or is unknown.
 pub fn other_origin(dir: &Path, case: &Case) -> Option<String> {
     let there = text_of(&dir.join(ORIGIN)).ok()?;
     let here = way(dir, &case.source.path)?;
@@ -50,8 +50,8 @@ pub fn other_origin(dir: &Path, case: &Case) -> Option<String> {
     (there != here && !same()).then(|| shown(dir, &there))
 }
 
-/// The way from a folder to a file; the name alone where there is no such file, as of standard input, and nothing where it is
-/// the result's own case.
+/// Relative path from a folder to a file. A file that does not exist, such as standard input, keeps its name; the case in the folder itself
+/// gives `None`.
 fn way(dir: &Path, file: &Path) -> Option<String> {
     let (Ok(dir), Ok(whole)) = (fs::canonicalize(dir), fs::canonicalize(file)) else {
         return Some(file.display().to_string());
@@ -73,7 +73,7 @@ fn way(dir: &Path, file: &Path) -> Option<String> {
     Some(way.display().to_string())
 }
 
-/// A file as seen from here, as short as can be.
+/// Path of a file, relative to the current directory if it lies there.
 fn shown(dir: &Path, way: &str) -> String {
     let (Ok(whole), Ok(here)) = (fs::canonicalize(dir.join(way)), std::env::current_dir()) else {
         return way.to_owned();

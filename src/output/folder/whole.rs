@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all, and are read only where they have an end.
+//! Files that appear completely or not at all, and reading of files with a known end.
 
 use std::fs::{self, File};
 use std::io::{self, Read as _, Write as _};
@@ -11,8 +11,7 @@ use crate::error::Result;
 use crate::numerics::threads::{Begun, begin};
 use crate::results::{self, Found, Kept};
 
-/// Writes a file that the user names, whole or not at all; one that is there keeps its permissions, and what a link points to is
-/// replaced.
+/// Writes a file that the user names, completely or not at all. An existing file keeps its permissions; the target of a link is replaced.
 pub fn replace(path: &Path, text: &str) -> Result<()> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let old = match fs::OpenOptions::new()
@@ -21,7 +20,7 @@ pub fn replace(path: &Path, text: &str) -> Result<()> {
         .and_then(|file| file.metadata())
     {
         Ok(there) if !there.is_file() => {
-            // a pipe or a device takes the text as it comes
+            // a pipe or a device receives the text directly
             return fs::write(&target, text).map_err(|e| fault("write", path, e));
         }
         Ok(there) => Some(there.permissions()),
@@ -34,10 +33,10 @@ pub fn replace(path: &Path, text: &str) -> Result<()> {
     })
 }
 
-/// Writes a page or picture where the user wants it; in place of another of its kind, but of nothing else.
+/// Writes a page or picture to a path of the user. It replaces only a file that has one of the `beginnings`, or an empty one.
 ///
 /// # Errors
-/// There is something that begins otherwise, or it cannot be written.
+/// The existing file begins differently, or the file cannot be written.
 pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()> {
     let mut begin = vec![];
     let there = fs::metadata(path).is_ok_and(|there| there.is_file());
@@ -53,24 +52,24 @@ pub fn replace_alike(path: &Path, text: &str, beginnings: &[&str]) -> Result<()>
     replace(path, text)
 }
 
-/// Fills a file under another name, brings it to the disk and renames it; what could not be filled is removed.
+/// Fills a file under a hidden name, syncs it to the disk and renames it. A file that cannot be filled is removed.
 pub(crate) fn put_whole(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<()> {
     let file = Whole::fill(target, fill)?;
     file.secure()?;
     file.name().map(|_| ())
 }
 
-/// A file that is whole and has a hidden name yet; it is removed unless it gets its own.
+/// A complete file with a hidden name; it is removed on drop unless it was renamed.
 #[derive(Debug)]
 pub(crate) struct Whole {
     target: PathBuf,
-    /// Nothing once it has its name.
+    /// Hidden name; `None` after renaming.
     part: Option<PathBuf>,
     file: File,
 }
 
 impl Whole {
-    /// Makes and fills it.
+    /// Creates and fills the file.
     pub(crate) fn fill(target: &Path, fill: impl FnOnce(&mut File) -> io::Result<()>) -> Result<Self> {
         let part = part_of(target);
         let file = create(&part).map_err(|e| fault("write", target, e))?;
@@ -85,17 +84,17 @@ impl Whole {
         }
     }
 
-    /// Brings what it holds to the disk itself.
+    /// Syncs the content to the disk.
     pub(crate) fn secure(&self) -> Result<()> {
         self.file.sync_all().map_err(|e| fault("write", &self.target, e))
     }
 
-    /// The same, to be waited for along with others.
+    /// [`Whole::secure`] as a task for [`at_once`].
     pub(crate) fn wait(&self) -> Wait<'_> {
         Box::new(|| self.secure())
     }
 
-    /// Gives it its name, in place of what had it.
+    /// Renames the file to its final name, in place of an existing file.
     pub(crate) fn name(mut self) -> Result<Self> {
         if let Some(part) = &self.part {
             fs::rename(part, &self.target).map_err(|e| fault("write", &self.target, e))?;
@@ -113,13 +112,13 @@ impl Drop for Whole {
     }
 }
 
-/// What waits for the disk.
+/// A task that waits for the disk.
 pub(crate) type Wait<'a> = Box<dyn FnOnce() -> Result<()> + Send + 'a>;
 
-/// Waits for the disk once for all: each in a thread of its own, so that what they have to bring there goes together.
+/// Runs all tasks at the same time, each in a thread, so that they wait for the disk together.
 ///
 /// # Errors
-/// The first in their order; all have ended.
+/// The first error in the order of the tasks; all tasks have ended.
 pub(crate) fn at_once(mut all: Vec<Wait>) -> Result<()> {
     let Some(last) = all.pop() else { return Ok(()) };
     thread::scope(|scope| {
@@ -130,7 +129,7 @@ pub(crate) fn at_once(mut all: Vec<Wait>) -> Result<()> {
     })
 }
 
-/// Paths of all that lies in a folder, sorted.
+/// Paths of all entries of a folder, sorted.
 pub(crate) fn entries(dir: &Path) -> Result<Vec<PathBuf>> {
     let list = || -> io::Result<Vec<PathBuf>> { fs::read_dir(dir)?.map(|entry| Ok(entry?.path())).collect() };
     let mut all = list().map_err(|e| fault("read", dir, e))?;
@@ -145,16 +144,16 @@ pub(crate) fn name_of(path: &Path) -> String {
         .unwrap_or_default()
 }
 
-/// The name under which a file grows before it takes its own.
+/// Hidden name of a file until it is complete.
 fn part_of(target: &Path) -> PathBuf {
     let name = target.file_name().map(|n| n.to_string_lossy()).unwrap_or_default();
     target.with_file_name(format!(".{name}.{}.part", std::process::id()))
 }
 
-/// Largest text of a result that is read whole [byte]; tables and arrays are read piece by piece.
+/// Largest text of a result that is read in one piece [byte]; tables and arrays are read in parts.
 const LARGEST: u64 = 64 << 20;
 
-/// Creates a file of a result, empty. A symbolic link in its place is removed, so that nothing is written through it.
+/// Creates an empty file of a result. A symbolic link in its place is removed, so that nothing is written through the link.
 pub(crate) fn create(path: &Path) -> io::Result<File> {
     unlink(path)?;
     File::create(path)
@@ -168,22 +167,22 @@ pub(crate) fn unlink(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Opens a file of a result to read it: a pipe or a device, which may never end, is none.
+/// Opens a file of a result for reading. Rejects pipes and devices, which may never end.
 pub(crate) fn open(path: &Path) -> io::Result<File> {
     reading::open(path)
 }
 
-/// What is wrong with a file that was read.
+/// Error of a damaged file.
 pub(crate) fn damaged(why: impl Into<String>) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, why.into())
 }
 
-/// The result in a file.
+/// Reads the result in a file.
 pub(crate) fn result<T: Kept>(path: &Path) -> Result<Found<T>> {
     results::read(&text_of(path)?).map_err(|e| fault("read", path, e))
 }
 
-/// The text of a file of a result.
+/// Reads the text of a file of a result.
 pub(crate) fn text_of(path: &Path) -> Result<String> {
     let read = || -> io::Result<String> {
         let file = open(path)?;

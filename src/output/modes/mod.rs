@@ -1,4 +1,4 @@
-//! What a search for modes leaves behind: `modes.csv`, `modes.json`, `modes.npz`, `modes.svg`, and its words.
+//! Output files of a modal analysis, `modes.csv`, `modes.json`, `modes.npz` and `modes.svg`, and its text.
 
 mod table;
 
@@ -26,42 +26,42 @@ use crate::study::refine;
 
 pub use table::{csv, table};
 
-/// One row a mode.
+/// One row per mode.
 pub const CSV: &str = "modes.csv";
-/// Everything but shapes.
+/// Complete result without shapes.
 pub const JSON: &str = "modes.json";
 /// Shapes.
 pub const ARRAYS: &str = "modes.npz";
 /// Shapes with pressures.
 pub const PICTURE: &str = "modes.svg";
 
-/// Difference of two modes that are the same, over their angular frequency.
+/// Difference of two modes, relative to their angular frequency, below which they are equal.
 const ALIKE: f64 = 1e-6;
 
-/// Modes with the case they are of.
+/// Modes with their case.
 pub struct Report<'a> {
     /// Name of the case.
     pub case: &'a str,
-    /// What was asked.
+    /// Requested search.
     pub plan: &'a Plan,
-    /// Those of this sort alone.
+    /// The only kind of modes requested, if any.
     pub sort: Option<Sort>,
-    /// What was found.
+    /// Modes found.
     pub found: &'a Modes,
-    /// State about which.
+    /// State of linearization.
     pub state: About,
-    /// Derivatives by numbers of the case.
+    /// Derivatives with respect to numbers of the case.
     pub sensitivities: &'a [Sensitivity],
-    /// Estimated errors, when an accuracy was asked for.
+    /// Estimated errors, if an accuracy was requested.
     pub accuracy: Option<&'a Accuracy>,
-    /// What is known of the case without them.
+    /// Warnings about the case itself.
     pub known: &'a [String],
-    /// What uncertain numbers leave open, of the modes that swing by the rank of their frequencies.
+    /// Uncertainty bands of the oscillating modes, by the rank of their frequencies.
     pub bands: &'a Bands,
 }
 
 impl Report<'_> {
-    /// State about which, in words: `the start`.
+    /// State of linearization as text: `the start`.
     pub fn about(&self) -> String {
         match self.state {
             About::Start => "the start".into(),
@@ -69,7 +69,7 @@ impl Report<'_> {
         }
     }
 
-    /// Whether the state is stable, in one sentence.
+    /// Stability of the state, in one sentence.
     pub fn verdict(&self) -> String {
         let growing: Vec<String> = self
             .found
@@ -107,7 +107,7 @@ impl Report<'_> {
         }
     }
 
-    /// What to know before trusting the modes.
+    /// All warnings about the modes.
     pub fn warnings(&self) -> Vec<String> {
         let still = (self.found.modes.is_empty() && self.sort.is_none()).then(|| {
             Code::Seldom.warning(
@@ -120,7 +120,7 @@ impl Report<'_> {
         known.chain(still).chain(own).chain(short).collect()
     }
 
-    /// What a number of the case does to each mode: `mode 2: +0.0608 Hz, −1.2e-5 1/s`, for one percent of it.
+    /// Change of each mode for a 1 % change of a number of the case: `mode 2: +0.0608 Hz, −1.2e-5 1/s`.
     fn derivatives(&self, s: &Sensitivity) -> String {
         let percent = 0.01 * s.parameter.value;
         let mut text = format!(
@@ -162,7 +162,7 @@ impl Report<'_> {
     }
 }
 
-/// The text of `modes.json`; what is not finite is null.
+/// Text of `modes.json`; numbers that are not finite are null.
 pub fn json(report: &Report) -> String {
     let found = report.found;
     let coupling = |(p, words): (Passivity, String)| kept::Coupling {
@@ -231,8 +231,8 @@ fn mode(mode: &Mode) -> kept::Mode {
     }
 }
 
-/// Modes with the bands of their own figures. A rank is that among all modes that swing, of which some may not be here, and equal ones
-/// may stand in another order: a mode is known by its values.
+/// Adds the bands of their own figures to modes. A rank counts all oscillating modes, of which some may be missing here, and equal modes
+/// may be in another order. Modes are therefore matched by their values.
 fn with_bands(mut modes: Vec<kept::Mode>, bands: &Bands) -> Vec<kept::Mode> {
     for rank in 1.. {
         let of = |figure: &str| bands.get(&format!("mode_{rank}.{figure}"));
@@ -256,7 +256,7 @@ fn with_bands(mut modes: Vec<kept::Mode>, bands: &Bands) -> Vec<kept::Mode> {
     modes
 }
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<Vec<PathBuf>> {
     let arrays = pack(report.found).map_err(|e| fault("write", &folder.path(ARRAYS), e))?;
     let mut files = vec![
@@ -268,7 +268,7 @@ pub fn write(folder: &mut ResultFolder, report: &Report) -> Result<Vec<PathBuf>>
     folder.fill(files)
 }
 
-/// Arrays mode × place; `u1_m` is that of `u1_amplitude_m cos(ω t + u1_phase_rad) e^{σ t}`.
+/// Arrays mode × place. The displacement of a mode is `u1_amplitude_m cos(ω t + u1_phase_rad) e^{σ t}`.
 fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     let mut npz = ZipWriter::new(io::Cursor::new(Vec::new()));
     let system = found.about.system();
@@ -306,10 +306,10 @@ fn pack(found: &Modes) -> io::Result<Vec<u8>> {
     Ok(npz.finish()?.into_inner())
 }
 
-/// Modes that are drawn.
+/// Largest number of modes drawn.
 const DRAWN: usize = 8;
 
-/// Shapes of modes: displacements on the left, pressures on the right.
+/// Picture of the shapes: displacements on the left, pressures on the right.
 fn drawn(report: &Report) -> Option<String> {
     let mesh = &report.found.about.system().mesh;
     let theta: Vec<f64> = (0..mesh.nodes).map(|i| mesh.node_coordinate(i)).collect();
@@ -342,14 +342,14 @@ fn drawn(report: &Report) -> Option<String> {
     picture.svg()
 }
 
-/// Two complex lines over an axis.
+/// Panel of two complex curves over an axis.
 fn complex(x: PictureAxis, xs: &[f64], lines: [(&[Complex<f64>], &str); 2], (name, unit): (&str, &str)) -> Panel {
     let all = lines.iter().flat_map(|(y, _)| y.iter());
     let size = all.fold(0.0_f64, |m, y| m.max(y.re.abs()).max(y.im.abs()));
     let mut series = vec![];
     for ((y, name), colour) in lines.into_iter().zip(PALETTE) {
         let part = |of: fn(&Complex<f64>) -> f64| xs.iter().copied().zip(y.iter().map(of));
-        // what is in phase throughout has no second part to show
+        // a curve that is in phase throughout has no imaginary part to draw
         if y.iter().any(|y| y.im.abs() > 1e-3 * size) {
             let behind = Stroke::dashed(colour, 1.1, (4.0, 3.0));
             series.push(PictureSeries::line(part(|y| y.im), behind));
@@ -364,7 +364,7 @@ fn complex(x: PictureAxis, xs: &[f64], lines: [(&[Complex<f64>], &str); 2], (nam
 
 const UNSTABLE: Colour = Colour(0xb0, 0x1c, 0x2e);
 
-/// Where a mode moves.
+/// Part in which a mode moves.
 fn moves(mode: &Mode) -> &'static str {
     let shape = &mode.shape;
     match shape.transverse() {

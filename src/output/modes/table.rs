@@ -1,4 +1,4 @@
-//! Modes as a table, for people and as CSV. Numbers are shown as far as the bound of their error lets them.
+//! Modes as a table, for readers and as CSV. Numbers have as many digits as their error bounds permit.
 
 use std::fmt::Write as _;
 
@@ -8,12 +8,12 @@ use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
 use crate::run::modes::{Kind, Limit, Mode};
 
-/// Digits shown at most.
+/// Largest number of digits shown.
 const DIGITS: f64 = 6.0;
 
 const HEADINGS: &str = " | mode | moves | frequency | mesh error | damping ratio | growth rate | its mesh error | time constant | undrained | drained";
 
-/// The table, with what it is about above and how to read it below.
+/// Table of the modes, with a heading above and a legend below.
 pub fn table(report: &Report) -> String {
     let found = report.found;
     let mut text = format!(
@@ -36,7 +36,7 @@ pub fn table(report: &Report) -> String {
     let mut lines = vec![cells::<11>(HEADINGS).map(String::from)];
     let moving = found.modes.iter().enumerate().filter(|(_, mode)| !mode.kind.stays());
     lines.extend(moving.map(|(k, mode)| line(k + 1, mode)));
-    // a column of which no mode has anything says nothing
+    // omits columns that are empty for all modes
     let shown: Vec<usize> = (0..lines[0].len())
         .filter(|&k| k == 0 || lines[1..].iter().any(|l| !l[k].is_empty()))
         .collect();
@@ -68,7 +68,7 @@ pub fn table(report: &Report) -> String {
     text
 }
 
-/// What stays as it is, counted.
+/// Counts of the modes that do not move.
 fn staying(report: &Report) -> String {
     let count = |kind| report.found.modes.iter().filter(|mode| mode.kind == kind).count();
     let told = |count: usize, one: &str, what: &str| match count {
@@ -115,7 +115,7 @@ fn line(number: usize, mode: &Mode) -> [String; 11] {
     ]
 }
 
-/// Digits of a value that its error leaves, one at least.
+/// Number of digits of a value that its error permits, at least one.
 fn digits(value: f64, error: f64) -> usize {
     let known = (value.abs() / error).log10();
     if known.is_finite() {
@@ -125,7 +125,7 @@ fn digits(value: f64, error: f64) -> usize {
     }
 }
 
-/// A mode in a few words.
+/// Short text of a mode.
 pub fn words(mode: &Mode) -> String {
     let kind = mode.kind.word();
     match (mode.frequency_hz(), mode.time_s()) {
@@ -139,7 +139,7 @@ pub fn words(mode: &Mode) -> String {
     }
 }
 
-/// The text of `modes.csv`: one row a mode, empty where there is no such number.
+/// Text of `modes.csv`: one row per mode; cells without a number are empty.
 pub fn csv(report: &Report) -> String {
     let headings = "mode [1],kind,frequency [Hz],damping ratio [1],growth rate [1/s],time constant [s],error bound [1/s],residual [1],\
                     transverse share [1],undrained frequency [Hz],undrained likeness [1],drained frequency [Hz],drained likeness [1],\

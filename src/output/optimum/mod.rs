@@ -1,4 +1,4 @@
-//! What a search for the best leaves behind: `optimum.json`, `designs.csv`, `optimum.svg`, `optimum-case.json`, and its words.
+//! Output files of an optimization, `optimum.json`, `designs.csv`, `optimum.svg` and `optimum-case.json`, and its text.
 
 mod words;
 
@@ -19,19 +19,19 @@ use crate::study::sweep::unit::unit;
 
 pub use words::{place, ranked, words};
 
-/// Everything that was found.
+/// Complete result.
 pub const JSON: &str = "optimum.json";
-/// Every design that was computed, in order.
+/// All computed designs, in order.
 pub const CSV: &str = "designs.csv";
-/// The figure over the designs and over the numbers.
+/// The figure over the designs and over the varied numbers.
 pub const PICTURE: &str = "optimum.svg";
-/// The case with the best numbers.
+/// The case with the optimal numbers.
 pub const BEST: &str = "optimum-case.json";
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 ///
 /// # Errors
-/// Something cannot be written.
+/// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) -> Result<()> {
     let (own, best) = (problem.case.written(), found.case.written());
     let mut files = vec![
@@ -75,10 +75,10 @@ fn table(problem: &Problem, found: &Optimised) -> String {
     records::text(headings, rows)
 }
 
-/// Numbers drawn at most.
+/// Largest number of varied numbers drawn.
 const DRAWN: usize = 6;
 
-/// The figure over the designs in order, and over each number.
+/// Picture of the figure over the designs in order, and over each varied number.
 fn drawn(problem: &Problem, found: &Optimised) -> Option<String> {
     let optimum = &found.optimum;
     let name = readable::figure_name(&optimum.goal.figure);

@@ -1,4 +1,4 @@
-//! A best in words.
+//! Text of an optimum.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
 
-/// Alternatives that are told.
+/// Largest number of alternatives listed.
 const SHOWN: usize = 12;
-/// Searches whose figures differ by less came to the same.
+/// Relative difference of figures below which two searches have the same result.
 const SAME: f64 = 1e-3;
 
-/// The best, where it is, what holds it there, how it was found.
+/// The optimum, its position, its active bounds and limits, and the search.
 pub fn words(found: &Optimum) -> String {
     let goal = &found.goal;
     let mut text = format!(
@@ -63,7 +63,7 @@ pub fn words(found: &Optimum) -> String {
     text + &warnings(&found.warnings)
 }
 
-/// Reasons of failures with how many there are of each; of those that differ in their numbers alone the first.
+/// Reasons of failures with their counts. Reasons that differ only in numbers are combined under the first.
 fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
     let mut kinds = BTreeMap::<String, (&str, usize, bool)>::new();
     for (reason, n) in failed {
@@ -81,7 +81,7 @@ fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
     told.collect()
 }
 
-/// By what designs were chosen; nothing where no numbers were sought.
+/// Kind of derivatives; empty if no numbers were varied.
 fn how(found: &Optimum) -> &'static str {
     match found.derivatives {
         _ if found.variables.is_empty() => "",
@@ -90,7 +90,7 @@ fn how(found: &Optimum) -> &'static str {
     }
 }
 
-/// Alternatives at their best, the best first.
+/// Table of the alternatives, the best first.
 fn alternatives(found: &Optimum) -> String {
     if found.alternatives.is_empty() {
         return String::new();
@@ -114,7 +114,7 @@ fn alternatives(found: &Optimum) -> String {
     format!("\n{}{more}", table(&headings, shown))
 }
 
-/// Alternatives from the best on: those that hold the limits before those that do not, and what has nothing last.
+/// Alternatives, the best first: those within the limits, then those beyond a limit, then those without a value.
 pub fn ranked(found: &Optimum) -> Vec<&Compared> {
     let sign = found.goal.sign();
     let key = |one: &Compared| {
@@ -132,7 +132,7 @@ pub fn ranked(found: &Optimum) -> Vec<&Compared> {
     all
 }
 
-/// Where a number stands and what holds it.
+/// Bound at which a number lies, or the range in which the figure is at most 1 % worse.
 pub fn place(one: &Variable) -> String {
     match (one.at_bound, one.within_1_percent) {
         (Some(Bound::Low), _) => "at its lower bound".into(),
@@ -171,7 +171,7 @@ fn limit(one: &Held) -> [String; 4] {
     ]
 }
 
-/// How many searches came to the same, and what others came to.
+/// Number of searches with this result, and results of the others.
 fn starts(found: &Optimum) -> String {
     let all = found.starts.iter();
     let near = |value: f64| (value - found.value).abs() <= SAME * found.value.abs();
@@ -206,7 +206,7 @@ fn starts(found: &Optimum) -> String {
 mod tests {
     use super::*;
 
-    /// Goal: fifty designs that fail for one reason, each at its own instant, are one line.
+    /// Goal: designs that fail for one reason, each at its own instant, take one line.
     #[test]
     fn reasons_that_differ_in_numbers_are_one() {
         let all = [

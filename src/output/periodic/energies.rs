@@ -8,18 +8,18 @@ use crate::results::run::Quantity;
 use crate::study::analysis::power::{self, Figure};
 use crate::study::stability::Member;
 
-/// Figures of the cycle of one value.
+/// Energy figures of the cycle of one value.
 pub fn energies(member: &Member) -> Vec<Figure> {
     power::figures(&member.quantities, member.floquet.period_s)
 }
 
-/// Columns of the table: every figure that a cycle has, its error behind it.
+/// Names of the columns: every figure of a cycle, followed by its error.
 pub fn columns(found: &Along) -> Vec<String> {
     let all = found.members.first().map_or(vec![], energies);
     all.iter().flat_map(|f| [f.name.clone(), f.open_name()]).collect()
 }
 
-/// A figure or its error, by the name of the column.
+/// A figure or its error, by the name of its column.
 pub fn column(told: &[Figure], name: &str) -> Option<f64> {
     told.iter().find_map(|f| match name == f.name {
         true => Some(f.value),
@@ -27,14 +27,14 @@ pub fn column(told: &[Figure], name: &str) -> Option<f64> {
     })
 }
 
-/// Names of what is shown where turbines harvest: energy, mean power, efficiency; nothing elsewhere.
+/// Figures shown if turbines harvest: energy, mean power, efficiency; empty without turbines.
 pub fn harvested(found: &Along) -> Vec<Figure> {
     let all = found.members.first().map_or(vec![], energies);
     let put_in = |f: &Figure| f.name.starts_with("input");
     all.into_iter().filter(|f| !put_in(f)).collect()
 }
 
-/// Their headings, unit included.
+/// Headings of figures, with units.
 pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
     shown.iter().map(|f| match f.unit {
         "1" => f.words.into(),
@@ -42,7 +42,7 @@ pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
     })
 }
 
-/// Their values in one cycle, with errors.
+/// Values of figures in one cycle, with errors.
 pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
     let told = energies(member);
     let cell = |name: &str| {
@@ -56,14 +56,14 @@ pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
     shown.iter().map(|f| cell(&f.name).unwrap_or("–".into())).collect()
 }
 
-/// Lines of words about one cycle: name and value, how far the balance is open beside it, and what else is known of its error.
+/// Lines of text about one cycle: each figure with its value, the open part of its energy balance, and its estimated error.
 pub fn lines(
     quantities: &BTreeMap<String, Quantity>,
     period: f64,
     error: &dyn Fn(&str) -> Option<f64>,
 ) -> Vec<[String; 2]> {
     let all = power::figures(quantities, period);
-    // what is put in is told as an energy; its mean power is in the table of a sweep
+    // the input is listed as an energy; its mean power is in the table of a sweep
     let told = all.iter().filter(|f| !f.name.starts_with("input_power"));
     let line = |f: &Figure| {
         let value = match f.unit {

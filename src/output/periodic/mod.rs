@@ -1,4 +1,4 @@
-//! What cycles leave behind besides a result folder: `cycle.json`; `sweep.csv`, `sweep.json`, `sweep.svg`; and their words.
+//! Output files of cycles besides those of a run, `cycle.json`, and `sweep.csv`, `sweep.json` and `sweep.svg`; and their text.
 
 mod energies;
 
@@ -26,20 +26,20 @@ use crate::study::stability::Member;
 /// Stability and search of a cycle, in its result folder.
 pub const CYCLE: &str = "cycle.json";
 
-/// Quantities over the period that table and picture show.
+/// Quantities over the period in table and picture.
 pub const SHOWN: [Interest; 3] = [Interest::TipU1, Interest::TipU3, Interest::MaxPressure];
 
-/// The largest value over the period of a quantity.
+/// Largest value of a quantity over the period.
 pub fn largest(member: &Member, one: Interest) -> Option<f64> {
     member.quantities.get(one.name()).and_then(|q| q.window_max_abs)
 }
 
-/// The quantity over time whose largest value it is, by name.
+/// Name of the quantity over time whose largest value is shown.
 fn short(one: Interest) -> &'static str {
     one.columns().first().map_or(one.name(), |column| column.name())
 }
 
-/// The text of `sweep.csv`: one row a cycle. Energies, mean powers and the efficiency are named as in the table of `slcbeam sweep`.
+/// Text of `sweep.csv`: one row per cycle. Energies, mean powers and the efficiency have the names of the table of `slcbeam sweep`.
 pub fn csv(found: &Along) -> String {
     let parameter = format!("{} [as in the case]", found.pointer);
     let motion = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa]".split(',');
@@ -67,7 +67,7 @@ pub fn csv(found: &Along) -> String {
     records::text([parameter.as_str()].into_iter().chain(headings), rows)
 }
 
-/// The table, and what it took.
+/// Table of the cycles, and the work.
 pub fn words(found: &Along) -> String {
     let harvested = energies::harvested(found);
     let energies: String = energy_headings(&harvested)
@@ -109,14 +109,14 @@ pub fn words(found: &Along) -> String {
     text
 }
 
-/// Writes the files of a sweep into a folder, which is made.
+/// Writes the files of a sweep into a folder.
 pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
     let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
     files.extend(picture(found).map(|text| ("sweep.svg", text)));
     folder.fill(files)
 }
 
-/// Cycles along the parameter, a panel a quantity; orange rings: cycles that are not stable.
+/// Picture of the cycles along the parameter, one panel per quantity; orange rings: unstable cycles.
 fn picture(found: &Along) -> Option<String> {
     found.members.first()?;
     let (name, unit) = (
@@ -158,8 +158,8 @@ fn picture(found: &Along) -> Option<String> {
     Picture::stacked(format!("{} · steady cycles", found.case), about, panels).svg()
 }
 
-/// Largest values and energies over the period, in words; energies with how far their balance is open beside them, and with what is
-/// known of their relative errors otherwise, by the names of figures.
+/// Text of the largest values and energies over the period. An energy is followed by the open part of its balance and its relative error;
+/// `error` returns the error of a figure by name.
 pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f64>) -> String {
     let quantities = &summary.quantities;
     let mut lines = vec![];
@@ -172,7 +172,7 @@ pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f6
     aligned(&lines, &[0, 1])
 }
 
-/// What one per cent more of each number does to the figures over the period, in words.
+/// Text of the relative changes of the figures over the period for an increase of each number by 1 %.
 pub fn slopes(summary: &Summary) -> String {
     let of = |(pointer, by): (&String, &Sensitivity)| {
         let shown = SHOWN.iter().map(|one| (*one, short(*one), "largest "));
@@ -196,7 +196,7 @@ pub fn slopes(summary: &Summary) -> String {
     summary.sensitivities.iter().map(of).collect()
 }
 
-/// What the search took, in words.
+/// Text of the work of the search.
 pub fn search(search: &Search) -> String {
     format!(
         "found in {} over {}: {}, {}, {}; it returns to {:.1e} of the tolerance\n",

@@ -1,5 +1,4 @@
-//! `effects.svg`: what each effect does. A bar an effect: how much results change without it, in logarithms, and beside it the
-//! work that is left.
+//! `effects.svg`: one bar per effect for the change of results without it, on a logarithmic scale, and one for the remaining work.
 
 use super::canvas::{Anchor, FAINT_INK, INK, Stroke, Words};
 use super::colour::Colour;
@@ -8,29 +7,29 @@ use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use crate::output::numbers::significant;
 use crate::study::effects::Verdict;
 
-/// A model beside the full one.
+/// A model that is compared with the full one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// What is left out.
+    /// Omitted effect.
     pub name: String,
-    /// Relative change of the measure; absent where the model failed.
+    /// Relative change of the measure; absent if the model failed.
     pub change: Option<f64>,
     /// Largest relative change of any quantity.
     pub largest: Option<f64>,
-    /// Work over work.
+    /// Work, relative to that of the model it is compared with.
     pub work: f64,
-    /// What is said of it; nothing of choices as a whole.
+    /// Verdict on an effect; absent for combined choices.
     pub verdict: Option<Verdict>,
 }
 
-/// All that is shown.
+/// Data of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AblationBars {
     /// Name of the case.
     pub case: String,
-    /// What the change is of.
+    /// Quantity whose change is shown.
     pub measure: String,
-    /// Changes below it are nothing.
+    /// Largest negligible change.
     pub tolerance: f64,
     /// The integrator's own error.
     pub own: Option<f64>,
@@ -40,16 +39,16 @@ pub struct AblationBars {
 
 /// Height of a row [pt].
 const PITCH: f64 = 24.0;
-/// Changes below are drawn there.
+/// Smallest change drawn; smaller changes are drawn with this value.
 const LEAST: f64 = 1e-9;
-/// Work is shown up to this.
+/// Largest relative work drawn.
 const MOST: f64 = 2.0;
 
 const NEEDED: Colour = Colour(0xc4, 0x4e, 0x36);
 const WORK: Colour = Colour(0xc3, 0xc9, 0xd0);
 const SHADE: Colour = Colour(0xf4, 0xf2, 0xec);
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &AblationBars) -> Option<String> {
     let shown = data.bars.iter().flat_map(|b| [b.change, b.largest]).flatten();
     let shown = shown.chain(data.own).filter(|x| *x > 0.0).chain([data.tolerance]);
@@ -127,7 +126,7 @@ pub fn draw(data: &AblationBars) -> Option<String> {
     picture.svg()
 }
 
-/// Meaning and colour of a bar.
+/// Meaning and color of a bar.
 fn meaning(verdict: Option<Verdict>) -> (&'static str, Colour) {
     match verdict {
         Some(Verdict::Needed | Verdict::Failed) => ("needed", NEEDED),

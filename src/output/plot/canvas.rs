@@ -1,22 +1,22 @@
-//! Lines, rectangles and words as SVG, in points with a tenth of a point resolution.
+//! Draws lines, rectangles and text as SVG, in points with a resolution of a tenth of a point.
 
 use std::fmt::{self, Write as _};
 
 use super::colour::Colour;
 use crate::error::visible;
 
-/// Found in browsers and in what turns SVG into PDF.
+/// Fonts that exist in browsers and in converters from SVG to PDF.
 const FONT: &str = "Helvetica Neue, Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 
-/// Colour of words.
+/// Color of text.
 pub const INK: Colour = Colour(0x22, 0x26, 0x2b);
-/// Colour of words that matter less.
+/// Color of less important text.
 pub const FAINT_INK: Colour = Colour(0x5f, 0x66, 0x6e);
 
-/// How a line looks.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Colour.
+    /// Color.
     pub colour: Colour,
     /// Width in points.
     pub width: f64,
@@ -34,7 +34,7 @@ impl Stroke {
         }
     }
 
-    /// A dashed one: lengths of dash and gap in points.
+    /// A dashed line, with the lengths of dash and gap in points.
     pub fn dashed(colour: Colour, width: f64, dash: (f64, f64)) -> Self {
         Self {
             dash: Some(dash),
@@ -43,7 +43,7 @@ impl Stroke {
     }
 }
 
-/// Which point of a text is given.
+/// Reference point of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Anchor {
     /// Left end, vertical middle.
@@ -54,23 +54,23 @@ pub enum Anchor {
     Right,
 }
 
-/// How words look.
+/// Style of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Words {
     /// Size in points.
     pub size: f64,
-    /// Colour.
+    /// Color.
     pub colour: Colour,
-    /// Which point is given.
+    /// Reference point.
     pub anchor: Anchor,
-    /// Whether bold.
+    /// True for bold text.
     pub bold: bool,
-    /// Whether read from below.
+    /// True for text that runs upwards.
     pub upright: bool,
 }
 
 impl Words {
-    /// Plain words.
+    /// Plain text.
     pub fn new(size: f64, anchor: Anchor) -> Self {
         Self {
             size,
@@ -81,13 +81,13 @@ impl Words {
         }
     }
 
-    /// In another colour.
+    /// Sets the color.
     pub fn coloured(self, colour: Colour) -> Self {
         Self { colour, ..self }
     }
 }
 
-/// A sheet to draw on; the origin is the upper left corner.
+/// A drawing area; the origin is the upper left corner.
 pub struct Canvas {
     svg: String,
 }
@@ -108,11 +108,11 @@ pub fn picture(width: f64, height: f64, draw: impl FnOnce(&mut Canvas)) -> Strin
 impl Canvas {
     /// Writes an element.
     fn put(&mut self, element: fmt::Arguments) {
-        // text takes everything
+        // writing to a string cannot fail
         let _ = writeln!(self.svg, "{element}");
     }
 
-    /// What is drawn for one thing: words that a pointer over it shows, and the element of a page to which it leads.
+    /// Draws a linked item: `words` are shown under the pointer, and the link leads to the element `id` of a page.
     pub fn thing(&mut self, words: &str, id: &str, draw: impl FnOnce(&mut Self)) {
         self.put(format_args!("<a href=\"#{id}\"><title>{}</title>", escaped(words)));
         draw(self);
@@ -171,7 +171,7 @@ impl Canvas {
         ));
     }
 
-    /// Words at a point.
+    /// Draws text at a point.
     pub fn text(&mut self, at: (f64, f64), text: &str, words: Words) {
         if text.is_empty() {
             return;
@@ -181,7 +181,7 @@ impl Canvas {
             Anchor::Centre => "middle",
             Anchor::Right => "end",
         };
-        // Half an ex below the point centres small letters; capitals and digits want a little more.
+        // Half an ex below the point centers lowercase letters; capitals and digits need slightly more.
         let lower = 0.09 * words.size;
         let (x, y) = fine(match words.upright {
             true => (at.0 + lower, at.1),
@@ -200,7 +200,7 @@ impl Canvas {
     }
 }
 
-/// Words as they stand in an element.
+/// Escapes text for an element.
 fn escaped(text: &str) -> String {
     visible(text)
         .replace('&', "&amp;")
@@ -208,7 +208,7 @@ fn escaped(text: &str) -> String {
         .replace('>', "&gt;")
 }
 
-/// To a tenth of a point; nothing in a picture is finer.
+/// Rounds to a tenth of a point, the resolution of a picture.
 fn tenths(x: f64) -> f64 {
     f64::from((10.0 * x).round() as i32) / 10.0
 }

@@ -1,4 +1,4 @@
-//! One cell of a section, deformed by one of its loads, over the cell at rest.
+//! One cell of a section, deformed by one of its loads, drawn over the undeformed cell.
 
 use slcbeam_section::picture::Picture;
 
@@ -8,7 +8,7 @@ use super::picture::{self, Panel, PictureAxis, PictureSeries};
 
 /// Height of the cell [pt].
 const HEIGHT: f64 = 200.0;
-/// Largest displacement over the height of the cell, which is also the margin.
+/// Largest displacement drawn, relative to the height of the cell. It also sets the margin.
 const SHOWN: f64 = 0.12;
 /// Sides of triangles.
 const SIDES: Stroke = Stroke {
@@ -19,13 +19,13 @@ const SIDES: Stroke = Stroke {
 
 /// A cell under one load.
 pub struct Deformed {
-    /// How many times its displacements are enlarged.
+    /// Magnification of the displacements.
     pub factor: f64,
     /// The picture.
     pub svg: String,
 }
 
-/// Draws the cell under the load of that place, in units of 1; nothing under a load that does not move it.
+/// Draws the cell under a unit load with this index; `None` if the load does not move the cell.
 pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
     let displacements = cell.displacements_m.get(load)?;
     let [along, high] = [0, 1].map(|k| cell.nodes_m.iter().map(|p| p[k].abs()).fold(0.0, f64::max));
@@ -58,14 +58,14 @@ pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
     Some(Deformed { factor, svg })
 }
 
-/// A light colour of each material.
+/// Light color of a material.
 fn fill(material: usize) -> Colour {
     let Colour(r, g, b) = PALETTE[(5 + material) % PALETTE.len()];
     let light = |x: u8| 255 - (255 - x) / 2;
     Colour(light(r), light(g), light(b))
 }
 
-/// The next of 1, 2 and 5 times a power of ten below.
+/// Rounds down to 1, 2 or 5 times a power of ten.
 fn round(x: f64) -> Option<f64> {
     let power = 10_f64.powf(x.log10().floor());
     let most = [5.0, 2.0, 1.0].into_iter().find(|m| m * power <= x * (1.0 + 1e-9));

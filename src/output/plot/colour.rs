@@ -1,4 +1,4 @@
-//! Colours.
+//! Colors.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ impl fmt::Display for Colour {
     }
 }
 
-/// Dark blue to dark red, evenly in lightness up to a light middle that still shows on white.
+/// Dark blue to dark red, with even steps in lightness up to a light center that is still visible on white.
 const TIME: [(f64, [u8; 3]); 7] = [
     (0.0, [0x0b, 0x24, 0x6b]),
     (0.18, [0x1f, 0x5f, 0xb4]),
@@ -23,7 +23,7 @@ const TIME: [(f64, [u8; 3]); 7] = [
     (1.0, [0x6e, 0x08, 0x1b]),
 ];
 
-/// Colour of a time, `s` from 0 (dark blue) to 1 (dark red).
+/// Color of a time, `s` from 0 (dark blue) to 1 (dark red).
 pub fn of_time(s: f64) -> Colour {
     mixed(&TIME, s)
 }
@@ -41,7 +41,7 @@ fn mixed(stops: &[(f64, [u8; 3])], s: f64) -> Colour {
     Colour(mix(0), mix(1), mix(2))
 }
 
-/// Light to dark blue, evenly in lightness; the light end still shows on white.
+/// Light to dark blue, with even steps in lightness; the light end is still visible on white.
 const ONE_SIGN: [(f64, [u8; 3]); 4] = [
     (0.0, [0xc3, 0xdc, 0xef]),
     (0.35, [0x72, 0xb0, 0xd8]),
@@ -49,18 +49,18 @@ const ONE_SIGN: [(f64, [u8; 3]); 4] = [
     (1.0, [0x08, 0x26, 0x5a]),
 ];
 
-/// Colour of a value on a scale from `low` to `high`: light to dark where all values have one sign, blue to red about zero
-/// where both signs occur.
+/// Color of a value on a scale from `low` to `high`: light to dark if all values have one sign, blue to red around zero if both signs
+/// occur.
 pub fn of_value(value: f64, low: f64, high: f64) -> Colour {
     if low < 0.0 && high > 0.0 {
         return of_time(0.5 + 0.5 * value / high.max(-low));
     }
     let share = if high > low { (value - low) / (high - low) } else { 0.5 };
-    // of negative values the largest magnitude is the darkest
+    // the largest magnitude is the darkest, also for negative values
     mixed(&ONE_SIGN, if high <= 0.0 { 1.0 - share } else { share })
 }
 
-/// Light to dark red for growth from nothing to the largest.
+/// Light to dark red, for growth from zero to the largest.
 const GROWTH: [(f64, [u8; 3]); 5] = [
     (0.0, [0xfd, 0xe8, 0xc8]),
     (0.25, [0xf7, 0xb8, 0x7a]),
@@ -69,18 +69,18 @@ const GROWTH: [(f64, [u8; 3]); 5] = [
     (1.0, [0x5f, 0x06, 0x1a]),
 ];
 
-/// Colour of a growth over the largest one.
+/// Color of a growth, relative to the largest growth.
 pub fn of_growth(share: f64) -> Colour {
     mixed(&GROWTH, share)
 }
 
-/// Colours of a scale from 0 to 1.
+/// Colors of a scale from 0 to 1.
 pub fn scale(of: impl Fn(f64) -> Colour) -> Vec<Colour> {
     const PIECES: usize = 96;
     (0..PIECES).map(|k| of((k as f64 + 0.5) / PIECES as f64)).collect()
 }
 
-/// Lines told apart by every eye: Okabe and Ito's colours without yellow, which white swallows, and three of Tol's.
+/// Colors of lines that every reader can distinguish: Okabe and Ito's without yellow (invisible on white), and three of Tol's.
 pub const PALETTE: [Colour; 10] = [
     Colour(0x00, 0x72, 0xb2),
     Colour(0xd5, 0x5e, 0x00),

@@ -8,27 +8,27 @@ use super::{Span, extent, over_time, time_bar};
 pub struct Deflection {
     /// Name of the case.
     pub case: String,
-    /// What the instants span.
+    /// Part of the run that the instants span.
     pub span: Span,
     /// Times [s].
     pub times: Vec<f64>,
     /// Material coordinate [m].
     pub theta: Vec<f64>,
-    /// Transverse displacement [m], one array an instant.
+    /// Transverse displacement [m], one array per instant.
     pub u1: Vec<Vec<f64>>,
-    /// Axial displacement [m], likewise.
+    /// Axial displacement [m], one array per instant.
     pub u3: Vec<Vec<f64>>,
 }
 
-/// Share of the length beyond which displacements are drawn as the shape they make, too.
+/// Displacement, relative to the length, above which the shape is also drawn to scale.
 const LARGE: f64 = 0.05;
-/// Share of the length below which displacements are round-off.
+/// Displacement, relative to the length, below which it is round-off.
 const SMALL: f64 = 1e-7;
 
 /// Width of a panel [pt].
 const WIDTH: f64 = 560.0;
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &Deflection) -> Option<String> {
     let (&from, &to) = (data.times.first()?, data.times.last()?);
     let (start, end) = extent(data.theta.iter().copied())?;
@@ -57,7 +57,7 @@ pub fn draw(data: &Deflection) -> Option<String> {
     Picture::stacked(format!("{} · deflection", data.case), about, panels).svg()
 }
 
-/// The true shape, equally scaled.
+/// Panel of the shape to scale.
 fn shape(data: &Deflection) -> Option<Panel> {
     let curve = |(u1, u3): (&Vec<f64>, &Vec<f64>)| -> Vec<(f64, f64)> {
         let z = data.theta.iter().zip(u3).map(|(t, u)| t + u);

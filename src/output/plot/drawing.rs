@@ -1,4 +1,4 @@
-//! Draws a picture as SVG: grids, series, axes, legends and colour scales of its panels.
+//! Draws a picture as SVG: grids, series, axes, legends and color scales of its panels.
 
 use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
 use super::colour::Colour;
@@ -91,7 +91,7 @@ impl PlacedPanel<'_> {
                 let [a, b] = corners.map(|p| self.at(p));
                 let inside = |(x, y): (f64, f64)| (x.clamp(self.left, self.right()), y.clamp(self.top, self.bottom()));
                 let low = inside((a.0.min(b.0), a.1.min(b.1)));
-                // a little more, so that no hairline shows between cells
+                // slightly larger, so that no hairline shows between cells
                 let high = inside((a.0.max(b.0) + 0.4, a.1.max(b.1) + 0.4));
                 canvas.rectangle(low, high, *colour);
             }
@@ -147,7 +147,7 @@ impl PlacedPanel<'_> {
                 canvas.text(at, label, small);
             }
         }
-        // labels of one axis are about as long as the longest
+        // space ticks by the longest label
         let mut room = LabelRoom::new((4.0 + longest(&self.x.ticks), SMALL));
         for (x, label) in &self.x.ticks {
             let at = self.place(self.x.share(*x), 0.0).0;

@@ -1,4 +1,4 @@
-//! `energy.svg`: where energy is and where it went, and how well the ledger closes.
+//! `energy.svg`: stored energies, works and losses over time, and the residual of the energy balance.
 
 use super::canvas::Stroke;
 use super::colour::PALETTE;
@@ -11,14 +11,14 @@ use crate::discrete::quantities::{Group, Observable};
 pub struct Energy {
     /// Name of the case.
     pub case: String,
-    /// Entries [J]: stored energies, cumulative works, losses, and what is left over.
+    /// Entries [J]: stored energies, cumulative works, losses, and the residual.
     pub curves: Vec<Curve>,
 }
 
-/// Entries smaller than this share of the largest are not drawn.
+/// Fraction of the largest entry below which an entry is not drawn.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Whether a quantity belongs into this picture.
+/// True if a quantity belongs in this picture.
 pub fn belongs(one: Observable) -> bool {
     one.unit() == "J"
 }
@@ -31,7 +31,7 @@ fn is_residual(curve: &Curve) -> bool {
     curve.of().is_some_and(|one| one.group() == Group::Open)
 }
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &Energy) -> Option<String> {
     let lines = entries(data);
     let x = times_of(lines.iter().copied())?;
@@ -71,7 +71,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     .svg()
 }
 
-/// Entries worth drawing: nothing negligible.
+/// Entries that are not negligible.
 fn entries(data: &Energy) -> Vec<&Curve> {
     let all = data.curves.iter();
     let mut lines: Vec<_> = all.filter(|c| !is_residual(c) && !c.points.is_empty()).collect();

@@ -1,4 +1,4 @@
-//! `history.svg`: what the beam does over time, one panel a quantity.
+//! `history.svg`: quantities over time, one panel per quantity.
 
 use super::canvas::Stroke;
 use super::colour::PALETTE;
@@ -11,19 +11,19 @@ use crate::discrete::quantities::{Group, Observable};
 pub struct History {
     /// Name of the case.
     pub case: String,
-    /// Curves; those shown are taken by name.
+    /// Curves, matched to quantities by name.
     pub curves: Vec<Curve>,
 }
 
-/// Groups that are drawn: the quantities of the first one by one, of pressures and powers those of a unit in one panel.
+/// Groups that are drawn: the first with one panel per quantity, pressures and powers with one panel per unit.
 const GROUPS: [Group; 3] = [Group::Tip, Group::Pressure, Group::Power];
 
-/// Whether a quantity belongs into this picture.
+/// True if a quantity belongs in this picture.
 pub fn belongs(one: Observable) -> bool {
     GROUPS.contains(&one.group())
 }
 
-/// The smallest half range of a unit that is worth showing.
+/// Smallest half range of an axis in a unit.
 fn floor(unit: &str) -> f64 {
     match unit {
         "m" => 1e-8,
@@ -33,7 +33,7 @@ fn floor(unit: &str) -> f64 {
     }
 }
 
-/// What stands beside the axis of a panel.
+/// Name beside the vertical axis of a panel.
 fn name(curves: &[&Curve]) -> &'static str {
     match curves[0].of() {
         Some(one) if one.group() == Group::Pressure => "max, min p",
@@ -42,12 +42,12 @@ fn name(curves: &[&Curve]) -> &'static str {
     }
 }
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &History) -> Option<String> {
     let shown = panels(data);
     let x = times_of(shown.iter().flatten().copied())?;
     let panels = shown.iter().enumerate().map(|(k, curves)| {
-        // the second curve of a panel in the palette's other half
+        // the second curve of a panel uses the other half of the palette
         let colour = |c: usize| PALETTE[(k + 5 * c) % PALETTE.len()];
         let line = |(c, curve): (usize, &&Curve)| {
             PictureSeries::line(curve.points.iter().copied(), Stroke::solid(colour(c), 1.2))
@@ -69,7 +69,7 @@ pub fn draw(data: &History) -> Option<String> {
     .svg()
 }
 
-/// Curves panel by panel; what is zero throughout is left out, unless it is motion or pressure.
+/// Curves of each panel; omits powers that are zero throughout.
 fn panels(data: &History) -> Vec<Vec<&Curve>> {
     let mut panels: Vec<Vec<&Curve>> = vec![];
     for (one, curve) in data.curves.iter().filter_map(|c| Some((c.of()?, c))) {

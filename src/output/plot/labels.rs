@@ -1,6 +1,6 @@
-//! Labels of points that do not overprint.
+//! Labels of points without overlap.
 
-/// Where labels of one size stand; a label that would overlap one before it is left out.
+/// Positions of labels of one size. A label that would overlap an earlier one is omitted.
 #[derive(Clone, Debug)]
 pub struct LabelRoom {
     /// Width and height of a label.
@@ -9,12 +9,12 @@ pub struct LabelRoom {
 }
 
 impl LabelRoom {
-    /// Of labels of a width and height, none drawn yet.
+    /// For labels of a width and height; none is placed yet.
     pub fn new(size: (f64, f64)) -> Self {
         Self { size, taken: vec![] }
     }
 
-    /// True if there is room for a label at a place, which then is taken.
+    /// Reserves the place of a label. Returns false if it would overlap an earlier one.
     pub fn claim(&mut self, at: (f64, f64)) -> bool {
         let apart = |other: &(f64, f64)| (at.0 - other.0).abs() > self.size.0 || (at.1 - other.1).abs() > self.size.1;
         let free = self.taken.iter().all(apart);

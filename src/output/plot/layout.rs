@@ -1,4 +1,4 @@
-//! Lays out a picture: scales and places of its panels, room for labels, legends and colour scales.
+//! Lays out a picture: scales and positions of its panels, room for labels, legends and color scales.
 
 use super::picture::{Panel, Picture, PictureSeries};
 use super::ticks::Scale;
@@ -7,15 +7,15 @@ use super::ticks::Scale;
 pub const SMALL: f64 = 11.0;
 /// Size of axis names [pt].
 pub const NORMAL: f64 = 12.5;
-/// Width of a letter over the size of its text.
+/// Width of a letter relative to the size of its text.
 const LETTER: f64 = 0.53;
-/// Least width of a sheet [pt].
+/// Smallest width of a sheet [pt].
 const LEAST: f64 = 560.0;
 /// Margin of a sheet [pt].
 pub const MARGIN: f64 = 16.0;
-/// Room of a colour scale [pt].
+/// Room for a color scale [pt].
 const BAR: f64 = 96.0;
-/// Room of the sample of a legend [pt].
+/// Room for the sample of a legend [pt].
 pub const SAMPLE: f64 = 32.0;
 
 /// Estimated width of a text [pt].
@@ -32,7 +32,7 @@ pub struct PlacedPanel<'a> {
     pub x: Scale,
     /// Vertical scale.
     pub y: Scale,
-    /// True if labels and name of the axis are shown.
+    /// True if tick labels and name are shown, for each axis.
     pub labelled: [bool; 2],
     /// Left edge of the frame.
     pub left: f64,
@@ -42,17 +42,17 @@ pub struct PlacedPanel<'a> {
     pub legend: Vec<LegendEntry<'a>>,
 }
 
-/// An entry of a legend: its text and the series whose samples stand before it.
+/// An entry of a legend: its text, and the series whose samples precede it.
 pub struct LegendEntry<'a> {
     /// Text.
     pub text: &'a str,
-    /// Series whose samples stand before it.
+    /// Series whose samples precede the text.
     pub series: Vec<&'a PictureSeries>,
     /// Offset from the frame's corner.
     pub at: (f64, f64),
 }
 
-/// Largest room of the panels above each other.
+/// Largest room among the panels of a column.
 fn widest<'a>(rows: &[Vec<PlacedPanel<'a>>], column: usize, of: fn(&PlacedPanel<'a>) -> f64) -> f64 {
     rows.iter()
         .filter_map(|row| row.get(column))
@@ -60,7 +60,7 @@ fn widest<'a>(rows: &[Vec<PlacedPanel<'a>>], column: usize, of: fn(&PlacedPanel<
         .fold(0.0, f64::max)
 }
 
-/// Places the panels of a picture; with them width and height of the sheet and the lines below the title.
+/// Places the panels of a picture. Also returns width and height of the sheet, and the lines below the title.
 pub fn lay(picture: &Picture) -> (Vec<Vec<PlacedPanel<'_>>>, (f64, f64), Vec<String>) {
     let mut rows = scaled(picture);
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
@@ -99,8 +99,8 @@ pub fn lay(picture: &Picture) -> (Vec<Vec<PlacedPanel<'_>>>, (f64, f64), Vec<Str
     (rows, (width.ceil(), top.ceil()), about)
 }
 
-/// Panels with their scales; those above each other share the range of an axis that has one name and unit. Of neighbours with equal axes
-/// one shows the labels.
+/// Panels with their scales. In a column, panels whose horizontal axes have the same name and unit share one range. Of neighbors with equal
+/// axes only one shows the labels.
 fn scaled(picture: &Picture) -> Vec<Vec<PlacedPanel<'_>>> {
     let points = |panel: &'_ Panel| {
         panel
@@ -153,7 +153,7 @@ impl<'a> PlacedPanel<'a> {
         self.top + self.panel.size.1
     }
 
-    /// Point on the sheet of shares of both axes.
+    /// Point on the sheet for fractions of both axes.
     pub fn place(&self, x: f64, y: f64) -> (f64, f64) {
         (self.left + self.panel.size.0 * x, self.bottom() - self.panel.size.1 * y)
     }
@@ -205,7 +205,7 @@ impl<'a> PlacedPanel<'a> {
         }
     }
 
-    /// Places the entries of the legend, without those of earlier panels; the room above the frame.
+    /// Places the entries of the legend, without those of earlier panels. Returns the room above the frame.
     fn entries(&mut self, named: &mut Vec<&'a str>, width: f64) -> f64 {
         let new = |one: &&PictureSeries| !one.name.is_empty() && !named.contains(&&*one.name);
         for one in self.panel.series.iter().filter(new) {
@@ -255,7 +255,7 @@ mod tests {
     use crate::output::plot::colour::PALETTE;
     use crate::output::plot::picture::PictureAxis;
 
-    /// Goal: panels above each other have one range and one row of labels, and the legend has every name once.
+    /// Goal: stacked panels share one range and one row of labels, and the legend has every name once.
     #[test]
     fn panels_share_axes_and_legend() {
         let panel = |end: f64| {

@@ -1,21 +1,21 @@
-//! Pictures of a run: plain data in, SVG text out. One picture a file; data that is absent makes no picture.
+//! Pictures of a run: plain data to SVG text. One picture per file; absent data give no picture.
 //!
 //! ```text
-//! picture     a picture as data: panels, axes, series, colour scales
-//! layout      where its panels, labels and legends stand
-//! drawing     the only place that draws one
-//! canvas      lines, rectangles and words, in points, as SVG
-//! colour      scales of colours, and a palette every eye can tell apart
+//! picture     a picture as data: panels, axes, series, color scales
+//! layout      positions of its panels, labels and legends
+//! drawing     the only code that draws a picture
+//! canvas      lines, rectangles and text, in points, as SVG
+//! colour      color scales, and a palette that every reader can distinguish
 //! ticks       round numbers along an axis, with SI prefixes
-//! labels      labels that do not overprint
+//! labels      labels without overlap
 //! deflection, pressure, history, energy   a run
-//! workprecision   what accuracy costs
-//! ablation    what each effect does
-//! designs     many designs along one number, over two, through all
+//! workprecision   cost of accuracy
+//! ablation    change of results without each effect
+//! designs     many designs along one number, or over two
 //! cell        a cell of the section under one load
 //! ```
 //!
-//! Pictures of one command alone are built beside its files.
+//! Pictures of a single command are built beside its files.
 
 pub mod canvas;
 pub mod colour;
@@ -53,24 +53,24 @@ pub struct Curve {
     pub name: String,
     /// Unit as in the column.
     pub unit: String,
-    /// Time [s] and value, in order of time; not finite where there is none.
+    /// Time [s] and value, in order of time; not finite if absent.
     pub points: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    /// The quantity over time that it is, if it is one.
+    /// The observable with this name, if there is one.
     pub fn of(&self) -> Option<Observable> {
         Observable::named(&self.name)
     }
 
-    /// Largest magnitude, 0 when there is none.
+    /// Largest magnitude; 0 if there are no values.
     pub fn max_abs(&self) -> f64 {
         let finite = self.points.iter().map(|p| p.1.abs()).filter(|y| y.is_finite());
         finite.fold(0.0, f64::max)
     }
 }
 
-/// Part of a run from which pictures over space are taken.
+/// Part of a run shown in pictures over space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Span {
     /// The last cycle of the drive.
@@ -88,8 +88,8 @@ impl Span {
     }
 }
 
-/// Instants for a picture over space: about `count` of them, evenly spread over the last cycle, or over the whole run
-/// when there is no frequency or less than a cycle was run. Returns indices into `times`.
+/// Chooses about `count` instants for a picture over space, evenly spread over the last cycle. Without a frequency, or for a run shorter
+/// than a cycle, they spread over the whole run. Returns indices into `times`.
 pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span, Vec<usize>) {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
         return (Span::WholeRun, Vec::new());
@@ -114,7 +114,7 @@ pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span
     (span, chosen)
 }
 
-/// Least and largest finite value, `None` when there is none.
+/// Least and largest finite value; `None` if there are none.
 pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values.filter(|x| x.is_finite()).fold(None, |so_far, x| match so_far {
         None => Some((x, x)),
@@ -122,7 +122,7 @@ pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// What part of the run a picture shows, in words.
+/// Text about the displayed part of the run.
 fn about(span: Span, from: f64, to: f64) -> String {
     let time = |t: f64| numbers::trimmed(&numbers::quantity(t, "s", 4));
     if from == to {
@@ -131,7 +131,7 @@ fn about(span: Span, from: f64, to: f64) -> String {
     format!("{}, {} to {}", span.label(), time(from), time(to))
 }
 
-/// Curves in the colours of their times.
+/// Curves in the colors of their times.
 pub fn over_time(times: &[f64], curves: impl IntoIterator<Item = Vec<(f64, f64)>>) -> Vec<PictureSeries> {
     let (from, to) = extent(times.iter().copied()).unwrap_or_default();
     let range = if to > from { to - from } else { 1.0 };
@@ -142,13 +142,13 @@ pub fn over_time(times: &[f64], curves: impl IntoIterator<Item = Vec<(f64, f64)>
     lines.collect()
 }
 
-/// The axis of the times of curves; `None` where there is no point.
+/// Time axis of curves; `None` if they have no points.
 fn times_of<'a>(curves: impl Iterator<Item = &'a Curve>) -> Option<PictureAxis> {
     let (from, to) = extent(curves.flat_map(|c| c.points.iter().map(|p| p.0)))?;
     Some(PictureAxis::new("time t", "s", 10).between(from, to))
 }
 
-/// The scale of the colours of times.
+/// Color scale of times.
 fn time_bar(from: f64, to: f64) -> ColourBar {
     ColourBar {
         colours: colour::scale(colour::of_time),

@@ -8,11 +8,11 @@ use super::ticks::Scale;
 /// A picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
-    /// Title; without one there is no head.
+    /// Title; a picture without title has no head.
     pub title: String,
     /// Line below the title.
     pub about: String,
-    /// Panels from top to bottom, those of a row from left to right. Neighbours with equal axes show their labels once.
+    /// Panels from top to bottom, those of a row from left to right. Neighbors with equal axes show their labels once.
     pub rows: Vec<Vec<Panel>>,
 }
 
@@ -27,11 +27,11 @@ pub struct Panel {
     pub x: PictureAxis,
     /// Vertical axis.
     pub y: PictureAxis,
-    /// Series in the order in which they are drawn; areas stand below the grid.
+    /// Series in the order in which they are drawn; areas are drawn below the grid.
     pub series: Vec<PictureSeries>,
-    /// Colour scale beside the frame.
+    /// Color scale beside the frame.
     pub bar: Option<ColourBar>,
-    /// True if the legend stands beside the frame, not above it.
+    /// True if the legend is beside the frame instead of above it.
     pub legend_beside: bool,
     /// True if frame, grid and ticks are left out.
     pub bare: bool,
@@ -46,11 +46,11 @@ pub struct PictureAxis {
     pub unit: String,
     /// Number of ticks at most.
     pub ticks: usize,
-    /// Least and largest value; those of the series with a margin where absent.
+    /// Least and largest value; if absent, those of the series with a margin.
     pub range: Option<(f64, f64)>,
-    /// Values that the axis contains besides those of the series.
+    /// Values that the axis contains in addition to those of the series.
     pub with: Vec<f64>,
-    /// Least half range of values that are zero but for rounding errors.
+    /// Smallest half range, for values that are zero except for rounding errors.
     pub floor: f64,
     /// True if the axis is logarithmic.
     pub logarithmic: bool,
@@ -60,7 +60,7 @@ pub struct PictureAxis {
     pub groups: Vec<(f64, String)>,
 }
 
-/// Data drawn alike, with a name in the legend if it has one.
+/// Data drawn in one style, with an optional name in the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureSeries {
     /// Entry of the legend.
@@ -80,9 +80,9 @@ pub enum SeriesKind {
     Marks(Vec<(f64, f64)>, Glyph, Colour),
     /// A filled polygon below the grid.
     Area(Vec<(f64, f64)>, Colour),
-    /// A filled rectangle between two corners, as far as it lies in the frame.
+    /// A filled rectangle between two corners, clipped to the frame.
     Cell([(f64, f64); 2], Colour),
-    /// Text at a distance [pt] from a point; left out where it would overlap an earlier one.
+    /// Text at a distance [pt] from a point; omitted if it would overlap an earlier one.
     Label((f64, f64), (f64, f64), String, Words),
 }
 
@@ -101,19 +101,19 @@ pub enum Glyph {
     Polygon(f64, usize, f64, bool),
 }
 
-/// A colour scale.
+/// A color scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
-    /// Colours from the least value to the largest.
+    /// Colors from the least value to the largest.
     pub colours: Vec<Colour>,
     /// Name, unit and range of the values.
     pub axis: PictureAxis,
-    /// A colour besides, with its meaning.
+    /// An additional color with its meaning.
     pub besides: Option<(Colour, String)>,
 }
 
 impl Picture {
-    /// One column of panels.
+    /// Arranges panels in one column.
     pub fn stacked(title: String, about: impl Into<String>, panels: impl IntoIterator<Item = Panel>) -> Self {
         Self {
             title,
@@ -124,7 +124,7 @@ impl Picture {
 }
 
 impl Panel {
-    /// Axes of a size with series.
+    /// Creates a panel with axes and series; `size` is that of the frame [pt].
     pub fn new(size: (f64, f64), x: PictureAxis, y: PictureAxis, series: Vec<PictureSeries>) -> Self {
         Self {
             size,
@@ -138,7 +138,7 @@ impl Panel {
         }
     }
 
-    /// The same with a heading.
+    /// Adds a heading.
     pub fn headed(mut self, text: impl Into<String>) -> Self {
         self.heading.0 = text.into();
         self
@@ -146,7 +146,7 @@ impl Panel {
 }
 
 impl PictureAxis {
-    /// Around the values of the series.
+    /// Creates an axis whose range follows the values of the series.
     pub fn new(name: impl Into<String>, unit: impl Into<String>, ticks: usize) -> Self {
         Self {
             name: name.into(),
@@ -156,7 +156,7 @@ impl PictureAxis {
         }
     }
 
-    /// The same between two values.
+    /// Sets the range.
     pub fn between(self, lo: f64, hi: f64) -> Self {
         Self {
             range: Some((lo, hi)),
@@ -164,7 +164,7 @@ impl PictureAxis {
         }
     }
 
-    /// The same with values that it contains.
+    /// Adds values that the axis contains.
     pub fn with(self, values: &[f64]) -> Self {
         Self {
             with: values.to_vec(),
@@ -172,12 +172,12 @@ impl PictureAxis {
         }
     }
 
-    /// The same for values that are zero below a floor.
+    /// Sets the smallest half range.
     pub fn above(self, floor: f64) -> Self {
         Self { floor, ..self }
     }
 
-    /// The same, logarithmic if asked for.
+    /// Selects a logarithmic or linear axis.
     pub fn logarithmic(self, logarithmic: bool) -> Self {
         Self { logarithmic, ..self }
     }
@@ -190,7 +190,7 @@ impl PictureAxis {
         (scale.lo, scale.hi)
     }
 
-    /// The scale of values.
+    /// Scale for these values.
     pub fn scale(&self, values: impl Iterator<Item = f64>) -> Scale {
         let unit = if self.unit.is_empty() { "1" } else { &self.unit };
         let values = values.chain(self.with.iter().copied());
@@ -261,12 +261,12 @@ impl PictureSeries {
         Self::new(SeriesKind::Label(at, off, text.into(), words))
     }
 
-    /// Nothing but an entry of the legend.
+    /// A legend entry without data.
     pub fn note(text: impl Into<String>) -> Self {
         Self::line([], Stroke::solid(INK, 0.0)).named(text)
     }
 
-    /// The same with an entry of the legend.
+    /// Adds a legend entry.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -274,7 +274,7 @@ impl PictureSeries {
         }
     }
 
-    /// Points that decide the range of an axis.
+    /// Points that determine the range of an axis.
     pub fn points(&self) -> &[(f64, f64)] {
         match &self.kind {
             SeriesKind::Line(points, _) | SeriesKind::Marks(points, ..) | SeriesKind::Area(points, _) => points,
@@ -284,7 +284,7 @@ impl PictureSeries {
     }
 }
 
-/// Ranges and height at which lengths across and along are equally scaled, for a width [pt].
+/// Ranges and height with equal scales across and along, for a width [pt].
 pub fn equally_scaled(x: (f64, f64), y: (f64, f64), width: f64) -> ((f64, f64), (f64, f64), f64) {
     /// Largest height [pt].
     const MOST: f64 = 420.0;

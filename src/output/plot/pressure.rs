@@ -10,24 +10,24 @@ use super::{Span, extent, over_time, time_bar};
 pub struct Pressure {
     /// Name of the case.
     pub case: String,
-    /// What the instants span.
+    /// Part of the run that the instants span.
     pub span: Span,
     /// Times [s].
     pub times: Vec<f64>,
-    /// Coordinate along the networks, one a cell.
+    /// Coordinate along the networks, one per cell.
     pub x_f: Vec<f64>,
     /// Bladder of each cell as `R j`: 3 in the upper row, −3 in the lower.
     pub bladder: Vec<i64>,
-    /// Connected array of each cell; guessed from gaps in `x_f` when empty.
+    /// Network of each cell; inferred from gaps in `x_f` if empty.
     pub network: Vec<i64>,
-    /// Pressure [Pa], one array an instant.
+    /// Pressure [Pa], one array per instant.
     pub pressure: Vec<Vec<f64>>,
 }
 
 const BAND: Colour = Colour(0xf3, 0xf5, 0xf8);
 const DIVIDE: Colour = Colour(0x8a, 0x91, 0x99);
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &Pressure) -> Option<String> {
     let (&from, &to) = (data.times.first()?, data.times.last()?);
     let n = data.x_f.len();
@@ -43,7 +43,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
     let mut y = PictureAxis::new("pressure p", "Pa", 6).above(1e-3);
     let (low, high) = y.limits(data.pressure.iter().flatten().copied());
     y = y.between(low, high);
-    // bladders as bands behind the curves; what lies between are tubes
+    // bladders as bands behind the curves, with tubes between them
     let mut series = vec![];
     for &(start, end) in &bladders {
         let (left, right) = (data.x_f[start] - margin, data.x_f[end - 1] + margin);
@@ -87,8 +87,8 @@ fn least_step(x: &[f64]) -> Option<f64> {
     steps.min_by(f64::total_cmp)
 }
 
-/// Ranges of cells that hang together. Without being told: where two bladders follow each other without the tube that
-/// lies between others, or the coordinate runs back, a network ends.
+/// Ranges of connected cells. If networks are not given, one ends where two bladders follow without the usual gap of a tube, or where the
+/// coordinate decreases.
 fn networks(data: &Pressure, bladders: &[(usize, usize)]) -> Vec<(usize, usize)> {
     let n = data.x_f.len();
     if data.network.len() == n {
@@ -112,7 +112,7 @@ fn networks(data: &Pressure, bladders: &[(usize, usize)]) -> Vec<(usize, usize)>
     ranges
 }
 
-/// Points of a curve with a break between networks.
+/// Points of a curve, with a break between networks.
 fn broken(x: &[f64], y: &[f64], networks: &[(usize, usize)]) -> Vec<(f64, f64)> {
     let mut points = Vec::with_capacity(x.len() + networks.len());
     for &(start, end) in networks {

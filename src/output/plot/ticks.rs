@@ -2,9 +2,9 @@
 
 use crate::output::numbers::{pretty_unit, scaled_unit, significant, superscript};
 
-/// Intervals that are tried beyond as many as are wanted, until two ticks lie within an axis.
+/// Additional numbers of intervals that are tried until an axis has two ticks.
 const MORE: usize = 8;
-/// Ticks of a logarithmic axis at most.
+/// Largest number of ticks of a logarithmic axis.
 const MOST_TICKS: usize = 12;
 
 /// A linear or logarithmic axis with its ticks.
@@ -14,7 +14,7 @@ pub struct Scale {
     pub lo: f64,
     /// Largest value shown, or its logarithm.
     pub hi: f64,
-    /// Whether `lo`, `hi` and ticks are decimal logarithms.
+    /// True if `lo`, `hi` and ticks are decimal logarithms.
     pub logarithmic: bool,
     /// Value (or its logarithm) and label of each tick.
     pub ticks: Vec<(f64, String)>,
@@ -23,7 +23,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// Exactly from `lo` to `hi`, with about `count` ticks at most, and two at least: one tells no size.
+    /// Scale exactly from `lo` to `hi`, with about `count` ticks at most and two at least: a single tick does not show the scale.
     pub fn exact(lo: f64, hi: f64, unit: &str, count: usize) -> Self {
         let (lo, hi) = if hi > lo { (lo, hi) } else { (lo - 0.5, lo + 0.5) };
         let (factor, shown_unit) = scaled_unit(lo.abs().max(hi.abs()), unit);
@@ -52,7 +52,8 @@ impl Scale {
         }
     }
 
-    /// Of logarithms of values in a unit from `lo` to `hi`, with a margin, and about `count` ticks at these multiples of powers of ten.
+    /// Scale of logarithms of values in a unit from `lo` to `hi`, with a margin and about `count` ticks at these multiples of powers of
+    /// ten.
     pub fn logarithmic((lo, hi): (f64, f64), margin: f64, multiples: &[f64], (unit, count): (&str, usize)) -> Self {
         let mut scale = Self::exact(lo - margin, hi + margin, "1", count);
         scale.logarithmic = true;
@@ -71,7 +72,7 @@ impl Scale {
         let mut ticks: Vec<_> = seen.map(|v| (v.log10(), label(v))).collect();
         let every = ticks.len().div_ceil(MOST_TICKS).max(1);
         ticks = ticks.into_iter().step_by(every).collect();
-        // within less than a decade there may be none of them
+        // a range below a decade may contain none of them
         scale.ticks = match ticks.len() {
             0 | 1 => scale
                 .ticks
@@ -83,8 +84,8 @@ impl Scale {
         scale
     }
 
-    /// Around the values, with a margin; at least `floor` wide to either side of their middle, so that round-off of a
-    /// quantity that is zero shows as a flat line.
+    /// Scale around the values, with a margin. It extends at least `floor` to either side of their middle, so that round-off of a zero
+    /// quantity shows as a flat line.
     pub fn around(extent: Option<(f64, f64)>, floor: f64, unit: &str, count: usize) -> Self {
         let (lo, hi) = extent.unwrap_or((0.0, 0.0));
         let half = (0.53 * (hi - lo)).max(floor).max(1e-12 * lo.abs().max(hi.abs()));
@@ -97,17 +98,17 @@ impl Scale {
         scale
     }
 
-    /// Share of the axis at which a tick stands: 0 at `lo`, 1 at `hi`.
+    /// Relative position of a tick on the axis: 0 at `lo`, 1 at `hi`.
     pub fn share(&self, tick: f64) -> f64 {
         (tick - self.lo) / (self.hi - self.lo)
     }
 
-    /// Share of the axis at which a value stands.
+    /// Relative position of a value on the axis.
     pub fn share_of(&self, value: f64) -> f64 {
         self.share(if self.logarithmic { value.log10() } else { value })
     }
 
-    /// A name with the unit behind it: `u₁ [mm]`.
+    /// A name followed by the unit: `u₁ [mm]`.
     pub fn named(&self, name: &str) -> String {
         if self.unit.is_empty() {
             name.to_string()
@@ -117,7 +118,7 @@ impl Scale {
     }
 }
 
-/// The smallest of 1, 2, 2.5, 5 times a power of ten that makes at most `count` intervals.
+/// Smallest of 1, 2, 2.5, 5 times a power of ten that gives at most `count` intervals.
 fn round_step(range: f64, count: usize) -> f64 {
     let least = range / count.max(1) as f64;
     let power = 10f64.powf(least.log10().floor());
@@ -127,7 +128,7 @@ fn round_step(range: f64, count: usize) -> f64 {
     step.unwrap_or(10.0) * power
 }
 
-/// Decimals that tell multiples of a step apart.
+/// Number of decimals that distinguishes multiples of a step.
 fn decimals(step: f64) -> usize {
     (0..9)
         .find(|&d| {
@@ -165,7 +166,7 @@ mod tests {
         assert_eq!(scale.unit, "ms");
     }
 
-    /// Goal: wherever an axis begins and ends it has two ticks at least, linear or logarithmic.
+    /// Goal: every axis has at least two ticks, linear or logarithmic.
     #[test]
     fn an_axis_has_two_ticks() {
         for count in [1, 2, 3, 4, 5, 10] {
@@ -181,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Goal: a logarithmic axis has a unit, too.
+    /// Goal: a logarithmic axis also has a unit.
     #[test]
     fn logarithmic_axes_have_units() {
         let scale = Scale::logarithmic((-11.0, -9.0), 0.02, &[1.0], ("m^3/(s Pa)", 7));

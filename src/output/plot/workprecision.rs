@@ -1,5 +1,5 @@
-//! `study.svg`: what accuracy costs. Error across, time up, both in logarithms; one line a mesh and method, one marker a
-//! tolerance.
+//! `study.svg`: cost of accuracy. Error on the horizontal axis, time on the vertical axis, both logarithmic; one line per mesh and method,
+//! one marker per tolerance.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,7 +11,7 @@ use crate::case::schema::Method;
 use crate::output::numbers::significant;
 use crate::study::accuracy::Scheme;
 
-/// A run.
+/// A run as a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marker {
     /// Relative error.
@@ -24,13 +24,13 @@ pub struct Marker {
     pub median_s: f64,
     /// Tolerance.
     pub rtol: f64,
-    /// Whether the reference is good enough to judge it.
+    /// True if the reference is accurate enough to judge the run.
     pub judged: bool,
-    /// Whether no other is cheaper and more accurate.
+    /// True if no other run is cheaper and more accurate.
     pub front: bool,
 }
 
-/// Where temporal equals spatial error.
+/// Point of equal temporal and spatial error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balance {
     /// Relative error.
@@ -39,33 +39,33 @@ pub struct Balance {
     pub seconds: f64,
 }
 
-/// One mesh and scheme.
+/// Runs with one mesh and scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// Cells a segment; the colour.
+    /// Cells per segment; determines the color.
     pub cells: usize,
-    /// How time is integrated; the marker.
+    /// Scheme of time integration; determines the marker.
     pub scheme: Scheme,
-    /// Runs, loose to tight.
+    /// Runs, from loose to tight tolerance.
     pub markers: Vec<Marker>,
-    /// Balance of errors.
+    /// Point of equal errors.
     pub balance: Option<Balance>,
 }
 
-/// All that is shown.
+/// Data of the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WorkPrecision {
     /// Name of the case.
     pub case: String,
-    /// What the error is of.
+    /// Quantity whose error is shown.
     pub measure: String,
-    /// The reference's own error.
+    /// Own error of the reference.
     pub own: f64,
-    /// Timed runs a point, at most.
+    /// Largest number of timed runs per point.
     pub repeats: usize,
-    /// Lines, by scheme, then by mesh.
+    /// Lines, ordered by scheme, then by mesh.
     pub lines: Vec<Line>,
-    /// Whether errors in time have a panel of their own.
+    /// True if errors in time have their own panel.
     pub split: bool,
 }
 
@@ -75,7 +75,7 @@ const RADIUS: f64 = 4.2;
 const FRONT: Colour = Colour(0xd9, 0xdd, 0xe1);
 const SHADE: Colour = Colour(0xf4, 0xf2, 0xec);
 
-/// Draws it; `None` when there is nothing to draw.
+/// Draws the picture; `None` if there is nothing to draw.
 pub fn draw(data: &WorkPrecision) -> Option<String> {
     let markers = || {
         data.lines
@@ -90,7 +90,7 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
         .logarithmic(true);
     let x = |name: &str, (lo, hi): (f64, f64)| PictureAxis::new(name, "1", 8).between(lo, hi).logarithmic(true);
     let mut series = vec![];
-    // errors that the reference is not good enough to judge
+    // errors for which the reference is not accurate enough
     let edge = 10.0 * data.own;
     if edge > errors.0 {
         let (lo, hi) = times;
@@ -106,7 +106,7 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     series.push(line);
     series.extend(balances.iter().cloned());
     series.extend(lines(data, |m| Some(m.error)));
-    // tolerances, at the markers of the front
+    // tolerances at the markers of the front
     let words = Words::new(9.5, Anchor::Right).coloured(FAINT_INK);
     let label = |m: &&Marker| PictureSeries::label((m.error, m.least_s), (-8.0, 10.0), format!("{:e}", m.rtol), words);
     series.extend(front.iter().map(label));
@@ -129,7 +129,7 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
     Picture::stacked(title, about, [total].into_iter().chain(lower)).svg()
 }
 
-/// A range with a margin on a logarithmic axis.
+/// Adds a margin to a range on a logarithmic axis.
 fn around((lo, hi): (f64, f64)) -> (f64, f64) {
     let margin = 10_f64.powf((0.05 * (hi / lo).log10()).max(0.15));
     (lo / margin, hi * margin)
@@ -173,7 +173,7 @@ fn lines(data: &WorkPrecision, error: fn(&Marker) -> Option<f64>) -> Vec<Picture
     series
 }
 
-/// Where errors in time and space are equal, a line a scheme.
+/// Lines of equal errors in time and space, one per scheme.
 fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
     let mut schemes: Vec<Scheme> = data.lines.iter().map(|l| l.scheme).collect();
     schemes.dedup();
@@ -194,7 +194,7 @@ fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
     drawn.collect()
 }
 
-/// Entries of the legend that no line has.
+/// Legend entries without a line of their own.
 fn notes(data: &WorkPrecision, balances: bool) -> Vec<PictureSeries> {
     let front = PictureSeries::line([], Stroke::solid(FRONT, 9.0));
     let mut all = vec![front.named("no run is cheaper and\nmore accurate; rtol\nbeside it")];
@@ -217,8 +217,8 @@ fn notes(data: &WorkPrecision, balances: bool) -> Vec<PictureSeries> {
     all
 }
 
-/// BDF: round for orders 1 and 2, a diamond for 5, a square for what lies between. One-step methods: triangles, upwards,
-/// downwards and sideways by their order. Hollow when not judged.
+/// Marker of a scheme. BDF: round for orders 1 and 2, a diamond for order 5, a square for orders between. One-step methods: a triangle,
+/// turned by the order. Hollow if not judged.
 fn glyph(scheme: Scheme, filled: bool) -> Glyph {
     match (scheme.is_ida(), scheme.order) {
         (true, 0..=2) => Glyph::Polygon(RADIUS, 14, 0.0, filled),

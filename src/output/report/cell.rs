@@ -17,7 +17,7 @@ const LOADS: [(&str, &str); 4] = [
     ("Pressure, lower row", "Pa"),
 ];
 
-/// A picture for each load that moves the cell; none where it cannot be solved.
+/// One picture for each load that moves the cell; empty if the cell cannot be solved.
 pub fn pictures(section: &Section) -> Vec<Value> {
     let options = Options {
         meshes: 2,

@@ -1,4 +1,4 @@
-//! The pages of several results beside one of them, and of one beside measured data.
+//! Pages that compare several results with one of them, or one result with measured data.
 
 use std::fs;
 use std::path::Path;
@@ -15,13 +15,13 @@ use crate::study::compare::many::column_at;
 use crate::study::compare::{Beside, Recording};
 use crate::study::fit::beside::{Beside as Data, Column};
 
-/// Instants of a history that are shown, at most.
+/// Largest number of instants shown of a history.
 const INSTANTS: usize = 1500;
 
-/// Writes the page into a folder, which is made where there is none; `reference` is a place among the results.
+/// Writes the page into a folder, which is created if necessary; `reference` is the index of a result.
 ///
 /// # Errors
-/// It cannot be written, or something else stands in its place.
+/// The folder contains a result, another file is in the page's place, or the page cannot be written.
 pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside) -> Result<Written> {
     let names = names(found);
     let name = format!("{} and {}", names[0], others(names.len() - 1));
@@ -45,10 +45,10 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
     put(&page, dir)
 }
 
-/// Writes the page of a run over measured data into a folder, which is made where there is none; `picture` is an SVG.
+/// Writes the page of a run over measured data into a folder, which is created if necessary; `picture` is an SVG.
 ///
 /// # Errors
-/// It cannot be written, or something else stands in its place.
+/// The folder contains a result, another file is in the page's place, or the page cannot be written.
 pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
     let name = format!("{} over {}", found.case, file_name(&found.data));
     let mut page = begun("A run over measured data", name);
@@ -87,7 +87,7 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
     put(&page, dir)
 }
 
-/// A page that says what it is.
+/// A page with kind, label and name.
 fn begun(label: &str, name: String) -> Page {
     let mut page = Page {
         name: name.clone(),
@@ -114,7 +114,7 @@ fn put(page: &Page, dir: &Path) -> Result<Written> {
     })
 }
 
-/// The last part of a path.
+/// Last part of a path.
 fn file_name(path: &str) -> String {
     let name = Path::new(path).file_name();
     name.map_or_else(|| path.to_string(), |name| name.to_string_lossy().into_owned())
@@ -127,7 +127,7 @@ fn others(count: usize) -> String {
     }
 }
 
-/// What results are called: the last part of their folders, the whole where two end alike.
+/// Names of the results: the last part of each folder, or the full path if two end alike.
 fn names(found: &Beside) -> Vec<String> {
     let folders = found.folders();
     let all: Vec<String> = folders.iter().map(|folder| file_name(folder)).collect();
@@ -139,7 +139,7 @@ fn names(found: &Beside) -> Vec<String> {
     either.collect()
 }
 
-/// Which differs most, of the quantities that matter most.
+/// Sentences about the largest differences, first among the headline quantities.
 fn answer(found: &Beside, names: &[String]) -> String {
     let headline = |d: &&Difference| Observable::named(&d.name).is_some_and(|one| one.role() == Role::Headline);
     let largest = |of: &dyn Fn(&&Difference) -> bool| {
@@ -171,7 +171,7 @@ fn answer(found: &Beside, names: &[String]) -> String {
     text
 }
 
-/// Histories at the output times of the first.
+/// Histories of all results at the output times of the first.
 fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
     let first = all.first()?;
     let every = first.times.len().div_ceil(INSTANTS).max(1);

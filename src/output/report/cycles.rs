@@ -1,4 +1,4 @@
-//! The pages of `floquet`, of its map, of `periodic --sweep`; and what a cycle's run adds to its page.
+//! Pages of `floquet`, `floquet --map` and `periodic --sweep`, and additions to the page of a cycle's run.
 
 use serde_json::{Value, json};
 
@@ -14,17 +14,17 @@ use crate::run::floquet::shape::Part;
 use crate::study::refine::numbers;
 use crate::study::stability::Member;
 
-/// The figure that tells how fast a disturbance grows.
+/// Name of the growth rate of a disturbance.
 const GROWTH: &str = "growth_per_s";
 
-/// Rows of a table, and what stands over it.
+/// Table of the multipliers.
 fn multipliers(found: &Cycle) -> Value {
     let told = !found.bands.is_empty();
     let names: Vec<String> = numbers::named(&found.floquet)
         .into_iter()
         .map(|(name, _)| name)
         .collect();
-    // of a cycle's run the rate of the largest is known alone
+    // for a cycle's run only the band of the largest rate is known
     let band = |k: usize| {
         let own = found.bands.get(&format!("{}.{GROWTH}", names[k]));
         let band = own.or_else(|| found.bands.get(GROWTH).filter(|_| k == 0))?;
@@ -62,7 +62,7 @@ fn multipliers(found: &Cycle) -> Value {
     })
 }
 
-/// Whether a cycle is stable, and how it was found.
+/// Sentences about the stability of a cycle and the search for it.
 pub fn answer(found: &Cycle) -> String {
     format!(
         "{}. The cycle of {} s was found in {} over {}, with {} a period.",
@@ -74,12 +74,12 @@ pub fn answer(found: &Cycle) -> String {
     )
 }
 
-/// What `cycle.json` adds to the page of a cycle's run.
+/// Additions from `cycle.json` to the page of a cycle's run.
 pub fn of_cycle(found: &Cycle) -> Value {
     json!([{"title": "Stability of the cycle", "text": answer(found), "table": multipliers(found)}])
 }
 
-/// `floquet`.
+/// Page of `floquet`.
 pub fn floquet(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Cycle>(Kind::Floquet.sign())?;
     let mut page = place.page(Kind::Floquet, &found.case, Some(&head));
@@ -100,7 +100,7 @@ pub fn floquet(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// `floquet --map`.
+/// Page of `floquet --map`.
 pub fn map(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Map>(Kind::Map.sign())?;
     let mut page = place.page(Kind::Map, &found.case, Some(&head));
@@ -151,7 +151,7 @@ pub fn map(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// `periodic --sweep`.
+/// Page of `periodic --sweep`.
 pub fn sweep(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Along>(Kind::Sweep.sign())?;
     let Along {
@@ -171,7 +171,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
         0 => String::new(),
         n => format!(" For {n} values none was found."),
     };
-    // every cycle of one case has the same figures of energy
+    // all cycles of one case have the same energy figures
     let told = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];
     headings.extend(["tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]"].map(String::from));

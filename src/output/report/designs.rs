@@ -1,4 +1,4 @@
-//! The page of many designs.
+//! Page of many designs.
 
 use serde_json::{Value, json};
 
@@ -9,14 +9,14 @@ use crate::output::sweep::words::{kinds, several};
 use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, pictures, table, warnings};
 use crate::results::sweep::{Plan, Sweep};
 
-/// Columns of the page's table at most; the file has the rest.
+/// Largest number of columns of the page's table; the file contains the rest.
 const MOST_COLUMNS: usize = 40;
 
-/// `sweep`.
+/// Page of `sweep`.
 pub fn data(place: &Place) -> Result<Page> {
-    // one that was killed has no table yet
+    // a sweep that was killed has no table yet
     let Found { result: mut plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
-    // commands on the page are for its own folder, which holds the case
+    // commands on the page refer to its own folder, which contains the case
     if let [case] = &mut plan.cases[..]
         && place.path(CASE).is_file()
     {
@@ -38,7 +38,7 @@ pub fn data(place: &Place) -> Result<Page> {
         .map(|axis| format!("{} = {}", axis.pointer, axis.spec.as_deref().unwrap_or("as listed")))
         .collect();
     let cases = plan.cases.iter().map(|case| format!("case {}", case.name));
-    // a lean folder has no pictures of its own
+    // a lean folder has no pictures
     let drawn = pictures::draw(&plan, &survey)?;
     let figure = |title: &str, file: &str, about: &str| {
         let own = || drawn.iter().find(|(name, _)| *name == file);
@@ -65,7 +65,7 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// The table, with where each design leads: to its page or case where they are kept, and to the command that does it alone.
+/// Table of the designs. Each design links to its page or case, if kept, and has the command that repeats it.
 fn rows(place: &Place, found: &Sweep, survey: &Survey) -> Result<Value> {
     let plan = &found.plan;
     let columns = found.columns.len().min(MOST_COLUMNS);

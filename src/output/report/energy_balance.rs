@@ -1,4 +1,4 @@
-//! The energy ledger: what was there, what came in, what went out, what is there now.
+//! The energy ledger: energy at the start, added and removed energies, energy at the end.
 
 use serde_json::{Value, json};
 
@@ -6,7 +6,7 @@ use super::history::History;
 use crate::discrete::quantities::{Group, Observable};
 use crate::run::summary::Summary;
 
-/// Entries that add up, and the names of the columns that are drawn over time.
+/// Entries of the ledger, and names of the columns drawn over time.
 pub fn of(summary: &Summary, history: &History) -> Value {
     let of = |groups: &[Group]| -> Vec<Observable> { groups.iter().copied().flat_map(Observable::grouped).collect() };
     let stored = of(&[Group::Stored]);
@@ -46,7 +46,7 @@ fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 
-/// The other balances, in words; those that do not apply are exactly zero.
+/// Other balances as text; omits those that are exactly zero because they do not apply.
 fn others(summary: &Summary) -> Vec<Value> {
     let b = &summary.balances;
     let all = [

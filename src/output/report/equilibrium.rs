@@ -13,9 +13,9 @@ use crate::output::numbers::{counted, duration, quantity, significant, trimmed};
 use crate::results::equilibrium::Equilibrium;
 use crate::results::run::Status;
 
-/// States whose shapes the page holds, at most.
+/// Largest number of states whose shapes are on the page.
 const MOST_STATES: usize = 240;
-/// Nodes of a shape at most.
+/// Largest number of nodes of a shape.
 const MOST_NODES: usize = 401;
 
 /// Figures of the last state: label, quantity, unit, note.
@@ -36,13 +36,13 @@ const TILES: [(&str, &str, &str, &str); 4] = [
     ),
 ];
 
-/// Everything the page shows.
+/// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Equilibrium>(JSON)?;
     let mut page = place.page(Kind::Equilibrium, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let at = found.loads_at_s;
-    // of the last stage, where it was reached
+    // share of the loads of the last stage, if it was reached
     let share = found.load_factor.unwrap_or(0.0) - found.via_s.len() as f64;
     let tile = |label: &str, (name, value): (&str, Option<f64>), unit: &str, note: &str| {
         let value = value?;
@@ -83,9 +83,9 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// The argument that names the stages before the last one.
+/// Argument with the stages before the last one.
 fn via(found: &Equilibrium) -> String {
-    // those of valves come by themselves
+    // stages of valves need no argument
     let asked = found.via_s.iter().filter(|_| found.valves_s.is_empty());
     let instants: Vec<String> = asked.map(f64::to_string).collect();
     match instants.as_slice() {
@@ -124,7 +124,7 @@ fn answer(found: &Equilibrium, share: f64) -> String {
     format!("Under {loads} the beam rests in the state shown; {stability}. {way}")
 }
 
-/// Positions of the nodes of some states, the last among them.
+/// Positions of the nodes in some of the states, the last among them.
 fn shapes(path: &Path) -> Value {
     let read = || -> csv::Result<Vec<Vec<f64>>> {
         let mut reader = csv::Reader::from_reader(open(path)?);

@@ -1,4 +1,4 @@
-//! Effects, the solver's work, wall time and characteristic numbers, in words.
+//! Effects, work of the solver, wall time and characteristic numbers as text.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::output::columns::cells;
 use crate::output::numbers::{count, duration, pretty_unit, significant};
 use crate::run::summary::Summary;
 
-/// Characteristic numbers: name, unit, meaning. Those of networks are matched by the start of their names.
+/// Characteristic numbers: name, unit, meaning. A name that ends with `_` matches all names that start with it.
 const CHARACTERISTIC: &str = "\
 added_mass_kg_m | kg/m | mass of the fluid around that moves across with the beam, per length
 area_change_estimate | 1 | how far pressure is expected to close a bladder, as a share of its cross-section
@@ -69,7 +69,7 @@ pub fn meaning(name: &str) -> Option<[&'static str; 2]> {
         .map(|[_, unit, about]| [unit, about])
 }
 
-/// Characteristic numbers of a case that was not run; none where it has no model.
+/// Characteristic numbers of a case without a run; empty if the case has no model.
 pub fn characteristic_of(case: &Case) -> Vec<Value> {
     Model::new(case).map_or(vec![], |model| characteristic(&characteristic::numbers(case, &model)))
 }
@@ -84,13 +84,13 @@ pub fn characteristic(numbers: &BTreeMap<String, f64>) -> Vec<Value> {
     numbers.iter().map(row).collect()
 }
 
-/// What else is chosen.
+/// Choices besides effects.
 const OTHERS: [(&str, &str); 2] = [
     ("max_order", "Highest order of the time integration."),
     ("method", "Method of the time integration."),
 ];
 
-/// Rows: name, choice, reason, what it is.
+/// Rows: name, choice, reason, description.
 pub fn effects(summary: &Summary) -> Vec<Value> {
     let described = |name: &str| {
         let effect = Effect::ALL.iter().find(|effect| effect.name() == name);
@@ -102,7 +102,7 @@ pub fn effects(summary: &Summary) -> Vec<Value> {
     summary.effects.iter().map(row).collect()
 }
 
-/// What the integrator did, in sentences, and where wall time went.
+/// Sentences about the work of the integrator, and the parts of the wall time.
 pub fn work(summary: &Summary) -> Value {
     let c = &summary.solver;
     let wall = &summary.wall_s;
@@ -159,7 +159,7 @@ mod tests {
     use crate::case;
     use crate::discrete::System;
 
-    /// Goal: every number that cases have is described, and nothing that none has.
+    /// Goal: exactly the characteristic numbers of the cases are described.
     #[test]
     fn characteristic_numbers_are_those_of_cases() {
         let all = fs::read_dir("cases")

@@ -1,4 +1,4 @@
-//! The page of a fit.
+//! Page of a fit.
 
 use serde_json::json;
 
@@ -8,7 +8,7 @@ use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
 use crate::output::numbers::{counted, duration, significant};
 use crate::results::fit::{Bound, Estimate, Fit};
 
-/// `fit`.
+/// Page of `fit`.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Fit>(JSON)?;
     let mut page = place.page(Kind::Fit, &found.case, Some(&head));

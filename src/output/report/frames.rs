@@ -1,4 +1,4 @@
-//! Fields of a run at chosen instants and places: as many as a page can hold.
+//! Fields of a run at selected instants and places, limited to the size of a page.
 
 use std::io;
 use std::path::Path;
@@ -13,15 +13,15 @@ use crate::output::npz::Npz;
 use crate::output::numbers::counted;
 use crate::output::plot;
 
-/// Numbers of all frames together; four bytes each, a third more as text.
+/// Largest number of values in all frames; each has four bytes, and a third more as text.
 const MOST_NUMBERS: usize = 420_000;
-/// Frames at most: a minute of animation.
+/// Largest number of frames: a minute of animation.
 const MOST_FRAMES: usize = 1500;
-/// Nodes of a frame at most.
+/// Largest number of nodes of a frame.
 const MOST_NODES: usize = 401;
-/// Pressures of a frame at most; beyond, one a bladder.
+/// Largest number of pressures of a frame; if there are more, one per bladder.
 const MOST_PRESSURES: usize = 400;
-/// Curves of the last cycle.
+/// Number of curves of the last cycle.
 const CURVES: usize = 24;
 
 /// One-dimensional arrays.
@@ -48,7 +48,7 @@ impl Contents {
     }
 }
 
-/// What animation, profiles and maps show. `frequency` is that of the drive [Hz].
+/// Data of animation, profiles and maps. `frequency` is that of the drive [Hz].
 ///
 /// # Errors
 ///
@@ -68,7 +68,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     let chosen = thinned(times.len(), most);
     let kept: Vec<f64> = chosen.iter().map(|&k| times[k]).collect();
     let alone: Vec<Vec<usize>> = nodes.iter().map(|&k| vec![k]).collect();
-    // of the cells beside each node
+    // cells on both sides of each node
     let last = theta.len().saturating_sub(2);
     let beside: Vec<Vec<usize>> = (nodes.iter())
         .map(|&k| vec![k.saturating_sub(1).min(last), k.min(last)])
@@ -108,7 +108,7 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
     }))
 }
 
-/// Indices `0..len`, every so manyth, first and last among them.
+/// Indices `0..len` at constant steps, with the first and the last.
 fn thinned(len: usize, most: usize) -> Vec<usize> {
     let step = (len.saturating_sub(1)).div_ceil(most.max(2) - 1).max(1);
     let mut all: Vec<usize> = (0..len).step_by(step).collect();
@@ -118,7 +118,7 @@ fn thinned(len: usize, most: usize) -> Vec<usize> {
     all
 }
 
-/// Cells along `X_f`, singly, or together those of a bladder where they are many.
+/// Cells along `X_f`: single, or grouped by bladder if there are many.
 fn pressure_groups(contents: &Contents) -> Vec<Vec<usize>> {
     let bladder = contents.axis("bladder");
     if bladder.len() <= MOST_PRESSURES {

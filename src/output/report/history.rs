@@ -1,4 +1,4 @@
-//! `history.csv`, thinned to what a screen can show; no peak is lost.
+//! `history.csv`, thinned to the resolution of a screen without loss of peaks.
 
 use serde_json::{Map, Value, json};
 
@@ -9,7 +9,7 @@ use crate::output::envelope::{Envelope, History as Recorded, Source, each_row};
 use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
 
-/// Stretches of time of which least and largest value are kept.
+/// Number of stretches of time whose least and largest values are kept.
 const STRETCHES: usize = 2000;
 
 /// A history and its first and last rows.
@@ -21,12 +21,12 @@ pub struct History {
     first: Vec<f64>,
     last: Vec<f64>,
     rows: u64,
-    /// Ends of stretches of which least and greatest values alone were written.
+    /// Number of ends of stretches of which only extremes were written.
     stretches: u64,
 }
 
 impl History {
-    /// Of what was recorded; empty when the run ended before its first row.
+    /// Reads what was recorded; empty if the run ended before its first row.
     pub fn read(recorded: Recorded) -> Result<Self> {
         if let Recorded::Folder(dir) = recorded
             && !dir.join(HISTORY).is_file()
@@ -63,7 +63,7 @@ impl History {
         Some((*self.first.get(k)?, *self.last.get(k)?))
     }
 
-    /// The instants of its thinned columns [s].
+    /// Times of the thinned columns [s].
     pub fn times(&self) -> &[f64] {
         self.columns.first().map_or(&[], Vec::as_slice)
     }
@@ -74,12 +74,12 @@ impl History {
         self.columns.get(k).map(Vec::as_slice)
     }
 
-    /// Whether values stand for the least and the largest of several rows.
+    /// True if values are the least and the largest of several rows.
     pub fn joined(&self) -> bool {
         (self.times().len() as u64) < self.rows || self.stretches > 0
     }
 
-    /// Columns with names, units, groups and meanings, others behind them, and a note where rows were joined.
+    /// Columns with names, units, groups and meanings, then `others`; and a note if rows were joined.
     pub fn json(&self, others: Vec<Value>) -> Value {
         if self.rows == 0 {
             return Value::Null;
@@ -118,17 +118,17 @@ impl History {
     }
 }
 
-/// A name of a column as words: in names `__1` is the number of a lower bladder.
+/// A column name as text; `__1` in a name is the number of a lower bladder.
 fn spoken(name: &str) -> String {
     name.replace("__", " −").replace('_', " ")
 }
 
-/// Whether a quantity is shown unless others are chosen: headlines, and what belongs to the same pressures.
+/// True if a quantity is shown by default: headlines, and all quantities of the pressure group.
 fn usual(one: Observable) -> bool {
     one.role() == Role::Headline || one.group() == Group::Pressure
 }
 
-/// Labels of the quantities that are shown first, by name.
+/// Labels of the headline quantities, by name.
 pub fn headlines() -> Value {
     let all = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
     let labelled = all.map(|one| (one.name().to_string(), one.label().into()));

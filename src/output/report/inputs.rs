@@ -1,4 +1,4 @@
-//! What acts on a beam over time, as columns beside what comes of it.
+//! Inputs of a beam over time, as columns beside the history.
 
 use serde_json::{Value, json};
 
@@ -9,7 +9,7 @@ use crate::functions::Signal;
 use crate::model::Network;
 use crate::model::network::Feed;
 
-/// Signals at most.
+/// Largest number of signals.
 const MOST: usize = 40;
 
 /// A signal with its name.
@@ -19,8 +19,8 @@ struct Input<'a> {
     signal: &'a Signal,
 }
 
-/// Columns of all that changes in time, at the instants of a history; where these stand for the least and the largest value of a stretch
-/// each (`joined`), so do their values.
+/// Columns of all inputs that vary in time, at the instants of a history. If `joined`, pairs of instants stand for stretches of time, and
+/// the values are the extremes of the signal in each.
 pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
     let network = Network::of(case).ok().flatten();
     let ends = [("root", case.ends.root.resolve()), ("tip", case.ends.tip.resolve())];

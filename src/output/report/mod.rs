@@ -1,29 +1,29 @@
-//! `report.html`: a result folder as one page that needs nothing else, neither network nor program.
+//! `report.html`: a result folder as a single page that needs neither network nor program.
 //!
 //! ```text
-//! kind        what kind of result a folder holds
+//! kind        kind of result in a folder
 //! page        shell, style, scripts and data as one text
 //! pack        arrays as base64
 //! frames      fields of a run at chosen instants
 //! cell        the cell of the section under its loads
-//! history     history.csv, thinned to what a screen can show
+//! history     history.csv, thinned to the resolution of a screen
 //! scene       the drawing: beam, bladders, tubes, ports, loads, ends
-//! signals     functions of time in words
+//! signals     functions of time as text
 //! inputs      functions of time as columns beside the history
-//! per_cycle   powers and efficiency over the period that has just passed
+//! per_cycle   powers and efficiency over the preceding period
 //! run         the page of a run or a cycle
 //! energy_balance       the energy ledger, its entries and their sum
-//! facts       effects, solver, wall time, characteristic numbers in words
+//! facts       effects, solver, wall time, characteristic numbers as text
 //! parameters  the case as a table, described by its schema
 //! sheet       CSV files as tables
-//! warnings    what to know first, in words
-//! compared    the pages of several results beside one of them, and of one beside measured data
+//! warnings    warnings with titles and explanations
+//! compared    pages that compare several results, or one result with measured data
 //! equilibrium, modes, studies, cycles, designs, fit, sense, optimum   the pages of the other commands
 //! vendor      uPlot, which draws histories
 //! ```
 //!
-//! The data of a page is JSON in a script element that is never run; the scripts put every text of a case into the page as
-//! text, so that nothing in it is taken for markup. The same folder gives the same bytes.
+//! The data of a page is JSON in a script element that is not executed. The scripts insert every text of a case as text, so that none of it
+//! is parsed as markup. The same folder gives the same bytes.
 
 mod cell;
 mod compared;
@@ -71,26 +71,26 @@ use crate::numerics::threads::begin;
 use crate::results::uncertainty::Uncertainty;
 use crate::results::{Found, Head, Kept};
 
-/// Bytes beyond which a picture or the text of a case is left to its file.
+/// Size from which a picture or the text of a case is not embedded [byte].
 const LARGEST_TEXT: usize = 800_000;
 
-/// Rows of a table at most; the file has the rest.
+/// Largest number of rows of a table; the file contains the rest.
 const MOST_ROWS: usize = 1000;
 
-/// A page that was written.
+/// A written page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// The file.
     pub path: PathBuf,
-    /// Its size [byte].
+    /// Size [byte].
     pub bytes: usize,
 }
 
-/// Writes the page of a result folder into `out`, or into the folder itself.
+/// Writes the page of a result folder to `out`, or into the folder itself.
 ///
 /// # Errors
 ///
-/// The folder holds no result, a file of it cannot be read, or the page cannot be written.
+/// The folder contains no result, a file of it cannot be read, or the page cannot be written.
 pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
     let kind = Kind::find(dir)?;
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
@@ -106,14 +106,14 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
     })
 }
 
-/// Completes a folder that a command has filled: the case as resolved beside its files, and the page.
+/// Completes a folder that a command has filled: adds the resolved case and the page.
 pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
     folder.write_case(&case.written())?;
     write(folder.dir(), None)?;
     folder.secure()
 }
 
-/// Lays the page of a run beside its files ([`ResultFolder::lay`]); the history is read where it was not kept.
+/// Lays the page of a run beside its files ([`ResultFolder::lay`]). Reads the history unless it was kept in memory.
 ///
 /// # Errors
 ///
@@ -124,7 +124,7 @@ pub fn lay(folder: &ResultFolder, history: Option<&Remembered>) -> Result<()> {
     folder.lay(REPORT, text.as_bytes()).map(|_| ())
 }
 
-/// What the page of a kind shows.
+/// Content of the page of a kind.
 fn data(place: &Place, kind: Kind) -> Result<Page> {
     match kind {
         Kind::Run | Kind::Cycle => run::data(place),
@@ -143,9 +143,9 @@ fn data(place: &Place, kind: Kind) -> Result<Page> {
     }
 }
 
-/// The page.
+/// Text of the page.
 fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
-    // the longest of what a case has to tell, in a thread of its own
+    // the table of the parameters takes longest, so a thread computes it
     let (page, parameters) = thread::scope(|scope| {
         let rows = begin(scope, || place.case_text.as_deref().map(parameters::rows));
         let page = data(place, kind);
@@ -157,7 +157,7 @@ fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
         let found = place.result::<Uncertainty>(UNCERTAINTY)?.result;
         page.put("uncertainty", uncertainty::section(&found));
     }
-    // Whoever sees the page first needs them in words; their numbers alone say little.
+    // Readers of the page need the warnings with explanations; codes alone are not enough.
     page.put("warnings", warnings::groups(&page.warnings));
     if elsewhere {
         page.put("elsewhere", true);
@@ -165,7 +165,7 @@ fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
     Ok(page::assemble(&page))
 }
 
-/// A folder under report, with its case as far as it can be read.
+/// A folder under report, with its case if readable.
 struct Place<'a> {
     dir: &'a Path,
     /// The history of a run that has just ended.
@@ -180,7 +180,7 @@ impl<'a> Place<'a> {
         Self {
             dir,
             history,
-            // A case of an older or newer program may no longer be one; the page then goes without what needs it.
+            // A case of an older or newer program may be invalid. The page then omits everything that needs it.
             case: case::load(&path, &[]).ok(),
             case_text: text_of(&path).ok(),
         }
@@ -190,12 +190,12 @@ impl<'a> Place<'a> {
         self.dir.join(name)
     }
 
-    /// A result of the folder.
+    /// Reads a result of the folder.
     fn result<T: Kept>(&self, name: &str) -> Result<Found<T>> {
         super::folder::result(&self.path(name))
     }
 
-    /// A picture of the folder as data of an image; of one that is too large its file and size.
+    /// A picture of the folder as image data; for one that is too large, its file and size.
     fn picture(&self, name: &str) -> Option<Value> {
         let mut bytes = vec![];
         let file = open(&self.path(name)).ok()?;
@@ -207,20 +207,20 @@ impl<'a> Place<'a> {
         Some(pack::image("image/svg+xml", &bytes).into())
     }
 
-    /// Files beside the page, in order of their names, hidden ones and folders left out.
+    /// Files beside the page, sorted by name; omits hidden files and folders.
     fn files(&self) -> Vec<String> {
         let all = entries(self.dir).unwrap_or_default();
         let names = all.iter().filter(|path| path.is_file()).map(|path| name_of(path));
         names.filter(|n| !n.starts_with('.') && n != REPORT).collect()
     }
 
-    /// What every page begins with. `name` is used where the case cannot be read.
+    /// Common part of every page, with the given name.
     fn page(&self, kind: Kind, name: &str, head: Option<&Head>) -> Page {
         let numbers = self.case.as_ref().map(facts::characteristic_of);
         self.page_with(kind, name, head, numbers.unwrap_or_default())
     }
 
-    /// The same with rows of characteristic numbers that are known.
+    /// [`Place::page`] with given rows of characteristic numbers.
     fn page_with(&self, kind: Kind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
         let mut page = Page {
             name: name.into(),
@@ -232,21 +232,21 @@ impl<'a> Place<'a> {
             "kind": kind.name(), "version": env!("CARGO_PKG_VERSION"), "made": head.map(Head::words), "name": name,
             "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
             "cell": section.map_or_else(Vec::new, cell::pictures), "scene": self.case.as_ref().and_then(scene::of),
-            // their place: see `text`
+            // placeholder: see `text`
             "parameters": null, "case_text": text, "characteristic": numbers,
         }));
         page
     }
 }
 
-/// What a page shows.
+/// Content of a page.
 #[derive(Default)]
 struct Page {
-    /// Its title.
+    /// Title of the page.
     name: String,
-    /// What to know first.
+    /// Warnings.
     warnings: Vec<String>,
-    /// What its scripts read.
+    /// Data for the scripts.
     data: Map<String, Value>,
 }
 
@@ -263,13 +263,13 @@ impl Page {
     }
 }
 
-/// The folder in which a file lies or will lie.
+/// Folder of a file that exists or will be written.
 fn folder_of(path: &Path) -> Option<PathBuf> {
     let parent = path.parent().filter(|p| !p.as_os_str().is_empty());
     fs::canonicalize(parent.unwrap_or(Path::new("."))).ok()
 }
 
-/// With a capital at its start.
+/// Capitalizes the first letter.
 fn capital(text: &str) -> String {
     let mut all = text.chars();
     all.next()

@@ -14,7 +14,7 @@ use crate::output::npz::Npz;
 use crate::output::numbers::{counted, significant};
 use crate::results::modes::{About, Modes};
 
-/// Columns of the table that a reader needs; the file has the rest.
+/// Columns of the page's table; the file contains the rest.
 const COLUMNS: [&str; 9] = [
     "mode [1]",
     "kind",
@@ -27,10 +27,10 @@ const COLUMNS: [&str; 9] = [
     "transverse share [1]",
 ];
 
-/// Numbers of all shapes together.
+/// Largest number of values of all shapes.
 const MOST_NUMBERS: usize = 420_000;
 
-/// Everything the page shows.
+/// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Modes>(JSON)?;
     let mut page = place.page(Kind::Modes, &found.case, Some(&head));
@@ -50,7 +50,7 @@ pub fn data(place: &Place) -> Result<Page> {
         0.0 => String::new(),
         near => format!(" --near {near}"),
     };
-    // Results of before the state was told have the start at 0 s, and an equilibrium mostly later.
+    // Older results do not store the state. At 0 s it is then taken as the start, later as an equilibrium.
     let at = match (found.state, found.at_s) {
         (Some(About::Start), _) | (None, 0.0) => String::new(),
         (_, at) => format!(" --at {at}"),
@@ -74,7 +74,7 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// The table without what stays as it is, which the answer counts.
+/// Removes the modes that do not move from the table.
 fn moving_alone(mut table: Value, found: &Modes) -> Value {
     if let Some(rows) = table["rows"].as_array_mut() {
         let mut kinds = found.modes.iter().map(|mode| mode.kind);
@@ -83,7 +83,7 @@ fn moving_alone(mut table: Value, found: &Modes) -> Value {
     table
 }
 
-/// The table with the bands of frequencies and rates behind them, where something is uncertain.
+/// Inserts uncertainty bands behind frequencies and growth rates, if there are any.
 fn with_bands(mut table: Value, found: &Modes) -> Value {
     if found.modes.iter().all(|mode| mode.bands.is_empty()) {
         return table;
@@ -110,7 +110,7 @@ fn with_bands(mut table: Value, found: &Modes) -> Value {
     table
 }
 
-/// Amplitudes and phases, mode after mode; of many modes on a fine mesh the first ones.
+/// Amplitudes and phases, mode after mode; of many modes on a fine mesh only the first.
 fn shapes(path: &Path) -> io::Result<Value> {
     let mut npz = Npz::open(path)?;
     let mut read = |name: &str| -> io::Result<(Vec<usize>, Vec<f64>)> {

@@ -1,4 +1,4 @@
-//! The page of a best.
+//! Page of an optimum.
 
 use serde_json::json;
 
@@ -10,7 +10,7 @@ use crate::output::sweep::unit;
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Derivatives, Optimum, Variable};
 
-/// `optimize`.
+/// Page of `optimize`.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Optimum>(JSON)?;
     let mut page = place.page(Kind::Optimum, &found.case, Some(&head));
@@ -88,7 +88,7 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// The unit of a figure behind its name.
+/// Unit of a figure in brackets; empty if dimensionless.
 fn bracketed(figure: &str) -> String {
     match unit(figure) {
         "1" => String::new(),

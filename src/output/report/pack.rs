@@ -1,4 +1,4 @@
-//! Arrays as base64 of little-endian single precision: three figures more than a screen can show, a quarter of the text.
+//! Arrays as base64 of little-endian single precision: three digits more than a screen can show, a quarter of the size of text.
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -11,7 +11,7 @@ pub fn numbers(values: impl IntoIterator<Item = f64>) -> Value {
     Value::String(STANDARD.encode(bytes))
 }
 
-/// Bytes as the address of an image.
+/// Data URL of an image.
 pub fn image(kind: &str, bytes: &[u8]) -> String {
     format!("data:{kind};base64,{}", STANDARD.encode(bytes))
 }

@@ -11,7 +11,7 @@ const STYLES: [&str; 4] = [
     include_str!("page/print.css"),
 ];
 
-/// In the order in which they are read: each uses what stands before it.
+/// Scripts in the order of execution: each uses those before it.
 const SCRIPTS: [&str; 18] = [
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
@@ -36,16 +36,16 @@ const SCRIPTS: [&str; 18] = [
 const VENDOR: &str = include_str!("vendor/uPlot.iife.min.js");
 const LICENCE: &str = include_str!("vendor/LICENSE");
 
-/// The page that shows the data.
+/// Assembles the page that shows the data.
 pub fn assemble(page: &Page) -> String {
     let json = serde_json::to_string(&page.data).unwrap_or_default();
     let scripts: Vec<&str> = SCRIPTS.iter().map(|s| s.trim()).collect();
-    // One pass from left to right: what is put in is never searched for marks.
+    // One pass from left to right: inserted text is never searched for marks.
     let parts = [
         ("{{title}}", escaped(&page.name)),
         ("{{licence}}", LICENCE.trim().replace("--", "- -")),
         ("{{style}}", STYLES.map(str::trim).join("\n")),
-        // Within a script element only `<` could end it, or begin a comment.
+        // In a script element only `<` could end it, or begin a comment.
         ("{{data}}", json.replace('<', "\\u003c")),
         ("{{vendor}}", VENDOR.trim().to_string()),
         ("{{script}}", scripts.join("\n")),
@@ -62,7 +62,7 @@ pub fn assemble(page: &Page) -> String {
     out
 }
 
-/// Text that is not taken for markup.
+/// Escapes text for markup.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")

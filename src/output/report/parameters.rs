@@ -1,14 +1,14 @@
-//! The case as rows of a table: what each number is, by the descriptions of its schema.
+//! The case as rows of a table; descriptions of the schema explain each number.
 
 use serde_json::{Value, json};
 
 use crate::case::schema_of_resolved;
 use crate::output::numbers::{quantity, significant, trimmed};
 
-/// Longest text of a value.
+/// Largest length of the text of a value.
 const LONGEST: usize = 400;
 
-/// Rows `{group, key, pointer, value, about}` of a case's text; none when it is no JSON.
+/// Rows `{group, key, pointer, value, about}` of a case's text; empty if it is not JSON.
 pub fn rows(text: &str) -> Vec<Value> {
     let Ok(case) = serde_json::from_str::<Value>(text) else {
         return vec![];
@@ -42,7 +42,7 @@ fn walk(value: &Value, schema: Option<Schema>, group: &str, pointer: &str, out: 
     }));
 }
 
-/// Levels of objects and arrays in a value.
+/// Depth of nested objects and arrays in a value.
 fn depth(value: &Value) -> usize {
     match value {
         Value::Object(all) => 1 + all.values().map(depth).max().unwrap_or(0),
@@ -70,7 +70,7 @@ fn shown(value: &Value, unit: &str) -> String {
     }
 }
 
-/// A number without the zeros behind its point: `20`, `1.55·10⁻¹²`, `100 mm`.
+/// A number without trailing zeros behind the decimal point: `20`, `1.55·10⁻¹²`, `100 mm`.
 fn number(x: f64, unit: &str) -> String {
     let text = match unit {
         "" | "1" => significant(x, 6),
@@ -81,7 +81,7 @@ fn number(x: f64, unit: &str) -> String {
     format!("{}{rest}", trimmed(digits))
 }
 
-/// A part of a schema, as far as it says what keys mean.
+/// A part of a schema, with the descriptions of keys.
 #[derive(Clone, Copy)]
 struct Schema<'a> {
     part: &'a Value,
@@ -96,14 +96,14 @@ impl<'a> Schema<'a> {
         }
     }
 
-    /// The part behind a reference.
+    /// Follows a reference.
     fn resolved(self) -> Self {
         let name = self.part["$ref"].as_str().and_then(|r| r.strip_prefix("#/$defs/"));
         let part = name.and_then(|name| self.definitions.get(name)).unwrap_or(self.part);
         Self { part, ..self }
     }
 
-    /// What a key is, in the object itself or in one of its alternatives.
+    /// Schema of a key, in the object itself or in one of its alternatives.
     fn property(self, key: &str) -> Option<Self> {
         let own = self.resolved();
         if let Some(part) = own.part["properties"].get(key) {
@@ -126,7 +126,7 @@ impl<'a> Schema<'a> {
     }
 }
 
-/// `Length [m].` into words and unit.
+/// Splits `Length [m].` into text and unit.
 fn split_unit(about: &str) -> (String, String) {
     let Some((before, rest)) = about.split_once(" [") else {
         return (about.into(), String::new());

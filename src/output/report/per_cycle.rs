@@ -1,4 +1,4 @@
-//! Powers and efficiency over the period that has just passed, at every output time of a driven run.
+//! Powers and efficiency over the preceding period, at every output time of a driven run.
 
 use serde_json::{Value, json};
 
@@ -7,11 +7,11 @@ use super::pack;
 use crate::discrete::quantities::{Group, Observable};
 use crate::run::energies::ROUNDING;
 
-/// Part of the energy that a period spends below which a ratio of energies says nothing.
+/// Energy, relative to the largest input in a period, below which a ratio of energies is meaningless.
 const LEAST: f64 = 1e-9;
 
-/// The columns: mean powers put in and harvested, and `H/(H + D - P)`, each from a period before to the time at which it stands; none where the
-/// history is too short, or too long to be shown whole.
+/// Columns of mean input power, mean harvested power, and `H/(H + D - P)`, each over the period before its time. Empty if the history is
+/// shorter than a period, was thinned, or has no harvest.
 pub fn columns(history: &History, period: f64) -> Vec<Value> {
     let times = history.times();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
@@ -76,12 +76,12 @@ pub fn columns(history: &History, period: f64) -> Vec<Value> {
     ]
 }
 
-/// By how much a quantity has grown over the period before each time; not a number where none has passed.
+/// Increase of a quantity over the period before each time; NaN in the first period.
 fn gained(times: &[f64], values: &[f64], period: f64) -> Vec<f64> {
     let mut before = 0;
     let at = |k: usize| {
         let t = times[k] - period;
-        // a hair of grace for a first period that ends at an output time
+        // tolerance for a first period that ends at an output time
         if t < times[0] - 1e-9 * period {
             return f64::NAN;
         }
@@ -100,7 +100,7 @@ fn gained(times: &[f64], values: &[f64], period: f64) -> Vec<f64> {
 mod tests {
     use super::gained;
 
-    /// Goal: a quantity that grows steadily gains the same in every period, and nothing is said of what came before the first.
+    /// Goal: a steadily growing quantity gains the same in every period, and has no value before the end of the first.
     #[test]
     fn gains_are_those_of_a_period() {
         let times: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();

@@ -1,4 +1,4 @@
-//! The page of `response`: amplitude and phase, and the peaks.
+//! Page of `response`: amplitude and phase, and the peaks.
 
 use serde_json::json;
 
@@ -9,7 +9,7 @@ use crate::output::numbers::{counted, significant};
 use crate::output::response::{JSON, PICTURE};
 use crate::results::response::{About, Response};
 
-/// Everything the page shows.
+/// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Response>(JSON)?;
     let mut page = place.page(Kind::Response, &found.case, Some(&head));

@@ -1,4 +1,4 @@
-//! The page of a run, or of a cycle of `periodic`.
+//! Page of a run, or of a cycle of `periodic`.
 
 use std::{io, thread};
 
@@ -22,7 +22,7 @@ use crate::results::run::{Status, Summary};
 /// Displacements below this [m] are round-off.
 const ROUND_OFF: f64 = 1e-14;
 
-/// Everything the page shows.
+/// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let found = match place.path(SUMMARY).is_file() {
         true => Some(summary::found(place.dir)?),
@@ -43,7 +43,7 @@ pub fn data(place: &Place) -> Result<Page> {
         .and_then(characteristic::forcing_period)
         .map(f64::recip);
     let fields = place.path(FIELDS);
-    // fields in a thread of their own
+    // reads the fields in a thread
     let (motion, told) = thread::scope(|scope| {
         let motion = begin(scope, || frames::read(&fields, frequency));
         let told = History::read(Recorded::of(place.dir, place.history)).map(|history| {
@@ -65,7 +65,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let motion = match motion {
         Ok(motion) => motion,
         Err(e) if e.kind() == io::ErrorKind::NotFound => Value::Null,
-        // A folder whose arrays are damaged still has a history worth showing.
+        // A folder with damaged arrays still has a useful history.
         Err(e) => {
             notes.push(format!(
                 "{FIELDS} cannot be read ({e}), so nothing over space is shown."
@@ -97,8 +97,8 @@ pub fn data(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// Columns beside those of the history: what acts, and of a driven run what a period brings. A cycle counts its time from the beginning of a
-/// period, which is none of the case's.
+/// Columns beside those of the history: inputs, and the figures over the preceding period of a driven run. A cycle has no inputs: it counts
+/// time from the start of a period, the case does not.
 fn beside(place: &Place, history: &History, frequency: Option<f64>) -> Vec<Value> {
     let case = place.case.as_ref().filter(|_| !place.path(CYCLE).is_file());
     let inputs = case.map_or_else(Vec::new, |case| {
@@ -123,7 +123,7 @@ fn fill(page: &mut Page, summary: &Summary, history: &History) {
     }));
 }
 
-/// One line under the title.
+/// Facts in one line under the title.
 fn facts_line(summary: &Summary) -> Vec<String> {
     let simulated = trimmed(&quantity(summary.time_s, "s", 4));
     vec![
@@ -133,12 +133,12 @@ fn facts_line(summary: &Summary) -> Vec<String> {
     ]
 }
 
-/// Round-off is nothing.
+/// Replaces round-off by zero.
 fn settled(x: f64) -> f64 {
     if x.abs() < ROUND_OFF { 0.0 } else { x }
 }
 
-/// When something was largest, and what it is at the end; angles in degrees.
+/// Time of the largest value, and the value at the end; angles in degrees.
 fn when_and_end(summary: &Summary, one: Interest) -> String {
     let Some(found) = summary.quantity(one.name()) else {
         return String::new();
@@ -158,7 +158,7 @@ fn time(t: f64) -> String {
     trimmed(&quantity(t, "s", 3))
 }
 
-/// Where the tip comes to, in a sentence.
+/// Sentence about the displacement of the tip.
 fn answer(summary: &Summary) -> Option<String> {
     let one = Interest::TipU1;
     let found = summary.quantity(one.name())?;
@@ -172,19 +172,19 @@ fn answer(summary: &Summary) -> Option<String> {
     ))
 }
 
-/// What a tile shows.
+/// Content of a tile.
 struct Shown {
     text: String,
     band: Option<String>,
 }
 
 impl Shown {
-    /// In words alone.
+    /// Text without a band.
     fn words(text: String) -> Self {
         Self { text, band: None }
     }
 
-    /// A figure of a quantity in a unit, `%` for a share, with its error; the figures are those that it may be.
+    /// A figure of a quantity in a unit (`%` for a fraction) with its error; `figures` lists the candidates for its name.
     fn figure(summary: &Summary, (name, figures): (&str, &[&str]), value: f64, unit: &str) -> Self {
         let told = |x: f64, digits: usize| match (unit, digits) {
             ("%", 3) => percent(x),
@@ -204,7 +204,7 @@ impl Shown {
     }
 }
 
-/// Figures of a quantity that are its largest value, and those of an energy at the end; of a cycle over its period.
+/// Names of the largest value of a quantity, and of an energy at the end; over the period for a cycle.
 const LARGEST: [&str; 3] = ["extreme", "max_abs", "window_max_abs"];
 const AT_THE_END: [&str; 2] = ["final", "window"];
 
@@ -294,7 +294,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     all
 }
 
-/// What else a summary tells: growth, accuracy, derivatives.
+/// Further facts of a summary: growth, accuracy, derivatives.
 fn remarks(summary: &Summary) -> Vec<Value> {
     let mut all = vec![];
     if let Some(growth) = &summary.growth {

@@ -1,4 +1,4 @@
-//! What is drawn of a case: beam, rows of bladders, tubes, ports, turbines, loads, ends; lengths in metres.
+//! Drawing of a case: beam, rows of bladders, tubes, ports, turbines, loads, ends; lengths in meters.
 
 use serde_json::{Value, json};
 
@@ -10,10 +10,10 @@ use crate::functions::{Profile, Signal};
 use crate::model::{Contact, Network};
 use crate::output::numbers::{quantity, significant, trimmed};
 
-/// Places along the beam at which a load is drawn.
+/// Number of places along the beam at which a load is drawn.
 const PLACES: usize = 41;
 
-/// The drawing of a case; nothing for a case that has no length.
+/// Drawing of a case; `None` if the case has no length.
 pub fn of(case: &Case) -> Option<Value> {
     let beam = &case.beam;
     if !(beam.length_m > 0.0 && beam.height_m > 0.0) {
@@ -44,7 +44,7 @@ pub fn of(case: &Case) -> Option<Value> {
     }))
 }
 
-/// A wall: its face and what it is.
+/// A wall: its face and its description.
 fn wall(wall: &Contact) -> Value {
     let stiffness = match wall.at {
         None => format!("all along, {}", q(wall.stiffness, "Pa")),
@@ -148,7 +148,7 @@ fn pressure(signal: &Signal) -> String {
     format!("p = {}", words(signal, "Pa"))
 }
 
-/// A volume in microlitres, from 10 ml on in millilitres: as the scripts of the page write it beside axes.
+/// A volume in microliters, from 10 ml on in milliliters. The scripts of the page use the same units beside axes.
 fn litres(volume_m3: f64) -> String {
     match volume_m3.abs() < 1e-5 {
         true => format!("{} µl", significant(volume_m3 * 1e9, 3)),
@@ -164,18 +164,18 @@ fn flow(signal: &Signal, end_s: f64) -> String {
     }
 }
 
-/// Volume let in through a port.
+/// Volume injected through a port.
 fn volume(signal: &Signal, end_s: f64) -> String {
     format!("syringe, up to {}", litres(largest(signal, end_s)))
 }
 
-/// The largest magnitude of a volume or flow, found in microlitres.
+/// Largest magnitude of a volume or flow, computed in microliters.
 fn largest(signal: &Signal, end_s: f64) -> f64 {
     let scaled = Signal::Product(vec![Signal::Constant(1e9), signal.clone()]);
     peak(&scaled, end_s).abs() * 1e-9
 }
 
-/// An end: its form, what is held, what drives it, what loads it.
+/// An end: its form, constraints, prescribed motions and loads.
 fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
     let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| words(signal, unit));
     let motion = |t: &Translation| match t {

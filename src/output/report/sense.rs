@@ -1,4 +1,4 @@
-//! The page of `sense`: loads from pressures.
+//! Page of `sense`: loads from pressures.
 
 use serde_json::json;
 
@@ -8,7 +8,7 @@ use crate::output::numbers::{counted, significant};
 use crate::output::sense as files;
 use crate::results::sense::Sensed;
 
-/// Everything the page shows.
+/// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Sensed>(files::JSON)?;
     let mut page = place.page(Kind::Sense, &found.case, Some(&head));

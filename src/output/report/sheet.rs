@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::MOST_ROWS;
 use crate::output::folder::open;
 
-/// Headings and rows of chosen columns, numbers as numbers; null when there is no such file.
+/// Headings and rows of selected columns, numeric cells as JSON numbers; null if the file does not exist.
 pub fn read(path: &Path, wanted: impl Fn(&str) -> bool) -> Value {
     let Ok(file) = open(path) else {
         return Value::Null;

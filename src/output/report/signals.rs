@@ -1,14 +1,14 @@
-//! Functions of time in words.
+//! Functions of time as text.
 
 use crate::functions::Signal;
 use crate::functions::bounds::Interval;
 use crate::functions::signals::{Ramp, Sine};
 use crate::output::numbers::{counted, quantity, trimmed};
 
-/// Longest words of a sum or product.
+/// Largest length of the text of a sum or product.
 const LONGEST: usize = 90;
 
-/// `12 mm · sine at 20 Hz`, for a signal of the given unit.
+/// Text of a signal in a unit: `±12 mm at 20 Hz`.
 pub fn words(signal: &Signal, unit: &str) -> String {
     let q = |x: f64| trimmed(&quantity(x, unit, 3));
     let all = |parts: &[Signal], unit: &str| parts.iter().map(|s| words(s, unit)).collect::<Vec<_>>();
@@ -56,7 +56,7 @@ pub fn words(signal: &Signal, unit: &str) -> String {
     }
 }
 
-/// Long sums are for those who read the case.
+/// Replaces a long text by a reference to the case.
 fn brief(text: String) -> String {
     if text.chars().count() > LONGEST {
         "varies as the case says".into()
@@ -69,14 +69,14 @@ fn short(x: f64, unit: &str) -> String {
     trimmed(&quantity(x, unit, 3))
 }
 
-/// The value of largest magnitude within `[0, end]`, with its sign; positive for what swings about zero.
+/// Value of largest magnitude within `[0, end]`, with its sign; positive for an oscillation about zero.
 pub fn peak(signal: &Signal, end: f64) -> f64 {
     let Interval { low, high } = signal.range(0.0, end);
     let (low, high) = (low.min(0.0), high.max(0.0));
     if -low > 1.001 * high { low } else { high }
 }
 
-/// Whether it is zero throughout.
+/// True if the signal is zero throughout.
 pub fn is_zero(signal: &Signal) -> bool {
     matches!(signal, Signal::Constant(x) if *x == 0.0)
 }

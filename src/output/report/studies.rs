@@ -1,4 +1,4 @@
-//! The pages of `study` and `effects`: many runs, one question.
+//! Pages of `study` and `effects`, each of many runs.
 
 use serde_json::{Value, json};
 
@@ -25,7 +25,7 @@ fn method(scheme: Scheme) -> String {
     format!("{name}, order {}", scheme.order)
 }
 
-/// What accuracy costs.
+/// Page of `study`: cost of accuracy.
 pub fn study(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Study>(study_files::JSON)?;
     let mut page = place.page(Kind::Study, &found.case, Some(&head));
@@ -73,7 +73,7 @@ pub fn study(place: &Place) -> Result<Page> {
     Ok(page)
 }
 
-/// Error against time, a mark a run.
+/// Chart of error and time, one mark per run.
 fn cost(data: &WorkPrecision) -> Option<Value> {
     let mut meshes: Vec<usize> = data.lines.iter().map(|line| line.cells).collect();
     meshes.sort_unstable();
@@ -125,7 +125,7 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
     })
 }
 
-/// What changes without each effect.
+/// Chart of the changes without each effect.
 fn changes(found: &Ablation) -> Value {
     let data = effects_files::bars(found, &Shown::choose(found, None));
     let row = |bar: &Bar| {
@@ -167,7 +167,7 @@ fn changes(found: &Ablation) -> Value {
     })
 }
 
-/// Options of the command that made a study.
+/// Options of the command that produced a study.
 fn options(plan: &Plan) -> String {
     let list = |values: Vec<String>| values.join(",");
     let rtols = list(plan.rtols.iter().map(|t| json!(t).to_string()).collect());
@@ -179,7 +179,7 @@ fn options(plan: &Plan) -> String {
     format!(" --rtol {rtols} --cells {cells}{budget}")
 }
 
-/// What each effect does.
+/// Page of `effects`: change of results without each effect.
 pub fn effects(place: &Place) -> Result<Page> {
     let Found { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
     let mut page = place.page(Kind::Effects, &found.case, Some(&head));

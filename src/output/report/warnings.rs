@@ -1,11 +1,10 @@
-//! Warnings with their titles and explanations, those of one kind together.
+//! Warnings with their titles and explanations, grouped by code.
 
 use serde_json::{Value, json};
 
 use crate::error::Code;
 
-/// Groups `{code, title, texts, explanation}` in the order in which their first texts stand; a text without a number is one by
-/// itself.
+/// Groups `{code, title, texts, explanation}` in the order of their first texts. A text without a code is a group of its own.
 pub fn groups(texts: &[String]) -> Value {
     let mut all: Vec<(Option<Code>, Vec<&str>)> = vec![];
     for text in texts {

@@ -1,4 +1,4 @@
-//! What `slcbeam sense` leaves behind: `sense.csv`, `sensors.csv`, `sense.json`, `sense.svg`, and its words.
+//! Output files of `slcbeam sense`, `sense.csv`, `sensors.csv`, `sense.json` and `sense.svg`, and its text.
 
 mod words;
 
@@ -16,22 +16,22 @@ use crate::results::sense::{BandKind, Banded, Chosen, Sensed};
 
 pub use words::{about_band, about_noise, about_sight, answer, list, table, words};
 
-/// One row a row of the measurements.
+/// One row per row of measurements.
 pub const CSV: &str = "sense.csv";
 /// The best sets of bladders to measure.
 pub const SENSORS: &str = "sensors.csv";
-/// Everything.
+/// Complete result.
 pub const JSON: &str = "sense.json";
-/// Loads with their bands, pressures, sensors.
+/// Loads with their bands, pressures, and errors over the number of sensors.
 pub const PICTURE: &str = "sense.svg";
 
-/// Amplitudes of which each has a picture of its own, at most.
+/// Largest number of amplitudes with a picture of their own.
 const MOST: usize = 6;
 
 /// Writes the files into a folder.
 ///
 /// # Errors
-/// They cannot be written.
+/// A file cannot be written.
 pub fn write(folder: &mut ResultFolder, found: &Sensed) -> Result<Vec<PathBuf>> {
     let mut files = vec![(JSON, results::text(found))];
     if !found.rows.is_empty() {
@@ -44,7 +44,7 @@ pub fn write(folder: &mut ResultFolder, found: &Sensed) -> Result<Vec<PathBuf>> 
     folder.fill(files)
 }
 
-/// The text of `sense.csv`; a cell is empty where something is not told or was not measured.
+/// Text of `sense.csv`; a cell is empty if its value is not determined or was not measured.
 pub fn csv(found: &Sensed) -> String {
     let timed = found.rows.iter().any(|row| row.t_s.is_some());
     let mut headings = vec!["line".to_owned()];
@@ -71,7 +71,7 @@ pub fn csv(found: &Sensed) -> String {
     records::text(headings, rows)
 }
 
-/// The text of `sensors.csv`: one row a number of sensors.
+/// Text of `sensors.csv`: one row per number of sensors.
 fn sensors(found: &Sensed) -> String {
     let errors = found
         .amplitudes
@@ -88,7 +88,7 @@ fn sensors(found: &Sensed) -> String {
 
 const BAND: Colour = Colour(0xd5, 0xe3, 0xf0);
 
-/// Loads with their bands, pressures as measured and as the loads make them, errors over the number of sensors.
+/// Picture of loads with their bands, of measured and modelled pressures, and of errors over the number of sensors.
 fn drawn(found: &Sensed) -> Option<String> {
     let mut panels = vec![];
     match found.rows.as_slice() {
@@ -146,13 +146,13 @@ fn drawn(found: &Sensed) -> Option<String> {
     picture.svg()
 }
 
-/// Axes with names and units.
+/// Panel with names and units of its axes.
 fn plane([x, x_unit, y, y_unit]: [&str; 4], series: Vec<PictureSeries>) -> Panel {
     let y = PictureAxis::new(y, y_unit, 6).with(&[0.0]);
     Panel::new((330.0, 220.0), PictureAxis::new(x, x_unit, 7), y, series)
 }
 
-/// Places and values with their bands; nothing of a single place.
+/// Panel of values with their bands; `None` for a single place.
 fn banded<'a>(line: impl Iterator<Item = (f64, &'a Banded)>, axes: [&str; 4]) -> Option<Panel> {
     let half = |one: &Banded| 0.5 * (one.high - one.low);
     let line: Vec<_> = line.map(|(x, one)| (x, one.value, half(one))).collect();
@@ -161,7 +161,7 @@ fn banded<'a>(line: impl Iterator<Item = (f64, &'a Banded)>, axes: [&str; 4]) ->
     (line.len() > 1).then(|| plane(axes, vec![PictureSeries::band(&band, BAND), curve]))
 }
 
-/// A line and rings in one colour.
+/// A line and rings in one color.
 fn beside(line: Vec<(f64, f64)>, points: Vec<(f64, f64)>, colour: usize) -> Vec<PictureSeries> {
     let colour = PALETTE[colour];
     vec![
@@ -170,10 +170,10 @@ fn beside(line: Vec<(f64, f64)>, points: Vec<(f64, f64)>, colour: usize) -> Vec<
     ]
 }
 
-/// Bladders whose pressures over time are drawn, at most.
+/// Largest number of bladders whose pressures over time are drawn.
 const DRAWN: usize = 3;
 
-/// Pressures over time of the bladders in which they are largest.
+/// Pressures over time, for the bladders with the largest pressures.
 fn pressures_over_time(found: &Sensed) -> Vec<Panel> {
     let size = |k: usize| {
         let all = found.rows.iter().filter_map(|row| row.measured_pa[k]);
@@ -191,7 +191,7 @@ fn pressures_over_time(found: &Sensed) -> Vec<Panel> {
     order.iter().take(DRAWN).map(panel).collect()
 }
 
-/// Pressures along the beam of the row in which they are largest.
+/// Pressures along the beam, for the row of measurements with the largest pressure.
 fn pressures(found: &Sensed) -> Option<Panel> {
     let size = |row: &&results::sense::Row| {
         let all = row.measured_pa.iter().flatten();

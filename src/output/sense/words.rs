@@ -1,4 +1,4 @@
-//! Loads from pressures in words.
+//! Text of loads estimated from pressures.
 
 use crate::error;
 use crate::output::columns::table as table_of;
@@ -6,12 +6,12 @@ use crate::output::numbers::{count, counted, significant, trimmed};
 use crate::results::sense::{BandKind, Banded, NoiseFrom, Sensed, Unknown};
 use crate::study::sense::basis::Basis;
 
-/// Rows of a table at most.
+/// Largest number of rows of a table.
 const ROWS: usize = 12;
-/// Lines of a kind of which all are told, at most.
+/// Largest number of lines of a kind that are listed one by one.
 const MANY: usize = 6;
 
-/// What pressures tell, the loads, how they fit, which bladders to measure, what to know.
+/// Observability, loads, fit, selection of bladders, and warnings.
 pub fn words(found: &Sensed) -> String {
     let mut text = about_sight(found);
     if !found.rows.is_empty() {
@@ -20,7 +20,7 @@ pub fn words(found: &Sensed) -> String {
             text += &format!("\n{doubts}");
         }
         let (headings, rows) = table(found);
-        // of a curve some instants from its start to its end, of measurements by themselves the first
+        // over time some instants from start to end, otherwise the first rows
         let every = match found.over_time {
             Some(_) => rows.len().div_ceil(ROWS),
             None => 1,
@@ -48,7 +48,7 @@ pub fn words(found: &Sensed) -> String {
     text
 }
 
-/// What pressures of the bladders tell of the loads at all.
+/// Observability of the loads from the pressures of the bladders.
 pub fn about_sight(found: &Sensed) -> String {
     let loads: Vec<String> = found.loads.iter().map(ToString::to_string).collect();
     let bladders = counted(found.bladders.len() as u64, "bladder");
@@ -121,13 +121,13 @@ pub fn about_sight(found: &Sensed) -> String {
     text
 }
 
-/// Those of the amplitudes of which something holds.
+/// Amplitudes that satisfy a condition on their index.
 fn of<'a>(found: &'a Sensed, holds: &dyn Fn(usize) -> bool) -> Vec<&'a Unknown> {
     let all = found.amplitudes.iter().enumerate();
     all.filter(|(k, _)| holds(*k)).map(|(_, a)| a).collect()
 }
 
-/// Names of amplitudes; of many places of a profile how many, and between which.
+/// Names of amplitudes; many places of a profile are summarized by their number and range.
 fn listed(all: &[&Unknown]) -> String {
     let (places, others): (Vec<&Unknown>, Vec<&Unknown>) = all.iter().partition(|a| a.place.is_some());
     let (from_places, rest) = match places.as_slice() {
@@ -141,7 +141,7 @@ fn listed(all: &[&Unknown]) -> String {
     names.chain(from_places).collect::<Vec<_>>().join(", ")
 }
 
-/// A load with half of its band.
+/// A load with the half width of its band.
 fn banded(one: Option<&Banded>, kind: BandKind) -> String {
     match one {
         Some(one) => format!(
@@ -154,9 +154,9 @@ fn banded(one: Option<&Banded>, kind: BandKind) -> String {
     }
 }
 
-/// Headings and rows: a line a load where there is one row of measurements, else a line a row.
+/// Headings and rows: one line per load for a single row of measurements, else one line per row.
 pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
-    // sums are of use where what they are of is not told
+    // sums are useful where their terms are not determined
     let lost = found.rows.iter().any(|row| row.amplitudes.contains(&None));
     let means = found.band == BandKind::LocalMean;
     let sums = || found.seen.together.iter().filter(|_| lost && !means);
@@ -202,7 +202,7 @@ pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
     (headings, lines.collect())
 }
 
-/// What the bands hold, in a sentence.
+/// Meaning of the bands, in a sentence.
 pub fn about_band(found: &Sensed) -> String {
     let text = match found.band {
         BandKind::AssumedForm => {
@@ -231,7 +231,7 @@ pub fn about_band(found: &Sensed) -> String {
     text.into()
 }
 
-/// Noise, fit, and what was known before.
+/// Noise, fit, and prior assumptions.
 pub fn about_noise(found: &Sensed) -> String {
     let Some(noise) = &found.noise else {
         return String::new();
@@ -299,12 +299,12 @@ pub fn about_noise(found: &Sensed) -> String {
     text
 }
 
-/// Bladders, blanks between.
+/// Bladders, separated by spaces.
 pub fn list(bladders: &[i64]) -> String {
     bladders.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
 }
 
-/// The best bladders to measure.
+/// Table of the best bladders to measure.
 fn sensors(found: &Sensed) -> String {
     let errors: String = found
         .amplitudes
@@ -333,7 +333,7 @@ fn sensors(found: &Sensed) -> String {
     )
 }
 
-/// One sentence.
+/// Answer in one sentence.
 pub fn answer(found: &Sensed) -> String {
     match (found.rows.as_slice(), found.choice.first(), found.choice.last()) {
         ([row], ..) => {

@@ -1,8 +1,8 @@
-//! What a study leaves behind: `study.csv`, `study.json`, `study.svg`, and its words.
+//! Output files of a study, `study.csv`, `study.json` and `study.svg`, and its text.
 //!
 //! ```text
 //! table   for the terminal, and as CSV
-//! words   the sentence at the end
+//! words   the closing sentence
 //! ```
 
 mod table;
@@ -19,19 +19,19 @@ use crate::study::accuracy::Study;
 pub use table::{csv, table};
 pub use words::sentence;
 
-/// One row a setting and measure.
+/// One row per setting and measure.
 pub const CSV: &str = "study.csv";
-/// Everything.
+/// Complete result.
 pub const JSON: &str = "study.json";
 /// Error and time.
 pub const PICTURE: &str = "study.svg";
 
-/// The text of `study.json`; what is not finite is null.
+/// Text of `study.json`; numbers that are not finite are null.
 pub fn json(study: &Study) -> String {
     results::told(study, Some(&sentence(study)))
 }
 
-/// Writes the files into a folder; others in it stay.
+/// Writes the files into a folder; other files in it stay.
 pub fn write(folder: &mut ResultFolder, study: &Study) -> Result<Vec<PathBuf>> {
     let picture = picture(study).and_then(|data| workprecision::draw(&data));
     let mut files = vec![(CSV, csv(study)), (JSON, json(study))];
@@ -39,7 +39,7 @@ pub fn write(folder: &mut ResultFolder, study: &Study) -> Result<Vec<PathBuf>> {
     folder.fill(files)
 }
 
-/// The picture's data; `None` when nothing could be compared.
+/// Data of the picture; `None` if nothing could be compared.
 pub fn picture(study: &Study) -> Option<WorkPrecision> {
     let measure = study.measure()?;
     let mut lines = vec![];

@@ -1,4 +1,4 @@
-//! The table of a study, for the terminal and as CSV.
+//! Table of a study, for the terminal and as CSV.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ use crate::study::accuracy::trial::{Ending, Role};
 const HEADINGS: &str =
     "cells | method | rtol | time | median | steps | residuals | factor. | failed | in time | in space | total | ";
 
-/// The table of points in the headline's measure, then references, then what each measure's limit is worth.
+/// Table of the points in the headline measure, then the references, then the limit of each measure.
 pub fn table(study: &Study) -> String {
     let mut text = String::new();
     let Some(measure) = study.measure() else {
@@ -129,7 +129,7 @@ fn references(study: &Study) -> String {
     text
 }
 
-/// What is known of each measure: order in space, own error of the limit.
+/// Limit of each measure: order in space, and own error.
 fn limits(study: &Study) -> String {
     let headings = "<limit of each measure | order | <limit by | own error | of it in space | <size";
     let rows = study.measures.iter().map(|m| {
@@ -160,7 +160,7 @@ fn limits(study: &Study) -> String {
     text
 }
 
-/// `study.csv`: one row a setting and measure; one without errors for a setting that did not finish.
+/// Text of `study.csv`: one row per setting and measure; a setting that did not finish has one row without errors.
 pub fn csv(study: &Study) -> String {
     let headings = "cells_per_segment,cells_per_bladder,method,max_order,rtol,role,status,reason,unknowns,wall_min [s],wall_median [s],\
                     repeats,steps,residual_evaluations,jacobian_evaluations,factorizations,error_test_failures,newton_failures,\

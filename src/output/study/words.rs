@@ -4,12 +4,12 @@ use crate::discrete::quantities::Observable;
 use crate::output::numbers::{counted, significant, trimmed};
 use crate::study::accuracy::{Scheme, Setting, Study};
 
-/// A measure as people say it.
+/// A measure as text.
 pub fn spoken(name: &str) -> String {
     Observable::named(name).map_or_else(|| name.replace('_', " "), |one| one.words().into())
 }
 
-/// `1 % of tip deflection costs 0.03 s (2 cells, rtol 1e-3); ...; looser than rtol 1e-3 costs more, not less.`
+/// Closing sentence: `1 % of tip deflection costs 0.03 s (2 cells, rtol 1e-3); ...; looser than rtol 1e-3 costs more, not less.`
 pub fn sentence(study: &Study) -> String {
     let Some(measure) = study.measure() else {
         return "Nothing can be said: no run finished.".into();
@@ -26,7 +26,7 @@ pub fn sentence(study: &Study) -> String {
         };
         let trial = &study.points[k].trial;
         if last == Some(k) {
-            // The cheapest run of all is more accurate than asked: it answers the looser question, too.
+            // The cheapest run of all is more accurate than requested, so it also answers the looser question.
             parts.pop();
         }
         let of = match parts.is_empty() {
@@ -72,7 +72,7 @@ fn price(seconds: f64, setting: Setting, schemes: &[Scheme]) -> String {
     )
 }
 
-/// The worst foot among the lines that an answer lies on; else the worst of all, with its line.
+/// Sentence about the tolerance above which cost increases most: on a line with an answer, else on any line, which is then named.
 fn foot(study: &Study) -> Option<String> {
     let line = |k: usize| study.points[k].trial.line();
     let lines: Vec<_> = study.answers.iter().filter_map(|a| a.point).map(line).collect();
@@ -99,7 +99,7 @@ fn foot(study: &Study) -> Option<String> {
     ))
 }
 
-/// How much more orders beyond 2 cost at the first accuracy that both have, when they cost more.
+/// Cost of orders above 2 relative to others, at the first accuracy that both reach; `None` up to a factor of 2.
 fn trap(study: &Study) -> Option<String> {
     let cheapest = |high: bool, accuracy: f64| {
         let all = study.points.iter().enumerate().filter(|(k, p)| {

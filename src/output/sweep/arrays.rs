@@ -1,4 +1,4 @@
-//! `sweep.npz`: an array a column of numbers, as long as the table; NaN where a row has none.
+//! `sweep.npz`: one array per numeric column, as long as the table; NaN if a row has no value.
 
 use std::collections::HashMap;
 use std::io::{BufWriter, Write as _};
@@ -14,13 +14,13 @@ use crate::results::sweep::{Column, Plan};
 use crate::run::summary::Status;
 use crate::study::sweep::Row;
 
-/// Numbers that are held at once: the journal is read once for as many columns as have no more.
+/// Largest number of values in memory. The journal is read once per group of columns within this limit.
 const HELD: usize = 4 << 20;
 
-/// Writes it.
+/// Writes the arrays.
 ///
 /// # Errors
-/// It cannot be written, or the journal not be read.
+/// The file cannot be written, or the journal cannot be read.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Column]) -> Result<()> {
     let rows = survey.count();
     let named: Vec<(&str, &str)> = columns
@@ -53,7 +53,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Col
     reading
 }
 
-/// The numbers of a row by heading.
+/// Numbers of a row, by heading.
 fn numbers<'a>(plan: &'a Plan, row: &'a Row) -> HashMap<&'a str, f64> {
     let mut all: HashMap<&str, f64> = row.found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
     all.insert("design", row.number as f64);

@@ -1,4 +1,4 @@
-//! Modes that change places from one design to the next, in words.
+//! Text about modes that change places between neighboring designs.
 
 use super::Survey;
 use crate::error::{Code, Result};
@@ -6,10 +6,10 @@ use crate::output::numbers::{significant, trimmed};
 use crate::results::sweep::Plan;
 use crate::study::sweep::exchanged::{Exchange, MOST, Swinging, exchanges};
 
-/// Exchanges told one by one.
+/// Largest number of exchanges listed.
 const TOLD: usize = 3;
 
-/// Those of designs that finished, as far as they are compared.
+/// Exchanges of modes between designs that finished, as far as designs are compared.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -24,7 +24,7 @@ pub fn of(plan: &Plan, survey: &Survey) -> Result<Vec<Exchange>> {
     Ok(exchanges(plan, &designs))
 }
 
-/// What is told of them; nothing where there are none.
+/// Warning about exchanges; empty if there are none.
 pub fn warnings(all: &[Exchange]) -> Vec<String> {
     let one = |found: &Exchange| {
         let ([a, b], [from, to], [k, j]) = (found.designs, found.values, found.modes);

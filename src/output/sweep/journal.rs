@@ -1,4 +1,4 @@
-//! `designs.jsonl`: a line a design.
+//! `designs.jsonl`: one line per design.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufRead as _, BufReader, Seek as _, SeekFrom};
@@ -11,33 +11,33 @@ use crate::output::journal::{Journal, Lines};
 use crate::run::summary::Status;
 use crate::study::sweep::{Plan, Row};
 
-/// What a journal holds, without its rows.
+/// Content of a journal without its rows.
 #[derive(Clone, Debug, Default)]
 pub struct Survey {
     lines: Lines,
-    /// Where the line of each design begins, one more; 0 where there is none.
+    /// Byte offset of the line of each design, plus 1; 0 if there is none.
     begins: Vec<u64>,
-    /// How each ended that has one.
+    /// Status of each design that has a row.
     ended: Vec<Option<Status>>,
     /// Names of figures, in the order of the first row that has them.
     pub figures: Vec<String>,
-    /// Rows by how they ended.
+    /// Number of rows by status.
     pub statuses: BTreeMap<Status, usize>,
 }
 
 impl Survey {
-    /// Of a file; of none where there is none. A damaged line is not used; of two rows of a design the first
-    /// that finished counts, else the last.
+    /// Reads a journal; a missing file counts as empty. Ignores damaged lines. Of several rows of a design the first that finished counts,
+    /// else the last.
     ///
     /// # Errors
-    /// It cannot be read.
+    /// The journal cannot be read.
     pub fn of(path: &Path, plan: &Plan) -> Result<Self> {
         let mut found = Self {
             begins: vec![0; plan.designs],
             ended: vec![None; plan.designs],
             ..Self::default()
         };
-        // by name, the first design that has it and its place there
+        // by name: the first design with this figure, and its place there
         let mut names: BTreeMap<String, (usize, usize)> = BTreeMap::new();
         found.lines = Lines::read(path, plan.crc32(), true, |begin, row: Row| {
             let fits = row.number < plan.designs && row.case < plan.cases.len() && row.values.len() == plan.axes.len();
@@ -61,40 +61,40 @@ impl Survey {
         Ok(found)
     }
 
-    /// Opens the journal to go on behind what is whole.
+    /// Opens the journal to append after its complete lines.
     ///
     /// # Errors
-    /// It cannot be made or cut.
+    /// The file cannot be created or truncated.
     pub fn go_on(&self, folder: &ResultFolder) -> Result<Journal> {
         let journal = Journal::go_on(folder.path(JOURNAL), &self.lines)?;
         folder.secure()?;
         Ok(journal)
     }
 
-    /// What is damaged, in words; nothing where nothing is.
+    /// Description of damaged rows; `None` if there are none.
     pub fn damage(&self) -> Option<String> {
         self.lines.damage("sweep")
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn count(&self) -> usize {
         self.begins.iter().filter(|begin| **begin > 0).count()
     }
 
-    /// Whether a design has a row.
+    /// True if a design has a row.
     pub fn has(&self, number: usize) -> bool {
         self.begins.get(number).is_some_and(|begin| *begin > 0)
     }
 
-    /// Whether a design has a row that tells all.
+    /// True if a design has a row that finished.
     pub fn finished(&self, number: usize) -> bool {
         self.ended.get(number) == Some(&Some(Status::Finished))
     }
 
-    /// Gives every row to `take`, in the order of numbers.
+    /// Passes every row to `take`, in the order of design numbers.
     ///
     /// # Errors
-    /// One cannot be read, or those of `take`.
+    /// A row cannot be read, or `take` fails.
     pub fn each(&self, mut take: impl FnMut(Row) -> io::Result<()>) -> Result<()> {
         let mut read = || -> io::Result<()> {
             if self.count() == 0 {

@@ -1,18 +1,18 @@
-//! What many designs leave behind.
+//! Output files of many designs.
 //!
 //! ```text
-//! journal   designs.jsonl: a line a design, safe on disk as soon as it is computed
-//! table     sweep.csv: a row a design
+//! journal   designs.jsonl: one line per design, safe on disk as soon as it is computed
+//! table     sweep.csv: one row per design
 //! arrays    sweep.npz: the same numbers
-//! exchanged modes that change places from one design to the next
+//! exchanged modes that change places between neighboring designs
 //! warned    warnings of designs, counted
 //! pictures  sweep.svg, map.svg
-//! words     what is said of it
+//! words     text of many designs
 //! script    jobs for Slurm and GNU parallel
-//! parts     shards joined
+//! parts     joins shards
 //! ```
 //!
-//! Rows are read from the journal one by one, in the order of their numbers; what is kept in memory of each is where its line begins.
+//! Rows are read from the journal one by one, in the order of their numbers. Memory contains only the offset of each line.
 
 pub mod arrays;
 pub mod exchanged;
@@ -42,27 +42,27 @@ pub use crate::study::sweep::unit::unit;
 pub use super::journal::Journal;
 pub use journal::Survey;
 
-/// The sweep as it was asked for; it is there from the beginning.
+/// The requested sweep; exists from the beginning.
 pub const PLAN: &str = "plan.json";
-/// A line a design.
+/// One line per design.
 pub const JOURNAL: &str = "designs.jsonl";
-/// What the table is about.
+/// Description of the table.
 pub const JSON: &str = "sweep.json";
 /// The table.
 pub const TABLE: &str = "sweep.csv";
 /// The table's numbers.
 pub const ARRAYS: &str = "sweep.npz";
-/// Pictures, of which those are there that say something.
+/// Pictures; only informative ones exist.
 pub const PICTURES: [&str; 2] = ["sweep.svg", "map.svg"];
 /// Cases of designs, on request.
 pub const CASES: &str = "cases";
 /// Result folders of designs, on request.
 pub const FOLDERS: &str = "designs";
 
-/// The plan of a folder, if it has one.
+/// Reads the plan of a folder, if it has one.
 ///
 /// # Errors
-/// It cannot be read.
+/// The plan cannot be read.
 pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
     let path = folder.path(PLAN);
     if path.exists() {
@@ -72,10 +72,10 @@ pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
     }
 }
 
-/// Makes a folder ready for a plan: what is left of another sweep or command goes.
+/// Prepares a folder for a plan: removes the files of another sweep or command.
 ///
 /// # Errors
-/// Something cannot be removed or written.
+/// A file cannot be removed or written.
 pub fn begin(folder: &mut ResultFolder, plan: &Plan, first: &Written) -> Result<()> {
     if Kind::within(folder.dir()) == Some(Kind::Designs) {
         for name in [CASES, FOLDERS] {
@@ -91,7 +91,7 @@ pub fn begin(folder: &mut ResultFolder, plan: &Plan, first: &Written) -> Result<
     folder.secure()
 }
 
-/// Removes what belongs to designs of another sweep; anything else stays.
+/// Removes files and folders of designs of another sweep; others stay.
 fn remove_numbered(dir: PathBuf) -> Result<()> {
     if !dir.is_dir() {
         return Ok(());
@@ -109,27 +109,27 @@ fn remove_numbered(dir: PathBuf) -> Result<()> {
         };
         gone.map_err(|e| fault("remove", &path, e))?;
     }
-    // only an empty one can be removed so
+    // removes only an empty folder
     let _ = fs::remove_dir(&dir);
     Ok(())
 }
 
-/// The name of a design's case or folder.
+/// Name of the case or folder of a design.
 pub fn numbered(plan: &Plan, number: usize) -> String {
     let width = plan.designs.to_string().len().max(5);
     format!("{number:0width$}")
 }
 
-/// Keeps the case of a design under a name.
+/// Stores the case of a design under a name.
 ///
 /// # Errors
-/// It cannot be written.
+/// The case cannot be written.
 pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()> {
     let dir = folder.path(CASES);
     fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
     for (table, text) in &case.tables {
         let path = dir.join(table);
-        // designs share tables, and a name has the check sum of its own
+        // designs share tables, whose names contain their checksums
         if !path.exists() {
             put_whole(&path, |file| file.write_all(text.as_bytes()))?;
         }
@@ -139,7 +139,7 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
     })
 }
 
-/// What the table of all rows that are there is about, with its warnings.
+/// Description of the table of all existing rows, with warnings.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -150,10 +150,10 @@ pub fn summarize(plan: &Plan, survey: &Survey) -> Result<Sweep> {
     })
 }
 
-/// Writes table, arrays and what they are about, of all rows that are there; then pictures, unless it is to be lean.
+/// Writes table, arrays and their description for all existing rows; then pictures, unless `lean`.
 ///
 /// # Errors
-/// Something cannot be read or written.
+/// A file cannot be read or written.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, told: &Sweep, lean: bool) -> Result<()> {
     table::write(folder, plan, survey, &told.columns)?;
     arrays::write(folder, plan, survey, &told.columns)?;
@@ -171,7 +171,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, told: &Sweep, 
     folder.secure()
 }
 
-/// What is warned of: modes that change places between designs, and what designs were warned of.
+/// Warnings about modes that change places between designs, and counted warnings of the designs.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -181,7 +181,7 @@ pub fn warnings(plan: &Plan, survey: &Survey) -> Result<Vec<String>> {
     Ok(all)
 }
 
-/// What a table of these rows is about.
+/// Description of the table of these rows, without warnings.
 pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
     let (rows, expected) = (survey.count(), plan.share());
     let statuses = survey
@@ -200,7 +200,7 @@ pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
     }
 }
 
-/// The table's columns.
+/// Columns of the table.
 fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
     let mut used = std::collections::BTreeSet::new();
     let mut column = |name: &str, unit: &str, text: bool| {
@@ -222,7 +222,7 @@ fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
         }
     };
     let mut all = vec![column("design", "1", false), column("case", "", true)];
-    // the case by its place in the list, the status by its code
+    // the case as its index in the list, the status as its code
     all[1].array = Some("case".into());
     all.extend(
         plan.axes
@@ -238,7 +238,7 @@ fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
     all
 }
 
-/// A varied value as a number; nothing where it is none.
+/// A varied value as a number; `None` if it is not a number.
 pub fn numeric(value: &Value) -> Option<f64> {
     value
         .as_f64()

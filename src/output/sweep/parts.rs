@@ -1,4 +1,4 @@
-//! Shards joined to one table; what is lost of them.
+//! Joins shards to one table, and lists missing designs.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -15,31 +15,31 @@ use crate::study::analysis::Found;
 /// A folder with a part of a sweep.
 #[derive(Clone, Debug)]
 pub struct Part {
-    /// Where it is.
+    /// Path of the folder.
     pub dir: PathBuf,
-    /// Its plan.
+    /// Plan of the part.
     pub plan: Plan,
 }
 
-/// A part that is not there, or not whole.
+/// A part that is missing or incomplete.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lost {
-    /// Which; nothing where the sweep has no shards.
+    /// The shard; `None` if the sweep has no shards.
     pub shard: Option<Shard>,
-    /// Its folder, where it was given.
+    /// Its folder, if given.
     pub dir: Option<PathBuf>,
-    /// Designs that are missing.
+    /// Number of missing designs.
     pub designs: usize,
     /// The first of them.
     pub first: usize,
-    /// What computes them.
+    /// Command that computes them.
     pub command: String,
 }
 
 /// Reads the plans of folders.
 ///
 /// # Errors
-/// [`Error::Usage`] where they are parts of different sweeps, with what differs.
+/// [`Error::Usage`] if they are parts of different sweeps, with the difference.
 pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
     let mut all: Vec<Part> = vec![];
     for dir in dirs {
@@ -61,11 +61,11 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
     Ok(all)
 }
 
-/// Puts the rows of all parts into the journal of a folder, which is none of theirs, each design once; rows that are there already stay, but
-/// for those that did not finish and now have. Returns what is there, and which rows are damaged.
+/// Copies the rows of all parts into the journal of a folder that is none of theirs, each design once. Existing rows stay, except
+/// unfinished ones for which a part has a finished row. Returns the rows present, and descriptions of damaged rows.
 ///
 /// # Errors
-/// Something cannot be read or written; [`Error::Usage`] where two rows of one design finished with other figures, before anything is written.
+/// A file cannot be read or written. [`Error::Usage`] if two rows of one design finished with different figures; nothing is written then.
 pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Survey, Vec<String>)> {
     let path = folder.path(JOURNAL);
     let mut there = Survey::of(&path, plan)?;
@@ -101,7 +101,7 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Surve
     Ok((there, damage))
 }
 
-/// Refuses folders of which two have a design that finished with other figures.
+/// Rejects folders if a design finished in two of them with different figures.
 fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
     let twice = |number: usize| all.iter().filter(|(_, survey)| survey.finished(number)).count() > 1;
     let mut known: BTreeMap<usize, (usize, Found)> = BTreeMap::new();
@@ -139,7 +139,7 @@ fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
     Ok(())
 }
 
-/// What is missing, shard by shard.
+/// Missing designs, by shard.
 pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost> {
     let of = parts.first().and_then(|part| part.plan.shard).map(|shard| shard.of);
     let even = of.filter(|of| {
@@ -182,19 +182,19 @@ pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost
     all
 }
 
-/// Where a shard probably is, by the names of the others.
+/// Probable folder of a shard, from the names of the others.
 fn beside(parts: &[Part], shard: Shard) -> Option<PathBuf> {
     let part = parts.first()?;
     let name = sibling(part.dir.file_name()?.to_str()?, part.plan.shard?, shard.index)?;
     Some(part.dir.with_file_name(name))
 }
 
-/// The name of another shard's folder, where that of this one ends with its number.
+/// Name of another shard's folder, if the name of this one ends with its number.
 fn sibling(name: &str, own: Shard, other: usize) -> Option<String> {
     let behind = format!("-of-{}", own.of);
     let (name, behind) = name.strip_suffix(&behind).map_or((name, ""), |name| (name, &behind));
     let stem = name.strip_suffix(&own.index.to_string())?;
-    // 2 is not the number of a folder 12
+    // a folder 12 does not have the number 2
     let whole = !stem.ends_with(|c: char| c.is_ascii_digit());
     whole.then(|| format!("{stem}{other}{behind}"))
 }

@@ -1,4 +1,4 @@
-//! From rows to the data of pictures.
+//! Converts rows to the data of pictures.
 
 use std::collections::BTreeMap;
 
@@ -9,11 +9,11 @@ use crate::output::plot::designs::{self, Drawn, Numbers};
 use crate::results::sweep::Plan;
 use crate::run::summary::Status;
 
-/// Designs drawn at most, spread over all of them.
+/// Largest number of designs drawn, spread over all.
 const DRAWN: usize = 2000;
-/// Figures drawn at most.
+/// Largest number of figures drawn.
 const FIGURES: usize = 4;
-/// Figures that are looked at first, where they are there and vary.
+/// Figures that can be drawn, in order of preference; only those that exist and vary are drawn.
 const FIRST: [&str; 13] = [
     "harvested_power_w.mean",
     "harvested_energy_j.final",
@@ -30,7 +30,7 @@ const FIRST: [&str; 13] = [
     "mode_2.damping_ratio",
 ];
 
-/// The pictures that say something of these designs, by the names of their files.
+/// Informative pictures of these designs, by file name.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -58,7 +58,7 @@ pub fn draw(plan: &Plan, survey: &Survey) -> Result<Vec<(&'static str, String)>>
         .collect())
 }
 
-/// Designs that finished, as far as they are drawn.
+/// Data of the designs that finished, thinned to those drawn.
 fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
     let (mut named, mut numbers) = (vec![], vec![]);
@@ -88,7 +88,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
             values.is_some_and(|values| differs(&values))
         })
         .collect();
-    // what is no number, or does not vary, tells curves apart
+    // values that are not numbers, or do not vary, distinguish curves
     let mut curves: Vec<String> = vec![];
     let curve = named.iter().map(|(case, values)| {
         let own = plan
@@ -143,7 +143,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     })
 }
 
-/// Whether values follow each other by factors rather than by steps: a decade of them at least, more evenly spaced by their logarithms.
+/// True if values cover at least a decade and their logarithms are spaced more evenly than the values.
 fn by_factors(values: &[Option<f64>]) -> bool {
     let mut all: Vec<f64> = values.iter().flatten().copied().collect();
     all.sort_by(f64::total_cmp);

@@ -1,11 +1,11 @@
-//! Jobs that compute the shards of a sweep, for a scheduler.
+//! Job scripts that compute the shards of a sweep.
 
 use std::path::Path;
 
 use crate::results::sweep::Plan;
 use crate::study::sweep::plan::quoted;
 
-/// Who starts the jobs.
+/// Scheduler that starts the jobs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheduler {
     /// A job array of Slurm.
@@ -14,24 +14,24 @@ pub enum Scheduler {
     Parallel,
 }
 
-/// What jobs are told besides the plan.
+/// Settings of the jobs besides the plan.
 #[derive(Clone, Copy, Debug)]
 pub struct Jobs<'a> {
-    /// Shards.
+    /// Number of shards.
     pub shards: usize,
-    /// Designs at once in each of them, or shards at once.
+    /// Number of designs at once in each shard, or of shards at once.
     pub at_once: Option<usize>,
-    /// What computes them.
+    /// Program that computes the shards.
     pub program: &'a Path,
-    /// Results go into folders named like this.
+    /// Result folder; the folders of shards begin with its name.
     pub out: &'a Path,
-    /// Options that change no row.
+    /// Options that do not change rows.
     pub more: &'a [&'a str],
-    /// Whether the whole is to be lean.
+    /// True for a lean result of the whole sweep.
     pub lean: bool,
 }
 
-/// The script.
+/// Text of the script.
 pub fn script(plan: &Plan, scheduler: Scheduler, told: &Jobs) -> String {
     let program = quoted(&told.program.display().to_string());
     let more = told.more.iter().map(|word| (*word).to_owned());

@@ -1,4 +1,4 @@
-//! `sweep.csv`: a row a design.
+//! `sweep.csv`: one row per design.
 
 use std::collections::HashMap;
 use std::io::{BufWriter, Write as _};
@@ -15,10 +15,10 @@ use crate::results::sweep::{Column, Plan};
 use crate::study::analysis::word;
 use crate::study::sweep::Row;
 
-/// Writes it.
+/// Writes the table.
 ///
 /// # Errors
-/// It cannot be written, or the journal not be read.
+/// The file cannot be written, or the journal cannot be read.
 pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Column]) -> Result<()> {
     let mut reading = Ok(());
     put_whole(&folder.path(TABLE), |file| {

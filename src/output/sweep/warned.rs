@@ -1,11 +1,11 @@
-//! What designs were warned of, counted.
+//! Warnings of designs, counted.
 
 use std::collections::BTreeMap;
 
 use super::Survey;
 use crate::error::{Code, Result};
 
-/// Of each warning, how many designs have it, and the first: the table names them all.
+/// For each warning the number of designs that have it, and the first of them. The table lists all.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -20,7 +20,7 @@ pub fn of(survey: &Survey) -> Result<Vec<String>> {
     })?;
     let words = |(id, (count, first)): (String, (usize, usize))| {
         let code = Code::find(&id)?;
-        // of modes that change places it is told which
+        // exchanged modes have a more detailed warning
         let title = code.title().trim_end_matches('.');
         let designs = match (count, all) {
             (1, 1) => "the design".into(),

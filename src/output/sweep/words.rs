@@ -1,4 +1,4 @@
-//! What is said of many designs.
+//! Text of many designs.
 
 use std::fmt::Write as _;
 
@@ -11,10 +11,10 @@ use crate::study::analysis::ACCURACY;
 use crate::study::analysis::word;
 use crate::study::sweep::designs::pairs;
 
-/// Designs without a full result that are told one by one.
+/// Largest number of designs without a full result that are listed.
 const TOLD: usize = 5;
 
-/// How many there are of which kind, and the first that did not finish.
+/// Number of designs by status, and the first that did not finish.
 ///
 /// # Errors
 /// The journal cannot be read.
@@ -82,12 +82,12 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
     Ok(text)
 }
 
-/// So many designs.
+/// A number of designs.
 pub fn several(count_of: usize) -> String {
     counted(count_of as u64, "design")
 }
 
-/// How many designs there are of which status.
+/// Number of designs by status.
 pub fn kinds<'a>(statuses: impl Iterator<Item = (&'a str, &'a usize)>) -> String {
     let kinds = statuses.map(|(status, n)| format!("{} {}", count(*n as u64), status.replace('_', " ")));
     let kinds = kinds.collect::<Vec<_>>().join(", ");

@@ -1,4 +1,4 @@
-//! The beginning of a run: its state and sensitivities, from the start of the case or from a checkpoint.
+//! Start of a run: its state and sensitivities, from the start of the case or from a checkpoint.
 
 use super::{End, Run};
 use crate::case::schema::EquilibriumStart;
@@ -12,7 +12,7 @@ use crate::run::record::{Control, Header, Recorder};
 use crate::run::sensitivity::forward::Before;
 
 impl Run<'_> {
-    /// The equilibrium that the case begins in; the recorder is asked at every point of the way to it.
+    /// Computes the equilibrium in which the case begins. The recorder can stop the search at every point of the path.
     pub(super) fn seek(
         &self,
         start: &EquilibriumStart,
@@ -39,13 +39,13 @@ impl Run<'_> {
         header
     }
 
-    /// Sensitivities as a checkpoint has kept them, on the left side of its stop.
+    /// Sensitivities stored in a checkpoint, on the left side of its stop.
     pub(super) fn before(&mut self, dae: &mut BeamDae, from: &Checkpoint) -> Option<Before> {
         let (forward, kept) = (self.forward.as_mut()?, from.forward.as_ref()?);
         Some(forward.take_up(kept, dae, from.t, [&self.state, &self.rates]))
     }
 
-    /// Sensitivities on the right side of a checkpoint's stop.
+    /// Continues the sensitivities on the right side of a checkpoint's stop.
     pub(super) fn go_on_forward(
         &mut self,
         dae: &mut BeamDae,
@@ -70,7 +70,7 @@ impl Run<'_> {
         forward.complete(dae, 0.0, [&self.state, &self.rates])
     }
 
-    /// Room for the values of a system.
+    /// Allocates the arrays for the values of a system.
     pub(super) fn prepare(&mut self, dae: &BeamDae) {
         self.state = vec![0.0; dae.len()];
         self.rates = vec![0.0; dae.len()];

@@ -1,4 +1,4 @@
-//! A run from a state that is known, with derivatives that are.
+//! Run from a given state, with given derivatives.
 
 use super::{End, Outcome, Run};
 use crate::case::parameter::Parameter;
@@ -8,9 +8,9 @@ use crate::error::Result;
 use crate::run::record::Recorder;
 use crate::run::sensitivity::forward::{Alike, By};
 
-/// Derivatives that are carried along from a known beginning.
+/// Derivatives that are integrated from given initial values.
 pub struct Along<'a> {
-    /// The numbers.
+    /// Numbers of the case by which to differentiate.
     pub by: &'a [Parameter],
     /// Systems of changed cases.
     pub alike: &'a Alike<'a>,

@@ -1,4 +1,4 @@
-//! Why a run cannot go on, in words.
+//! Errors that end a run, with cause and hint.
 
 use super::pace::STALL_STEPS;
 use crate::error::{At, Code, SolverError};
@@ -23,7 +23,7 @@ pub(super) fn fault(failure: &IntegrationError) -> SolverError {
     }
 }
 
-/// A fault at a time, with what it is, its likely cause and what to try.
+/// Error at a time, with a description, the likely cause and a hint.
 fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverError {
     SolverError {
         code,

@@ -1,4 +1,4 @@
-//! The end of a run: what it cost and what its summary says.
+//! End of a run: its cost and its summary.
 
 use super::{End, Outcome, Run};
 use crate::case::schema::Method;
@@ -35,12 +35,12 @@ impl Run<'_> {
         };
     }
 
-    /// Gives the wall time since the last call to a part.
+    /// Adds the wall time since the last call to a part.
     pub(super) fn spent(&mut self, on: fn(&mut WallTimes) -> &mut f64) {
         *on(&mut self.summary.wall_s) += self.laps.lap();
     }
 
-    /// Divides the wall time of steps by what the solver knows of it.
+    /// Subtracts the parts that the solver measured from the wall time of the steps.
     pub(super) fn divide(&mut self, solver: &Wall) {
         let wall = &mut self.summary.wall_s;
         wall.residual = solver.residual.as_secs_f64();
@@ -51,7 +51,7 @@ impl Run<'_> {
         wall.steps -= wall.residual + wall.jacobian + wall.linear_solver + integrands;
     }
 
-    /// Figures of ports, and what the run knows of flows that its valves stopped and of those that have no largest value.
+    /// Adds the figures of ports, and warnings of flows that valves stopped and of flows without a largest value.
     pub(super) fn judge_network(&mut self, system: &System) {
         let (s, seen) = (&mut self.summary, &self.observer.seen);
         s.ports = seen.probes.ports.quantities();

@@ -1,4 +1,4 @@
-//! Follows the accepted steps of a run: reads states within them, takes samples, finds where the model was left.
+//! Processing of accepted steps: reads states within them, takes samples, locates exceeded validity limits.
 
 use std::time::{Duration, Instant};
 
@@ -11,14 +11,14 @@ use crate::run::method::Integrator;
 use crate::run::record::{Control, Progress, Recorder, Sampled};
 use crate::run::schedule::Due;
 
-/// Wall time after which a recorder is asked whether to go on, however many samples a step has.
+/// Wall time after which the recorder is asked if the run continues, however many samples a step has.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// Halvings of a step in search of the time at which the model was left.
+/// Number of halvings of a step in the search for the time at which a validity limit is exceeded.
 const HALVINGS: u32 = 30;
 
 impl Run<'_> {
-    /// Looks at the start of a run or of what follows a stop, and takes the sample that is due there.
+    /// Observes the start of a run or of the interval after a stop, and takes the sample that is due there.
     pub(super) fn enter(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -37,8 +37,8 @@ impl Run<'_> {
         }
     }
 
-    /// Follows an accepted step from time `from` [s]: looks at its end, and inside wherever something may have turned, takes every
-    /// sample that is due, and finds out where in the step the model was left, if it was.
+    /// Processes an accepted step from time `from` [s]: observes its end and possible extrema inside, and takes every due sample. If a
+    /// validity limit was exceeded, finds the time within the step.
     pub(super) fn follow(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -98,7 +98,7 @@ impl Run<'_> {
         }
     }
 
-    /// Examines the end of a step [s] for growing waves, where one of the states for that is due.
+    /// Examines the end of a step of length `step` [s] for growing waves, if an examination is due.
     pub(super) fn examine(&mut self, solver: &Integrator<BeamDae>, step: f64) {
         if let Some(watch) = &mut self.waves
             && watch.due(solver.time())
@@ -115,7 +115,7 @@ impl Run<'_> {
         }
     }
 
-    /// Reads derivatives of what has become largest since a time [s], at the instants within the step at which it did.
+    /// Reads derivatives of the values that became largest since time `from` [s], at the times within the step at which they did.
     fn largest(&mut self, solver: &mut Integrator<BeamDae>, from: f64) -> Option<End> {
         self.forward.as_ref()?;
         for t in self.observer.reached(from) {
@@ -131,8 +131,8 @@ impl Run<'_> {
         None
     }
 
-    /// Reads state, rates and integrals at a time within the last step from the integrator's own polynomial, or as they are at
-    /// the present time.
+    /// Reads state, rates and integrals: at the present time as they are, at a time within the last step from the integrator's own
+    /// polynomial.
     pub(super) fn read(&mut self, solver: &mut Integrator<BeamDae>, t: f64) -> std::result::Result<(), End> {
         let read = if t == solver.time() {
             self.state.copy_from_slice(solver.y());
@@ -152,7 +152,7 @@ impl Run<'_> {
         read.map_err(|failure| End::Stopped(format!("the state at t = {t:.6} s could not be read: {failure}")))
     }
 
-    /// The time, and in words, at which the model was left, between a time at which it held and one at which it did not [s].
+    /// Finds the time [s] at which a validity limit is exceeded, and its description, between a time within the limits and one beyond.
     pub(super) fn narrow(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -165,7 +165,7 @@ impl Run<'_> {
         })
     }
 
-    /// Ends the run where the model was left; the state there is recorded last.
+    /// Ends the run where a validity limit is exceeded; the state there is recorded last.
     pub(super) fn leave(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -182,8 +182,8 @@ impl Run<'_> {
         }
     }
 
-    /// Ends the run where it was stopped; the state there is recorded last: what is told of the end is that of the stop, however far the output times
-    /// are apart, but of a run at instants of its own. A run that goes on from a checkpoint drops what was recorded behind it.
+    /// Ends the run on request; the state there is recorded last. The results then end at the stop, however far apart the output times
+    /// are. Runs at explicit output times record no such state. A run resumed from a checkpoint drops what was recorded after it.
     pub(super) fn stop(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -203,8 +203,8 @@ impl Run<'_> {
         }
     }
 
-    /// Takes every sample that is due, the ends of the window among them, up to a time `until` [s] within the last step, which began at `from` [s].
-    /// Of very many the recorder is asked in between whether to go on.
+    /// Takes every sample up to time `until` [s] within the last step, which began at `from` [s], including the ends of the window. If
+    /// there are many samples, the recorder is asked in between if the run continues.
     pub(super) fn sample(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -263,8 +263,9 @@ impl Run<'_> {
         Ok(None)
     }
 
-    /// Takes the state that has been read into all figures, and records it where it is an output; of what lies beyond the model nothing, unless it
-    /// is the last.
+    /// Adds the state that was read to all figures, and records it if it is an output. A state beyond a validity limit is
+    /// dropped, unless
+    /// it is the last.
     pub(super) fn record(
         &mut self,
         solver: &mut Integrator<BeamDae>,
@@ -300,13 +301,13 @@ impl Run<'_> {
     }
 }
 
-/// What follows from a state that was to be recorded.
+/// Outcome of a state that was to be recorded.
 pub(super) enum Recorded {
-    /// The run goes on.
+    /// The run continues.
     On,
-    /// It ends.
+    /// The run ends.
     Ends(End),
-    /// The model was left before it, in words.
+    /// A validity limit was exceeded before, which the text describes.
     Beyond(String),
 }
 
@@ -314,8 +315,8 @@ fn unread(t: f64, failure: &IntegrationError) -> End {
     End::Stopped(format!("sensitivities at t = {t:.6} s could not be read: {failure}"))
 }
 
-/// The time, and in words, at which the model was left, between a time at which it held and one at which it did not [s]; `beyond` tells of
-/// what lies beyond it at a time.
+/// Bisects for the time [s] at which a validity limit is exceeded, between a time within the limits and one beyond. `beyond` describes
+/// the limit that is exceeded at a time, if any. Returns the time and the description.
 pub(super) fn narrow<E>(
     [mut within, mut left]: [f64; 2],
     mut what: String,

@@ -1,4 +1,4 @@
-//! Passes the stops of a run: switches, checkpoints, a fresh start of the integrator.
+//! Stops of a run: switches, checkpoints, restarts of the integrator.
 
 use super::Run;
 use super::faults::{fault, inconsistent};
@@ -12,8 +12,8 @@ use crate::run::schedule::Stop;
 use crate::run::sensitivity::forward::Forward;
 use crate::run::summary::Counters;
 
-/// Passes a switch at `t` [s]: the next smooth branch of every signal, by an instant `ahead` within it [s], a consistent state with its rates, and in
-/// the integrals what is done in no time in between.
+/// Passes a switch at `t` [s]. Selects the next smooth branch of every signal by an instant `ahead` within it [s]. Computes a
+/// consistent state with its rates, and adds the works of the jump to the integrals.
 pub(super) fn switch(
     dae: &mut BeamDae,
     (starter, options): (&mut Starter, &StartOptions),
@@ -41,8 +41,8 @@ impl Run<'_> {
         switch(dae, start, [t, ahead], values, &mut self.carried).err()
     }
 
-    /// Passes a stop: the next smooth branch of every signal, a consistent state, a checkpoint if one is due, a fresh
-    /// start of the integrator.
+    /// Passes a stop: selects the next smooth branch of every signal, computes a consistent state, writes a checkpoint if one is due,
+    /// and restarts the integrator.
     pub(super) fn pass(
         &mut self,
         solver: &mut Integrator<BeamDae>,

@@ -1,18 +1,18 @@
-//! The equations of equilibrium with the load factor as one more unknown.
+//! Equations of equilibrium with the load factor as an additional unknown.
 
 use crate::dae::{Dae, EvaluationError, Seeds, StaticBeam};
 use crate::discrete::ValveTangents;
 use crate::sparse::Pattern;
 
-/// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads, and one that
-/// says how far along the path the point is (Keller's pseudo-arclength):
+/// `[E30]` A point of the load path: n equations of equilibrium for n unknowns y and the share s of the loads. One more equation
+/// fixes the position along the path (Keller's pseudo-arclength):
 ///
 /// ```text
-/// F(s, y) = 0        d·(y, s) = a        d, a chosen by whoever follows the path
+/// F(s, y) = 0        d·(y, s) = a        the path follower chooses d and a
 /// ```
 ///
-/// Where the path turns back in s (a limit point) this stays regular, unlike F alone. With `d = (0, 1)` it is equilibrium
-/// under the share a.
+/// Where the path turns back in s (a limit point) this system remains regular, unlike F alone. With `d = (0, 1)` it describes
+/// equilibrium under the share a.
 pub struct Arclength {
     statics: StaticBeam,
     pattern: Pattern,
@@ -26,11 +26,11 @@ pub struct Arclength {
     none: Vec<bool>,
 }
 
-/// Difference of shares that gives `∂F/∂s`: dead loads are linear in s, follower loads too; driven ends are not.
+/// Difference of shares for `∂F/∂s`. Dead and follower loads are linear in s; driven ends are not.
 const DIFFERENCE: f64 = 1e-4;
 
 impl Arclength {
-    /// Equilibria of a beam under a share of its loads.
+    /// Creates the equations for a beam under a share of its loads.
     pub fn new(statics: StaticBeam) -> Self {
         let n = statics.len();
         let inner = statics.pattern();
@@ -51,24 +51,24 @@ impl Arclength {
         }
     }
 
-    /// The beam, to look at.
+    /// The beam, read-only.
     pub fn statics_ref(&self) -> &StaticBeam {
         &self.statics
     }
 
-    /// The beam.
+    /// The beam, mutable.
     pub fn statics(&mut self) -> &mut StaticBeam {
         &mut self.statics
     }
 
-    /// Asks for equilibrium under a load factor.
+    /// Selects equilibrium under a load factor.
     pub fn at_share(&mut self, share: f64) {
         self.direction.fill(0.0);
         self.direction[self.none.len() - 1] = 1.0;
         self.position = share;
     }
 
-    /// `∂F/∂s` into `above`. Valves are linear meanwhile: the pressure over which one opens may be a small part of what the difference changes.
+    /// Computes `∂F/∂s` into `above`, with linearized valves: the opening pressure of a valve may be small relative to the difference.
     fn by_share(&mut self, y: &[f64], s: f64) -> Result<(), EvaluationError> {
         if ValveTangents::needed(self.statics.system()) {
             self.statics.residual(s, y, &[], &mut self.above)?;

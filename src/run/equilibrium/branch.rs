@@ -1,4 +1,4 @@
-//! From one path onto another that crosses it.
+//! Transition from a path to another one that crosses it.
 
 use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
 use super::state::Stability;
@@ -6,16 +6,16 @@ use super::{Event, Kind};
 use crate::numerics::kernels;
 use crate::sundials::KinsolError;
 
-/// First step along the branch, over its size.
+/// First step along the branch, in the norm of the path.
 const ASIDE: f64 = 0.02;
-/// Share of the loads that this step may come to beside: an end that is moved buckles a beam by a hundredth of its depth.
+/// Largest change of the load share in this step; needed if a moved end buckles the beam.
 const SHARE: f64 = 0.02;
 const INVERSE_ITERATIONS: usize = 12;
 
 impl Follower<'_> {
-    /// Leaves a path where another one crosses it: a step along the direction that costs no force, which is where the
-    /// matrix is nearly singular, to the side on which it bends (its largest displacement across, or else along) in the positive sense, or to
-    /// the other one where only that holds.
+    /// Leaves a path where another one crosses it, by a step in the direction of least stiffness, in which the matrix is nearly
+    /// singular. The step is towards a positive sign of its largest displacement. If the other side has fewer unstable directions,
+    /// the step is towards that side.
     pub(super) fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<Stability>)) -> Result<f64, End> {
         let n = self.n;
         let last = trail.last.clone();
@@ -23,7 +23,7 @@ impl Follower<'_> {
         self.solve(&mut x, PATIENCE)
             .map_err(|failure| self.fail(&failure, last[n]))?;
         let mut direction = self.softest();
-        // The eigenvalue that changes sign does so in proportion to the distance.
+        // the eigenvalue that changes sign is proportional to the distance
         let here = Stability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
         let share = last[n] + (beyond.0 - last[n]) * between(here, beyond.1);
         self.path.events.push(Event {
@@ -52,7 +52,7 @@ impl Follower<'_> {
             if self.unstable(other.as_ref().ok()) >= ways {
                 direction.iter_mut().for_each(|x| *x = -*x);
             }
-            // once more: the solver keeps the matrix of this side
+            // repeated, since the solver must keep the matrix of this side
             self.aside(&last, &direction)
         };
         let x = taken.map_err(|failure| {
@@ -66,7 +66,7 @@ impl Follower<'_> {
         Ok(taken)
     }
 
-    /// A state of the path that crosses, on one side of the state in which it is left.
+    /// State of the crossing path, on one side of the state at which the current path is left.
     fn aside(&mut self, last: &[f64], direction: &[f64]) -> Result<Vec<f64>, Option<KinsolError>> {
         let n = self.n;
         let mut step = ASIDE;
@@ -89,14 +89,14 @@ impl Follower<'_> {
         }
     }
 
-    /// In how many ways a state gives way; more than any where it is none, or not known.
+    /// Number of unstable directions of a state; `usize::MAX` if there is no state or its stability is unknown.
     fn unstable(&mut self, x: Option<&Vec<f64>>) -> usize {
         let n = self.n;
         let stability = x.and_then(|x| Stability::of(self.solver.dae_mut().statics(), x[n], &x[..n]));
         stability.map_or(usize::MAX, |s| s.unstable)
     }
 
-    /// Vector that the matrix last factored makes shortest (inverse iteration).
+    /// Vector that the last factored matrix shortens most (inverse iteration).
     fn softest(&mut self) -> Vec<f64> {
         let mut x: Vec<f64> = (0..=self.n).map(|k| (1.0 + k as f64).sin()).collect();
         for _ in 0..INVERSE_ITERATIONS {
@@ -108,7 +108,7 @@ impl Follower<'_> {
     }
 }
 
-/// Where between two states an eigenvalue is zero, a share of the distance; halfway when they do not tell.
+/// Position of an eigenvalue's zero between two states, as a fraction of the distance; 0.5 if it is unknown.
 fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
     let softest = |s: Option<Stability>| s.and_then(|s| s.softest);
     let share = softest(before).zip(softest(beyond)).map(|(a, b)| a / (a - b));

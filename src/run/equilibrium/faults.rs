@@ -1,4 +1,4 @@
-//! Why a path ends before the load that is asked for.
+//! Errors that end a path before the requested load.
 
 use super::path::{End, Follower};
 use super::state::State;
@@ -10,21 +10,21 @@ use crate::integrate::halt::{self, INTERRUPTED};
 use crate::sundials::KinsolError;
 
 impl Follower<'_> {
-    /// True if the load moves away from the one that is asked for on the way to a state.
+    /// True if the load moves away from the requested one on the way to a state.
     pub(super) fn turns(&self, now: &State) -> bool {
         let away = |state: &State| (self.options.share - state.share).abs();
         let before = self.path.states.last().filter(|before| before.stage == now.stage);
         before.is_some_and(|before| away(now) > away(before))
     }
 
-    /// The load turns back beyond the range of the model: what follows describes no beam.
+    /// Error for a load that turns back beyond the range of the model, where states describe no beam.
     pub(super) fn beyond(&mut self) -> End {
         let states = self.path.states.iter().filter(|state| state.stage == self.stage);
         let shares = states.map(|state| state.share);
         let asked = self.options.share.signum();
         let largest = asked * shares.map(|share| asked * share).fold(f64::NEG_INFINITY, f64::max);
         let beyond = self.path.beyond.as_deref().unwrap_or_default();
-        // a path that crosses may lead down at once
+        // a crossing path may reduce the load at once
         let seen = self.path.events.last().map(|event| (event.stage, event.kind));
         if seen != Some((self.stage, Kind::LimitPoint)) {
             self.path.events.push(Event {
@@ -59,7 +59,7 @@ impl Follower<'_> {
         if halt::asked() {
             return stopped(self.stage as f64 + share, INTERRUPTED);
         }
-        // where a state has been found, what holds it is there
+        // if a state was found, the beam is supported
         let begun = self.path.states.iter().any(|state| state.stage == self.stage);
         let valves = ValveTangents::needed(self.solver.dae().statics_ref().system());
         let cause = match (begun, valves) {
@@ -93,16 +93,16 @@ impl Follower<'_> {
     }
 }
 
-/// What probably ends a path, and what of a beam without fluid.
+/// Probable cause of the end of a path, and the one for a beam without fluid.
 const CAUSE: &str = "two paths that meet, a coupling that is not convex, a bladder that closes";
 const DRY_CAUSE: &str = "two paths that meet or pass close by each other, or loads beyond those that the beam can bear";
 
-/// The same of a network with valves that open by themselves.
+/// Probable cause and hint for a network with valves that open by pressure.
 const VALVE_CAUSE: &str = "a check valve or rectifier that opens over a pressure far below those that act; or two paths that meet, a coupling that is not convex, a bladder that closes";
 const VALVE_HINT: &str =
     "a larger smoothing_pa of the valve, or the state after a run (slcbeam run); look at the states up to there";
 
-/// The same fault of a beam without fluid: neither bladders nor a coupling are a cause.
+/// Replaces the cause in the error of a beam without fluid, which has neither bladders nor a coupling.
 pub(super) fn dry(mut fault: SolverError) -> SolverError {
     if fault.cause.as_deref() == Some(CAUSE) {
         fault.cause = Some(DRY_CAUSE.into());
@@ -125,7 +125,7 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
     }
 }
 
-/// The end of a path that somebody asked for.
+/// End of a path on request.
 pub(super) fn stopped(share: f64, reason: &str) -> End {
     End(SolverError {
         code: Code::Interrupted,

@@ -1,12 +1,12 @@
-//! Whether the states of a path hold.
+//! Stability of the states of a path.
 
 use super::Stability;
 use super::path::Follower;
 use crate::integrate::halt;
 
 impl Follower<'_> {
-    /// Says of every state whether it holds. Between events the determinant keeps its sign: where the first and the last state of
-    /// such a stretch give way in as many directions, those in between do too; else each is looked at.
+    /// Determines the stability of every state. Between events the determinant keeps its sign. If the first and the last state of such
+    /// an interval have equally many unstable directions, so have those in between; else each is evaluated.
     pub(super) fn judge(&mut self) {
         self.bounds.push(self.path.states.len());
         for k in 1..self.bounds.len() {

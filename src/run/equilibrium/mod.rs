@@ -1,24 +1,24 @@
-//! Static equilibrium: the path from rest to the full load, every point of it solved by KINSOL.
+//! Static equilibrium: the path from rest to the full load, with every point solved by KINSOL.
 //!
 //! ```text
-//! stages   loads that follow one another: the whole path
-//! arclength  equilibrium with the load factor as one more unknown: the arc length
-//! natural  coordinates in which paths are nearly straight
-//! overdamped  motion without inertia to the next state at rest, where walls turn the path too sharply
-//! predict  where the next point probably is
-//! path     step by step along the path, as far as predictions hold; limit points, bifurcations
+//! stages       sequences of loads: the whole path
+//! arclength    equilibrium with the load factor as an additional unknown
+//! natural      coordinates in which paths are nearly straight
+//! overdamped   motion without inertia to the next equilibrium, where walls turn the path too sharply
+//! predict      prediction of the next point
+//! path         step by step along the path, by predictions; limit points, bifurcations
+//! judge        stability of the states
 //! sensitivity  derivatives by numbers of the case, or along any change of it
-//! trapped  stages that valves ask for which shut before: what is behind them
-//! resting  states under loads that differ a little from those of a known one
-//! faults   why a path ends before its loads are reached
-//! branch   from one path onto another that crosses it
-//! state    what is read off a state; one state as the unknowns of another system
+//! trapped      stages required by valves that closed before: the fluid behind them
+//! resting      states under loads that differ a little from those of a known one
+//! faults       errors that end a path before its loads are reached
+//! branch       transition from one path to another that crosses it
+//! state        values of a state; a state as unknowns of another system
 //! ```
 //!
-//! Everything that acts grows in proportion from nothing: loads, motions of the ends, pressures and flows of ports, volumes
-//! of closed networks. Valves stand as they do under the full load; where one has shut before, the path goes first to the loads under
-//! which it did. Where loads of other instants come first, each stage of the
-//! path goes along the straight line from the loads of one instant to those of the next.
+//! Everything that acts grows in proportion from zero: loads, motions of the ends, pressures and flows of ports, volumes of closed
+//! networks. Valves have their openings under the full load. If a valve closed before, the path first leads to the loads at its
+//! closure. If loads of other instants precede, each stage follows the straight line from the loads of one instant to the next.
 
 mod arclength;
 mod branch;
@@ -49,26 +49,27 @@ pub use stages::follow;
 pub use state::{Stability, State, columns, restate};
 pub use trapped::{Kept, TIGHT, kept, warning as trapped};
 
-/// What is asked for.
+/// Options of a search for equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Instant whose loads are the full ones [s].
+    /// Instant of the full loads [s].
     pub at_s: f64,
-    /// Instants whose loads are reached before, one after the other [s].
+    /// Instants whose loads are reached before, in this order [s].
     pub via_s: Vec<f64>,
-    /// Instants as of which valves stand in these stages, where they are those of valves that shut ([`Options::resolved`]); none:
-    /// each as at its end [s].
+    /// Instants of the valve openings in these stages, if the stages belong to valves that close ([`Options::resolved`]). If
+    /// empty, each
+    /// stage has the openings at its end [s].
     pub valves_s: Vec<f64>,
-    /// Share of the last stage, from the loads before to the full ones, at which the path ends.
+    /// Share of the last stage at which the path ends; 1 is the full load.
     pub share: f64,
-    /// Largest share of an arc that a step may take, a number of points at least; none: as far as predictions hold.
+    /// Least number of points in which to divide the path; `None` if only predictions limit the steps.
     pub points: Option<usize>,
-    /// Whether the path that crosses is taken where this one loses its stability.
+    /// True if the path continues on a crossing path where it loses its stability.
     pub branches: bool,
 }
 
 impl Options {
-    /// Under the loads of an instant [s].
+    /// Options for the loads of an instant [s].
     pub fn at(at_s: f64) -> Self {
         Self {
             at_s,
@@ -80,7 +81,7 @@ impl Options {
         }
     }
 
-    /// In which a run starts.
+    /// Options for the equilibrium in which a run starts.
     pub fn of_start(start: &EquilibriumStart) -> Self {
         Self {
             via_s: start.via_s.clone(),
@@ -88,7 +89,7 @@ impl Options {
         }
     }
 
-    /// Where on the way a load factor is, for people: `0.25 of the loads`, or of the stage that it belongs to.
+    /// Describes the position of a load factor on the path: `0.25 of the loads`, or of the stage to which it belongs.
     pub fn place(&self, stage: usize, share: &str) -> String {
         if self.via_s.is_empty() {
             format!("{share} of the loads")
@@ -98,32 +99,32 @@ impl Options {
     }
 }
 
-/// A load path, as far as it was followed.
+/// A load path, up to the last state found.
 #[derive(Clone, Debug, Default)]
 pub struct Path {
-    /// Its states, from rest on.
+    /// States, from rest on.
     pub states: Vec<State>,
-    /// What happened on the way.
+    /// Remarkable points of the path.
     pub events: Vec<Event>,
     /// Work of the solver.
     pub work: Solution,
     /// Predictions that had to be shortened.
     pub rejected: u64,
-    /// Why the path ends before the share that was asked for, if it does.
+    /// Error that ended the path before the requested share, if any.
     pub fault: Option<SolverError>,
-    /// What of the first state lies beyond the model, where one does.
+    /// Description of the limit that the first state beyond the model exceeds, if any.
     pub beyond: Option<String>,
-    /// The largest Reynolds number of steady flow through a tube, and the load factor at which it is reached.
+    /// Largest Reynolds number of steady flow through a tube, and its load factor.
     pub reynolds: [f64; 2],
-    /// Likewise the largest Mach number.
+    /// Largest Mach number of steady flow through a tube, and its load factor.
     pub mach: [f64; 2],
-    /// Likewise the largest strain of a fibre.
+    /// Largest strain of a fiber, and its load factor.
     pub strain: [f64; 2],
-    /// States met that are not physical, by load factor.
+    /// Unphysical states of the path, by load factor.
     unphysical: Met,
-    /// What such a state is.
+    /// Limits of physical states.
     limits: Unphysical,
-    /// What is to be said of fluid behind valves that have shut before, where there is some.
+    /// Warning about fluid behind valves that closed before, if there is any.
     pub trapped: Option<String>,
 }
 
@@ -134,26 +135,26 @@ pub struct Event {
     pub stage: usize,
     /// Share of the stage.
     pub share: f64,
-    /// What is remarkable.
+    /// Kind of the point.
     pub kind: Kind,
 }
 
-/// What is remarkable about a point.
+/// Kind of a remarkable point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The load factor turns back: snap-through under a load that keeps growing.
+    /// The load factor turns back: snap-through under a load that continues to grow.
     LimitPoint,
-    /// Another path crosses: buckling. The path that is followed from there on is the other one.
+    /// Another path crosses: buckling. The path continues on the other one.
     Bifurcation,
 }
 
 impl Event {
-    /// Load factor: stages before and share of this one.
+    /// Load factor: number of earlier stages plus the share of this one.
     pub fn load_factor(&self) -> f64 {
         self.stage as f64 + self.share
     }
 
-    /// For people.
+    /// Description for messages.
     pub fn words(&self) -> &'static str {
         match self.kind {
             Kind::LimitPoint => "limit point: the load that the beam carries turns back here",
@@ -165,7 +166,7 @@ impl Event {
 }
 
 impl Path {
-    /// That states are not what the model describes.
+    /// Warnings of states outside the range of the model.
     pub fn warnings(&self) -> Vec<String> {
         let beyond = self.beyond.iter().map(|beyond| {
             let what = format!("{beyond}; states from there on are not to be trusted");
@@ -205,8 +206,8 @@ impl Path {
     }
 }
 
-/// The system whose equilibria are looked for: everything the case describes without inertia and damping, all areas unknowns,
-/// with signals that grow from nothing to what they are at an instant [s] while t grows from 0 to 1.
+/// System for equilibria: the case without inertia and damping, with all areas as unknowns. Its signals grow from zero to their
+/// values at `at_s` [s] while t grows from 0 to 1.
 ///
 /// # Errors
 /// Those of [`System::new`].
@@ -215,19 +216,19 @@ pub fn system(case: &Case, at_s: f64) -> error::Result<System> {
     stages::grow(case, &first).map(|grown| grown.system)
 }
 
-/// The state in which a run begins, where the case asks for an equilibrium: the scaled unknowns of the run's system, with the
-/// velocities that stand in `y`. Everything that the run leaves out is left out of the equilibrium too.
+/// State in which a run begins, if the case requests an equilibrium: scaled unknowns of the run's system, with the velocities in
+/// `y`. Effects that the run neglects are also neglected in the equilibrium.
 ///
 /// # Errors
-/// There is no equilibrium, or no way to it from rest.
+/// There is no equilibrium, or no path to it from rest.
 pub fn at_start(case: &Case, options: &Options, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverError> {
     at_start_watched(case, options, dae, y, &mut || Control::Continue)
 }
 
-/// The same; `ask` is asked at every point of the path whether to go on.
+/// Computes the state of [`at_start`]; `ask` decides at every point of the path if the search continues.
 ///
 /// # Errors
-/// As [`at_start`], or it was told to stop.
+/// As [`at_start`], or `ask` stopped the search.
 pub fn at_start_watched(
     case: &Case,
     options: &Options,

@@ -1,4 +1,4 @@
-//! A state in the coordinates in which paths are nearly straight.
+//! Coordinates of a state in which paths are nearly straight.
 
 use std::f64::consts::PI;
 
@@ -6,22 +6,22 @@ use crate::dae::StaticBeam;
 use crate::discrete::TimeData;
 use crate::model::Kinematics;
 
-/// A beam that bends far moves its nodes on circles: what is extrapolated in displacements stretches it, and stretch costs
-/// `EA l²/EI` times what bending costs. Angles and lengths of the cells hardly know of that: a beam that is rolled up by a
-/// moment has angles proportional to it.
+/// Natural coordinates: position of the first node, angles and lengths of the cells. A strongly bent beam moves its nodes on
+/// circles. Extrapolated displacements stretch it, and stretch costs `EA l²/EI` times as much as bending. Angles and lengths of
+/// the cells depend little on that: a beam rolled up by a moment has angles proportional to it.
 ///
 /// ```text
 /// (u1, u3) of the nodes  ->  position of node 0, angle and length of each cell
 /// ```
 ///
-/// Small rotations are left as they are.
+/// For kinematics other than finite rotation, displacements remain the coordinates.
 pub struct Natural {
     finite: bool,
     nodes: usize,
 }
 
 impl Natural {
-    /// For the states of a beam.
+    /// Creates the coordinates for states of a beam.
     pub fn of(statics: &StaticBeam) -> Self {
         Self {
             finite: statics.system().model.kinematics == Kinematics::FiniteRotation,
@@ -29,8 +29,9 @@ impl Natural {
         }
     }
 
-    /// Scaled unknowns with the load factor behind them, as coordinates: x and z of node 0, angles, lengths, all
-    /// unknowns. Angles differ from those of `near`, another state, by less than half a turn at the root.
+    /// Converts scaled unknowns and the load factor behind them to coordinates: x and z of node 0, angles, lengths, all
+    /// unknowns. At the
+    /// root, angles differ from those of another state `near` by less than half a turn.
     pub fn of_unknowns(&self, statics: &mut StaticBeam, x: &[f64], near: Option<&[f64]>) -> Vec<f64> {
         if !self.finite {
             return x.to_vec();
@@ -49,7 +50,7 @@ impl Natural {
         z
     }
 
-    /// The way back. Where both ends are held, what is missing at the tip is shared out along the beam.
+    /// Converts coordinates to scaled unknowns. If both ends are held, the mismatch at the tip is distributed along the beam.
     pub fn to_unknowns(&self, statics: &mut StaticBeam, z: &[f64]) -> Vec<f64> {
         if !self.finite {
             return z.to_vec();
@@ -86,7 +87,7 @@ impl Natural {
         x
     }
 
-    /// x and z of the nodes [m].
+    /// Positions x and z of the nodes [m].
     fn positions(&self, statics: &mut StaticBeam, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (system, now): (_, &TimeData) = statics.beam().instant(x[x.len() - 1]);
         let l = &system.layout;

@@ -3,23 +3,23 @@
 use super::path::{self, End, Follower, Next, PATIENCE, Way, difference};
 use crate::sundials::KinsolError;
 
-/// First resistance [1/s^2], and its changes after a step that failed and one that did not.
+/// First resistance [1/s^2], and its factors after a failed and after a successful step.
 const FIRST: f64 = 1e4;
 const HARDER: f64 = 10.0;
 const SOFTER: f64 = 0.25;
-/// Newton steps up to which the resistance falls faster.
+/// Number of Newton steps up to which the resistance falls faster.
 const EASY: u64 = 5;
-/// Largest motion of a step, in lengths of the beam.
+/// Largest motion of a step, in beam lengths.
 const LONGEST: f64 = 0.03;
 /// Motion of a step below which the beam counts as nearly at rest.
 const SLOW: f64 = 1e-4;
-/// Steps of a motion, at most.
+/// Largest number of steps of a motion.
 const MOST: usize = 600;
-/// Shares of the load by which the path goes on, largest first, over the share that is asked for.
+/// Fractions of the requested share by which the load increases, largest first.
 const SHARES: [f64; 3] = [1.0 / 16.0, 1.0 / 128.0, 1.0 / 1024.0];
 
 impl Follower<'_> {
-    /// True if anything can be touched.
+    /// True if the beam can touch a wall.
     fn has_walls(&mut self) -> bool {
         !self.solver.dae_mut().statics().system().touching.is_empty()
     }
@@ -66,7 +66,7 @@ impl Follower<'_> {
         Err(failure)
     }
 
-    /// The first state of a stage, where Newton's method alone does not find it: `failure` is why.
+    /// Finds the first state of a stage after Newton's method alone failed with `failure`.
     pub(super) fn first(&mut self, mut x: Vec<f64>, failure: KinsolError) -> Result<Vec<f64>, KinsolError> {
         if !self.has_walls() {
             return Err(failure);
@@ -74,7 +74,7 @@ impl Follower<'_> {
         self.move_to_rest(&mut x, 0.0).map(|()| x)
     }
 
-    /// Goes on where the path cannot be followed: the beam comes to rest at a larger share of the loads. `lost` is why it cannot.
+    /// Continues where the path cannot be followed: the beam moves to equilibrium at a larger share of the loads. `lost` is the error.
     pub(super) fn go_around(&mut self, way: &mut Way, lost: End) -> Result<Next, End> {
         if lost.0.cause.is_none() || !self.has_walls() {
             return Err(lost);

@@ -1,4 +1,4 @@
-//! Along the path of equilibria.
+//! Follower of a path of equilibria.
 
 use super::arclength::Arclength;
 use super::faults::stopped;
@@ -13,34 +13,35 @@ use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolError, KinsolOptions};
 
-/// Longest step, in lengths of the beam and shares of the load.
+/// Longest step, in beam lengths and shares of the load.
 pub(super) const LONGEST: f64 = 0.5;
-/// Shortest step worth trying.
+/// Shortest step that is tried.
 const SHORTEST: f64 = 1e-7;
-/// How far a solution may lie from its prediction, in steps: further off it may be on another path.
+/// Largest distance of a solution from its prediction, in steps. Farther away it may be on another path.
 const ASTRAY: f64 = 0.2;
-/// The same that steps are chosen for.
+/// Distance of a solution from its prediction for which steps are chosen, in steps.
 const WANTED: f64 = 0.05;
-/// Displacements, in lengths of the beam, that count as motion. Where a beam moves little while its loads grow, the length of a step is that
-/// of the loads, and to a path beside is a small part of it: how far a solution lies from its prediction is asked of displacements alone too.
+/// Displacements, in beam lengths, that count as motion. If a beam moves little while its loads grow, the load dominates the length
+/// of a step, and the distance to a neighboring path is a small part of it. The distance from the prediction is therefore also
+/// checked for displacements alone.
 const MOTION: f64 = 1e-5;
-/// Part of a step below which the way is what was found, not what was foretold.
+/// Fraction of a step below which the direction that was found replaces the predicted one.
 const TURN: f64 = 0.02;
-/// Newton steps that steps are chosen for, and largest growth of a step.
+/// Number of Newton steps for which steps are chosen, and largest growth of a step.
 const WANTED_ITERATIONS: f64 = 12.0;
 const GROWTH: f64 = 2.5;
 /// Distance to a crossing path at which it is entered.
 pub(super) const NEAR: f64 = 1e-4;
-/// Newton steps after which a prediction counts as bad.
+/// Number of Newton steps after which a prediction is rejected.
 pub(super) const PATIENCE: u32 = 14;
-/// The same at rest.
+/// Number of Newton steps after which the first solution of a stage fails.
 const START_PATIENCE: u32 = 60;
-/// Points of a path that has lost its way.
+/// Largest number of points; a path with more of them is lost.
 const MOST_POINTS: usize = 5000;
-/// Shares beyond which a path has lost its way.
+/// Largest share; a path beyond it is lost.
 const FURTHEST: f64 = 100.0;
 
-/// Squared weight of each unknown and of the share in the length of a step: displacements in lengths of the beam, root mean square.
+/// Squared weight of each unknown and of the share in the length of a step: root mean square of displacements in beam lengths.
 pub(super) fn weights(system: &System) -> Vec<f64> {
     let l = &system.layout;
     let mut weights = vec![0.0; l.len + 1];
@@ -51,28 +52,28 @@ pub(super) fn weights(system: &System) -> Vec<f64> {
     weights
 }
 
-/// Why a path ends early.
+/// Error that ends a path early.
 pub(super) struct End(pub SolverError);
 
-/// What comes after a step.
+/// Action after a step.
 pub(super) enum Next {
-    /// Another one of this length.
+    /// Another step of this length.
     Step(f64),
-    /// The path is crossed by another one before this share, where it is as stable as this.
+    /// Another path crosses before this share, at which the state has this stability.
     Branch(f64, Option<Stability>),
-    /// Nothing.
+    /// The end of the stage.
     Arrived,
 }
 
 pub(super) struct Follower<'a> {
     /// Stage of the path, from 0.
     pub(super) stage: usize,
-    /// Sign of the determinant of the equations: it changes where another path crosses, not at a limit point.
+    /// Sign of the determinant of the equations. It changes where another path crosses, but not at a limit point.
     pub(super) orientation: i8,
-    /// State with which the present branch begins.
+    /// Index of the state with which the present branch begins.
     pub(super) branch: usize,
     pub(super) natural: Natural,
-    /// States where stability may change: after a limit point, on a new branch.
+    /// Indices of states where stability may change: after a limit point, on a new branch.
     pub(super) bounds: Vec<usize>,
     pub(super) solver: Kinsol<Arclength>,
     pub(super) weights: Vec<f64>,
@@ -83,7 +84,7 @@ pub(super) struct Follower<'a> {
     pub(super) watch: &'a mut dyn FnMut(&State) -> Control,
 }
 
-/// The way so far: its last points in natural coordinates, the last one in unknowns too.
+/// The path so far: its last points in natural coordinates, the last one also in unknowns.
 pub(super) struct Way {
     natural: Trail,
     /// The last point.
@@ -91,7 +92,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Two points at a distance.
+    /// Creates the path of two points at a distance.
     pub fn new(follower: &mut Follower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
         let statics = follower.solver.dae_mut().statics();
         let first = follower.natural.of_unknowns(statics, &before, None);
@@ -111,7 +112,7 @@ impl Way {
 }
 
 impl Follower<'_> {
-    /// From a state at share 0 to the end of the stage; the state is kept where it is `new`.
+    /// Follows the path from a state at share 0 to the end of the stage; the state is stored if it is `new`.
     pub(super) fn go(&mut self, start: Vec<f64>, new: bool) -> Result<(), End> {
         self.solver.dae_mut().at_share(0.0);
         let mut x = start.clone();
@@ -137,7 +138,8 @@ impl Follower<'_> {
         }
     }
 
-    /// A way from a state just solved with the share prescribed, and the length of its first step: a change of the share, at most the `longest`.
+    /// Path from a state just solved at a prescribed share, and the length of its first step: a share change of `by`, at
+    /// most `longest`.
     pub(super) fn set_out(&mut self, x: Vec<f64>, by: f64, longest: f64) -> (Way, f64) {
         let mut direction = vec![0.0; self.n + 1];
         direction[self.n] = 1.0;
@@ -150,15 +152,15 @@ impl Follower<'_> {
         (Way::new(self, before, behind, x), step)
     }
 
-    /// Takes one step, shortened until it succeeds.
+    /// Makes one step, shortened until it succeeds.
     fn step(&mut self, trail: &mut Way, mut step: f64) -> Result<Next, End> {
         let (n, target) = (self.n, self.options.share);
         let last = trail.last.clone();
         let mut growth = GROWTH;
         let passes = |share: f64| (share - target) * (last[n] - target) <= 0.0;
-        // a point beyond the target that was predicted before it
+        // true if a point predicted before the target was found beyond it
         let mut passed = false;
-        // where the path turns, seen from its last point
+        // direction of the path after a turn, from its last point
         let mut turned: Option<Vec<f64>> = None;
         let asked = step;
         loop {
@@ -189,7 +191,7 @@ impl Follower<'_> {
                     step *= (target - last[n]) / (x[n] - last[n]);
                     continue;
                 }
-                // With the load prescribed the equations are turned around where it falls.
+                // with prescribed load, the sign of the determinant is reversed if the load decreases
                 let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
                 if orientation != self.orientation && self.options.branches {
                     if step <= NEAR {
@@ -222,7 +224,7 @@ impl Follower<'_> {
             self.path.rejected += 1;
             passed = false;
             growth = 1.0;
-            // What points before a sharp turn foretell is wrong by its angle, however short the step: what was found tells the way.
+            // Points before a sharp turn predict a direction that is wrong by its angle, however short the step: use the one found.
             let mut found = difference(&x, &last);
             let distance = self.norm(&found);
             if solved.is_ok() && step < TURN * asked && distance < 2.0 * step {
@@ -244,8 +246,8 @@ impl Follower<'_> {
         }
     }
 
-    /// The point that the path so far foretells, a step beyond its last one or where it comes to the share that is asked for; whether it
-    /// does.
+    /// Predicts the next point of the path: a step beyond its last one, or at the requested share if the prediction reaches it. Returns
+    /// the point, and true if the step ends at the requested share.
     fn foretold(&mut self, trail: &Way, step: &mut f64, passed: bool) -> (Vec<f64>, bool) {
         let (n, target) = (self.n, self.options.share);
         let share = |z: &[f64]| z[z.len() - 1];
@@ -259,7 +261,7 @@ impl Follower<'_> {
         (guess, passed || passes)
     }
 
-    /// Asks for the point of the path in the plane through the guess, across the chord from the last point to it.
+    /// Selects the point of the path in the plane through the guess that is normal to the chord from the last point.
     pub(super) fn aim(&mut self, last: &[f64], guess: &[f64]) {
         let mut direction = difference(guess, last);
         let norm = self.norm(&direction);
@@ -271,7 +273,7 @@ impl Follower<'_> {
         along.direction = direction;
     }
 
-    /// Solves from a guess; Newton steps done.
+    /// Solves from a guess. Returns the number of Newton steps.
     pub(super) fn solve(&mut self, x: &mut [f64], patience: u32) -> Result<u64, KinsolError> {
         let options = KinsolOptions {
             max_iterations: patience,
@@ -282,7 +284,7 @@ impl Follower<'_> {
         Ok(solution.iterations)
     }
 
-    /// Keeps a state and shows it.
+    /// Stores a state and passes it to `watch`.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
         let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
         let factor = state.load_factor();
@@ -322,7 +324,7 @@ impl Follower<'_> {
         }
     }
 
-    /// How far a solution lies from its prediction, in steps: of all, or of displacements in what they have moved by.
+    /// Distance of a solution from its prediction: in steps, or for displacements relative to their motion, whichever is larger.
     fn off(&self, x: &[f64], guess: &[f64], last: &[f64], step: f64) -> f64 {
         let off = difference(x, guess);
         let moved = |x: &[f64]| self.norm(&x[..self.n]);
@@ -335,7 +337,7 @@ impl Follower<'_> {
     }
 }
 
-/// Where a function that changes sign between 0 and `end` is zero (bisection).
+/// Zero of a function that changes sign between 0 and `end` (bisection).
 fn crossing(f: impl Fn(f64) -> f64, end: f64) -> f64 {
     let (mut low, mut high) = (0.0, end);
     let sign = f(high).signum();

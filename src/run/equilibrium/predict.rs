@@ -1,4 +1,4 @@
-//! Where the next point of a path probably is.
+//! Prediction of the next point of a path.
 
 /// Points of a path, each with its distance from the first along the path.
 #[derive(Clone, Debug, Default)]
@@ -6,11 +6,11 @@ pub struct Trail {
     points: Vec<(f64, Vec<f64>)>,
 }
 
-/// Points that a prediction uses: a cubic.
+/// Number of points that a prediction uses: a cubic.
 const POINTS: usize = 4;
 
 impl Trail {
-    /// Two points at a distance.
+    /// Creates the trail of two points at a distance.
     pub fn through(first: Vec<f64>, distance: f64, second: Vec<f64>) -> Self {
         Self {
             points: vec![(0.0, first), (distance, second)],
@@ -36,7 +36,7 @@ impl Trail {
         self.points.len() as u8 - 1
     }
 
-    /// The polynomial through the points (Lagrange), `step` beyond the last one.
+    /// Extrapolates the polynomial through the points (Lagrange) to `step` beyond the last one.
     pub fn beyond(&self, step: f64) -> Vec<f64> {
         let at = self.points.last().map_or(0.0, |p| p.0) + step;
         let mut x = vec![0.0; self.last().len()];

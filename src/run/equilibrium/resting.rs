@@ -1,4 +1,4 @@
-//! States at rest under loads that differ a little from those of a known state.
+//! Equilibria under loads that differ a little from those of a known equilibrium.
 
 use super::sensitivity::{Derivative, Direction, along};
 use super::stages::{begin, follow, grow};
@@ -9,23 +9,23 @@ use crate::error::{Error, Result};
 use crate::run::record::Control;
 use crate::sundials::{Kinsol, KinsolOptions};
 
-/// Newton steps after which a known state counts as too far away.
+/// Number of Newton steps after which a known state counts as too far away.
 const PATIENCE: u32 = 25;
 
-/// A state at rest, from which those under other loads are found without the path from rest.
+/// An equilibrium, from which those under other loads are found without the path from rest.
 #[derive(Clone, Debug)]
 pub struct Resting {
-    /// The path to it; of a state found from another one it has that state alone.
+    /// Path to the equilibrium; if it was found from another one, the path has only this state.
     pub path: Path,
-    /// Unknowns in SI units: their scales go with the loads.
+    /// Unknowns in SI units, since their scales depend on the loads.
     unknowns: Vec<f64>,
 }
 
 impl Resting {
-    /// Along the path from rest.
+    /// Follows the path from rest.
     ///
     /// # Errors
-    /// Those of [`follow`], and [`Error::Solver`] where the path ends early.
+    /// Those of [`follow`], and [`Error::Solver`] if the path ends early.
     pub fn follow(case: &Case, options: &Options) -> Result<Self> {
         let options = &options.resolved(case)?;
         let mut path = follow(case, options, &mut |_| Control::Continue)?;
@@ -42,8 +42,8 @@ impl Resting {
         Ok(Self { path, unknowns })
     }
 
-    /// The state of a case that differs in its loads alone, by Newton's method from this one. None where that finds none, or where loads
-    /// follow one another: what is found then depends on the path.
+    /// Finds the equilibrium of a case that differs only in its loads, by Newton's method from this one. `None` if the method fails, or
+    /// if there are several stages of loads: the result then depends on the path.
     ///
     /// # Errors
     /// Those of [`crate::discrete::System::new`].
@@ -79,7 +79,7 @@ impl Resting {
         Ok(Some(Self { path, unknowns }))
     }
 
-    /// What is read off it, in the order of [`super::columns`].
+    /// Values of the equilibrium, in the order of [`super::columns`].
     pub fn row(&self) -> &[f64] {
         &self.path.last().row
     }

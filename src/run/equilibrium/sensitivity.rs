@@ -16,21 +16,21 @@ pub struct Sensitivity {
     pub parameter: Parameter,
     /// Derivative of the scaled unknowns.
     pub y: Vec<f64>,
-    /// Derivative of each column of a state; of the load factor it is 0.
+    /// Derivative of each column of a state; 0 for the load factor.
     pub row: Vec<f64>,
 }
 
-/// A way in which a case changes with one number p.
+/// A change of the case by one number p.
 pub struct Direction<'a> {
-    /// What p is, for people.
+    /// Description of p for messages.
     pub name: String,
-    /// A change of p that is small.
+    /// A small change of p.
     pub step: f64,
-    /// The case with p changed by so many of these steps.
+    /// Returns the case with p changed by a number of these steps.
     pub moved: Box<dyn Fn(f64) -> Result<Case> + 'a>,
 }
 
-/// What a state does along a direction.
+/// Derivatives of a state along a direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Derivative {
     /// Derivative of the scaled unknowns.
@@ -67,18 +67,18 @@ pub fn differentiate(
     Ok(named.collect())
 }
 
-/// `[E43]` Derivatives of the last state of a path by numbers p, exact but for round-off: the tangent is that of the equations,
-/// its factors are made once a stage,
+/// `[E43]` Derivatives of the last state of a path by numbers p, exact except for round-off. The tangent is that of the equations and
+/// is factored once for each stage:
 ///
 /// ```text
 /// ∂F/∂y dy/dp = -∂F/∂p        dq/dp = ∂q/∂y dy/dp + ∂q/∂p
 /// ```
-///
-/// and what depends on p alone, without anything to solve, is differenced to fourth order: an error of 1e-12. What a closed network holds in a
-/// later stage depends on p through the state in which that stage began: its derivative is carried from stage to stage.
+/// Terms that depend on p alone need no solution; they are differenced to fourth order with an error of 1e-12. The volume of a closed
+/// network in a later stage depends on p through the state in which that stage began. This derivative is carried from stage to
+/// stage.
 ///
 /// # Errors
-/// A changed case that is not valid or has other unknowns, a tangent that is singular.
+/// A changed case is not valid or has other unknowns, or the tangent is singular.
 pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Direction]) -> Result<Vec<Derivative>> {
     let mut found: Vec<Derivative> = vec![];
     let mut before: Option<Held> = None;
@@ -122,8 +122,8 @@ fn singular() -> Error {
     Error::Usage("the equilibrium has no derivatives: its tangent is singular".into())
 }
 
-/// Steps of a number, their weights, and the equations of the stage with them, which begin in the state that the stage before
-/// then ends in: a state and its derivative.
+/// Steps of a number, their weights, and the equations of the stage with each step. The equations begin in the last state of the stage
+/// before, which is given with its derivative.
 fn changed(
     (options, number, count): (&Options, usize, usize),
     direction: &Direction,
@@ -133,7 +133,7 @@ fn changed(
     let one = |(steps, weight): (f64, f64)| {
         let step = steps * direction.step;
         let case = (direction.moved)(steps)?;
-        // a valve may shut a little earlier
+        // a valve may close slightly earlier
         let stages = options.resolved(&case)?.stages();
         let Some(stage) = stages.get(number).filter(|_| stages.len() == count) else {
             let what = "valves shut another number of times with it";
@@ -154,7 +154,7 @@ fn changed(
     STEPS.into_iter().map(one).collect()
 }
 
-/// `∂F/∂p` in the scales of the unchanged system: each of `changed` is a step of p, its weight, and the system with it.
+/// `∂F/∂p` in the scales of the unchanged system. Each of `changed` is a step of p, its weight, and the system with this step.
 fn by_parameter(statics: &StaticBeam, changed: &mut [(f64, f64, StaticBeam)], state: &State) -> Result<Vec<f64>> {
     let n = statics.len();
     let mut sum = vec![0.0; n];
@@ -174,7 +174,7 @@ fn by_parameter(statics: &StaticBeam, changed: &mut [(f64, f64, StaticBeam)], st
     Ok(sum)
 }
 
-/// Scaled unknowns in the scales of another system, with the load factor behind them.
+/// Scaled unknowns in the scales of another system, followed by the load factor.
 fn restated(from: &StaticBeam, to: &StaticBeam, state: &State, y: impl Fn(usize) -> f64) -> Vec<f64> {
     let (old, new) = (&from.system().layout.scales, &to.system().layout.scales);
     let scaled = (0..old.len()).map(|k| y(k) * old[k] / new[k]);

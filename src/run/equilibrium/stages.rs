@@ -1,4 +1,4 @@
-//! Loads that follow one another: a path of several stages, each with the state in which the one before ended.
+//! Sequences of loads: a path of several stages, each of which begins in the last state of the one before.
 
 use super::arclength::Arclength;
 use super::faults::{dry, fault};
@@ -20,19 +20,19 @@ use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::Kinsol;
 
-/// A stretch of the path: signals go along the straight line from what they are at one instant to what they are at another.
+/// One stage of the path: signals change linearly from their values at one instant to those at another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stage {
-    /// Instant of the loads with which it begins; none: nothing acts.
+    /// Instant of the loads with which it begins; `None` for zero loads.
     from: Option<Clock>,
     /// Instant of the loads with which it ends.
     to: Clock,
-    /// Instant as of which valves stand [s].
+    /// Instant of the valve openings [s].
     valves: f64,
 }
 
 impl Stage {
-    /// From nothing to the loads of an instant [s].
+    /// From zero to the loads of an instant [s].
     pub fn from_nothing(to: f64) -> Self {
         Self {
             from: None,
@@ -43,8 +43,8 @@ impl Stage {
 }
 
 impl Options {
-    /// The stages of the path, in order; at least one. Loads jump after a valve has shut where they do so at that instant; a start in equilibrium
-    /// has both as they are at its own.
+    /// Stages of the path, in order; at least one. If loads jump at the instant at which a valve closes, the stage has the loads before
+    /// the jump. For a start in equilibrium, loads and valves are those of its own instant.
     pub(super) fn stages(&self) -> Vec<Stage> {
         let mut from = None;
         let stage = |(k, &t): (usize, &f64)| {
@@ -66,32 +66,32 @@ impl Options {
         self.via_s.iter().chain([&self.at_s]).enumerate().map(stage).collect()
     }
 
-    /// Whether the stages before the last one are those of valves that shut.
+    /// True if the stages before the last one belong to valves that close.
     pub(super) fn follows_valves(&self) -> bool {
         !self.valves_s.is_empty()
     }
 }
 
-/// Share of the largest value of a signal below which what is left of it at an instant is round-off: a sine at its zero.
+/// Fraction of the largest value of a signal below which its value at an instant is round-off, such as a sine at its zero.
 const ROUND_OFF: f64 = 1e-12;
 
-/// A system whose signals go along with a stage while t goes from 0 to 1.
+/// A system whose signals follow a stage while t increases from 0 to 1.
 pub(super) struct Grown {
     /// The system.
     pub system: System,
-    /// What each source that prescribes a flow has let in since t = 0, at both ends of the stage [m^3].
+    /// Volume that each source of prescribed flow has added since t = 0, at both ends of the stage [m^3].
     pub pumped: Vec<[f64; 2]>,
 }
 
-/// A state at rest between two stages.
+/// An equilibrium between two stages.
 pub(super) struct Held {
     /// Scaled unknowns.
     pub y: Vec<f64>,
-    /// Where they stand.
+    /// Layout of the unknowns.
     pub layout: Layout,
 }
 
-/// The system of a stage of a case: everything that it describes, without inertia and damping, all areas unknowns.
+/// System of a stage of a case: without inertia and damping, with all areas as unknowns.
 ///
 /// # Errors
 /// Those of [`System::new`].
@@ -101,7 +101,7 @@ pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<Grown> {
     Ok(Grown { system, pumped })
 }
 
-/// The same of a model of the case.
+/// System of a stage, from a given model of the case.
 pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<Grown> {
     let at = |signal: &Signal, clock: Clock| signal.jet(clock).value;
     let between = |from: f64, to: f64| {
@@ -162,8 +162,8 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     Ok(Grown { system, pumped })
 }
 
-/// The equations of a stage, and the scaled unknowns with which it begins: those of a state at rest, or of nothing, with the volumes of
-/// the start of the case to grow to.
+/// Equations of a stage and the scaled unknowns with which it begins: those of an equilibrium, or zero. From zero, volumes grow to
+/// those of the start of the case.
 pub(super) fn begin(case: &Case, grown: Grown, held: Option<&Held>) -> (StaticBeam, Vec<f64>) {
     let Grown { system, pumped } = grown;
     if let Some(held) = held {
@@ -178,18 +178,18 @@ pub(super) fn begin(case: &Case, grown: Grown, held: Option<&Held>) -> (StaticBe
 }
 
 /// Follows the equilibria of a case from rest through the loads of one instant after the other to a share of the last ones. `watch`
-/// sees every state and may end the path.
+/// receives every state and can end the path.
 ///
 /// # Errors
-/// Those of [`System::new`]; a path that ends early has its fault.
+/// Those of [`System::new`]. The path contains the error with which it ends early.
 pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> error::Result<Path> {
     follow_of(case, &|stage| grow(case, stage), options, true, watch)
 }
 
-/// The same of other static systems of the case; whether its states hold is judged where that is wanted.
+/// Follows the equilibria of other static systems of the case; determines their stability if `judged`.
 ///
-/// Valves that stand otherwise at the end of a stage than at the end of the one before switch when it begins, with the loads
-/// held: what that leaves of the equations goes in proportion, and the stage begins in the equilibrium that is reached.
+/// If openings differ from those of the stage before, valves switch at the start of a stage under constant loads. The residual that
+/// results decreases in proportion to zero, and the stage begins in the equilibrium that is reached.
 pub(super) fn follow_of(
     case: &Case,
     grow: &dyn Fn(&Stage) -> error::Result<Grown>,
@@ -245,7 +245,7 @@ pub(super) fn follow_of(
     Ok(path)
 }
 
-/// One stage of a path, from the state with which it begins, which is kept where it is new.
+/// Follows one stage of a path, from its first state, which is stored if it is new.
 fn stretch(
     case: &Case,
     statics: StaticBeam,
@@ -270,7 +270,7 @@ fn stretch(
     };
     let mut x = y;
     x.push(0.0);
-    // The state between two stages belongs to the first and is where the second turns back from.
+    // The state between two stages belongs to the first, and is the reference for a reversal of the load in the second.
     let begins = path.states.len();
     let mut follower = Follower {
         stage,
@@ -293,7 +293,7 @@ fn stretch(
     path.fault = ended.err().map(|End(fault)| if wet { fault } else { dry(fault) });
 }
 
-/// Valves switch with the loads held: on from the state before.
+/// Switches valves under constant loads, from the state before.
 fn switch(
     case: &Case,
     grown: Grown,
@@ -330,7 +330,7 @@ fn switch(
     }
 }
 
-/// How far each valve is open, of a system that holds them.
+/// Opening of each valve of a system in which they are constant.
 fn openings(system: &System) -> Vec<f64> {
     let links = system.model.wet.iter().flat_map(|wet| &wet.network.links);
     links
@@ -339,7 +339,7 @@ fn openings(system: &System) -> Vec<f64> {
         .collect()
 }
 
-/// That nothing holds the beam in some directions.
+/// Error for a beam that is not supported in some directions.
 fn not_held(directions: &[&str]) -> SolverError {
     let directions = directions.join(" and ");
     let what = format!("there is no equilibrium of a beam that nothing holds {directions}");
@@ -352,7 +352,7 @@ fn not_held(directions: &[&str]) -> SolverError {
     }
 }
 
-/// That a closed network takes in what nothing lets out; or does so when a valve shuts [s].
+/// Error for a closed network with a net inflow, in general or when a valve closes at `shuts` [s].
 fn fed(stage: usize, inflow: f64, shuts: Option<f64>) -> SolverError {
     let [what, hint] = match shuts {
         Some(t) => [

@@ -1,4 +1,4 @@
-//! One state of equilibrium.
+//! State of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
@@ -20,38 +20,38 @@ pub struct State {
     pub share: f64,
     /// Scaled unknowns of the static system.
     pub y: Vec<f64>,
-    /// What is read off it, in the order of [`columns`].
+    /// Values of the state, in the order of [`columns`].
     pub row: Vec<f64>,
-    /// Displacements of the nodes [m].
+    /// Displacements u1 of the nodes [m].
     pub u1: Vec<f64>,
-    /// Displacements of the nodes [m].
+    /// Displacements u3 of the nodes [m].
     pub u3: Vec<f64>,
-    /// Whether it holds.
+    /// Stability, if determined.
     pub stability: Option<Stability>,
 }
 
-/// `[E42]` Whether an equilibrium holds: the signs of the eigenvalues μ of its static tangent over the mass of the nodes,
+/// `[E42]` Stability of an equilibrium: the signs of the eigenvalues μ of its static tangent relative to the mass of the nodes,
 ///
 /// ```text
 /// ∂F/∂y x = μ D x        D the mass of each node at its momentum, 0 elsewhere
 /// ```
 ///
-/// each negative one a way in which it gives way (divergence), √μ the angular frequency of what is soft where the network
-/// has time to follow. Flutter under follower loads needs inertia: `slcbeam modes`.
+/// Each negative eigenvalue is an unstable direction (divergence). √μ is the angular frequency of a soft motion if the network has
+/// time to follow. Flutter under follower loads needs inertia: `slcbeam modes`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stability {
-    /// Negative eigenvalues.
+    /// Number of negative eigenvalues.
     pub unstable: usize,
-    /// The one of least magnitude [1/s^2], where it was computed.
+    /// Eigenvalue of least magnitude [1/s^2], if computed.
     pub softest: Option<f64>,
 }
 
-/// Quantities of a history that a state at rest has too.
+/// Quantities of a history that an equilibrium has too.
 fn at_rest(system: &System) -> Vec<Observable> {
     Observable::of(system).into_iter().filter(|one| one.at_rest()).collect()
 }
 
-/// What a [`State`]'s row holds, the load factor first.
+/// Columns of the row of a [`State`], the load factor first.
 pub fn columns(system: &System) -> Vec<Column> {
     let share = Column {
         name: "load_factor".into(),
@@ -65,12 +65,12 @@ pub fn columns(system: &System) -> Vec<Column> {
 }
 
 impl State {
-    /// Load factor: stages before and share of this one.
+    /// Load factor: number of earlier stages plus the share of this one.
     pub fn load_factor(&self) -> f64 {
         self.stage as f64 + self.share
     }
 
-    /// Reads the unknowns with the share of the stage behind them.
+    /// Reads a state from the unknowns, followed by the share of the stage.
     pub fn read(statics: &mut StaticBeam, x: &[f64], stage: usize) -> Self {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
         let zeros = vec![0.0; y.len()];
@@ -96,7 +96,7 @@ impl State {
     }
 }
 
-/// What lies beyond the model in a state, if anything does, and what is watched of it.
+/// Describes the limit that a state exceeds, if any, and returns the glance at the state.
 pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, Glance) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
@@ -106,7 +106,7 @@ pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64)
 }
 
 impl Stability {
-    /// Of a state, scaled unknowns `y` under a load factor; none where the eigenvalues were not found.
+    /// Stability of a state with scaled unknowns `y` under a load factor; `None` if the eigenvalues were not found.
     pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
         let mut values = vec![0.0; statics.pattern().entries()];
         statics
@@ -121,8 +121,8 @@ impl Stability {
     }
 }
 
-/// The scaled unknowns of another system of the same case in the state `from` of a beam at rest under the loads at `share`:
-/// displacements, areas, junction and turbine pressures; what is algebraic besides is a guess, velocities are zero.
+/// Scaled unknowns of another system of the same case in the state `from` of a beam in equilibrium under the loads at `share`.
+/// Displacements, areas, junction and turbine pressures are those of `from`. Other algebraic unknowns are guesses, velocities zero.
 pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &TimeData) -> Vec<f64> {
     let zeros = vec![0.0; y.len()];
     let (before, _, w) = from.evaluate(share, y, &zeros);
@@ -164,7 +164,7 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
         z[means.nonlinear_area.clone()].copy_from_slice(&w.coupling.nonlinear_area);
     }
     let cells = w.fluid.area.len() / (2 * wet.per_row);
-    // As many cells as before, or one for all of a bladder's.
+    // as many cells as before, or one for all cells of a bladder
     let merged = cells / fluid.cells_per_bladder;
     let mut unknown = l.area.start;
     for &bladder in &fluid.flowing {
@@ -193,7 +193,7 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     }
 }
 
-/// Steady flows that are unknowns, with the memory of friction that has followed them: of tubes, and of faces between the same cells.
+/// Steady flows that are unknowns, and the friction branches that follow them: of tubes, and of faces between the same cells.
 fn flows(before: &System, w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     let (Some(from), Some(fluid)) = (&before.fluid, &to.fluid) else {
         return;

@@ -1,4 +1,4 @@
-//! Fluid behind valves that shut before the instant of the loads: how much is there depends on the loads under which they shut.
+//! Fluid trapped behind valves that closed before the instant of the loads. Its volume depends on the loads at their closure.
 
 use super::Options;
 use crate::case::schema::{BladderEnd, Case, EquilibriumStart};
@@ -8,22 +8,22 @@ use crate::functions::{Clock, Signal};
 use crate::model::network::{Network, Node};
 use crate::numerics::sets::Sets;
 
-/// Opening at or below which a valve that moves counts as shut: what leaks through it takes longer than anything that is simulated.
+/// Opening at or below which a moving valve counts as closed: leakage through it takes longer than any simulation.
 pub const TIGHT: f64 = 1e-9;
-/// Instants at which an opening is looked at between two of its breaks, at least and at most, and in its shortest time.
+/// Samples of an opening between two of its breaks: least and largest number, and number in each of its shortest periods.
 const LOOKS: [f64; 3] = [32.0, 4096.0, 16.0];
-/// Part of a piece between two breaks, next to one of these, in which an opening is as good as shut.
+/// Fraction of a piece between two breaks, next to a break, in which an opening counts as closed.
 const END: f64 = 1e-3;
-/// Stages that are added, at most.
+/// Largest number of added stages.
 const MOST: usize = 200;
 
 impl Options {
-    /// With the stages that the valves of a case ask for: where one shuts off before the instant of the loads what was open before, the
-    /// path goes first to the loads of the instant at which it shuts, with valves as they stand until then. Back from there it begins with
-    /// the last state that owes nothing to the time before. Stages that are asked for ([`Options::via_s`]) stay as they are.
+    /// Adds the stages that the valves of a case require. If a valve closes and traps fluid before the instant of the loads, the path
+    /// first leads to the loads at its closure, with the openings before. It begins with the last state that does not depend on
+    /// earlier ones. Requested stages ([`Options::via_s`]) remain unchanged.
     ///
     /// # Errors
-    /// [`Error::Usage`]: valves that shut too often; a network that cannot be told.
+    /// [`Error::Usage`] if valves close too often, or if the network is not valid.
     pub fn resolved(&self, case: &Case) -> Result<Self> {
         let mut resolved = self.clone();
         if !self.via_s.is_empty() || self.follows_valves() {
@@ -39,15 +39,15 @@ impl Options {
     }
 }
 
-/// What valves that are shut in the long run keep behind them.
+/// Fluid trapped behind valves that are closed in the long run.
 pub struct Kept {
-    /// The path to the state in which the last of them shut.
+    /// Options of the path to the state in which the last of them closed.
     pub options: Options,
-    /// What is to be said of it.
+    /// Warning about the trapped fluid.
     pub warning: String,
 }
 
-/// What valves of a case keep behind them once each has come to what it is in the long run (`settled`) before an instant [s]; none where none does.
+/// Fluid trapped in a case before an instant [s], once each valve has its long-run opening (`settled`); `None` if there is none.
 ///
 /// # Errors
 /// As [`Options::resolved`].
@@ -99,7 +99,7 @@ fn few(stages: &[Span], at_s: f64) -> Result<()> {
     }
 }
 
-/// What is said of an equilibrium behind valves that have shut before.
+/// Warning about an equilibrium with fluid trapped behind valves that closed before.
 ///
 /// # Errors
 /// As [`Options::resolved`].
@@ -111,31 +111,31 @@ pub fn warning(case: &Case, options: &Options) -> Result<Option<String>> {
     Ok(history.and_then(|history| history.words(case)))
 }
 
-/// A valve between two places of the graph.
+/// A valve between two places of the network graph.
 struct Valve {
     opening: Signal,
     ends: [usize; 2],
 }
 
-/// A span of time in which no valve opens or shuts.
+/// A span of time in which no valve opens or closes.
 #[derive(Clone, Debug)]
 struct Span {
-    /// When it ends [s].
+    /// End [s].
     to: f64,
     /// An instant inside [s].
     inside: f64,
-    /// Which valves are open.
+    /// True for each open valve.
     open: Vec<bool>,
-    /// Whether it is a state of the path to the one in which a run starts.
+    /// True if it is a state of the path to the start of a run.
     of_start: bool,
 }
 
-/// How the parts of a network were joined, from the start to an instant.
+/// Connections of a network's parts, from the start to an instant.
 struct History {
     valves: Vec<Valve>,
-    /// Places that nothing parts: pairs.
+    /// Pairs of places that are always connected.
     joined: Vec<[usize; 2]>,
-    /// Bladders, junctions, then one place for every prescribed pressure.
+    /// Number of places: bladders, junctions, and one place for all prescribed pressures.
     places: usize,
     /// Places that store fluid.
     stores: Vec<usize>,
@@ -143,7 +143,7 @@ struct History {
 }
 
 impl History {
-    /// None where no valve moves.
+    /// History of the valves; `None` if no valve moves.
     fn of(case: &Case, at_s: f64) -> Result<Option<Self>> {
         let written = case.network.iter();
         let tubes = written.clone().flat_map(|n| n.tubes.iter().map(|tube| &tube.opening));
@@ -153,7 +153,7 @@ impl History {
         if openings.all(Signal::is_constant) {
             return Ok(None);
         }
-        // a run that starts in equilibrium has a past: the loads of that state, and those before, none of the instants between
+        // a start in equilibrium has a past: the loads of its state and of earlier stages, but no instants between
         let start = case.start.equilibrium.as_ref();
         let past = start.filter(|start| at_s >= 0.0 || at_s == start.loads_at_s);
         let begin = match past {
@@ -201,13 +201,13 @@ impl History {
         }))
     }
 
-    /// The spans whose last states the path goes through, in order.
+    /// Spans whose last states the path passes, in order.
     fn stages(&self) -> &[Span] {
         let last = self.spans.len() - 1;
         &self.spans[self.first(last)..last]
     }
 
-    /// The last span up to one that owes nothing to those before.
+    /// Last span, up to `of`, that does not depend on earlier ones.
     fn first(&self, of: usize) -> usize {
         let mut first = of;
         while first > 0 && self.owes(first).next().is_some() {
@@ -216,8 +216,8 @@ impl History {
         first
     }
 
-    /// Valves that are shut in a span, were open before, and part fluid then that no prescribed pressure reaches from other fluid; with the span in which each
-    /// was open last.
+    /// Valves that are closed in a span, but were open before, and that separate fluid without prescribed pressure from other fluid.
+    /// Each has the span in which it was last open.
     fn owes(&self, span: usize) -> impl Iterator<Item = (&Valve, &Span)> {
         let now = &self.spans[span];
         let mut sets = Sets::new(self.places);
@@ -239,7 +239,7 @@ impl History {
         })
     }
 
-    /// The valves behind which fluid is kept in the end, as the case has them, with the instant at which each shut, for people; none without.
+    /// Describes the valves that trap fluid at the end, with their JSON pointers and times of closure; `None` without such valves.
     fn words(&self, case: &Case) -> Option<String> {
         let (mut shut, mut flows) = (vec![], false);
         for (valve, before) in self.owes(self.spans.len() - 1) {
@@ -267,7 +267,7 @@ impl History {
     }
 }
 
-/// Where the case has an opening.
+/// JSON pointer of an opening in the case.
 fn pointer(case: &Case, opening: &Signal) -> String {
     let Some(network) = &case.network else {
         return "a valve".into();
@@ -279,7 +279,7 @@ fn pointer(case: &Case, opening: &Signal) -> String {
         .unwrap_or_else(|| "a valve".into())
 }
 
-/// The states on the way to the one in which a run starts, that one included where it is not the one asked for.
+/// States on the path to the start of a run, including the start if it is not the requested state.
 fn of_start(valves: &[Valve], start: &EquilibriumStart, at_s: f64) -> Vec<Span> {
     let own = (at_s > 0.0 || at_s != start.loads_at_s).then_some(start.loads_at_s);
     let of = |t: f64| Span {
@@ -291,7 +291,7 @@ fn of_start(valves: &[Valve], start: &EquilibriumStart, at_s: f64) -> Vec<Span> 
     start.via_s.iter().copied().chain(own).map(of).collect()
 }
 
-/// The spans between the switching of valves, and the instant at the end as the last of them.
+/// Spans between the switching times of valves; the last one is the final instant.
 fn spans(valves: &[Valve], begin: f64, end: f64) -> Vec<Span> {
     let mut times: Vec<f64> = valves
         .iter()
@@ -317,7 +317,7 @@ fn spans(valves: &[Valve], begin: f64, end: f64) -> Vec<Span> {
         from = to;
     }
     let last = open(end);
-    // the last instant belongs to the span before where nothing switches in it
+    // the final instant belongs to the span before if nothing switches there
     spans.pop_if(|span| span.open == last);
     spans.push(Span {
         to: end,
@@ -332,12 +332,12 @@ fn is_open(opening: &Signal, t: f64, within: f64) -> bool {
     opening.jet(Clock { t, within }).value > least(opening)
 }
 
-/// The largest opening of a valve that counts as shut.
+/// Largest opening at which a valve counts as closed.
 fn least(opening: &Signal) -> f64 {
     if opening.is_constant() { 0.0 } else { TIGHT }
 }
 
-/// When a valve opens or shuts, between two instants.
+/// Times at which a valve opens or closes, between two instants.
 fn switches(opening: &Signal, begin: f64, end: f64) -> Vec<f64> {
     if opening.is_constant() {
         return vec![];
@@ -365,7 +365,7 @@ fn switches(opening: &Signal, begin: f64, end: f64) -> Vec<f64> {
             let (mut low, mut high) = (at(k), at(k + 1.0).min(to));
             let first = stands(low);
             if first != stands(high) {
-                // halved down to neighbours
+                // bisected down to adjacent numbers
                 loop {
                     let half = 0.5 * (low + high);
                     if half <= low || half >= high {
@@ -373,7 +373,7 @@ fn switches(opening: &Signal, begin: f64, end: f64) -> Vec<f64> {
                     }
                     *(if stands(half) == first { &mut low } else { &mut high }) = half;
                 }
-                // the end of a smooth ramp, of which the rest is shut too
+                // the end of a smooth ramp whose remainder counts as closed
                 let near = END * (to - from);
                 found.push(match first {
                     true if to - high < near && !stands(to) => to,

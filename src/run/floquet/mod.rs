@@ -1,8 +1,8 @@
-//! Floquet multipliers of a cycle: what a small disturbance is multiplied by from one period to the next.
+//! Floquet multipliers of a cycle: the factors by which small disturbances change from one period to the next.
 //!
 //! ```text
-//! shape    what a disturbance is made of
-//! verdict  stable or not, and by what, in words
+//! shape    parts of a disturbance
+//! verdict  stability and its cause, as text
 //! ```
 
 pub mod shape;
@@ -20,12 +20,12 @@ pub use verdict::{Stability, Verdict};
 
 /// Residual of a multiplier's vector, relative to one.
 const RESIDUAL: f64 = 1e-8;
-/// Multipliers below this have died before a period is over: no frequency or rate can be read from them.
+/// Multipliers below this decay within a period: no frequency or rate can be read from them.
 const DEAD: f64 = 1e-9;
-/// Vectors of the Krylov space at most.
+/// Largest number of vectors of the Krylov space.
 const MOST_VECTORS: usize = 600;
 
-/// One multiplier; of a complex pair the one with positive angle.
+/// A multiplier; of a complex pair the one with positive angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Multiplier {
     /// Real part.
@@ -34,33 +34,34 @@ pub struct Multiplier {
     pub im: f64,
     /// Modulus.
     pub modulus: f64,
-    /// Growth rate [1/s], negative when it decays.
+    /// Growth rate [1/s], negative for decay.
     pub growth_per_s: f64,
-    /// Frequency [Hz]: of those that the angle allows, which differ by multiples of the drive, the nearest to that at which the disturbance
-    /// turns within a period; where steps are too long to follow it, to that of its part when dry.
+    /// Frequency [Hz], which the angle determines up to multiples of the drive frequency. It is the candidate nearest to the measured
+    /// rotation of the disturbance within a period. If steps are too long to follow it, it is the one nearest to the dry frequency of
+    /// its part.
     pub frequency_hz: f64,
-    /// What most of its energy is in.
+    /// Part with most of its energy.
     pub part: Part,
-    /// Its share of the energy.
+    /// Fraction of the energy in this part.
     pub share: f64,
-    /// Rate by which the integrator's steps damp that motion more than it decays by itself [1/s]: to be far below the growth rate.
+    /// Rate by which the integrator's steps damp the motion beyond its own decay [1/s]; must be far below the growth rate.
     pub numerical_damping_per_s: f64,
-    /// `|M v - μ v|` of its vector of norm one.
+    /// `|M v - μ v|` for its vector of norm one.
     pub residual: f64,
 }
 
-/// What is known of a cycle's stability.
+/// Stability of a cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Floquet {
     /// Period [s].
     pub period_s: f64,
-    /// Whether anything is driven.
+    /// True if any signal drives the case.
     pub driven: bool,
-    /// Multipliers exactly one that stand for conserved volumes; left out below.
+    /// Number of multipliers that are exactly one because a volume is conserved; omitted below.
     pub conserved: usize,
-    /// The others, largest first.
+    /// Other multipliers, largest first.
     pub multipliers: Vec<Multiplier>,
-    /// Stable or not, and by what.
+    /// Stability and its cause.
     pub verdict: Verdict,
 }
 
@@ -70,8 +71,8 @@ pub struct Floquet {
 /// M v = μ v     growth ln|μ|/T     frequency (arg μ + 2π k)/(2π T), k whole
 /// ```
 ///
-/// M is the derivative of the period map as its steps are. Conserved volumes make as many left vectors `wᵀ M = wᵀ`; M leaves
-/// the states across them to themselves, and there their multipliers, exactly one, do not occur.
+/// M is the derivative of the discrete period map. Each conserved volume has a left vector with `wᵀ M = wᵀ`. M maps the states
+/// orthogonal to these vectors to such states, and their multipliers, exactly one, do not occur there.
 pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
     let mut start = krylov::everything(cycle.y.len());
     scene.admit(&mut start);
@@ -120,11 +121,12 @@ pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
     }
 }
 
-/// Angle that a part may turn by in a step [rad], by its frequency when dry, for its turns to be counted.
+/// Largest angle [rad] by which a part may turn in a step, at its dry frequency, for its turns to be counted.
 const FOLLOWED: f64 = 2.0;
 
-/// How fast a disturbance `a + ib` swings in a part of the beam [1/s]: the angle by which it turns there over a period, step by step, whole
-/// turns included, which the multiplier does not tell. None where steps are too long to follow it, or nothing turns.
+/// Angular frequency [1/s] of a disturbance `a + ib` in a part of the beam: its rotation there over a period, summed step by step.
+/// The sum includes whole turns, which the multiplier does not contain. `None` if steps are too long to follow the rotation, or
+/// if nothing rotates.
 ///
 /// ```text
 /// Σₙ arg⟨cₙ, cₙ₊₁⟩ / T     c coordinates whose squares are twice the energy
@@ -150,7 +152,7 @@ fn turns(scene: &Scene, cycle: &mut Cycle, modes: &Modes, part: Part, v: &[Vec<f
     Some(total.abs() / scene.drive.period)
 }
 
-/// The angular frequency [1/s] `(±angle + 2π k)/period` nearest to `own`.
+/// Angular frequency [1/s] of the form `(±angle + 2π k)/period` that is nearest to `own`.
 fn nearest(angle: f64, period: f64, own: f64) -> f64 {
     let candidate = |angle: f64| {
         let k = ((own * period - angle) / TAU).round();
@@ -160,7 +162,7 @@ fn nearest(angle: f64, period: f64, own: f64) -> f64 {
     if (a - own).abs() <= (b - own).abs() { a } else { b }
 }
 
-/// Rate [1/s] by which the steps damp what grows at a rate and turns at an angular frequency [1/s] more than it decays by itself.
+/// Rate [1/s] by which the steps damp a motion of given growth rate and angular frequency [1/s] beyond its own decay.
 fn numerical_damping(scene: &Scene, times: &[f64], [growth, w]: [f64; 2]) -> f64 {
     let tableau = scene.method.tableau();
     let lost: f64 = times

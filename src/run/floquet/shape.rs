@@ -1,4 +1,4 @@
-//! What a disturbance is made of: bending modes of the dry beam, motion along it, fluid.
+//! Parts of a disturbance: bending modes of the dry beam, motion along it, fluid.
 
 use std::ops::Range;
 
@@ -10,10 +10,10 @@ use crate::discrete::System;
 use crate::discrete::layout::Line;
 use crate::model::Kinematics;
 
-/// Bending modes looked at.
+/// Number of bending modes.
 const MODES: usize = 8;
 
-/// What most of the energy of a disturbance is in.
+/// The part with most of the energy of a disturbance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
@@ -40,17 +40,17 @@ impl std::fmt::Display for Part {
 pub struct Modes {
     /// Angular frequencies [1/s], ascending; rigid motions left out.
     pub frequencies: Vec<f64>,
-    /// Shapes at the free nodes, `Σ mass u² = 1` [1/kg^(1/2)], one a row.
+    /// Shapes at the free nodes, one in each row, `Σ mass u² = 1` [1/kg^(1/2)].
     shapes: Vec<Vec<f64>>,
     /// Mass of the free nodes [kg].
     masses: Vec<f64>,
-    /// Where the beam points that is disturbed, across and along, in every cell.
+    /// Direction of the disturbed beam in every cell: components across and along.
     tangents: Vec<[f64; 2]>,
 }
 
 impl Modes {
-    /// The lowest modes of a system: stiffness `Σ EI κ² length` of the curvatures at nodes, mass at nodes. Empty where nothing
-    /// can move across. Disturbances are those of a state of the scaled unknowns.
+    /// Lowest modes of a system, from the stiffness `Σ EI κ² length` of the curvatures at nodes and the mass at nodes; empty if no node
+    /// can move across. `state` are the scaled unknowns that are disturbed.
     pub fn new(system: &System, state: &[f64]) -> Self {
         let (mesh, free) = (&system.mesh, &system.layout.lines[0].free);
         let (section, h, n) = (&system.model.section, system.mesh.h, free.len());
@@ -67,7 +67,7 @@ impl Modes {
             bend(&[(i - 1, per), (i, -2.0 * per), (i + 1, per)], h);
         }
         for (end, inner, k) in [(0, 1, 0), (mesh.nodes - 1, mesh.nodes - 2, 1)] {
-            // a held slope: half a cell over which the angle of the next cell is lost
+            // a held slope: within half a cell the angle changes to that of the next cell
             if matches!(system.model.ends[k].rotation, Rotation::Slope(_)) {
                 bend(&[(end, -2.0 * per), (inner, 2.0 * per)], 0.5 * h);
             }
@@ -94,7 +94,7 @@ impl Modes {
         }
     }
 
-    /// Energies of a small disturbance of the scaled unknowns [J]: of every mode, along the beam, of the fluid.
+    /// Energies of a small disturbance of the scaled unknowns [J]: of every mode, of motion along the beam, of the fluid.
     fn energies(&self, system: &System, v: &[f64]) -> (Vec<f64>, f64, f64) {
         let (l, s) = (&system.layout, &system.model.section);
         let across = &l.lines[0];
@@ -122,7 +122,8 @@ impl Modes {
         (bending.collect(), along, fluid)
     }
 
-    /// What the energy of a disturbance of the scaled unknowns in a part is made of: the squares add up to twice that [J^(1/2)]. Empty for
+    /// Coordinates of a disturbance of the scaled unknowns in a part. Their squares add up to twice its energy there
+    /// [J^(1/2)]. Empty for
     /// the fluid.
     pub fn coordinates(&self, system: &System, part: Part, v: &[f64]) -> Vec<f64> {
         let (l, s) = (&system.layout, &system.model.section);
@@ -150,8 +151,8 @@ impl Modes {
         }
     }
 
-    /// Angular frequency [1/s] that the dry beam has in the shape of a disturbance most of whose energy is in `part`: of motion
-    /// along it by Rayleigh's quotient; 0 for the fluid.
+    /// Angular frequency [1/s] of the dry beam in the shape of a disturbance with most of its energy in `part`. For motion along the
+    /// beam it is Rayleigh's quotient; for the fluid it is 0.
     pub fn frequency(&self, system: &System, part: Part, v: &[Vec<f64>; 2]) -> f64 {
         match part {
             Part::Bending(mode) => self.frequencies[mode - 1],
@@ -168,7 +169,7 @@ impl Modes {
         }
     }
 
-    /// What most of the energy of a disturbance is in, given by real and imaginary part, and its share of the whole.
+    /// Part with most of the energy of a disturbance, given by real and imaginary part, and the fraction in this part.
     pub fn dominant(&self, system: &System, v: &[Vec<f64>; 2]) -> (Part, f64) {
         let mut parts: Vec<(Part, f64)> = (1..=self.frequencies.len())
             .map(Part::Bending)
@@ -188,8 +189,9 @@ impl Modes {
         (part, if whole > 0.0 { energy / whole } else { 0.0 })
     }
 
-    /// Strains along the disturbed beam, one a cell: a beam that is bent and bends further does not stretch, though it moves along its straight
-    /// axis.
+    /// Strains along the disturbed beam, one for each cell. A bent beam that bends further does not stretch, although it
+    /// moves along its
+    /// straight axis.
     fn stretches(&self, system: &System, v: &[f64]) -> Vec<f64> {
         let u = nodes(system, v, |line| Some(&line.u));
         let cells = u.windows(2).zip(&self.tangents);
@@ -197,12 +199,12 @@ impl Modes {
         each.map(|e| e / system.mesh.h).collect()
     }
 
-    /// Speeds along it [m/s], one a node.
+    /// Speeds along the disturbed beam [m/s], one for each node.
     fn speeds(&self, system: &System, v: &[f64]) -> Vec<f64> {
         self.along(&nodes(system, v, |line| line.v.as_ref()))
     }
 
-    /// Of vectors at nodes what points along it: by the mean direction of the cells beside.
+    /// Components of node vectors along the disturbed beam, by the mean direction of the adjacent cells.
     fn along(&self, vectors: &[[f64; 2]]) -> Vec<f64> {
         let (tangents, last) = (&self.tangents, self.tangents.len() - 1);
         let each = vectors.iter().enumerate().map(|(i, v)| {
@@ -213,7 +215,7 @@ impl Modes {
     }
 }
 
-/// What the beam is stretched along in every cell, across and along, [E11] [E26]: `∂e/∂(u1', u3')`.
+/// Direction in which the beam is stretched in every cell, components across and along, [E11] [E26]: `∂e/∂(u1', u3')`.
 fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
     let u = nodes(system, state, |line| Some(&line.u));
     let cells = u
@@ -230,7 +232,7 @@ fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
     each.collect()
 }
 
-/// Values of the scaled unknowns across and along at all nodes, in SI units; 0 where they are none.
+/// Values of the scaled unknowns across and along at all nodes, in SI units; 0 at nodes without an unknown.
 fn nodes(system: &System, v: &[f64], unknowns: impl Fn(&Line) -> Option<&Range<usize>>) -> Vec<[f64; 2]> {
     let l = &system.layout;
     let mut all = vec![[0.0; 2]; system.mesh.nodes];

@@ -1,4 +1,4 @@
-//! Stable or not, and by what, in words.
+//! Stability of a cycle and its cause, as text.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,37 +6,36 @@ use super::Multiplier;
 use super::shape::Part;
 use crate::run::null;
 
-/// Growth over a period below which a disturbance counts as neither growing nor decaying: what the steps' own error makes of
-/// a multiplier of one.
+/// Growth over a period below which a disturbance counts as neutral: the effect of the steps' own error on a multiplier of one.
 const NEUTRAL: f64 = 1e-5;
 /// Angle [rad] from the real axis within which a multiplier counts as real.
 const REAL: f64 = 1e-6;
 
-/// Whether disturbances die.
+/// Stability of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stability {
-    /// All of them.
+    /// All disturbances decay.
     Stable,
-    /// None grows, but some do not die either.
+    /// No disturbance grows, but some do not decay.
     Neutral,
-    /// One grows.
+    /// A disturbance grows.
     Unstable,
 }
 
-/// What is to be said of a cycle.
+/// Verdict on a cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// In one word.
+    /// Stability class.
     pub stability: Stability,
     /// Growth rate of the largest multiplier [1/s].
     #[serde(deserialize_with = "null::number")]
     pub growth_per_s: f64,
-    /// In a sentence.
+    /// Description in a sentence.
     pub words: String,
 }
 
-/// Judges by the largest multiplier.
+/// Derives the verdict from the largest multiplier.
 pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -> Verdict {
     let Some(first) = multipliers.first() else {
         return Verdict {
@@ -71,7 +70,7 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
     }
 }
 
-/// What swings, and how fast; fluid that creeps does not.
+/// Describes the part that oscillates, and its frequency; creeping fluid does not oscillate.
 fn at(m: &Multiplier) -> String {
     match m.frequency_hz > 0.0 {
         true => format!("{} at {:.4} Hz", m.part, m.frequency_hz),

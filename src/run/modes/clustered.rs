@@ -1,6 +1,6 @@
-//! Modes beside a cluster of decays, such as the overdamped vibrations of a solid with material damping, whose rates tend to one value: a
-//! search from zero does not tell these apart and ends at them. Oscillations beyond are looked for one by one along the imaginary axis, from which the
-//! cluster is far.
+//! Modes beside a cluster of decays, such as the overdamped vibrations of a solid with material damping, whose rates tend to one
+//! value. A search from zero cannot separate these and stops at them. Further oscillations are searched one by one along the
+//! imaginary axis, which is far from the cluster.
 
 use nalgebra::Complex;
 
@@ -8,27 +8,27 @@ use super::{Fluid, Linearised, Mode, Shapes, Tally, failed, mode};
 use crate::error::Result;
 use crate::spectral::{self, Options, Pencil, SpectralError};
 
-/// Pairs looked for beside a place on the imaginary axis: several, or where they do not converge fewer.
+/// Numbers of pairs searched beside a place on the imaginary axis: several, or fewer if they do not converge.
 const BESIDE: [usize; 3] = [4, 2, 1];
-/// Ratio of neighbouring places.
+/// Ratio of successive places.
 const STEP: f64 = 1.25;
-/// Places without a new oscillation after which none is expected.
+/// Number of places without a new oscillation after which the search ends.
 const PATIENCE: usize = 8;
-/// Distance of two equal eigenvalues, relative.
+/// Relative distance up to which two eigenvalues count as equal.
 const SAME: f64 = 1e-6;
 
-/// A search from zero of which so many eigenvalues converged, and so many modes are wanted.
+/// A search from zero of which only a part of the eigenvalues converged.
 pub struct Clustered {
-    /// Where it began.
+    /// Start of the search.
     pub shift: Complex<f64>,
-    /// Eigenvalues that converged.
+    /// Number of eigenvalues that converged.
     pub converged: usize,
-    /// Modes that are wanted.
+    /// Number of requested modes.
     pub wanted: usize,
 }
 
 impl Clustered {
-    /// The modes nearer than the cluster, and the oscillations beyond it.
+    /// Finds the modes nearer than the cluster, and the oscillations beyond it.
     ///
     /// # Errors
     /// The search was interrupted.
@@ -55,7 +55,7 @@ impl Clustered {
     }
 }
 
-/// Modes nearest a place: as many as converge of these counts.
+/// Modes nearest to a place, for the first of the counts that converges.
 fn near(
     about: &Linearised,
     fluid: Fluid,

@@ -1,4 +1,4 @@
-//! What a mode does.
+//! Kinds of modes.
 
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
@@ -6,26 +6,26 @@ use serde::{Deserialize, Serialize};
 use super::shape::Shape;
 use crate::spectral::Pair;
 
-/// What becomes of a mode once it is there.
+/// Behavior of a mode in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Swings, and does not grow.
+    /// Oscillates without growth.
     Oscillation,
-    /// Dies away without swinging.
+    /// Decays without oscillation.
     Decay,
-    /// Swings and grows.
+    /// Oscillates and grows.
     Flutter,
-    /// Grows without swinging.
+    /// Grows without oscillation.
     Divergence,
-    /// A motion that nothing holds.
+    /// Rigid motion without a restoring force.
     Rigid,
-    /// Fluid that a closed network keeps, and the pressure and deflection that go with it.
+    /// Constant volume of fluid in a closed network, with the pressure and deflection that it causes.
     Volume,
 }
 
 impl Kind {
-    /// In a word.
+    /// Name of the kind.
     pub fn word(self) -> &'static str {
         match self {
             Self::Oscillation => "oscillation",
@@ -37,30 +37,30 @@ impl Kind {
         }
     }
 
-    /// Whether the mode grows.
+    /// True if the mode grows.
     pub fn grows(self) -> bool {
         matches!(self, Self::Flutter | Self::Divergence)
     }
 
-    /// Whether the mode swings.
+    /// True if the mode oscillates.
     pub fn swings(self) -> bool {
         matches!(self, Self::Oscillation | Self::Flutter)
     }
 
-    /// Whether the mode stays what it is: s = 0.
+    /// True if the mode is constant in time: s = 0.
     pub fn stays(self) -> bool {
         matches!(self, Self::Rigid | Self::Volume)
     }
 }
 
-/// Times the bound of its error that a part of s must have to count: the bound is one to first order.
+/// Multiple of its error bound above which a part of s counts; the bound is valid to first order.
 const BEYOND: f64 = 10.0;
-/// Share of |s| below which a part of it does not count: no one measures a damping ratio of this size.
+/// Fraction of |s| below which a part of it does not count: damping ratios of this size cannot be measured.
 const SHARE: f64 = 1e-9;
-/// Share of the beam's own frequency below which |s| does not count.
+/// Fraction of the beam's own frequency below which |s| does not count.
 const STILL: f64 = 1e-12;
 
-/// The kind of a pair, and `s` without the parts that are round-off. `frequency` [1/s] is the beam's.
+/// Kind of a pair, and `s` without the parts that are round-off. `frequency` [1/s] is that of the beam.
 pub fn judge(pair: &Pair, shape: &Shape, frequency: f64, length: f64) -> (Kind, Complex<f64>) {
     let still = BEYOND * pair.error + STILL * frequency;
     if pair.s.norm() <= still {

@@ -1,4 +1,4 @@
-//! The linearisation of a case about a state.
+//! Linearization of a case about a state.
 
 use crate::case::Case;
 use crate::dae::{BeamDae, Dae as _, EvaluationError, Seeds};
@@ -10,21 +10,21 @@ use crate::model::Model;
 use crate::run::equilibrium::{self, Options};
 use crate::spectral::Pencil;
 
-/// What the fluid does in the linearised equations.
+/// Behavior of the fluid in the linearized equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fluid {
-    /// It flows.
+    /// The fluid flows.
     Flowing,
-    /// It does not: every bladder keeps its volume (undrained, μ → ∞).
+    /// The fluid does not flow: every bladder keeps its volume (undrained, μ → ∞).
     Sealed,
-    /// It flows without resistance: what is joined has one pressure (drained, μ → 0).
+    /// The fluid flows without resistance: connected parts have one pressure (drained, μ → 0).
     Free,
 }
 
-/// Factor of the flows that stands for none of their resistance: the pressure differences left are its inverse.
+/// Factor of the flows that represents zero resistance; the remaining pressure differences are its inverse.
 const FREE: f64 = 1e6;
 
-/// `[E31]` Small motions about a state at rest, of the scaled unknowns, with all signals held:
+/// `[E31]` Small motions of the scaled unknowns about a state at rest, with constant signals:
 ///
 /// ```text
 /// F(t, y + δy, δy') = 0        A = ∂F/∂y, B = ∂F/∂y'        δy = x e^{s t}        (A + s B) x = 0
@@ -33,7 +33,7 @@ const FREE: f64 = 1e6;
 pub struct Linearised {
     /// The equations.
     pub dae: BeamDae,
-    /// Instant at which signals are held [s].
+    /// Instant whose signals are used [s].
     pub at: f64,
     /// Scaled unknowns, velocities zero.
     pub y: Vec<f64>,
@@ -41,16 +41,16 @@ pub struct Linearised {
     pub a: Vec<f64>,
     /// Entries of B.
     pub b: Vec<f64>,
-    /// Largest rate with which the state would change, each unknown over its characteristic size [1/s]: 0 at an equilibrium.
+    /// Largest rate of change of the state, each unknown over its characteristic size [1/s]; 0 at an equilibrium.
     pub rate: f64,
 }
 
-/// Linearises everything that a case describes, with signals held at `at` [s], about `state` (scaled unknowns of
-/// `System::with(case, Model::of_modes(case))`, velocities zero) or about the start, which may be an equilibrium under
-/// loads of another instant.
+/// Linearizes the full case, with constant signals of the instant `at` [s]. The state is `state` (scaled unknowns of
+/// `System::with(case, Model::of_modes(case))`, velocities zero). Without it, the state is the start, which may be an equilibrium
+/// under loads of another instant.
 ///
 /// # Errors
-/// [`Error::Solver`] when there are no consistent pressures, or derivatives are not finite.
+/// [`Error::Solver`] if there are no consistent pressures, or if derivatives are not finite.
 pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearised> {
     if let (None, Some(start)) = (state, &case.start.equilibrium) {
         return about_equilibrium(case, &Options::of_start(start));
@@ -61,10 +61,10 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
     about(dae, at, y)
 }
 
-/// Linearises everything that a case describes about the equilibrium under the loads at an instant [s].
+/// Linearizes the full case about the equilibrium under the loads at an instant [s].
 ///
 /// # Errors
-/// As [`linearise`], and [`Error::Solver`] when there is no equilibrium.
+/// As [`linearise`], and [`Error::Solver`] if there is no equilibrium.
 pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
     about_equilibrium(case, &Options::at(at))
 }
@@ -80,7 +80,7 @@ fn about_equilibrium(case: &Case, options: &Options) -> Result<Linearised> {
     about(dae, at, y)
 }
 
-/// Everything that a case describes, signals held at an instant [s].
+/// Equations of the full case, with constant signals of an instant [s].
 fn held(case: &Case, at: f64) -> Result<BeamDae> {
     let mut model = Model::of_modes(case)?;
     model.freeze(at);
@@ -136,16 +136,15 @@ impl Linearised {
         }
     }
 
-    /// Angular frequency by which those of the beam are measured, `√(EI/(m l_s⁴))` [1/s].
+    /// Reference for angular frequencies of the beam, `√(EI/(m l_s⁴))` [1/s].
     pub fn frequency(&self) -> f64 {
         let model = &self.system().model;
         let section = &model.section;
         (section.bending_stiffness / section.mass_per_length).sqrt() / model.length.powi(2)
     }
 
-    /// Entries of A and B with another behaviour of the fluid. The rows of storage, `Δs a' - inflow`, become `a = 0` where
-    /// nothing flows, and have their flows multiplied where nothing resists; so it needs no second model, whatever valves
-    /// and turbines there are.
+    /// Entries of A and B with another behavior of the fluid. The rows of storage, `Δs a' - inflow`, become `a = 0` if the fluid is
+    /// sealed; their flows are multiplied by a factor if it is free. No second model is needed, whatever valves and turbines there are.
     pub fn with(&self, fluid: Fluid) -> (Vec<f64>, Vec<f64>) {
         let (mut a, mut b) = (self.a.clone(), self.b.clone());
         let (pattern, l) = (self.dae.pattern(), &self.system().layout);
@@ -164,18 +163,19 @@ impl Linearised {
         (a, b)
     }
 
-    /// Whether there are flows that could be held or freed.
+    /// True if there are flows that can be sealed or freed.
     pub fn flows(&self) -> bool {
         !self.system().layout.network.area.is_empty()
     }
 
-    /// Whether the state would change noticeably in the time of the beam. An equilibrium as Newton's iteration leaves it has
-    /// rates of a few thousandths: what is left of forces acts on stiff axial waves, which hardly move for it.
+    /// True if the state changes noticeably in the characteristic time of the beam. An equilibrium from Newton's iteration
+    /// has rates of a
+    /// few thousandths: residual forces act on stiff axial waves, which hardly move.
     pub fn moving(&self) -> bool {
         self.rate > 1e-2 * self.frequency()
     }
 
-    /// The clock of the linearisation.
+    /// Clock of the linearization.
     pub fn clock(&self) -> Clock {
         Clock {
             t: self.at,

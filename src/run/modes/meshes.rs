@@ -1,7 +1,7 @@
-//! What the meshes along the beam and along the bladders do to modes: the same modes on half the cells of a beam, on twice those of a
-//! bladder.
+//! Effect of the meshes along the beam and along the bladders on modes: a comparison with half the cells of the beam, and with
+//! twice the cells of a bladder.
 //!
-//! A bladder has few cells: half of them are often none at all, and have none of the flows to and fro within one.
+//! A bladder has few cells: half of them are often zero, and cannot represent flow within a bladder.
 
 use nalgebra::Complex;
 
@@ -12,24 +12,24 @@ use crate::case::schema::Effect;
 use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::{Code, Result};
 
-/// What meshes of second and of fourth order leave of a difference to half the cells, and of second to twice the cells.
+/// Error over the difference to half the cells, for meshes of second and fourth order; over that to twice the cells, for second order.
 const TO_HALF: [f64; 2] = [1.0 / 3.0, 1.0 / 15.0];
 const TO_TWICE: f64 = 4.0 / 3.0;
 
-/// By how much meshes are off, `s` of an ever finer one less `s` [1/s]; none where the mesh was not changed, or where the other one has no
-/// such mode.
+/// Errors due to the meshes: `s` in the limit of fine meshes minus `s` [1/s]. `None` if the mesh was not changed, or if the other mesh
+/// has no such mode.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ByMesh {
     /// Along the beam.
     pub beam: Option<Complex<f64>>,
     /// Along bladders.
     pub bladders: Option<Complex<f64>>,
-    /// Whether cells of the beam are of fourth order: a part of what they leave out may then be of second, and their error be as large as that.
+    /// True if beam cells are of fourth order. A part of their error may be of second order, so the error may be as large as for that.
     pub fourth: bool,
 }
 
 impl ByMesh {
-    /// What it may be off by: along the beam, and along bladders [1/s].
+    /// Possible errors along the beam and along bladders [1/s].
     pub fn off(&self) -> impl Iterator<Item = Complex<f64>> {
         let [second, fourth] = TO_HALF;
         let by = if self.fourth { second / fourth } else { 1.0 };
@@ -37,10 +37,10 @@ impl ByMesh {
     }
 }
 
-/// Looks for the same modes on other meshes, about the start or the equilibrium under the loads of an instant [s].
+/// Finds the same modes on other meshes, about the start or the equilibrium under the loads of an instant [s].
 ///
 /// # Errors
-/// None: a mesh on which there are no modes, or not these, leaves what it does unknown.
+/// None: if a mesh has no modes, or not these, its effect remains unknown.
 pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &Plan, found: &mut Modes) {
     let at = found.about.at;
     let about = |case: &Case| match at_rest_under {
@@ -59,7 +59,7 @@ pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &Plan, foun
     }
 }
 
-/// The case on half the cells, where they can be halved.
+/// The case with half the cells, if they can be halved.
 fn halved(case: &Case) -> Option<Case> {
     let mut case = case.clone();
     let mesh = &mut case.mesh;
@@ -73,7 +73,7 @@ fn halved(case: &Case) -> Option<Case> {
 
 fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
     let fourth = found.about.system().mesh.fourth;
-    // a mesh of few cells is of another order
+    // a mesh of few cells has another order
     if about.as_ref().is_ok_and(|other| other.system().mesh.fourth != fourth) {
         return;
     }
@@ -109,10 +109,10 @@ fn along_bladders(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
     }
 }
 
-/// More modes than are asked for, since the last ones may change places.
+/// Number of additional modes, since the last ones may change their order.
 const MORE: usize = 4;
 
-/// Modes about a state on another mesh, and which of them are which.
+/// Modes about a state on another mesh, and their pairs with the given modes.
 #[allow(clippy::type_complexity)]
 fn elsewhere(
     about: Result<Linearised>,
@@ -136,17 +136,18 @@ fn elsewhere(
     Some((others, pairs))
 }
 
-/// How near each other two modes are in how fast they are: 1 where they are the same.
+/// Similarity of |s| of two modes; 1 if they are equal.
 fn as_fast(a: &Mode, b: &Mode) -> f64 {
     let [a, b] = [a, b].map(|mode| mode.s.norm());
     (a * b).sqrt() * 2.0 / (a + b)
 }
 
-/// Power of [`as_fast`] beside the likeness of shapes: a fifth in frequency then costs 6 %, half of it 28 %.
+/// Power of [`as_fast`] beside the likeness of shapes: 20 % difference in frequency then costs 6 %, and 50 % costs 28 %.
 const SHARP: i32 = 16;
 
-/// Pairs of what swings, with the likeness of their shapes: the most alike in displacements and in how fast they are. What swings in the fluid moves the beam
-/// a little, and all of it much alike.
+/// Pairs of oscillations with the likeness of their shapes: those most alike in displacements and in |s|. Oscillations of
+/// the fluid move
+/// the beam only a little, and all in a similar shape.
 fn swinging(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
     let swings = |mode: &Mode| mode.kind.swings();
     let pairs = super::paired(modes, others, swings, |a, b| {
@@ -156,8 +157,8 @@ fn swinging(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
     pairs.into_iter().map(with_likeness).collect()
 }
 
-/// Pairs of what decays, or grows, without swinging: the most alike in displacements and pressures together, and in how fast they do. Of
-/// flows to and fro within bladders neither tells much: what is left goes in the order in which it was found.
+/// Pairs of modes that decay or grow without oscillation: those most alike in displacements and pressures together, and in rate. For
+/// flow within bladders neither is distinctive, so the remaining modes are paired in the order in which they were found.
 fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)> {
     let real = |mode: &Mode| !mode.kind.swings() && !mode.kind.stays();
     let mut pairs = super::paired(modes, others, real, |a, b| {
@@ -173,10 +174,10 @@ fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)
     pairs
 }
 
-/// Modes told by name.
+/// Largest number of modes that the warning names.
 const TOLD: usize = 4;
 
-/// What to know of modes that meshes change by much, or of which it is not known.
+/// Warns of modes that depend strongly on the meshes, or whose dependence is unknown.
 pub fn warning(found: &Modes) -> Option<String> {
     let mut large: Vec<(usize, f64, &str)> = vec![];
     let mut unknown: Vec<String> = vec![];

@@ -1,15 +1,15 @@
 //! Modes: frequencies, damping, shapes and growth of small motions about a state.
 //!
 //! ```text
-//! linearise   the pencil of a case about a state, with the fluid as it is, held, or free
-//! shape       displacements and pressures of an eigenvector; likeness of two
+//! linearise    pencil of a case about a state, with the fluid as it is, sealed, or free
+//! shape        displacements and pressures of an eigenvector; likeness of two shapes
 //! meshes       the same modes on other meshes
-//! clustered    those beside a cluster of decays
-//! relaxing     those of a solid that relaxes
+//! clustered    modes beside a cluster of decays
+//! relaxing     modes of a solid that relaxes
 //! sensitivity  derivatives by numbers of the case
-//! kind        oscillation, decay, growth, rigid motion, kept volume
-//! sort        those of one sort, and the order in which they are told
-//! warnings    what to know before trusting them
+//! kind         oscillation, decay, growth, rigid motion, kept volume
+//! sort         modes of one sort, and the order of output
+//! warnings     warnings about modes
 //! ```
 
 mod clustered;
@@ -38,14 +38,14 @@ pub use sensitivity::{Sensitivity, differentiate};
 pub use shape::{Shape, Shapes, likeness};
 pub use sort::Sort;
 
-/// What is asked for.
+/// Options of a search for modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Modes, those with s = 0 not counted.
+    /// Number of modes, not counting those with s = 0.
     pub count: usize,
-    /// Frequency near which they are looked for [Hz].
+    /// Frequency near which modes are searched [Hz].
     pub near_hz: f64,
-    /// Whether the fluid is held and freed too.
+    /// True if the modes with sealed and with free fluid are computed too.
     pub limits: bool,
 }
 
@@ -56,7 +56,7 @@ impl Plan {
     }
 }
 
-/// The same mode with the fluid held or free.
+/// The same mode with sealed or free fluid, or on another mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Frequency [Hz].
@@ -67,62 +67,62 @@ pub struct Limit {
     pub likeness: f64,
 }
 
-/// One mode; of a pair of conjugates that with positive frequency.
+/// A mode; of a pair of conjugates the one with positive frequency.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// What it does.
+    /// Kind of the mode.
     pub kind: Kind,
-    /// s [1/s], without what is round-off.
+    /// s [1/s], without parts that are round-off.
     pub s: Complex<f64>,
-    /// Bound of its error, to first order [1/s].
+    /// Bound of the error of s, to first order [1/s].
     pub error: f64,
     /// Backward error of the pair.
     pub residual: f64,
-    /// What it looks like.
+    /// Shape of the mode.
     pub shape: Shape,
-    /// With every bladder sealed.
+    /// The mode with every bladder sealed.
     pub undrained: Option<Limit>,
-    /// With networks of one pressure.
+    /// The mode with networks of one pressure.
     pub drained: Option<Limit>,
-    /// On a mesh of half the cells.
+    /// The mode on a mesh of half the cells.
     pub coarse: Option<Limit>,
-    /// What meshes do to it.
+    /// Errors due to the meshes.
     pub by_mesh: ByMesh,
 }
 
 impl Mode {
-    /// Frequency [Hz]; None where nothing swings.
+    /// Frequency [Hz]; None if the mode does not oscillate.
     pub fn frequency_hz(&self) -> Option<f64> {
         self.kind.swings().then(|| self.s.im / std::f64::consts::TAU)
     }
 
-    /// `[E45]` What other meshes say of these (Richardson, second order): the eigenvalue to which half the cells of the beam and
-    /// twice those of a bladder point [1/s],
+    /// `[E45]` Eigenvalue extrapolated (Richardson, second order) from half the cells of the beam and twice those of a bladder [1/s],
     ///
     /// ```text
     /// s ≈ s(h, g) + (s(h, g) - s(2h, g))/3 + 4 (s(h, g/2) - s(h, g))/3        h: cells of the beam, g: of a bladder
     /// ```
     ///
-    /// and a 15th of the difference on a beam of fourth order, [E77]. None where the beam could not be compared.
+    /// and a 15th of the difference on a beam of fourth order, [E77]. None if the beam could not be compared.
     pub fn extrapolated(&self) -> Option<Complex<f64>> {
         let ByMesh { beam, bladders, .. } = self.by_mesh;
         Some(self.s + beam? + bladders.unwrap_or_default())
     }
 
-    /// The frequency to which meshes point [Hz]; None where nothing swings or no other mesh has such a mode.
+    /// Extrapolated frequency [Hz]; None if the mode does not oscillate or was not found on the other mesh.
     pub fn extrapolated_hz(&self) -> Option<f64> {
         self.frequency_hz()?;
         Some(self.extrapolated()?.im / std::f64::consts::TAU)
     }
 
-    /// Error that meshes make of the frequency, relative to it, one beside the other.
+    /// Error of the frequency due to the meshes, relative to the frequency; magnitudes of both meshes are added.
     pub fn mesh_error(&self) -> Option<f64> {
         self.frequency_hz()?;
         self.off(|s| s.im, self.s.im)
     }
 
-    /// Error that meshes make of the growth or decay, relative to it, likewise. None where there is none; a damping ratio below 1e-6
-    /// is none.
+    /// Error of the growth or decay rate due to the meshes, relative to the rate; magnitudes of both meshes are added. None
+    /// if the damping
+    /// ratio is below 1e-6.
     pub fn rate_error(&self) -> Option<f64> {
         let rate = self.s.re.abs();
         (rate > UNDAMPED * self.s.norm())
@@ -138,47 +138,47 @@ impl Mode {
             .map(|off| off / of.abs())
     }
 
-    /// Damping ratio, negative where the mode grows; None where nothing swings.
+    /// Damping ratio, negative for growth; None if the mode does not oscillate.
     pub fn damping_ratio(&self) -> Option<f64> {
         // + 0 makes an undamped mode's ratio 0 and not -0
         self.kind.swings().then(|| -self.s.re / self.s.norm() + 0.0)
     }
 
-    /// Time in which it falls, or grows, by e [s]; None where it does neither.
+    /// Time in which the mode decays or grows by the factor e [s]; None if it does neither.
     pub fn time_s(&self) -> Option<f64> {
         (self.s.re != 0.0).then(|| 1.0 / self.s.re.abs())
     }
 }
 
-/// Damping ratio below which a mode is not damped.
+/// Damping ratio below which a mode counts as undamped.
 const UNDAMPED: f64 = 1e-6;
 
 /// The modes of a case about a state.
 pub struct Modes {
-    /// The linearised equations.
+    /// The linearized equations.
     pub about: Linearised,
-    /// Nearest to what was asked first, by |s - 2πi near|.
+    /// Modes, nearest to the requested frequency first, by |s - 2πi near|.
     pub modes: Vec<Mode>,
-    /// Finite eigenvalues that there are.
+    /// Number of finite eigenvalues.
     pub finite: usize,
-    /// Sparse factorisations.
+    /// Number of sparse factorizations.
     pub factorizations: u64,
-    /// Sparse solves.
+    /// Number of sparse solves.
     pub solves: u64,
-    /// Whether all eigenvalues were computed at once.
+    /// True if all eigenvalues were computed at once.
     pub dense: bool,
-    /// Modes of the long term that were not found again where the solid relaxes.
+    /// Number of long-term modes that were not found again in the solid that relaxes.
     pub lost: usize,
-    /// Whether decays lie in a cluster at which the search from zero ended.
+    /// True if decays form a cluster at which the search from zero ended.
     pub clustered: bool,
-    /// Whether there is a mesh along bladders that could be compared with another.
+    /// True if there is a mesh along bladders that could be compared with another.
     pub bladders_compared: bool,
 }
 
-/// Modes of everything that a case describes, about its start.
+/// Modes of the full case about its start.
 ///
 /// # Errors
-/// As [`linearise`], and [`Error::Solver`] when eigenvalues do not converge.
+/// As [`linearise`], and [`Error::Solver`] if eigenvalues do not converge.
 pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
     of(linearise(case, 0.0, None)?, plan)
 }
@@ -186,7 +186,7 @@ pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
 /// Modes of a linearisation.
 ///
 /// # Errors
-/// [`Error::Solver`] when eigenvalues do not converge.
+/// [`Error::Solver`] if eigenvalues do not converge.
 pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
     let mut tally = Tally::default();
     let mut modes = search(&about, Fluid::Flowing, plan, &mut tally)?;
@@ -197,7 +197,7 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
             ..*plan
         };
         for fluid in [Fluid::Sealed, Fluid::Free] {
-            // more than asked for may be more than converge; a limit that is not found is not shown
+            // the larger number may not converge; a limit that is not found is not shown
             let Ok(others) =
                 search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
             else {
@@ -238,8 +238,8 @@ struct Tally {
     clustered: bool,
 }
 
-/// Share of the beam's own frequency at which a search from zero begins: beside zero, where closed networks and free beams
-/// have their eigenvalues, and nearer to it than anything else is likely to be.
+/// Fraction of the beam's own frequency at which a search from zero begins. It avoids zero, where closed networks and free beams have
+/// their eigenvalues, and is probably nearer to zero than all others.
 const BESIDE: f64 = 0.1;
 
 fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
@@ -250,10 +250,10 @@ fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> R
     }
 }
 
-/// Size up to which all eigenvalues are computed within a second or two, rather than those beside a cluster alone.
+/// Size up to which all eigenvalues are computed, within a second or two, instead of only those beside a cluster.
 const QUICK: usize = 500;
 
-/// Modes of entries A and B, as planned.
+/// Finds the planned modes of a pencil with entries A and B.
 fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
     let pencil = Pencil { a, b, ..about.pencil() };
     let target = plan.target();
@@ -271,7 +271,7 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
     };
     let mut asked = plan.count + 2;
     loop {
-        // conjugates come along and count once
+        // conjugates are found too and count once
         let (mut modes, complete) = match spectral::nearest(&pencil, shift, 2 * asked, &options) {
             Ok(found) => {
                 tally.factorizations += found.factorizations;
@@ -311,7 +311,7 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
     }
 }
 
-/// The mode of a pair; None for the second of two conjugates.
+/// Mode of a pair; None for the second of two conjugates.
 fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
     let length = about.system().model.length;
     let shape = shapes.shape(&pair.x);
@@ -329,7 +329,7 @@ fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
     })
 }
 
-/// Pairs oscillations with those of other equations: places in both lists, and the likeness of the shapes.
+/// Pairs oscillations with those of other equations: indices in both lists, and the likeness of the shapes.
 fn matched(modes: &[Mode], others: &[Mode]) -> Vec<(usize, usize, f64)> {
     paired(
         modes,

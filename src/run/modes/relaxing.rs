@@ -1,4 +1,4 @@
-//! Modes of a solid that relaxes, and of flow in tubes whose friction has a memory.
+//! Modes of a solid that relaxes, and of flow in tubes with unsteady friction.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -11,22 +11,23 @@ use crate::error::Result;
 use crate::model::effects::Cause;
 use crate::spectral::{self, Options, Pencil};
 
-/// Pairs looked at around the place where one is expected: that, then more.
+/// Numbers of pairs searched around the place where one is expected, in this order.
 const AROUND: [usize; 2] = [1, 4];
 
-/// True if there are branches of a solid that relaxes, or of friction with a memory that is not asked for by name.
+/// True if there are branches of a solid that relaxes, or of unsteady friction that is not requested by name.
 pub fn relaxes(about: &Linearised) -> bool {
     let system = about.system();
     let asked = system.model.effects.decision(Effect::UnsteadyFriction).cause == Cause::Asked;
     !system.model.relaxation.is_empty() || (!asked && !system.layout.network.branch.is_empty())
 }
 
-/// The branches of a solid that relaxes have a decay a node each, those of friction with a memory ten a tube, in clusters, among which a search would lose itself: modes are looked for
-/// with the stiffness of the long term, in which the branches follow at once, and each again in the whole pencil near to where it swings by
-/// [`vibration`]. Decays of the material alone are left out; a mode that is not found again is counted.
+/// Finds modes with branches of relaxation or unsteady friction. A relaxing branch has one decay per node, a tube with unsteady
+/// friction ten, in clusters in which a search would not converge. Modes are therefore first searched with the long-term stiffness,
+/// at which the branches follow at once. Each is then searched again in the full pencil near its frequency by [`vibration`].
+/// Decays of the material alone are omitted; modes that are not found again are counted.
 ///
 /// # Errors
-/// Of the first search.
+/// Those of the first search.
 pub fn search(
     about: &Linearised,
     fluid: Fluid,
@@ -73,7 +74,7 @@ pub fn search(
             tally.solves += found.solves;
             let mut shapes = Shapes::new(about);
             let modes = found.pairs.iter().filter_map(|pair| mode(about, &mut shapes, pair));
-            // of fluid that swings past bladders there is no shape, and the nearest counts
+            // fluid that oscillates past bladders has no shape, and the nearest mode counts
             let unseen = expected.shape.displacement() == 0.0 && expected.shape.largest_pressure() == 0.0;
             let alike = |found: &Mode| match unseen {
                 true => 1.0 / (1.0 + (found.s - shift).norm() / shift.norm()),

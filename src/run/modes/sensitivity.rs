@@ -19,17 +19,17 @@ pub struct Sensitivity {
     pub s: Vec<Complex<f64>>,
 }
 
-/// `[E44]` Derivatives of eigenvalues by a parameter p, from the vectors on either side,
+/// `[E44]` Derivatives of eigenvalues by a parameter p, from the left and right eigenvectors,
 ///
 /// ```text
 /// ds/dp = -yᴴ (dA/dp + s dB/dp) x / yᴴ B x
 /// ```
 ///
-/// where A and B change with the state about which they are taken too: they are differenced to fourth order, each at an
-/// equilibrium of its own. Of no meaning where two eigenvalues meet.
+/// where A and B include the change of the state about which they are computed: they are differenced to fourth order, each at its
+/// own equilibrium. The derivatives are meaningless where two eigenvalues meet.
 ///
 /// # Errors
-/// A changed case that is not valid, has other unknowns or no such state.
+/// A changed case is not valid, has other unknowns or no such state.
 pub fn differentiate(
     case: &Case,
     at_rest_under: Option<f64>,

@@ -1,4 +1,4 @@
-//! What an eigenvector looks like: displacements and pressures.
+//! Shape of an eigenvector: displacements and pressures.
 
 use nalgebra::Complex;
 
@@ -13,16 +13,16 @@ pub struct Shape {
     pub u1: Vec<Complex<f64>>,
     /// Axial displacement of each node [m].
     pub u3: Vec<Complex<f64>>,
-    /// Mean pressure of each bladder, upper row first [Pa]; none in a dry beam.
+    /// Mean pressure of each bladder, upper row first [Pa]; empty for a dry beam.
     pub pressure: Vec<Complex<f64>>,
 }
 
-/// Largest displacement of a mode as it is shown, over the length of the beam.
+/// Largest displacement of a normalized mode, over the length of the beam.
 const DISPLACEMENT: f64 = 0.01;
-/// Largest pressure of a mode as it is shown [Pa].
+/// Largest pressure of a normalized mode [Pa].
 const PRESSURE: f64 = 1000.0;
 
-/// Shapes from eigenvectors, by the derivative of the model along them.
+/// Computes shapes from eigenvectors, by the derivative of the model along them.
 pub struct Shapes<'a> {
     of: &'a Linearised,
     now: TimeData,
@@ -30,7 +30,7 @@ pub struct Shapes<'a> {
 }
 
 impl<'a> Shapes<'a> {
-    /// For the vectors of a linearisation.
+    /// For the eigenvectors of a linearization.
     pub fn new(of: &'a Linearised) -> Self {
         let mut now = TimeData::new(of.system());
         now.update(of.system(), of.clock());
@@ -41,8 +41,8 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    /// Shape of a vector: as large as a hundredth of the length or 1 kPa, whichever comes first; where displacements are
-    /// largest (of pure flow: pressures) its phase is zero.
+    /// Shape of a vector, normalized to a hundredth of the length or 1 kPa, whichever is reached first. Its phase is zero where
+    /// displacements (of pure flow: pressures) are largest.
     pub fn shape(&mut self, x: &[Complex<f64>]) -> Shape {
         let system = self.of.system();
         let scales = &system.layout.scales;
@@ -71,7 +71,7 @@ impl<'a> Shapes<'a> {
 }
 
 impl Shape {
-    /// Scaled and turned as told above.
+    /// Normalizes size and phase, see [`Shapes::shape`].
     fn normalised(mut self, length: f64) -> Self {
         let moved = largest(self.u1.iter().chain(&self.u3)) / (DISPLACEMENT * length);
         let pressed = largest(self.pressure.iter()) / PRESSURE;
@@ -91,7 +91,7 @@ impl Shape {
         self
     }
 
-    /// Its displacements on a mesh of half the cells.
+    /// The shape on a mesh of half the cells.
     pub fn on_every_other_node(&self) -> Self {
         let every_other = |u: &[Complex<f64>]| u.iter().step_by(2).copied().collect();
         Self {
@@ -111,20 +111,20 @@ impl Shape {
         largest(self.pressure.iter()).norm()
     }
 
-    /// Share of u1 in the squared displacements.
+    /// Fraction of u1 in the squared displacements.
     pub fn transverse(&self) -> f64 {
         let square = |u: &[Complex<f64>]| u.iter().map(|u| u.norm_sqr()).sum::<f64>();
         let (across, along) = (square(&self.u1), square(&self.u3));
         across / (across + along).max(f64::MIN_POSITIVE)
     }
 
-    /// Whether pressures are below round-off of what such displacements would make.
+    /// True if pressures are round-off relative to the displacements.
     pub fn without_pressure(&self, length: f64) -> bool {
         self.largest_pressure() / PRESSURE <= NOTHING * self.displacement() / (DISPLACEMENT * length)
     }
 }
 
-/// Share below which displacements, or pressures, are round-off of the others.
+/// Ratio below which displacements, or pressures, are round-off relative to the others.
 const NOTHING: f64 = 1e-6;
 
 /// `[E33]` Modal assurance criterion (Allemang & Brown) of displacements, weighted by the length `h_i` of each node: 1 for
@@ -134,7 +134,7 @@ const NOTHING: f64 = 1e-6;
 /// MAC = |Σ h_i (ū1 w1 + ū3 w3)|² / (Σ h_i |u|² Σ h_i |w|²)
 /// ```
 ///
-/// Of pressures where neither moves the beam.
+/// Compares pressures if neither shape moves the beam.
 pub fn likeness(a: &Shape, b: &Shape) -> f64 {
     if a.displacement() == 0.0 && b.displacement() == 0.0 {
         return alike(a, b, 1.0);
@@ -152,7 +152,7 @@ pub fn likeness(a: &Shape, b: &Shape) -> f64 {
     alignment(a, b, inner)
 }
 
-/// The same of displacements and pressures together, each over what it is shown with, of a beam of this length [m]: of motions that are mostly flow.
+/// Likeness of displacements and pressures together, each over its normalization, for motions that are mostly flow; `length` [m].
 pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
     let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
         let part = |u: &[Complex<f64>], w: &[Complex<f64>], size: f64| -> Complex<f64> {
@@ -165,7 +165,7 @@ pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
     alignment(a, b, inner)
 }
 
-/// Squared cosine of the angle between two shapes by an inner product; 0 where one of them does not move.
+/// Squared cosine of the angle between two shapes by an inner product; 0 if one of them is zero.
 fn alignment(a: &Shape, b: &Shape, inner: impl Fn(&Shape, &Shape) -> Complex<f64>) -> f64 {
     let whole = inner(a, a).re * inner(b, b).re;
     if whole > 0.0 {

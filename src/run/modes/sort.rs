@@ -1,24 +1,24 @@
-//! Modes of one sort, and the order in which modes are told.
+//! Modes of one sort, and the order of output.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Kind, Linearised, Mode, Modes, Plan, of};
 use crate::error::Result;
 
-/// What of modes is asked for.
+/// Sort of modes to select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sort {
-    /// What swings, growing or not.
+    /// Oscillations, growing or not.
     Oscillation,
-    /// What dies away without swinging.
+    /// Decays without oscillation.
     Decay,
-    /// What grows, swinging or not.
+    /// Growth, with or without oscillation.
     Growth,
 }
 
 impl Sort {
-    /// Whether a mode is of it.
+    /// True if a mode of this kind belongs to the sort.
     pub fn has(self, kind: Kind) -> bool {
         match self {
             Self::Oscillation => kind.swings(),
@@ -27,7 +27,7 @@ impl Sort {
         }
     }
 
-    /// As the command line has it.
+    /// Name on the command line.
     pub fn word(self) -> &'static str {
         match self {
             Self::Oscillation => "oscillation",
@@ -37,19 +37,19 @@ impl Sort {
     }
 }
 
-/// Modes among which those of a sort are looked for, at most.
+/// Largest number of modes among which those of a sort are searched.
 const MOST: usize = 1000;
 
-/// The same over those that are told, where no sort is asked for.
+/// Largest number of modes searched if no sort is requested, over the number of requested modes.
 const AMONG: usize = 8;
 
-/// Modes of a linearisation, as many of a sort as planned where there are so many among the nearest thousand, with the plan by which all of
-/// them are found: others are among them until [`arrange`] takes them out.
+/// Modes of a linearization: as many of a sort as planned, if there are so many among the nearest thousand. Also returns the plan that
+/// finds all of them. Modes of other sorts remain until [`arrange`] removes them.
 ///
 /// # Errors
 /// As [`of`].
 pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Modes, Plan)> {
-    // beside what swings and grows, which is told first, hundreds of decays of the fluid may lie nearer to zero
+    // hundreds of decays of the fluid may lie nearer to zero than oscillations and growth, which are listed first
     let (sort, most) = match sort {
         Some(sort) => (sort, MOST),
         None if about.system().layout.inertia && plan.near_hz == 0.0 => {
@@ -74,14 +74,14 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
                 false => Ok((found, plan)),
             };
         }
-        // where all eigenvalues were computed at once there is nothing to save
+        // if all eigenvalues were computed at once, a smaller number saves nothing
         wider.count = if found.dense { most } else { (2 * wider.count).min(most) };
         about = found.about;
     }
 }
 
-/// Puts modes into the order in which they are told: what grows, what swings, what decays, what stays as it is, each from slow to fast: what
-/// swings by its frequency, as sweeps number it, what does not by its rate; so many alone, of a sort where one is asked for.
+/// Sorts modes for output: growth, oscillation, decay, constant modes, each from slow to fast. Oscillations are sorted by frequency, as
+/// sweeps number them, others by rate. Keeps only `count` of them, of the sort if one is requested.
 pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
     if let Some(sort) = sort {
         modes.retain(|mode| sort.has(mode.kind));
@@ -94,7 +94,7 @@ pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
         Kind::Volume => 4,
     };
     let pace = |mode: &Mode| if mode.kind.swings() { mode.s.im } else { mode.s.norm() };
-    // of modes beside a frequency the nearest are told
+    // of modes beside a frequency, the nearest are kept
     modes.sort_by_key(group);
     let mut left = count;
     modes.retain(|mode| {

@@ -1,15 +1,15 @@
-//! What to know of modes before trusting them.
+//! Warnings about modes.
 
 use super::{Modes, meshes};
 use crate::case::schema::Effect;
 use crate::error::Code;
 use crate::error::numbers::significant;
 
-/// Error of a tube's impedance from which on it is told.
+/// Error of a tube's impedance above which a warning is given.
 const FORGOTTEN: f64 = 0.01;
 
 impl Modes {
-    /// What to know before trusting them, `about` the state in words; of what was compared alone.
+    /// Warnings about the modes; `about` describes the state. Only comparisons that were made are included.
     pub fn warnings(&self, about: &str) -> Vec<String> {
         let state = &self.about;
         let moving = state.moving().then(|| {
@@ -29,7 +29,7 @@ impl Modes {
             .collect()
     }
 
-    /// That modes of a solid that relaxes are missing, where some are.
+    /// Warns of missing modes of a solid that relaxes, if there are any.
     pub fn missing(&self) -> Option<String> {
         (self.lost > 0).then(|| {
             Code::LostModes.warning(format!(
@@ -40,7 +40,7 @@ impl Modes {
         })
     }
 
-    /// That decays of a cluster are left out, where there is one.
+    /// Warns of omitted decays of a cluster, if there is one.
     pub fn beside(&self) -> Option<String> {
         self.clustered.then(|| {
             Code::LostModes.warning(
@@ -50,7 +50,7 @@ impl Modes {
         })
     }
 
-    /// What is lost where tubes have Poiseuille's friction, of the mode that swings fastest: error of the impedance `Wo⁴/1152`.
+    /// Warns if Poiseuille's friction in tubes is inaccurate for the fastest oscillation: error of the impedance `Wo⁴/1152`.
     pub fn forgotten(&self) -> Option<String> {
         let model = &self.about.system().model;
         let has = |effect| model.effects.has(effect);

@@ -1,7 +1,7 @@
-//! How much fluid a cycle has: what parts of the network that nothing lets out hold once everything that acts repeats itself.
+//! Amount of fluid in a cycle: the content of network parts without an outlet, once everything that acts is periodic.
 //!
-//! A cycle says nothing of it, since any amount comes back after a period. It is what such a part held at the start or when the last valve shut it
-//! off, and what ports have let in since.
+//! A cycle does not determine it, since any amount returns after a period. It is the content of the part at the start, or when the
+//! last valve closed it off, plus the inflow through ports since then.
 
 use super::scene::whole;
 use crate::case::schema::Case;
@@ -17,21 +17,21 @@ use crate::numerics::sets::Sets;
 use crate::run::drive::{settled, settles_at};
 use crate::run::equilibrium::{self, Options};
 
-/// What flows in over a period, over the largest flow for a period, that counts as nothing.
+/// Net inflow over a period, relative to the largest flow times the period, that counts as zero.
 const NOTHING: f64 = 1e-9;
 
-/// A part of the network that nothing lets out.
+/// A part of the network without an outlet.
 struct Part {
     stores: Stores,
-    /// Sources of the network that feed it.
+    /// Indices of the network's sources that feed it.
     sources: Vec<usize>,
 }
 
-/// What holds fluid.
+/// Storage of a part.
 enum Stores {
-    /// Cells, and accumulators by their numbers on the mesh.
+    /// Cells, and accumulators by their indices on the mesh.
     Of(Vec<usize>, Vec<usize>),
-    /// A network of one pressure that sources feed, by its number.
+    /// Index of a network of one pressure that sources feed.
     Lumped(usize),
 }
 
@@ -61,7 +61,7 @@ impl Part {
         w
     }
 
-    /// What it holds in a state, `y` scaled [m^3].
+    /// Volume stored in a state with scaled unknowns `y` [m^3].
     fn amount(&self, system: &System, w: &Workspace<f64>, y: &[f64]) -> f64 {
         let ds = system.fluid.as_ref().map_or(0.0, |fluid| fluid.ds);
         let l = &system.layout;
@@ -70,12 +70,12 @@ impl Part {
                 let in_cells: f64 = cells.iter().map(|cell| w.fluid.area[*cell]).sum();
                 ds * in_cells + vessels.iter().map(|vessel| w.fluid.accumulated[*vessel]).sum::<f64>()
             }
-            // counted from what ports of prescribed volume let in, which comes and goes with them
+            // without the volume that ports of prescribed volume add, which varies with them
             Stores::Lumped(k) => l.network.lumped_volume[*k].map_or(0.0, |unknown| y[unknown] * l.scales[unknown]),
         }
     }
 
-    /// What sources let in from the state at an instant, its signals as they are just before or after, to another instant [m^3].
+    /// Volume that sources add from `from`, with signals as just before or after this instant, to the instant `to` [m^3].
     fn let_in(&self, network: &Network, from: Clock, to: f64) -> f64 {
         let lumped = matches!(self.stores, Stores::Lumped(_));
         let of = |source: &usize| match &network.sources[*source].feed {
@@ -87,7 +87,7 @@ impl Part {
     }
 }
 
-/// The parts that nothing lets out, of a system whose valves are what they are in the long run.
+/// Parts without an outlet, of a system whose valves have their long-run openings.
 fn parts(system: &System) -> Vec<Part> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
@@ -140,7 +140,7 @@ fn parts(system: &System) -> Vec<Part> {
     all
 }
 
-/// Number of a place: cells, junctions, then one for every prescribed pressure.
+/// Index of a place: cells, junctions, then one for all prescribed pressures.
 fn place_of(fluid: &FluidMesh, place: Place) -> usize {
     match place {
         Place::Cell(c) => c,
@@ -149,7 +149,7 @@ fn place_of(fluid: &FluidMesh, place: Place) -> usize {
     }
 }
 
-/// The fluid of each part that nothing lets out, as a weight of every scaled unknown; of norm one, across each other.
+/// Volume of each part without an outlet, as a weight of every scaled unknown; the vectors are orthonormal.
 pub(super) fn conserved(system: &System) -> Vec<Vec<f64>> {
     let all = parts(system);
     let all = all.iter().map(|part| part.weights(system));
@@ -161,10 +161,10 @@ pub(super) fn conserved(system: &System) -> Vec<Vec<f64>> {
     .collect()
 }
 
-/// Puts into a state of a system in the long run what a run of the case has by then; and what is to be said of that.
+/// Sets the volumes in a long-run state to those that a run of the case has by then. Returns a warning about trapped fluid, if any.
 ///
 /// # Errors
-/// Fluid that gathers from period to period; valves that shut it off while nothing at rest tells how much it is.
+/// Fluid accumulates from period to period, or valves close off fluid whose volume no equilibrium determines.
 pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -> Result<Option<String>> {
     let parts = parts(dae.system());
     if parts.is_empty() {
@@ -175,7 +175,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
     let mut latest: f64 = 0.0;
     model.each_signal(|signal| latest = latest.max(settles_at(signal)));
     let begins = period * (latest / period).ceil();
-    // those of the case itself, on the way to the long run
+    // sources of the case itself, on the way to the long run
     let sources = model.wet.as_ref().map(|wet| wet.network.clone()).unwrap_or_default();
     let kept = equilibrium::kept(case, begins, &settled)?;
     let mut before = BeamDae::new(System::with(case, model)?);
@@ -234,7 +234,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
     Ok(kept.map(|kept| kept.warning))
 }
 
-/// Refuses what takes in more than it gives back over a period: each begins with more than the one before.
+/// Rejects parts with a net inflow over a period: each period begins with more fluid than the one before.
 fn gathering(system: &System, case: &Case, parts: &[Part], period: f64) -> Result<()> {
     let Some(wet) = &system.model.wet else { return Ok(()) };
     let flow = |source: &Source| match &source.feed {

@@ -1,13 +1,13 @@
-//! The steady cycle of a periodically driven case, found directly.
+//! Steady cycle of a periodically driven case, computed directly.
 //!
 //! ```text
-//! scene   a case in the long run: what repeats itself, what is conserved, the period map
-//! fluid   how much of what is conserved there is
-//! shoot   Newton's iteration on the period map
-//! subharmonic  cycles that come back after several periods
-//! record  one period of the cycle as a run
-//! settle  the cycle at a tolerance at which its energies add up
-//! sensitivity  its derivatives by numbers of the case
+//! scene        a case in the long run: its periodic signals, its conserved volumes, its period map
+//! fluid        amount of fluid in the conserved volumes
+//! shoot        Newton's iteration on the period map
+//! subharmonic  cycles that return after several periods
+//! record       one period of the cycle as a run
+//! settle       the cycle at a tolerance at which its energy balance closes
+//! sensitivity  derivatives of the cycle by numbers of the case
 //! ```
 
 mod fluid;

@@ -7,14 +7,14 @@ use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::Recorder;
 
-/// Output times in a period.
+/// Number of output times in a period.
 const OUTPUTS: f64 = 200.0;
 
-/// Runs a cycle over one period from its beginning, with the case's own integrator and tolerance: window and end are the
-/// period. Time counts from the beginning of the period, a whole number of periods after whatever starts smoothly.
+/// Runs a cycle over one period from its beginning, with the case's own integrator and tolerance. The window and the run are this
+/// period. Time counts from the beginning of the period, a whole number of periods after all smooth starts.
 ///
 /// # Errors
-/// When the recorder fails; a failing solver is an [`Outcome`].
+/// The recorder fails. A failing solver is part of the [`Outcome`].
 pub fn record(case: &Case, scene: &Scene, cycle: &Cycle, recorder: &mut dyn Recorder) -> Result<Outcome> {
     let case = one_period(case, scene.drive.period);
     let mut outcome = dynamics::go_on(&case, scene.system.clone(), [&cycle.y, &cycle.yp], None, recorder)?;

@@ -1,4 +1,4 @@
-//! What repeats itself: a case in the long run, as one map of its state over a period.
+//! Scene of a cycle: a case in the long run, as a map of its state over a period.
 
 use super::fluid;
 use super::shoot::Search;
@@ -14,46 +14,47 @@ use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
 use crate::run::drive::{Drive, drive, settled, settled_opening};
 use crate::run::stop::{INTERRUPTED, Stop};
 
-/// Steps of a period at least: signals are smooth, but a mode that is at rest has no say in the error test.
+/// Least number of steps in a period: signals are smooth, but a mode at rest does not affect the error test.
 const LEAST_STEPS: f64 = 32.0;
-/// Steps of a period at most: what asks for more is no cycle, but a motion that breaks up.
+/// Largest number of steps in a period: a motion that needs more is not a cycle, but breaks up.
 const MOST_STEPS: usize = 5000;
 
 /// Method of the steps.
 pub const METHOD: Method = Method::Esdirk46;
 
-/// A case in the long run: everything that it describes, signals without their starts, a period.
+/// A case in the long run: the full case, signals without their starts, and a period.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The system.
     pub system: System,
-    /// What repeats itself.
+    /// Periodic excitation.
     pub drive: Drive,
     /// Tolerance of a step.
     pub rtol: f64,
     /// Method of the steps.
     pub method: Method,
-    /// Periods of what drives the case that make up the one of the cycle.
+    /// Number of drive periods in one period of the cycle.
     pub periods: usize,
-    /// State from which the search sets out, scaled: the start of the case, at rest beside its ends, with the fluid that it has in the long run.
+    /// First state of the search, scaled: the start of the case, at rest relative to its ends, with its amount of fluid in
+    /// the long run.
     pub guess: Vec<f64>,
-    /// What is to be said of fluid behind valves that have shut, where there is some.
+    /// Warning about fluid trapped behind closed valves, if there is any.
     pub trapped: Option<String>,
-    /// Who may ask the search to end.
+    /// Stop request for the search.
     pub stop: Stop,
-    /// What is conserved: `w · y` of the scaled unknowns does not change. Of norm one, across each other.
+    /// Conserved quantities: `w · y` of the scaled unknowns does not change. The vectors are orthonormal.
     pub conserved: Vec<Vec<f64>>,
 }
 
 impl Scene {
-    /// The case in the long run; `period` [s] where nothing in it is periodic.
+    /// The case in the long run; `period` [s] is used if no signal is periodic.
     ///
-    /// Everything that the case describes and does not leave out by name is there, whatever `auto` would leave out: what a
-    /// motion can do without, a disturbance may grow from.
+    /// Includes every effect that the case does not switch off by name, even if `auto` would neglect it. A disturbance may grow from
+    /// an effect that is insignificant for the motion.
     ///
     /// # Errors
-    /// A case without a period, see [`drive`]; fluid that gathers from period to period, or of which nobody knows how much there is; those
-    /// of [`System::new`].
+    /// The case has no period, see [`drive`]; fluid accumulates from period to period, or its amount is unknown; those of
+    /// [`System::new`].
     pub fn new(case: &Case, period: Option<f64>) -> Result<Self> {
         let mut model = whole(case)?;
         let drive = drive(case, &model, period)?;
@@ -61,7 +62,7 @@ impl Scene {
         Self::of(case, model, drive)
     }
 
-    /// Another model of the case, its signals settled; refused as by [`System::new`].
+    /// Scene of another model of the case with settled signals; rejected as by [`System::new`].
     pub fn of(case: &Case, model: Model, drive: Drive) -> Result<Self> {
         let system = System::with(case, model)?.accepted(case)?;
         let (guess, trapped) = guess(&system, case, drive.period)?;
@@ -78,13 +79,13 @@ impl Scene {
         })
     }
 
-    /// With somebody who may ask the search to end.
+    /// Sets the stop request that ends the search.
     pub fn heeding(mut self, stop: &Stop) -> Self {
         self.stop = stop.clone();
         self
     }
 
-    /// That somebody has asked for the end.
+    /// Returns an error if a stop was requested.
     fn asked_to_end(&self) -> std::result::Result<(), StepError> {
         match self.stop.raised() {
             true => Err(StepError::new(0.0, INTERRUPTED)),
@@ -92,7 +93,7 @@ impl Scene {
         }
     }
 
-    /// A disturbance after a period; nothing of it once somebody has asked for the end, whereupon what is sought from it comes to its own.
+    /// Propagates a disturbance over a period. After a stop request the result is zero, so that a search based on it ends.
     pub(super) fn carry(&self, march: &mut StepMap<BeamDae>, v: &mut [f64]) {
         if self.stop.raised() {
             return v.fill(0.0);
@@ -101,7 +102,7 @@ impl Scene {
         self.admit(v);
     }
 
-    /// The system of a changed case in the long run, with the unknowns and scales of this one; none when the unknowns are then others.
+    /// System of a changed case in the long run, with the unknowns and scales of this one; `None` if its unknowns differ.
     ///
     /// # Errors
     /// The case is not valid.
@@ -110,10 +111,10 @@ impl Scene {
             .like_with(case, |model| model.replace_signals(settled, settled_opening))
     }
 
-    /// What is conserved of a system of the same unknowns, and its amount in the long run of its case less that in a state: `w · (y₀ - y)`.
+    /// Long-run amount of each conserved quantity less the amount in a state, `w · (y₀ - y)`, for a system of the same unknowns.
     ///
     /// # Errors
-    /// Where that amount is not known.
+    /// The long-run amount is unknown.
     pub fn kept(system: &System, case: &Case, period: f64, y: &[f64]) -> Result<Vec<f64>> {
         let (start, _) = guess(system, case, period)?;
         let lost = |w: &Vec<f64>| {
@@ -125,17 +126,17 @@ impl Scene {
         Ok(fluid::conserved(system).iter().map(lost).collect())
     }
 
-    /// The equations, looking at signals as they are in the long run.
+    /// The equations, with signals in their long-run form.
     pub fn dae(&self) -> BeamDae {
         let mut dae = BeamDae::new(self.system.clone());
         dae.enter_smooth_interval(0.5 * self.drive.period);
         dae
     }
 
-    /// The period map around a state: the steps that the error test asks for from there.
+    /// Period map around a state, with the steps that the error test requires from there.
     ///
     /// # Errors
-    /// When the integrator cannot follow the motion for a period.
+    /// The integrator cannot follow the motion for a period.
     pub fn map(&self, dae: BeamDae, y: &[f64]) -> std::result::Result<StepMap<BeamDae>, StepError> {
         let end = self.drive.period;
         let (mut dae, mut y, mut yp) = (dae, y.to_vec(), vec![0.0; y.len()]);
@@ -154,7 +155,7 @@ impl Scene {
         StepMap::new(solver.into_dae(), self.method, times)
     }
 
-    /// The steps that the error test asks for.
+    /// Options of the integrator whose steps are used.
     fn options(&self) -> OneStepOptions {
         OneStepOptions {
             method: self.method,
@@ -165,7 +166,7 @@ impl Scene {
         }
     }
 
-    /// The same over several periods, as one.
+    /// The scene with several periods as one.
     pub fn over(&self, periods: usize) -> Self {
         let mut scene = self.clone();
         scene.drive.period *= periods as f64;
@@ -173,10 +174,10 @@ impl Scene {
         scene
     }
 
-    /// The state after some periods.
+    /// State after a number of periods.
     ///
     /// # Errors
-    /// When the integrator cannot follow the motion.
+    /// The integrator cannot follow the motion.
     pub fn go_on(&self, y: &[f64], periods: usize, search: &mut Search) -> std::result::Result<Vec<f64>, StepError> {
         let (mut dae, mut y, mut yp) = (self.dae(), y.to_vec(), vec![0.0; y.len()]);
         consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
@@ -208,7 +209,7 @@ impl Scene {
         (square / y.len() as f64).sqrt()
     }
 
-    /// Takes what is conserved out of a disturbance, and what is no disturbance of a state: algebraic unknowns.
+    /// Removes conserved quantities and algebraic unknowns from a disturbance.
     pub fn admit(&self, v: &mut [f64]) {
         for (v, differential) in v.iter_mut().zip(&self.system.layout.differential) {
             *v *= f64::from(u8::from(*differential));
@@ -219,8 +220,8 @@ impl Scene {
         }
     }
 
-    /// A state of another scene as a first guess here, in this one's scales and with the volumes of this one's start; none
-    /// when the unknowns differ.
+    /// Converts a state of another scene to a first guess in this one: in its scales and with the volumes of its start. `None` if the
+    /// unknowns differ.
     pub fn take_over(&self, other: &Self, y: &[f64]) -> Option<Vec<f64>> {
         let (new, old) = (&self.system.layout, &other.system.layout);
         let same = new.len == old.len && new.differential == old.differential && new.network.area == old.network.area;
@@ -244,10 +245,10 @@ impl Scene {
         self.system.layout.differential.iter().filter(|d| **d).count() - self.conserved.len()
     }
 
-    /// Says why there is no isolated cycle, when a beam may drift.
+    /// Rejects a beam that may drift, since it has no isolated cycle.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a beam that nothing holds along or across.
+    /// [`Error::Usage`] for a beam that is not held along or across.
     pub fn held(&self, name: &str) -> Result<()> {
         let [root, tip] = &self.system.model.ends;
         let driven = |m: &Translation| matches!(m, Translation::Displacement(_));
@@ -265,7 +266,7 @@ impl Scene {
     }
 }
 
-/// The system of everything that a case describes.
+/// System of the full case.
 ///
 /// # Errors
 /// Those of [`System::new`].
@@ -273,7 +274,7 @@ pub fn system(case: &Case) -> Result<System> {
     System::with(case, whole(case)?)?.accepted(case)
 }
 
-/// Everything that a case describes; with inertia unless that is left out by name.
+/// Model of the full case, with inertia unless this is switched off by name.
 pub fn whole(case: &Case) -> Result<Model> {
     let off = matches!(&case.effects, Effects::Chosen(chosen) if chosen.solid_inertia == Choice::Off);
     Model::whole(case, !off)
@@ -283,7 +284,7 @@ fn error(failure: Box<IntegrationError>) -> StepError {
     StepError::new(failure.time, failure.to_string())
 }
 
-/// What happened, as the house says it.
+/// Converts an error of a step to the error of a failed search for a cycle.
 pub fn fault(error: StepError) -> Error {
     Error::Solver(Box::new(SolverError {
         code: Code::NoCycle,
@@ -297,7 +298,8 @@ pub fn fault(error: StepError) -> Error {
     }))
 }
 
-/// The start of the case, as if its ends were at rest where they are, with the fluid that there is in the long run; and what is to be said of that.
+/// Start of the case with its ends at rest in their positions, and its long-run amount of fluid. Also returns a warning about trapped
+/// fluid, if any.
 fn guess(system: &System, case: &Case, period: f64) -> Result<(Vec<f64>, Option<String>)> {
     let mut dae = BeamDae::new(system.clone());
     dae.enter_smooth_interval(1.0);

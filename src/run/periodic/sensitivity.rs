@@ -13,11 +13,11 @@ use crate::run::drive::drive;
 use crate::run::dynamics::{self, Along, Outcome};
 use crate::run::record::Recorder;
 
-/// Residual of the linear equations, relative.
+/// Relative residual of the linear equations.
 const LINEAR: f64 = 1e-9;
-/// Disturbances carried at most for one number.
+/// Largest number of disturbances propagated for one number of the case.
 const MOST_DISTURBANCES: usize = 300;
-/// Relative change of a period, over that of a number, that counts as none.
+/// Relative change of the period, over that of a number, that counts as zero.
 const SAME_PERIOD: f64 = 1e-9;
 
 /// `[E76]` Derivatives of the figures of one period of a cycle by numbers of its case:
@@ -26,11 +26,12 @@ const SAME_PERIOD: f64 = 1e-9;
 /// s = M s + ∂P/∂σ     w · s = d(w · y₀)/dσ for every conserved w · y
 /// ```
 ///
-/// s the derivative of the state at which the period begins, M s + ∂P/∂σ that of the state at its end by [E75]. From s on sensitivities go
-/// along with the period as with any run, [E41]: the outcome is that of [`super::record::record`] with derivatives in its summary.
+/// s is the derivative of the state at which the period begins, and M s + ∂P/∂σ that of the state at its end by [E75]. From s,
+/// sensitivities are integrated over the period as in any run, [E41]. The outcome is that of [`super::record::record`] with
+/// derivatives in its summary.
 ///
 /// # Errors
-/// [`Error::Usage`] for a number that moves the period or the unknowns; a period that cannot be gone.
+/// [`Error::Usage`] for a number that changes the period or the unknowns; a period that cannot be integrated.
 pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
     let Settled { case, scene, cycle, .. } = settled;
     let mut dae = perturbed(case, scene, parameters)?;
@@ -78,15 +79,15 @@ pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: 
     Ok(outcome)
 }
 
-/// Says before a cycle is sought whether it has derivatives by numbers of its case.
+/// Checks, before the search for a cycle, that it has derivatives by numbers of its case.
 ///
 /// # Errors
-/// [`Error::Usage`] for a number that moves the period or the unknowns.
+/// [`Error::Usage`] for a number that changes the period or the unknowns.
 pub fn allowed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<()> {
     perturbed(case, scene, parameters).map(|_| ())
 }
 
-/// The equations of a scene with those of the changed numbers beside them.
+/// Equations of a scene, including those for the changed numbers.
 fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<BeamDae> {
     let dae = scene.dae();
     let mut all = vec![];
@@ -120,7 +121,7 @@ fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<Bea
     Ok(dae.with_perturbed(all))
 }
 
-/// The part of the derivative of a cycle's state along what is conserved, which the fluid of the case decides.
+/// Part of the derivative of a cycle's state along the conserved quantities, which the amount of fluid in the case determines.
 fn kept(
     case: &Case,
     scene: &Scene,

@@ -1,7 +1,7 @@
-//! A cycle whose energies add up: found again at tighter tolerances until its figures do.
+//! A cycle whose energies balance: computed again at tighter tolerances until its figures do.
 //!
-//! Tolerances refer to the sizes of displacements and pressures. What a cycle puts in and takes out may be a hundredth of what it
-//! stores, and then steps that are good enough for the motion are not for that difference.
+//! Tolerances refer to the sizes of displacements and pressures. The energy input and output of a cycle may be a hundredth of the
+//! energy that it stores. Steps that are accurate enough for the motion are then too inaccurate for this difference.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,20 +14,20 @@ use crate::run::energies::{open_over_window, too_open};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::summary::{Status, Summary};
 
-/// Decades of tolerance gone at most.
+/// Largest reduction of the tolerance, in decades.
 const DECADES: u32 = 4;
-/// No tolerance is below this.
+/// Tightest tolerance.
 const TIGHTEST: f64 = 1e-10;
 
-/// A cycle with the case and the scene, their tolerance included, in which it was found.
+/// A cycle with the case and the scene, including their tolerance, in which it was found.
 pub struct Settled {
     /// The case.
     pub case: Case,
-    /// What repeats itself.
+    /// Scene of the cycle.
     pub scene: Scene,
     /// The cycle.
     pub cycle: Cycle,
-    /// Why its tolerance is not the case's own, if it is not.
+    /// Refinement, if the tolerance is not that of the case.
     pub refined: Option<Refined>,
 }
 
@@ -43,19 +43,19 @@ impl Settled {
     }
 }
 
-/// That a cycle was found again.
+/// A refinement: the cycle was computed again at a tighter tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Refined {
     /// Tolerance of the case.
     pub from_rtol: f64,
-    /// Tolerance at which the cycle was found in the end.
+    /// Tolerance of the final cycle.
     pub rtol: f64,
-    /// How far the balance over the cycle was open, relative to the figure that it is most of: at first, and in the end.
+    /// Largest error of the balance over the cycle, relative to its figures: of the first cycle, and of the final one.
     pub open: [f64; 2],
 }
 
 impl Refined {
-    /// For people.
+    /// Description for messages.
     pub fn words(&self) -> String {
         format!(
             "at rtol {:e} energies over the cycle were open by {:.0} % of a figure: found again at rtol \
@@ -68,10 +68,10 @@ impl Refined {
     }
 }
 
-/// Tightens the tolerance of a cycle as long as its energies are open by a good part of what they are.
+/// Tightens the tolerance of a cycle as long as its energy balance has a large error relative to its figures.
 ///
 /// # Errors
-/// As a run's, when it cannot be recorded; a tolerance at which no cycle is found, or not followed, leaves the one before.
+/// Those of a run that cannot be recorded. If no cycle is found or followed at a tolerance, the one before remains.
 pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
     let mut now = Settled::as_found(case, scene, cycle);
     let Some(mut open) = open(&now)? else { return Ok(now) };
@@ -85,7 +85,7 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
         next.solver.rtol = rtol;
         let mut scene = now.scene.clone();
         scene.rtol = rtol;
-        // a cycle of several periods is not sought anywhere else: that of one may lie there
+        // a cycle of several periods is only searched from here: elsewhere one of a single period may be found
         let found = match scene.periods {
             1 => shoot(&scene, Some(&now.cycle.y)),
             _ => attempt(&scene, now.cycle.y.clone(), &mut Search::default()),
@@ -111,12 +111,12 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
     Ok(now)
 }
 
-/// A tenth of a tolerance, without what division adds in its last digit.
+/// A tenth of a tolerance, without the rounding error in its last digit.
 fn tenth(rtol: f64) -> f64 {
     format!("{:.12e}", 0.1 * rtol).parse().unwrap_or(0.1 * rtol)
 }
 
-/// How far the balance is open over the cycle beside its figures, where there are any.
+/// Largest error of the balance over the cycle relative to its figures, if there are any.
 fn open(of: &Settled) -> Result<Option<f64>> {
     let outcome = record::record(&of.case, &of.scene, &of.cycle, &mut Unrecorded(|_| Control::Continue))?;
     let Summary {

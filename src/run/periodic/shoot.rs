@@ -10,61 +10,61 @@ use crate::onestep::StepMap;
 use crate::onestep::step_map::{StepError, StepMapWork};
 use crate::run::stop::INTERRUPTED;
 
-/// Correction over the tolerance at which a cycle is found.
+/// Newton correction, over the tolerance, at which a cycle counts as found.
 const FOUND: f64 = 0.05;
-/// The same at which the steps are chosen anew.
+/// Newton correction, over the tolerance, at which the steps are chosen anew.
 const NEAR: f64 = 10.0;
-/// Residual of the linear equations, relative.
+/// Relative residual of the linear equations.
 const LINEAR: f64 = 1e-3;
-/// Disturbances carried at most in one Newton step.
+/// Largest number of disturbances propagated in one Newton step.
 const MOST_DISTURBANCES: usize = 300;
-/// Newton steps allowed.
+/// Largest number of Newton steps.
 const ITERATIONS: usize = 30;
-/// Shortest part of a Newton step.
+/// Smallest fraction of a Newton step.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Periods gone before a second try.
+/// Number of periods simulated before a second attempt.
 const PATIENCE: usize = 12;
 
-/// A state that comes back after a period.
+/// A state that recurs after a period.
 pub struct Cycle {
     /// All unknowns at the beginning of the period, scaled, consistent.
     pub y: Vec<f64>,
-    /// Their rates [1/s].
+    /// Rates of the unknowns [1/s].
     pub yp: Vec<f64>,
-    /// The period map around it, its steps gone.
+    /// Period map around the state, evaluated on its steps.
     pub march: StepMap<BeamDae>,
-    /// How it was found.
+    /// Record of the search.
     pub search: Search,
 }
 
-/// How a cycle was found.
+/// Record of the search for a cycle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Search {
-    /// Periods gone: one a Newton step, more where a step was shortened or a start was sought by patience.
+    /// Number of simulated periods: one for each Newton step, more if a step was shortened or a start was simulated.
     pub periods: u64,
     /// Newton steps.
     pub newton_steps: u64,
     /// Last Newton correction over the tolerance.
     pub correction: f64,
-    /// Return after a period less departure, over the tolerance.
+    /// State after a period minus the initial one, over the tolerance.
     pub residual: f64,
     /// Steps of the period map.
     pub steps_per_period: usize,
-    /// Work of all.
+    /// Work of the whole search.
     pub work: StepMapWork,
 }
 
-/// `[E37]` Finds a cycle from a state near one, `None`: from the start of the case.
+/// `[E37]` Finds a cycle from a state near it, or from the start of the case if `from` is `None`.
 ///
 /// ```text
 /// P(y) = y     (1 - M) δ = P(y) - y,   M = ∂P/∂y     w · δ = 0 for every conserved w · y
 /// ```
 ///
-/// P the period map with steps held, M its exact derivative, applied to vectors; δ by GMRES within the states of the same
+/// P is the period map with fixed steps, M its exact derivative, applied to vectors. GMRES computes δ within the states of equal
 /// conserved volumes, where `1 - M` is regular. The steps are chosen anew once the cycle is near.
 ///
 /// # Errors
-/// Where and why no cycle was found.
+/// No cycle was found; the error has the instant and the reason.
 pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
     let mut search = Search::default();
     let begin = from.unwrap_or(&scene.guess);
@@ -136,7 +136,7 @@ fn move_by(y: &mut [f64], step: &[f64], part: f64) {
     y.iter_mut().zip(step).for_each(|(y, step)| *y += part * step);
 }
 
-/// Goes one period; what the return differs from the departure by.
+/// Simulates one period. Returns the final state minus the initial one.
 fn depart(scene: &Scene, march: &mut StepMap<BeamDae>, y: &[f64], search: &mut Search) -> Result<Vec<f64>, StepError> {
     let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     search.periods += 1;

@@ -1,7 +1,7 @@
-//! Cycles of several periods: subharmonics, of which the motion comes back after two periods of what drives it, or three.
+//! Cycles of several periods: subharmonics, whose motion recurs after two or more periods of the drive.
 //!
-//! Newton's iteration finds the cycle that is nearest, and a cycle of one period comes back after two as well. The search therefore
-//! starts off it, where the motion itself leads.
+//! Newton's iteration finds the nearest cycle, and a cycle of one period also recurs after two. The search therefore starts away from
+//! it, at states of the motion itself.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,36 +15,36 @@ use crate::numerics::krylov;
 use crate::onestep::step_map::StepError;
 use crate::run::stop::Stop;
 
-/// Periods of a cycle at most.
+/// Largest number of periods of a cycle.
 pub const MOST: usize = 64;
-/// Largest displacement of the push off a cycle that does not hold, over the length of the beam.
+/// Largest displacement by which an unstable cycle is perturbed, over the length of the beam.
 const PUSH: f64 = 1e-3;
-/// Cycles of all their periods gone between two tries.
+/// Number of full cycles simulated between two attempts.
 const PATIENCE: usize = 12;
-/// Tries at most.
+/// Largest number of attempts.
 const TRIES: usize = 40;
-/// Tries in a row that find the motion nearer to a cycle of fewer periods each: then it goes nowhere else.
+/// Number of successive approaches to a cycle of fewer periods up to which the search continues.
 const NEARER: usize = 3;
-/// What differs by less, in tolerances, is the same.
+/// Distance of two states, in tolerances, below which they count as equal.
 const SAME: f64 = 10.0;
-/// Multipliers looked at, the residual of their vectors, and vectors of the space at most.
+/// Number of multipliers, residual of their vectors, and largest number of vectors of the Krylov space.
 const MULTIPLIERS: (usize, f64, usize) = (2, 1e-6, 300);
 
-/// After how many periods a cycle comes back.
+/// Number of periods after which a cycle recurs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Periods {
-    /// So many were asked for.
+    /// Requested number of periods.
     pub asked: usize,
-    /// After so many it comes back: a whole part of these.
+    /// Smallest number of periods after which it recurs; divides the requested one.
     pub shortest: usize,
-    /// Periods gone in wait for the motion to settle.
+    /// Number of periods simulated until the motion had settled.
     pub waited: usize,
-    /// Whether the cycle of one period does not hold, so that the search set out beside it; else it set out from the start of the case.
+    /// True if the cycle of one period is unstable, so that the search began beside it; else it began at the start of the case.
     pub beside: bool,
 }
 
 impl Periods {
-    /// For people.
+    /// Description for messages.
     pub fn words(&self) -> String {
         let Self {
             asked,
@@ -71,26 +71,26 @@ impl Periods {
     }
 }
 
-/// Finds a cycle that comes back after `asked` periods of what drives a case, and after no fewer if there is one on the way.
+/// Finds a cycle that recurs after `asked` periods of the drive, and not after fewer if such a cycle is found on the way.
 ///
 /// ```text
 /// P^N(y) = y, [E37] with the period N T        P^d(y) ≠ y for every d < N that divides N
 /// ```
 ///
-/// Where the cycle of one period does not hold, the search sets out beside it, along the multiplier of largest modulus: near -1 or beyond it
-/// the disturbance comes back after two periods. Else, or where none is found, it sets out from the start of the case. The motion is
-/// followed until Newton's iteration from where it is finds a cycle of that many periods.
+/// If the cycle of one period is unstable, the search begins beside it, along the multiplier of largest modulus: near -1 or beyond
+/// it the disturbance recurs after two periods. Otherwise, or if no such cycle is found, it begins at the start of the case. The
+/// motion is simulated until Newton's iteration from its state finds a cycle of this number of periods.
 ///
 /// # Errors
-/// A case without a period, a number of periods out of range, no cycle at all.
+/// The case has no period, the number of periods is out of range, or no cycle was found.
 pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
     find_until(case, asked, &Stop::default())
 }
 
-/// The same, which somebody may ask to end.
+/// Finds the cycle of [`find`] unless `stop` requests an end.
 ///
 /// # Errors
-/// As [`find`], and when it was asked to.
+/// As [`find`], or a stop was requested.
 pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycle, Periods)> {
     if !(1..=MOST).contains(&asked) {
         return Err(Error::Usage(format!("--periods {asked}: from 1 to {MOST}")));
@@ -145,14 +145,14 @@ pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycl
     })
 }
 
-/// How far a state is from another, in tolerances.
+/// Distance of a state from another, in tolerances.
 fn far(scene: &Scene, y: &[f64], other: &[f64]) -> f64 {
     let mut change: Vec<f64> = y.iter().zip(other).map(|(a, b)| a - b).collect();
     scene.admit(&mut change);
     scene.size(&change, other)
 }
 
-/// After how many periods of those in `asked` a state comes back.
+/// Smallest number of periods, a divisor of `asked`, after which a state recurs.
 fn shortest(single: &Scene, y: &[f64], asked: usize) -> std::result::Result<usize, StepError> {
     for count in (1..asked).filter(|count| asked.is_multiple_of(*count)) {
         let back = single.go_on(y, count, &mut Search::default())?;
@@ -163,7 +163,7 @@ fn shortest(single: &Scene, y: &[f64], asked: usize) -> std::result::Result<usiz
     Ok(asked)
 }
 
-/// A state beside a cycle along the disturbance that grows most, if one grows.
+/// A state beside a cycle, along the disturbance that grows most; `None` if none grows.
 fn beside(scene: &Scene, cycle: &mut Cycle) -> Option<Vec<f64>> {
     let (count, residual, most) = MULTIPLIERS;
     let mut start = krylov::everything(cycle.y.len());
@@ -179,7 +179,7 @@ fn beside(scene: &Scene, cycle: &mut Cycle) -> Option<Vec<f64>> {
     let l = &scene.system.layout;
     let moved = l.lines.iter().flat_map(Line::unknowns);
     let largest = moved.map(|(_, u, _)| (v[u] * l.scales[u]).abs()).fold(0.0, f64::max);
-    // what moves fluid alone is pushed by as much of its scales
+    // a disturbance of the fluid alone is limited by the scales of its unknowns
     let by_fluid = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let size = (PUSH * scene.system.model.length / largest).min(1.0 / by_fluid.max(f64::MIN_POSITIVE));
     Some(cycle.y.iter().zip(&v).map(|(y, v)| y + size * v).collect())

@@ -1,4 +1,4 @@
-//! Derivatives of residual and outputs at one instant, by the input, its rates and the state.
+//! Derivatives of residual and outputs at one instant by the input, its rates and the state.
 
 use super::motion;
 use crate::dae::{BeamDae, Dae as _};
@@ -9,19 +9,19 @@ use crate::functions::signals::Polynomial;
 use crate::integrate::halt;
 use crate::run::modes::Linearised;
 
-/// Changes of the scaled residual over which an input is differentiated.
+/// Changes of the scaled residual from which the steps of an input follow.
 const OF_INPUT: [f64; 8] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
-/// Changes of an opening, which lies between 0 and 1.
+/// Steps of an opening, which lies between 0 and 1.
 const OF_OPENING: [f64; 6] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
-/// Changes of a scaled unknown by which outputs are differentiated.
+/// Steps of a scaled unknown for the derivatives of outputs.
 const OF_STATE: [f64; 5] = [1e-2, 1e-3, 1e-4, 1e-5, 1e-6];
-/// Largest change of the scaled residual, by a valve from shut to open, that is rounding.
+/// Largest change of the scaled residual by a valve that opens fully, that counts as rounding error.
 const ROUNDING: f64 = 1e-10;
-/// Quotient of neighbouring steps.
+/// Ratio of successive steps.
 const SHORTER: f64 = 10.0;
 
-/// Limits of difference quotients over shorter and shorter steps, of each component that whose neighbours agree best; 0 where it is no more
-/// than they differ. Extrapolation removes the error of first order that a kink in a law makes, as of a check valve at rest.
+/// Limits of difference quotients over decreasing steps: for each component the extrapolated value that agrees best with its neighbor,
+/// or 0 if it does not exceed their difference. Extrapolation removes the first-order error of a kink in a law, as of a check valve.
 fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     let extrapolated = |i: usize, k: usize| {
         let (long, short) = (quotients[k][i], quotients[k + 1][i]);
@@ -42,16 +42,16 @@ fn limits(quotients: &[Vec<f64>]) -> Vec<f64> {
     (0..quotients[0].len()).map(of).collect()
 }
 
-/// Time at which everything is evaluated: all signals are held, and at 0 a polynomial of the input has its value without rounding [s].
+/// Time of evaluation [s]: all signals are constant, and at 0 a polynomial of the input has its value without rounding.
 const NOW: f64 = 0.0;
 
-/// The state and the signals about it.
+/// A state with an input that can be varied about it.
 pub struct Instant<'a> {
     dae: &'a mut BeamDae,
     y: Vec<f64>,
     yp: Vec<f64>,
     places: Vec<usize>,
-    /// Value of the input, and the range to which it is limited.
+    /// Value of the input. `opens` is true if it is an opening, which is limited to 0 to 1.
     value: f64,
     opens: bool,
     rows: [Row; 2],
@@ -80,7 +80,7 @@ impl<'a> Instant<'a> {
         }
     }
 
-    /// Puts the input at `value + x t^k/k!`.
+    /// Sets the input to `value + x t^k/k!`.
     fn put(&mut self, k: usize, x: f64) {
         let coefficients = match k {
             0 => vec![self.value + x],
@@ -94,7 +94,7 @@ impl<'a> Instant<'a> {
 
     fn residual(&mut self) -> Vec<f64> {
         let mut values = vec![0.0; self.y.len()];
-        // what cannot be evaluated has no derivative, and the solution is not finite
+        // if the residual cannot be evaluated, the derivative and the solution are not finite
         if self.dae.residual(NOW, &self.y, &self.yp, &mut values).is_err() {
             values.fill(f64::NAN);
         }
@@ -128,7 +128,7 @@ impl<'a> Instant<'a> {
         })
     }
 
-    /// Towards the middle of the range of an opening, to second order.
+    /// One-sided derivatives towards the middle of the range of an opening, to second order.
     fn one_sided(&mut self, k: usize, read: fn(&mut Self) -> Vec<f64>) -> Vec<f64> {
         let towards = if self.value > 0.5 { -1.0 } else { 1.0 };
         let quotients = OF_OPENING.map(|size| {
@@ -158,7 +158,7 @@ impl<'a> Instant<'a> {
         limits(&quotients)
     }
 
-    /// Largest change of the scaled residual by a unit of the input, or of a rate of it.
+    /// Largest change of the scaled residual by a unit of the input, or of one of its rates.
     fn change(&mut self, k: usize) -> f64 {
         let [none, one] = [0.0, 1.0].map(|x| {
             self.put(k, x);
@@ -188,7 +188,7 @@ impl<'a> Instant<'a> {
     pub fn rows(&mut self, chosen: &[usize]) -> Vec<[Vec<f64>; 2]> {
         let n = self.y.len();
         let mut rows = vec![[vec![0.0; n], vec![0.0; n]]; chosen.len()];
-        // a response that was interrupted is told by the first solution
+        // the first solution reports an interrupted response
         for column in (0..n).take_while(|_| !halt::asked()) {
             for rate in [false, true] {
                 let mut over = |step: f64| {

@@ -1,15 +1,15 @@
 //! Frequency response of small motions about a state.
 //!
-//! `[E81]` About a state at rest the equations F(y, y', u, u', u'') = 0 with an input u are linear. With A = F_y, B = F_y', an output
-//! z = C y + D y' + .. of the same state, and everything proportional to exp(s t), s = i ω:
+//! `[E81]` About a state at rest the equations F(y, y', u, u', u'') = 0 with an input u are linear. Let A = F_y, B = F_y', and let an
+//! output be z = C y + D y' + .. of the same state. With everything proportional to exp(s t), s = i ω:
 //!
 //! ```text
 //! (A + s B) x = -(f_0 + s f_1 + s² f_2)        f_k = ∂F/∂u^(k)
 //! H(s) = z/u  = (C + s D) x + d_0 + s d_1 + s² d_2
 //! ```
 //!
-//! One complex factorisation serves all outputs at a frequency. The rates of u come in where an input moves an end: the displacements of the
-//! beam are those relative to it.
+//! One complex factorization serves all outputs at a frequency. Rates of u appear if an input moves an end, since the displacements
+//! of the beam are relative to it.
 
 mod instant;
 pub mod state_space;
@@ -34,9 +34,9 @@ use crate::spectral::{Factors, SpectralError};
 
 /// A scaled linear response from one input to outputs.
 pub struct Response {
-    /// The linearisation.
+    /// The linearization.
     pub about: Linearised,
-    /// True if unsteady friction of tubes is there for the response alone.
+    /// True if unsteady friction of tubes was added for the response.
     pub remembers: bool,
     /// JSON pointer of the input.
     pub input: String,
@@ -46,16 +46,16 @@ pub struct Response {
     pub u0: f64,
     /// Values of the outputs.
     pub z0: Vec<f64>,
-    /// `f_k` of the rows.
+    /// `f_k`, one entry for each row.
     forcing: [Vec<f64>; 3],
-    /// Rows of C and D, one entry an unknown.
+    /// Rows of C and D, one entry for each unknown.
     of_state: Vec<[Vec<f64>; 2]>,
     /// `d_k` of each output.
     direct: Vec<[f64; 3]>,
 }
 
 impl Response {
-    /// Linearises a case about its start, or about the equilibrium under the loads at an instant [s].
+    /// Linearizes a case about its start, or about the equilibrium under the loads at an instant [s].
     ///
     /// # Errors
     /// [`Error::Usage`] for an input or an output that the case does not have; those of [`linearise`].
@@ -103,10 +103,10 @@ impl Response {
         })
     }
 
-    /// Factors for one frequency after the other.
+    /// Creates the solver for successive frequencies.
     ///
     /// # Errors
-    /// No factors exist.
+    /// The equations cannot be factored.
     pub fn solver(&self) -> Result<Frequencies<'_>> {
         let first = Complex::new(0.0, self.about.frequency());
         let factors = Factors::new(&self.about.pencil(), first).map_err(|failure| self.failed(&failure))?;
@@ -128,7 +128,7 @@ impl Response {
     }
 }
 
-/// The response at frequencies.
+/// Solver of the response at frequencies.
 pub struct Frequencies<'a> {
     of: &'a Response,
     factors: Factors<'a>,
@@ -161,7 +161,7 @@ impl Frequencies<'_> {
     }
 }
 
-/// The case with an input that no other signal is like, and its pointer.
+/// Returns the case with an input that differs from all other signals, and its pointer.
 fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
     let all = case::controls(case);
     let below = format!("{input}/signal");
@@ -183,8 +183,8 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
     Ok((marked, pointer.clone()))
 }
 
-/// The case with unsteady friction of tubes, and whether that is new. A search for modes leaves it out unless it is named; a response needs no
-/// search among the decays of its memory.
+/// Returns the case with unsteady friction of tubes, and true if it was added. A search for modes omits it unless it is requested by
+/// name. A response needs no search among the decays of this friction.
 fn with_memory(case: Case) -> Result<(Case, bool)> {
     let memory = Effect::UnsteadyFriction;
     let mut choices = case.effects.choices();
@@ -197,7 +197,7 @@ fn with_memory(case: Case) -> Result<(Case, bool)> {
     Ok((Case { effects, ..case }, true))
 }
 
-/// Everything that has a response of first order: motion of the tip, pressures, flows, forces, probes.
+/// Columns with a response of first order: motion of the tip, pressures, flows, forces, probes.
 pub fn columns(system: &System) -> Vec<Column> {
     let motion = motion(system).into_iter().map(Column::from);
     let [at_rest, moving] = [true, false].map(|at_rest| stations::columns(system, at_rest));
@@ -214,9 +214,9 @@ fn motion(system: &System) -> Vec<Observable> {
     all
 }
 
-/// The place of an output by its name, with or without its unit.
+/// Index of an output by its name, with or without its unit.
 fn find(columns: &[Column], name: &str) -> Result<usize> {
-    // what a port lets in is an integral
+    // the volume through a port is an integral
     let integral = |column: &Column| column.name.starts_with("port_") && column.unit == "m^3";
     let known = |column: &Column| !matches!(column.unit, "W" | "J") && !integral(column);
     let place = columns
@@ -243,5 +243,5 @@ fn find(columns: &[Column], name: &str) -> Result<usize> {
     })
 }
 
-/// Names listed in a message at most.
+/// Largest number of names in a message.
 const LISTED: usize = 24;

@@ -1,29 +1,30 @@
 //! State-space models of small motions: the linear equations of [`Response`](super::response::Response), solved for rates.
 //!
-//! `[E82]` Unknowns d whose rates appear, and others a, which follow at once (index one):
+//! `[E82]` Unknowns d are those whose rates appear; the others, a, are algebraic (index one):
 //!
 //! ```text
 //! A y + B y' + f_0 u + f_1 u' + f_2 u'' = 0        [B_d  A_a] [d'; a] = -(A_d d + f_0 u + f_1 u' + f_2 u'')
 //! d' = M d + N u        z = C d + D u
 //! ```
 //!
-//! Where rates of an input matter, as of an end that is moved or of a volume, the input of the model is the highest of them, and the lower ones are further states.
+//! If rates of an input appear, as for a moved end or a volume, the input of the model is the highest of them. The lower ones are
+//! further states.
 
 use super::Response;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::sparse::Lu;
 
-/// Part of the largest entry below which an entry of an output's row is rounding.
+/// Fraction of the largest entry of an output's row below which an entry is rounding error.
 const NOTHING: f64 = 1e-9;
 
 /// `x' = A x + B w`, `z = C x + D w` about a state: matrices in rows, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSpace {
-    /// `A`, one row a state.
+    /// `A`, one row for each state.
     pub a: Vec<Vec<f64>>,
     /// `B`.
     pub b: Vec<f64>,
-    /// `C`, one row an output.
+    /// `C`, one row for each output.
     pub c: Vec<Vec<f64>>,
     /// `D`.
     pub d: Vec<f64>,
@@ -33,17 +34,17 @@ pub struct StateSpace {
     pub input_rate: usize,
     /// States at the operating point.
     pub x0: Vec<f64>,
-    /// Value of the signal there.
+    /// Value of the signal at the operating point.
     pub u0: f64,
-    /// Outputs there.
+    /// Outputs at the operating point.
     pub z0: Vec<f64>,
 }
 
 impl StateSpace {
-    /// Of a linear response.
+    /// State-space model of a linear response.
     ///
     /// # Errors
-    /// Equations that cannot be solved for rates; an output that is the rate of an unknown without inertia.
+    /// The equations cannot be solved for rates, or an output is the rate of an unknown without inertia.
     pub fn new(response: &Response) -> Result<Self> {
         let about = &response.about;
         let pencil = about.pencil();
@@ -71,7 +72,7 @@ impl StateSpace {
         let mut lu = Lu::sparse(pencil.pattern).map_err(|_| fault("the equations cannot be analysed"))?;
         lu.factor(&values)
             .map_err(|_| fault("the equations cannot be solved for rates"))?;
-        // rates of dynamic unknowns and values of the others, by each state and by the input and its rates
+        // rates of dynamic unknowns and values of the others, for each state and for the input and its rates
         let mut solved = |rhs: &mut Vec<f64>| {
             rhs.iter_mut().for_each(|x| *x = -*x);
             lu.solve(rhs);
@@ -119,7 +120,7 @@ impl StateSpace {
         let mut x0: Vec<f64> = places.iter().map(|&k| about.y[k] * scales[k]).collect();
         let used = |k: &usize| direct.iter().any(|d| d[*k] != 0.0) || rates[*k].iter().any(|x| *x != 0.0);
         let input_rate = [2, 1].into_iter().find(used).unwrap_or(0);
-        // lower rates of the input follow the states
+        // lower rates of the input are appended to the states
         let mut b = std::mem::take(&mut rates[input_rate]);
         for (k, row) in a.iter_mut().enumerate() {
             row.extend(rates[..input_rate].iter().map(|rate| rate[k]));

@@ -1,6 +1,6 @@
-//! Derivatives of the quantities of interest, followed as the motion is: of largest values at the instants at which they are reached, of
-//! last values and increments at the ends of the run and of the window; of root mean squares over the output times, which must be close
-//! enough for these to be those of the motion.
+//! Derivatives of the quantities of interest. Those of largest values are taken at the instants at which they are reached, those of
+//! last values and increments at the ends of run and window. Those of root mean squares use the output times, which must be close
+//! enough to represent the motion.
 
 use std::collections::BTreeMap;
 
@@ -12,16 +12,16 @@ use crate::run::summary::Quantity;
 /// Derivatives with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
-    /// The number, in the unit that its key names.
+    /// Value of the number, in the unit of its key.
     pub value: f64,
-    /// Derivatives of the quantities, each per unit of the number; by the names and keys of the quantities themselves.
+    /// Derivatives of the quantities per unit of the number, by the names and keys of the quantities.
     pub quantities: BTreeMap<String, Quantity>,
-    /// Of what is recorded at probes, likewise.
+    /// Derivatives of the quantities at probes.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub probes: BTreeMap<String, Quantity>,
 }
 
-/// Derivatives of the figures of one number: of a largest value, its own at the instant when it is reached.
+/// Figures of one quantity with derivatives by one number; that of a largest value is taken at the instant at which it is reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Track {
     last: [f64; 2],
@@ -33,12 +33,12 @@ struct Track {
     squares: f64,
     slopes: f64,
     time: f64,
-    /// The last output time in the window with both integrands.
+    /// Last output time in the window, with both integrands.
     before: Option<[f64; 3]>,
 }
 
 impl Track {
-    /// Takes a value with its derivative.
+    /// Adds a value and its derivative.
     fn take(&mut self, t: f64, now: [f64; 2], in_window: bool) {
         let [value, slope] = now;
         self.last = now;
@@ -56,7 +56,7 @@ impl Track {
         }
     }
 
-    /// Takes a value with its derivative at any time, as far as it is the largest.
+    /// Records a value and its derivative at any time, if it is the largest.
     fn see(&mut self, [value, slope]: [f64; 2], in_window: bool) {
         let size = [value.abs(), slope * value.signum()];
         let larger = |old: &mut [f64; 2]| {
@@ -100,20 +100,20 @@ impl Track {
     }
 }
 
-/// Follows a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
+/// Accumulates a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     window_start: f64,
     turbines: bool,
     tracks: BTreeMap<Interest, Track>,
-    /// Of what is recorded at probes, in its order.
+    /// Tracks of the quantities at probes, in their order.
     probes: Vec<Track>,
-    /// Of all that is spent, `H + D - P` ([`crate::run::energies`]): followed for the efficiency.
+    /// Energy spent, `H + D - P` ([`crate::run::energies`]), for the efficiency.
     spent: Track,
 }
 
 impl Figures {
-    /// From an instant [s] on the window is open; `turbines` when there are any.
+    /// Creates the figures with a window from `window_start` [s] on; `turbines` is true if there are any.
     pub fn new(window_start: f64, turbines: bool) -> Self {
         Self {
             window_start,
@@ -124,7 +124,7 @@ impl Figures {
         }
     }
 
-    /// Takes one instant: `at` gives a quantity's value and its derivative, `None` where there is no such column.
+    /// Adds one instant: `at` returns a quantity's value and its derivative, `None` if there is no such column.
     pub fn take(&mut self, t: f64, at: impl Fn(Observable) -> Option<[f64; 2]>) {
         let in_window = t >= self.window_start;
         let add = |sum: [f64; 2], sign: f64, of: Observable| {
@@ -149,7 +149,7 @@ impl Figures {
         }
     }
 
-    /// Takes an instant at which something may be largest: what swings as [`Figures::take`], and what is recorded at probes.
+    /// Adds an instant at which a value may be largest: motions with `at` as in [`Figures::take`], and values at probes.
     pub fn see(
         &mut self,
         t: f64,
@@ -169,7 +169,7 @@ impl Figures {
         }
     }
 
-    /// Takes values at probes with their derivatives at the same instant.
+    /// Adds values at probes and their derivatives at one instant.
     pub fn take_probes(&mut self, t: f64, all: impl ExactSizeIterator<Item = [f64; 2]>) {
         self.probes.resize(all.len(), Track::default());
         for (track, now) in self.probes.iter_mut().zip(all) {
@@ -206,7 +206,7 @@ impl Figures {
     }
 }
 
-/// What swings, with its derivative, from its columns: of several the larger in size.
+/// Value of a motion and its derivative, from its columns; of several the one of largest magnitude.
 fn motion(one: Interest, at: &impl Fn(Observable) -> Option<[f64; 2]>) -> Option<[f64; 2]> {
     match one.columns() {
         [column] => at(*column),

@@ -1,7 +1,7 @@
-//! Sensitivities along a run: their start, what happens to them at switching times, and what is read off them.
+//! Sensitivities along a run: their start, their jumps at switching times, and the derivatives read from them.
 //!
-//! Inside, a sensitivity is `s = ∂y/∂σ` to the relative change σ of a number p, so that it is of the order of the unknowns and
-//! their tolerances serve; what is handed out is `∂/∂p = (∂/∂σ)/p`.
+//! Internally, a sensitivity is `s = ∂y/∂σ` by the relative change σ of a number p. It then has the size of the unknowns, and their
+//! tolerances apply. Results are `∂/∂p = (∂/∂σ)/p`.
 
 use std::collections::BTreeMap;
 
@@ -23,17 +23,17 @@ use crate::sundials::Ida;
 /// Sensitivities of a run to some numbers of its case.
 pub struct Forward<'a> {
     pub(super) parameters: &'a [Parameter],
-    /// The changed cases, a number's four in the order of [`STEPS`].
+    /// Changed cases, four for each number in the order of [`STEPS`].
     cases: Vec<[Case; 4]>,
-    /// Their stops.
+    /// Stops of the changed cases.
     stops: Vec<[Vec<Stop>; 4]>,
-    /// The quantities of the history that are differentiated.
+    /// Quantities of the history that are differentiated.
     pub(super) columns: Vec<Observable>,
     /// Columns of ports, accumulators, walls and reactions.
     pub(super) stations: Vec<Column>,
-    /// Of each of these, the port of which it is the volume.
+    /// For each of these columns, the port whose volume it contains, if any.
     pub(super) volumes: Vec<Option<usize>>,
-    /// Those at probes.
+    /// Columns at probes.
     pub(super) probes: Vec<Column>,
     pub(super) s: Vec<Vec<f64>>,
     pub(super) sp: Vec<Vec<f64>>,
@@ -44,27 +44,27 @@ pub struct Forward<'a> {
     pub(super) states_only: bool,
 }
 
-/// The system of a changed case in the unknowns and scales of that of the case; none when they are others.
+/// Returns the system of a changed case in the unknowns and scales of that of the case; `None` if its unknowns differ.
 pub type Alike<'a> = dyn Fn(&Case) -> Result<Option<System>> + 'a;
 
-/// The case with a value of the parameter that stands at this place among all.
+/// Returns the case with a value of the parameter at this index.
 pub type Changed<'a> = dyn Fn(usize, f64) -> Result<Case> + 'a;
 
-/// Numbers by which a run is differentiated, and how changed cases and their systems come about.
+/// Numbers by which a run is differentiated, and functions for changed cases and their systems.
 #[derive(Clone, Copy, Default)]
 pub struct By<'a> {
     /// The numbers.
     pub parameters: &'a [Parameter],
-    /// Systems of changed cases, where it is not those that each has by itself.
+    /// Systems of changed cases, if not those that follow from each case alone.
     pub alike: Option<&'a Alike<'a>>,
-    /// Changed cases, where it is not by pointers: then a parameter is a name, and its value the size of which its changes are shares.
+    /// Changed cases, if not by pointers: a parameter is then a name, and its changes are fractions of its value.
     pub changed: Option<&'a Changed<'a>>,
-    /// Only what is read off states at output times, beam and probes: no figures, nothing of integrals, which cost more than all else.
+    /// True for derivatives of states at output times only, of beam and probes: no figures and no integrals, which cost most.
     pub states_only: bool,
 }
 
 impl<'a> By<'a> {
-    /// Numbers at their pointers.
+    /// Numbers given by their pointers.
     pub fn pointers(parameters: &'a [Parameter]) -> Self {
         Self {
             parameters,
@@ -73,7 +73,7 @@ impl<'a> By<'a> {
     }
 }
 
-/// What must be known of the moment before a switch.
+/// Data of the instant before a switch.
 pub struct Before {
     state: Vec<f64>,
     rates: Vec<f64>,
@@ -82,10 +82,10 @@ pub struct Before {
 }
 
 impl<'a> Forward<'a> {
-    /// Sensitivities of a run of a case to some of its numbers, and the equations with the changed systems beside them.
+    /// Sensitivities of a run of a case to some of its numbers. Also returns the equations with the changed systems.
     ///
     /// # Errors
-    /// [`Error::Usage`] when a change of a number changes the unknowns or the number of switching times.
+    /// [`Error::Usage`] if a change of a number changes the unknowns or the number of switching times.
     pub fn new(case: &Case, dae: BeamDae, by: By<'a>) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let parameters = by.parameters;
@@ -150,7 +150,7 @@ impl<'a> Forward<'a> {
         Ok((forward, dae.with_perturbed(perturbed)))
     }
 
-    /// Names of the columns that are recorded, units included; a derivative is per unit of the number that its pointer names.
+    /// Names of the recorded columns, units included; a derivative is per unit of the number at its pointer.
     pub fn names(&self) -> Vec<String> {
         let of = |parameter: &Parameter| -> Vec<String> {
             let name = |(name, unit)| format!("d {name}/d {} [{unit} per unit]", parameter.pointer);
@@ -164,7 +164,7 @@ impl<'a> Forward<'a> {
         std::iter::once("t [s]".to_owned()).chain(names).collect()
     }
 
-    /// Lets the changed systems look at signals in their own smooth interval before stop number `stop`.
+    /// Sets the changed systems to their own smooth interval before stop number `stop`.
     fn look(&self, dae: &mut BeamDae, stop: usize) {
         for (perturbed, stops) in dae.perturbed_mut().iter_mut().zip(&self.stops) {
             for (beam, stops) in perturbed.beams_mut().iter_mut().zip(stops) {
@@ -173,7 +173,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Sensitivities at t = 0 of the differential unknowns: of the state from which the run starts.
+    /// Computes the sensitivities at t = 0 of the differential unknowns, from the state in which the run starts.
     pub fn begin(&mut self, dae: &mut BeamDae) -> std::result::Result<(), SolverError> {
         self.look(dae, 0);
         for ((perturbed, cases), s) in dae.perturbed_mut().iter_mut().zip(&self.cases).zip(&mut self.s) {
@@ -191,7 +191,7 @@ impl<'a> Forward<'a> {
         Ok(())
     }
 
-    /// Sensitivities at t = 0 of the differential unknowns, where they are known.
+    /// Sets the sensitivities at t = 0 of the differential unknowns to given values.
     pub fn begin_from(&mut self, dae: &mut BeamDae, s: &[Vec<f64>]) {
         self.look(dae, 0);
         self.s.clone_from_slice(s);
@@ -209,7 +209,7 @@ impl<'a> Forward<'a> {
         })
     }
 
-    /// Hands them to the integrator: at the start of the run, or after a restart.
+    /// Passes the sensitivities to the integrator: at the start of the run, or after a restart.
     pub fn hand_over(&self, ida: &mut Ida<BeamDae>, again: bool) -> std::result::Result<(), Box<IntegrationError>> {
         if again {
             ida.carry_on(&self.s, &self.sp)
@@ -218,7 +218,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Leaves a stop's left side, at the state that the integrator has reached there.
+    /// Reads the sensitivities on the left side of a stop, at the state that the integrator has reached there.
     pub fn leave(
         &mut self,
         ida: &mut Ida<BeamDae>,
@@ -236,7 +236,7 @@ impl<'a> Forward<'a> {
         })
     }
 
-    /// What a checkpoint keeps; after [`Forward::leave`].
+    /// Data for a checkpoint, to be called after [`Forward::leave`].
     pub fn kept(&self) -> Kept {
         Kept {
             parameters: self.parameters.to_vec(),
@@ -247,7 +247,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Takes up what a checkpoint has kept at a state there; the left side of its stop.
+    /// Restores the data of a checkpoint at a state there, on the left side of its stop.
     pub fn take_up(&mut self, kept: &Kept, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
         self.s.clone_from(&kept.s);
         self.sp.clone_from(&kept.sp);
@@ -261,14 +261,14 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Passes a switch, at the consistent state after it. Where the number moves the switching time t*, or the ends' signals at it,
+    /// Passes a switch, at the consistent state after it. If the number changes the switching time t*, or the ends' signals at it, the
     /// sensitivities of differential unknowns and of integrals jump:
     ///
     /// ```text
     /// s⁺ = s⁻ + (y'⁻ - y'⁺) dt*/dσ + dΔ/dσ        (∂I/∂σ)⁺ = (∂I/∂σ)⁻ + (g⁻ - g⁺) dt*/dσ
     /// ```
     ///
-    /// Δ is what [`BeamDae::switch`] adds to unknowns that are counted from the driven ends, and to velocities that these hand on.
+    /// Δ is the change by [`BeamDae::switch`] of unknowns that are relative to the driven ends, and of velocities that these impose.
     pub fn pass(
         &mut self,
         dae: &mut BeamDae,
@@ -312,7 +312,7 @@ impl<'a> Forward<'a> {
         Ok(())
     }
 
-    /// Derivatives of what is done in no time at a switch, between states that each of the changed systems has at its own time.
+    /// Derivatives of the works of the jump at a switch, between states that each of the changed systems has at its own time.
     fn jump(&mut self, dae: &mut BeamDae, stop: usize, t: f64, before: &Before, state: [&[f64]; 2]) {
         let mut jumped = vec![0.0; dae.integrals()];
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
@@ -335,12 +335,12 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Passes a stop at which nothing switches.
+    /// Passes a stop without a switch.
     pub fn go_on(&self, dae: &mut BeamDae, stop: usize) {
         self.look(dae, stop + 1);
     }
 
-    /// What the summary says.
+    /// Derivatives for the summary.
     pub fn summary(&self) -> BTreeMap<String, Sensitivity> {
         let names: Vec<String> = self.probes.iter().map(|one| probes::key(&one.name, one.unit)).collect();
         let of = |(parameter, figures): (&Parameter, &Figures)| {
@@ -355,7 +355,7 @@ impl<'a> Forward<'a> {
     }
 }
 
-/// A state at a changed number, `change` of it away, and at an instant later by so much [s].
+/// State for a number changed by `change`, at an instant later by `later` [s], to first order.
 fn moved_by([change, later]: [f64; 2], [y, yp, s]: [&[f64]; 3]) -> Vec<f64> {
     let rates = y.iter().zip(yp).zip(s);
     rates.map(|((y, yp), s)| y + change * s + later * yp).collect()
@@ -369,7 +369,7 @@ fn middle(stops: &[Stop], stop: usize) -> f64 {
 
 fn integrands(dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Vec<f64> {
     let mut out = vec![0.0; dae.integrals()];
-    // the beam's integrands have no faults of their own
+    // the integrands of the beam return no errors of their own
     let _ = dae.integrands(t, y, yp, &mut out);
     out
 }

@@ -1,14 +1,14 @@
-//! What of sensitivities is kept at a checkpoint.
+//! Sensitivities in a checkpoint.
 
 use serde::{Deserialize, Serialize};
 
 use super::figures::Figures;
 use crate::case::parameter::Parameter;
 
-/// What a checkpoint keeps of sensitivities, from which they go on.
+/// Sensitivities stored in a checkpoint, from which a run resumes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Kept {
-    /// The numbers by which is differentiated.
+    /// Numbers by which the run is differentiated.
     pub parameters: Vec<Parameter>,
     /// Sensitivities on the left side of the checkpoint, and their rates.
     pub(super) s: Vec<Vec<f64>>,
@@ -19,7 +19,7 @@ pub struct Kept {
 }
 
 impl Kept {
-    /// Whether there is one finite number for each unknown and each parameter.
+    /// True if there is one finite number for each unknown and each parameter.
     pub fn fits(&self, unknowns: usize, integrals: usize) -> bool {
         let fits = |all: &[Vec<f64>], len: usize| {
             let sound = |of: &Vec<f64>| of.len() == len && of.iter().all(|x| x.is_finite());

@@ -1,4 +1,4 @@
-//! What is read off sensitivities within a step: derivatives of the history at output times, and of what is largest when it is.
+//! Derivatives read from the sensitivities within a step: of the history at output times, and of values at which they are largest.
 
 use super::forward::Forward;
 use crate::dae::BeamDae;
@@ -7,11 +7,11 @@ use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes,
 use crate::integrate::IntegrationError;
 use crate::sundials::Ida;
 
-/// Reads a number off a state.
+/// Functions that read a number from a state.
 type Reads = Vec<fn(&Look) -> f64>;
 
 impl Forward<'_> {
-    /// Reads sensitivities off the integrator at a time [s] within its last step, and those of integrals into `integrals`.
+    /// Reads sensitivities from the integrator at time `t` [s] within its last step, and those of integrals into `integrals`.
     pub(super) fn read(
         &mut self,
         ida: &mut Ida<BeamDae>,
@@ -28,7 +28,7 @@ impl Forward<'_> {
         Ok(())
     }
 
-    /// Takes a sample at a state within the last step, whose row of the history is `row`; returns the row of derivatives.
+    /// Adds a sample at a state within the last step, whose row of the history is `row`. Returns the row of derivatives.
     pub fn sample(
         &mut self,
         ida: &mut Ida<BeamDae>,
@@ -52,8 +52,8 @@ impl Forward<'_> {
         Ok(&self.row)
     }
 
-    /// Looks at a state within the last step at which something is larger than before: its derivative is that of the largest value, for
-    /// where it turns nothing comes of when it does.
+    /// Records a state within the last step at which a value is larger than before. The derivative there is that of the largest value:
+    /// at an extremum, a shift of its time has no effect.
     pub fn see(
         &mut self,
         ida: &mut Ida<BeamDae>,
@@ -86,7 +86,7 @@ impl Forward<'_> {
         Ok(())
     }
 
-    /// Derivatives by one number in a row.
+    /// Number of derivatives by one number in a row.
     fn each(&self) -> usize {
         self.before_probes() + self.probes.len()
     }
@@ -103,7 +103,7 @@ impl Forward<'_> {
         reads.collect()
     }
 
-    /// Fills the row of derivatives at a state within the last step: its time, then of each number those of the columns and at probes.
+    /// Fills the row of derivatives at a state within the last step: its time, then for each number those of the columns and at probes.
     fn derive(
         &mut self,
         ida: &mut Ida<BeamDae>,
@@ -139,7 +139,7 @@ impl Forward<'_> {
                     let (own, rest) = out.split_at_mut(reads.len());
                     let (at_stations, probed) = rest.split_at_mut(self.stations.len());
                     own.iter_mut().zip(&reads).for_each(|(out, read)| *out = read(&look));
-                    // volumes are filled in below
+                    // volumes are set below
                     stations::values(&look, Some(&[]), at_stations);
                     let values = probes::values(&look);
                     probed.iter_mut().zip(values).for_each(|(out, value)| *out = value);
@@ -164,7 +164,7 @@ impl Forward<'_> {
     }
 }
 
-/// The parts of a row of derivatives, one a number.
+/// Splits a row of derivatives into the parts of each number.
 fn parts(row: &[f64], each: usize) -> std::slice::ChunksExact<'_, f64> {
     row[1..].chunks_exact(each.max(1))
 }

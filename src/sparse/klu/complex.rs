@@ -8,7 +8,7 @@ use super::{Analysis, KluError};
 use crate::sparse::Pattern;
 use crate::sparse::c;
 
-/// Factors of complex matrices that share a pattern; pivots are chosen anew for every matrix.
+/// LU factors of complex matrices with a common pattern; pivots are chosen anew for every matrix.
 pub struct ComplexKlu {
     analysis: Analysis,
     numeric: *mut c::klu_l_numeric,
@@ -19,7 +19,7 @@ pub struct ComplexKlu {
 }
 
 impl ComplexKlu {
-    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
+    /// Analyzes a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern)?,
@@ -29,16 +29,17 @@ impl ComplexKlu {
         })
     }
 
-    /// Factors the matrix whose entries, in the order of the pattern, are `values`.
+    /// Factors the matrix with the entries `values`, in the order of the pattern.
     ///
-    /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
+    /// After an error there are no factors. Panics if the number of values differs from that of the pattern.
     pub fn factor(&mut self, values: &[Complex<f64>]) -> Result<(), KluError> {
         assert_eq!(values.len(), self.analysis.rows.len(), "values of another pattern");
         self.free_numeric();
         self.factorizations += 1;
         let a = &mut self.analysis;
-        // SAFETY: pattern and symbolic belong together; values has the pattern's length, each a pair of doubles as
-        // `repr(C)` lays it out; KLU only reads them.
+        // SAFETY: pattern and symbolic belong together; values has the pattern's length; each value is a pair of
+        // doubles
+        // (`repr(C)`); KLU only reads them.
         self.numeric = unsafe {
             c::klu_zl_factor(
                 a.starts.as_mut_ptr(),
@@ -56,12 +57,12 @@ impl ComplexKlu {
         Ok(())
     }
 
-    /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `A x = b`; returns false without factors. Panics if `b` has a wrong length.
     pub fn solve(&mut self, b: &mut [Complex<f64>]) -> bool {
         self.solve_either(b, false)
     }
 
-    /// Replaces `b` by the solution of `Aᴴ x = b`; false without factors. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `Aᴴ x = b`; returns false without factors. Panics if `b` has a wrong length.
     pub fn solve_adjoint(&mut self, b: &mut [Complex<f64>]) -> bool {
         self.solve_either(b, true)
     }
@@ -87,7 +88,7 @@ impl ComplexKlu {
 
     fn free_numeric(&mut self) {
         if !self.numeric.is_null() {
-            // SAFETY: made by `klu_zl_factor`; KLU sets the pointer to null.
+            // SAFETY: created by `klu_zl_factor`; KLU sets the pointer to null.
             unsafe { c::klu_zl_free_numeric(&mut self.numeric, &mut *self.analysis.common) };
         }
     }

@@ -1,9 +1,9 @@
-//! Sparse LU factors by KLU (Davis & Natarajan, Algorithm 907), with a guard against pivots that have gone stale.
+//! Sparse LU factors by KLU (Davis & Natarajan, Algorithm 907), with a check for stale pivots.
 //!
-//! Factoring again with the old pivot order costs less than half of factoring anew, but the old pivots may be bad for
-//! the new values, and KLU does not tell: `[1 1; 1 2]` and then `[1e-16 1; 1 2]` gives x = (0, 2) instead of (1, 2),
-//! flags and condition estimate in order. What shows it is the growth of the factors, `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|`,
-//! by which the rounding error is enlarged. When it falls below [`Klu::smallest_growth`] the pivots are chosen anew.
+//! A refactorization with the old pivot order costs less than half of a new factorization, but the old pivots may be bad for the new
+//! values. KLU does not report this: `[1 1; 1 2]` and then `[1e-16 1; 1 2]` gives x = (0, 2) instead of (1, 2), with good flags and
+//! condition estimate. The growth of the factors, `min_j max_i |aᵢⱼ| / max_i |uᵢⱼ|`, detects it, because it amplifies the rounding error.
+//! If it falls below [`Klu::smallest_growth`], the pivots are chosen anew.
 
 pub mod complex;
 mod rows;
@@ -15,7 +15,7 @@ use crate::sparse::Pattern;
 use super::c;
 use rows::Rows;
 
-/// Why a matrix could not be factored.
+/// Reason why a matrix could not be factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KluError {
     /// No pivot is left in this column.
@@ -23,19 +23,19 @@ pub enum KluError {
         /// Column of the matrix as given.
         column: usize,
     },
-    /// KLU ran out of memory or indices; its status.
+    /// KLU failed, e.g. for lack of memory or because indices overflow; its status.
     Package {
         /// -2 memory, -3 invalid input, -4 too large.
         status: i64,
     },
 }
 
-// SAFETY: what KLU has made lies in memory that no thread owns, and is reached through this value alone.
+// SAFETY: memory allocated by KLU belongs to no thread, and is accessible only through this value.
 unsafe impl Send for Analysis {}
 // SAFETY: likewise.
 unsafe impl Send for Klu {}
 
-/// A pattern as KLU sees it: checked, in blocks, ordered.
+/// Pattern analyzed by KLU: checked, in block triangular form, ordered.
 struct Analysis {
     starts: Vec<i64>,
     rows: Vec<i64>,
@@ -46,7 +46,7 @@ struct Analysis {
 impl Analysis {
     fn new(pattern: &Pattern) -> Result<Self, KluError> {
         let n = pattern.columns();
-        // all of it is relied upon by the C code
+        // the C code relies on all of these conditions
         let sound = pattern.starts[0] == 0
             && pattern.starts.windows(2).all(|pair| pair[0] <= pair[1])
             && pattern.starts[n] as usize == pattern.rows.len()
@@ -82,7 +82,7 @@ impl Analysis {
         self.starts.len() - 1
     }
 
-    /// What KLU last complained about.
+    /// Last error reported by KLU.
     fn fault(&self) -> KluError {
         let column = self.common.singular_col;
         if self.common.status == i64::from(c::KLU_SINGULAR) {
@@ -102,32 +102,32 @@ impl Analysis {
 impl Drop for Analysis {
     fn drop(&mut self) {
         if !self.symbolic.is_null() {
-            // SAFETY: made by `klu_l_analyze`, freed once.
+            // SAFETY: created by `klu_l_analyze`, freed once.
             unsafe { c::klu_l_free_symbolic(&mut self.symbolic, &mut *self.common) };
         }
     }
 }
 
-/// Factors of matrices that share a pattern.
+/// LU factors of matrices with a common pattern.
 pub struct Klu {
     analysis: Analysis,
     numeric: *mut c::klu_l_numeric,
-    /// The same by rows; none without factors, or where they are too many.
+    /// The factors stored by rows; none without factors, or if there are too many entries.
     rows: Option<Rows>,
     growth_when_fresh: f64,
-    /// Growth below which old pivots are dropped; 0 turns the guard off.
+    /// Growth below which old pivots are discarded; 0 disables the check.
     ///
-    /// At the default 1e-6 the factors still stand for a matrix within about ε / 1e-6 = 2e-10 of the given one, which
-    /// Newton's iteration does not notice; over the runs of `tests/solvers/sundials` the growth stays between 0.5 and 1.
+    /// At the default 1e-6 the factors are exact for a matrix within about ε / 1e-6 = 2e-10 of the given one. Newton's iteration does not
+    /// notice such a difference. Over the runs of `tests/solvers/sundials` the growth stays between 0.5 and 1.
     pub smallest_growth: f64,
-    /// Numerical factorisations, refactorisations included.
+    /// Numerical factorizations, including refactorizations.
     pub factorizations: u64,
-    /// Factorisations done anew because old pivots were bad.
+    /// Repeated factorizations because of bad old pivots.
     pub pivot_refreshes: u64,
 }
 
 impl Klu {
-    /// Analyses a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
+    /// Analyzes a square pattern: block triangular form, AMD ordering, rows scaled by their largest entry.
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         Ok(Self {
             analysis: Analysis::new(pattern)?,
@@ -150,14 +150,14 @@ impl Klu {
         self.analysis.rows.len()
     }
 
-    /// Bytes of the present factors that a solution reads, 0 without any.
+    /// Number of bytes of the present factors that one solution reads; 0 without factors.
     pub fn bytes(&self) -> usize {
         self.rows.as_ref().map_or(0, Rows::bytes)
     }
 
-    /// Factors the matrix whose entries, in the order of the pattern, are `values`; with the old pivots while they last.
+    /// Factors the matrix with the entries `values`, in the order of the pattern. Old pivots are reused as long as they are good.
     ///
-    /// After a fault there are no factors. Panics when the number of values is not that of the pattern.
+    /// After an error there are no factors. Panics if the number of values differs from that of the pattern.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), KluError> {
         assert_eq!(values.len(), self.entries(), "values of another pattern");
         if !self.numeric.is_null() {
@@ -170,13 +170,13 @@ impl Klu {
         self.factor_anew(values)
     }
 
-    /// Forgets the factors: the next ones get pivots of their own.
+    /// Discards the factors: the next factorization chooses its pivots anew.
     pub fn forget(&mut self) {
         self.free_numeric();
         self.growth_when_fresh = 1.0;
     }
 
-    /// Factors with the old pivots; false when they are bad.
+    /// Factors with the old pivots; returns false if they are bad.
     fn refactor(&mut self, values: &[f64]) -> bool {
         self.factorizations += 1;
         // SAFETY: pattern, symbolic and numeric belong together, values has the pattern's length; KLU only reads them.
@@ -193,7 +193,7 @@ impl Klu {
         if done == 0 || self.analysis.common.status != i64::from(c::KLU_OK) {
             return false;
         }
-        // a block of one row is no sum that could grow: only its zero tells
+        // a block of one row cannot grow: only a zero pivot indicates its singularity
         // SAFETY: as above.
         let regular = unsafe { c::klu_l_rcond(self.analysis.symbolic, self.numeric, &mut *self.analysis.common) } != 0;
         if !regular || self.analysis.common.rcond == 0.0 {
@@ -202,7 +202,7 @@ impl Klu {
         if self.smallest_growth <= 0.0 {
             return true;
         }
-        // factors that grow with fresh pivots too are not improved by fresh pivots
+        // if the growth is small even with fresh pivots, choosing them again does not help
         let limit = self.smallest_growth.min(0.1 * self.growth_when_fresh);
         self.growth(values) >= limit
     }
@@ -229,7 +229,7 @@ impl Klu {
         if self.smallest_growth > 0.0 {
             self.growth_when_fresh = self.growth(values);
         }
-        // SAFETY: KLU has made both for this matrix, and has factored it.
+        // SAFETY: KLU has created both for this matrix, and has factored it.
         self.rows = unsafe { Rows::new(&*self.analysis.symbolic, &*self.numeric) };
         self.take_rows();
         Ok(())
@@ -237,7 +237,7 @@ impl Klu {
 
     fn take_rows(&mut self) {
         if let Some(rows) = &mut self.rows {
-            // SAFETY: rows are of the last fresh factors, whose pivots these have.
+            // SAFETY: rows belong to the last fresh factors; the present factors have the same pivots.
             unsafe { rows.take(&*self.numeric) };
         }
     }
@@ -258,14 +258,14 @@ impl Klu {
         self.analysis.common.rgrowth
     }
 
-    /// Sign of the determinant of the matrix last factored: 1, -1, or 0 without factors. A small one keeps its sign where a product of
+    /// Sign of the determinant of the last factored matrix: 1, -1, or 0 without factors. The sign remains correct where a product of the
     /// pivots would underflow.
     pub fn determinant_sign(&self) -> i8 {
         if self.numeric.is_null() {
             return 0;
         }
         let n = self.columns();
-        // SAFETY: symbolic and numeric belong together; KLU keeps n pivots and two permutations of n. Scale factors of rows are
+        // SAFETY: symbolic and numeric belong together; KLU stores n pivots and two permutations of length n. Scale factors of rows are
         // positive.
         let (pivots, rows, columns) = unsafe {
             (
@@ -279,7 +279,7 @@ impl Klu {
         if odd { -1 } else { 1 }
     }
 
-    /// Replaces `b` by the solution of `A x = b`; false without factors. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `A x = b`; returns false without factors. Panics if `b` has a wrong length.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         assert_eq!(b.len(), self.columns(), "right-hand side of another size");
         match &mut self.rows {
@@ -291,7 +291,7 @@ impl Klu {
         }
     }
 
-    /// As [`Klu::solve`] for several right-hand sides, one after the other in `b`.
+    /// Like [`Klu::solve`], but for several right-hand sides, stored one after the other in `b`.
     pub fn solve_block(&mut self, b: &mut [f64]) -> bool {
         let n = self.columns();
         assert!(n > 0 && b.len().is_multiple_of(n), "right-hand sides of another size");
@@ -307,13 +307,13 @@ impl Klu {
     fn free_numeric(&mut self) {
         self.rows = None;
         if !self.numeric.is_null() {
-            // SAFETY: made by `klu_l_factor`; KLU sets the pointer to null.
+            // SAFETY: created by `klu_l_factor`; KLU sets the pointer to null.
             unsafe { c::klu_l_free_numeric(&mut self.numeric, &mut *self.analysis.common) };
         }
     }
 }
 
-/// Exchanges that a permutation is made of.
+/// Number of transpositions of a permutation.
 fn transpositions(permutation: &[i64]) -> usize {
     let mut seen = vec![false; permutation.len()];
     let mut exchanges = 0;

@@ -1,13 +1,13 @@
-//! KLU's factors row by row, for many solutions with the same factors.
+//! KLU's factors stored by rows, for many solutions with the same factors.
 //!
-//! KLU keeps columns, so that a solution adds every product to memory, where the next one has to wait for it. Along rows it is a sum in a
-//! register. With indices of 32 bits, and multiplied by pivots' inverses, a solution takes half of KLU's time.
+//! KLU stores columns: each product of a solution is added to memory, and the next one must wait for it. By rows, the sum stays in a
+//! register. With 32-bit indices and inverse pivots, a solution needs half of KLU's time.
 
 use std::slice::from_raw_parts;
 
 use crate::sparse::{c, groups::groups};
 
-/// `R⁻¹ P A Q = L U + F`: factors of each diagonal block, and F, what stands above the blocks.
+/// `R⁻¹ P A Q = L U + F`: factors of each diagonal block, and the entries F above the blocks.
 pub(super) struct Rows {
     /// First row of each block, and the number of rows.
     blocks: Vec<usize>,
@@ -15,15 +15,15 @@ pub(super) struct Rows {
     lower: Triangle,
     upper: Triangle,
     per_pivot: Vec<f64>,
-    /// Inverses of what rows were divided by.
+    /// Inverses of the scale factors of rows.
     per_row: Vec<f64>,
-    /// Equation in each row, unknown in each column.
+    /// Equation of each row, unknown of each column.
     equation: Vec<u32>,
     unknown: Vec<u32>,
     x: Vec<f64>,
 }
 
-/// An entry of KLU's: row, column, place among its numbers.
+/// Entry of KLU's factors: row, column, index of its value in KLU's storage.
 type Entry = [u32; 3];
 
 /// Rows of a triangle without its diagonal.
@@ -31,12 +31,12 @@ struct Triangle {
     starts: Vec<usize>,
     columns: Vec<u32>,
     values: Vec<f64>,
-    /// Place of each value among KLU's.
+    /// Index of each value in KLU's storage.
     places: Vec<u32>,
 }
 
 impl Triangle {
-    /// Rows hold their entries in the order in which these are given.
+    /// Creates the rows; each row keeps the given order of its entries.
     fn new(n: usize, entries: &[Entry]) -> Self {
         let by_row = entries.iter().map(|&[row, column, place]| (row, (column, place)));
         let (rows, starts) = groups(n, by_row);
@@ -49,25 +49,25 @@ impl Triangle {
         }
     }
 
-    /// Reads the values of some rows anew.
+    /// Reads the values of some rows again.
     ///
     /// # Safety
-    /// The numbers are those of which the entries' places were told.
+    /// `numbers` points to the storage that the entries' `places` refer to.
     unsafe fn take(&mut self, rows: std::ops::Range<usize>, numbers: *const f64) {
         let entries = self.starts[rows.start]..self.starts[rows.end];
         for (value, &place) in self.values[entries.clone()].iter_mut().zip(&self.places[entries]) {
-            // SAFETY: as the caller has promised.
+            // SAFETY: guaranteed by the caller.
             *value = unsafe { *numbers.add(place as usize) };
         }
     }
 
-    /// `start - Σ value x` of row k, in two sums of which neither waits for the other.
+    /// `start - Σ value x` of row k, as two independent sums.
     ///
     /// # Safety
-    /// k is a row, and `x` has an element for each.
+    /// k is a row, and `x` has an element for each row.
     #[inline(always)]
     unsafe fn eliminate(&self, k: usize, start: f64, x: &[f64]) -> f64 {
-        // SAFETY: a row's entries lie between its start and the next, and their columns are numbers of rows.
+        // SAFETY: a row's entries lie between its start and the next, and their columns are below the number of rows.
         unsafe {
             let product =
                 |p: usize| self.values.get_unchecked(p) * x.get_unchecked(*self.columns.get_unchecked(p) as usize);
@@ -87,13 +87,13 @@ impl Triangle {
 }
 
 impl Rows {
-    /// Finds the rows of factors; none where 32 bits do not count their numbers.
+    /// Converts KLU's factors to rows; none if an index exceeds 32 bits.
     ///
     /// # Safety
-    /// KLU has made both, for the same matrix.
+    /// KLU has created both, for the same matrix.
     pub unsafe fn new(symbolic: &c::klu_l_symbolic, numeric: &c::klu_l_numeric) -> Option<Self> {
         let n = usize::try_from(symbolic.n).ok()?;
-        // SAFETY: KLU keeps a start for each block and the end of all, permutations of n, and n + 1 starts of columns of F.
+        // SAFETY: KLU stores a start for each block and the end of all, permutations of n, and n + 1 starts of columns of F.
         let (blocks, equation, unknown, off) = unsafe {
             (
                 from_raw_parts(symbolic.R, symbolic.nblocks as usize + 1),
@@ -118,7 +118,7 @@ impl Rows {
                     Some(())
                 };
                 let place = off[k] as usize;
-                // SAFETY: the rows of F's columns stand one after the other.
+                // SAFETY: the rows of F's columns are contiguous.
                 let rows = unsafe { from_raw_parts(numeric.Offi.add(place), off[k + 1] as usize - place) };
                 add(&mut above, 0, place, rows)?;
                 if ends[1] - ends[0] == 1 {
@@ -128,8 +128,9 @@ impl Rows {
                     (&mut lower, numeric.Lip, numeric.Llen),
                     (&mut upper, numeric.Uip, numeric.Ulen),
                 ] {
-                    // SAFETY: in the pool of a block of several rows a column is as many rows, counted from the block's first, and
-                    // then as many values, in units of 8 bytes.
+                    // SAFETY: in the pool of a block of several rows a column consists of its row indices, counted from the block's first
+                    // row,
+                    // and then of as many values, in units of 8 bytes.
                     let (place, rows) = unsafe {
                         let (start, length) = (*starts.add(k) as usize, *lengths.add(k) as usize);
                         let pool = Self::pool(numeric, block);
@@ -139,7 +140,7 @@ impl Rows {
                 }
             }
         }
-        // what was solved for last is asked for last
+        // descending columns: back substitution then reads the most recently computed unknown last
         upper.reverse();
         Some(Self {
             above: Triangle::new(n, &above),
@@ -154,7 +155,7 @@ impl Rows {
         })
     }
 
-    /// Bytes that one solution reads.
+    /// Number of bytes that one solution reads.
     pub fn bytes(&self) -> usize {
         let triangles = [&self.above, &self.lower, &self.upper];
         let entries: usize = triangles
@@ -164,22 +165,22 @@ impl Rows {
         entries + 24 * self.per_pivot.len()
     }
 
-    /// Numbers of the factors of a block.
+    /// Values of the factors of a block.
     ///
     /// # Safety
-    /// There is such a block.
+    /// The block exists.
     unsafe fn pool(numeric: &c::klu_l_numeric, block: usize) -> *const f64 {
-        // SAFETY: KLU keeps a pointer for each block.
+        // SAFETY: KLU stores a pointer for each block.
         unsafe { (*numeric.LUbx.add(block)).cast() }
     }
 
-    /// Reads all numbers anew.
+    /// Reads all values again.
     ///
     /// # Safety
-    /// KLU has made the factors with the pivots of those that [`Rows::new`] was given.
+    /// KLU has created the factors with the pivots of the factors passed to [`Rows::new`].
     pub unsafe fn take(&mut self, numeric: &c::klu_l_numeric) {
         let n = self.x.len();
-        // SAFETY: pivots, sizes of rows, F and pools are KLU's, of this matrix; sizes are there where rows are divided.
+        // SAFETY: pivots, row scales, F and pools are KLU's, of this matrix; row scales exist if rows are scaled.
         unsafe {
             for (per, pivot) in self
                 .per_pivot
@@ -202,7 +203,7 @@ impl Rows {
         }
     }
 
-    /// Replaces `b` by the solution of `A x = b`. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `A x = b`. Panics if `b` has a wrong length.
     pub fn solve(&mut self, b: &mut [f64]) {
         let x = &mut self.x;
         assert_eq!(b.len(), x.len(), "right-hand side of another size");

@@ -1,29 +1,30 @@
-//! Static condensation: unknowns that a row of two entries gives by another unknown.
+//! Static condensation: eliminates unknowns that a row of two entries expresses by another unknown.
 //!
-//! `a x_e + c x_o = b_r` is solved for `x_e`, whose column joins that of `x_o`. Of a beam these are its velocities, `cj u - v = b`.
+//! `a x_e + c x_o = b_r` is solved for `x_e`, whose column is added to that of `x_o`. For a beam, velocities are eliminated by
+//! `cj u - v = b`.
 
 use crate::sparse::Pattern;
 
-/// Entries that a column may add to that which it joins.
+/// Largest number of entries that a column may add to the column it is merged with.
 const MORE: usize = 2;
 
-/// An unknown given by another one.
+/// An unknown that is eliminated by another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pair {
     /// Row of two entries.
     pub row: u32,
-    /// Unknown that is given, and the entry of its coefficient.
+    /// Eliminated unknown, and the entry of its coefficient.
     pub given: (u32, u32),
-    /// Unknown that is kept, and the entry of its coefficient.
+    /// Remaining unknown, and the entry of its coefficient.
     pub kept: (u32, u32),
 }
 
-/// What is left of a matrix.
+/// The condensed matrix.
 pub(super) struct Condensed {
     pub pairs: Vec<Pair>,
-    /// Pair that gives each unknown.
+    /// Pair that eliminates each unknown.
     pub by: Vec<Option<u32>>,
-    /// Row that goes with each unknown that is kept; of no use for the others.
+    /// Row paired with each remaining unknown; unused for the others.
     pub row: Vec<u32>,
 }
 
@@ -68,7 +69,7 @@ impl Condensed {
                 continue;
             }
             if row == o {
-                // the row of the unknown that goes stays, with the other one
+                // the row of the eliminated unknown remains and is paired with the other unknown
                 if this.row[o] as usize != o {
                     continue;
                 }
@@ -85,13 +86,13 @@ impl Condensed {
         this
     }
 
-    /// The unknown whose column that of another joins: its own where it is kept.
+    /// Unknown with whose column the column of `unknown` is merged: itself if it remains.
     pub fn joins(&self, unknown: usize) -> usize {
         self.by[unknown].map_or(unknown, |pair| self.pairs[pair as usize].kept.0 as usize)
     }
 }
 
-/// Rows of column `e`, other than `row`, that column `o` does not have.
+/// Number of rows of column `e`, other than `row`, that column `o` does not contain.
 fn more(pattern: &Pattern, e: usize, o: usize, row: usize) -> usize {
     let theirs = &pattern.rows[pattern.column(o)];
     let mine = pattern.rows[pattern.column(e)].iter();

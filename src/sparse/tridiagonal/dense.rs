@@ -1,30 +1,31 @@
-//! Products with small dense blocks, and their inverses, in vectors as wide as the processor has.
+//! Products with small dense blocks, and their inverses, in the widest vectors of the processor.
 //!
-//! A block is stored in strips of at most [`STRIP`] rows, each by columns, so that a strip's result stays in registers while memory is read in order.
+//! A block is stored in strips of at most [`STRIP`] rows, each by columns. The result of a strip stays in registers while memory is read
+//! in order.
 
-/// Rows of a strip.
+/// Number of rows of a strip.
 pub(super) const STRIP: usize = 16;
-/// Rows are filled up to a multiple of this.
+/// Rows are padded to a multiple of this number.
 pub(super) const LANES: usize = 4;
 
-/// Part of the largest entry from which on that of the diagonal is the pivot.
+/// Ratio to the largest entry of the column above which the diagonal entry is the pivot.
 const DIAGONAL: f64 = 0.1;
 
-/// Filled up to whole vectors.
+/// Number of rows padded to whole vectors.
 pub(super) fn padded(rows: usize) -> usize {
     rows.next_multiple_of(LANES)
 }
 
-/// How a product is added: `a b + c`.
+/// Rounding of a multiplication and addition `a b + c`.
 pub(super) trait Add: Copy {
     fn add(a: f64, b: f64, c: f64) -> f64;
 }
 
-/// Rounded twice.
+/// Rounds twice.
 #[derive(Clone, Copy)]
 pub(super) struct Apart;
 
-/// Rounded once, where the processor does that in one go.
+/// Rounds once, in a single instruction.
 #[derive(Clone, Copy)]
 pub(super) struct Fused;
 
@@ -42,7 +43,7 @@ impl Add for Fused {
     }
 }
 
-/// `y = M x`, or `y += M x`; M has as many columns as `x` entries and as many rows as `y`, a multiple of [`LANES`].
+/// `y = M x`, or `y += M x`; M has `x.len()` columns and `y.len()` rows, a multiple of [`LANES`].
 #[inline(always)]
 pub(super) fn multiply<A: Add, const ADDS: bool>(mut m: &[f64], x: &[f64], y: &mut [f64]) {
     for strip in y.chunks_mut(STRIP) {
@@ -57,7 +58,7 @@ pub(super) fn multiply<A: Add, const ADDS: bool>(mut m: &[f64], x: &[f64], y: &m
     }
 }
 
-/// Even and odd columns apart: of two sums neither waits for the other.
+/// Sums even and odd columns separately: the two sums are independent.
 #[inline(always)]
 fn columns<A: Add, const ADDS: bool, const H: usize>(m: &[f64], x: &[f64], y: &mut [f64]) {
     let Some(y) = y.first_chunk_mut::<H>() else { return };
@@ -81,7 +82,7 @@ fn columns<A: Add, const ADDS: bool, const H: usize>(m: &[f64], x: &[f64], y: &m
     }
 }
 
-/// Writes a block that stands by columns of `rows` entries in strips.
+/// Converts a block stored by columns of `rows` entries to strips.
 #[inline(always)]
 pub(super) fn strips(d: &[f64], rows: usize, mut out: &mut [f64]) {
     for first in (0..rows).step_by(STRIP) {
@@ -94,7 +95,8 @@ pub(super) fn strips(d: &[f64], rows: usize, mut out: &mut [f64]) {
     }
 }
 
-/// `C = -M B` of blocks that stand by columns: M has `rows` of them, a multiple of [`LANES`], B `inner`.
+/// `C = -M B` of blocks stored by columns: columns of M have `rows` entries, a multiple of [`LANES`], columns of B
+/// `inner`.
 #[inline(always)]
 pub(super) fn product<A: Add>(m: &[f64], rows: usize, b: &[f64], inner: usize, c: &mut [f64]) {
     for (c, b) in c.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
@@ -110,19 +112,19 @@ pub(super) fn product<A: Add>(m: &[f64], rows: usize, b: &[f64], inner: usize, c
     }
 }
 
-/// Where entry (row, column) of a block of so many padded rows and columns stands.
+/// Index of entry (row, column) in a block with the given numbers of padded rows and columns.
 pub(super) fn place(row: usize, column: usize, rows: usize, columns: usize) -> usize {
     let first = row / STRIP * STRIP;
     first * columns + column * STRIP.min(rows - first) + row - first
 }
 
-/// Replaces the square block `d`, by columns of `rows` entries, by its inverse; false where a pivot is none.
+/// Replaces the square block `d`, stored by columns of `rows` entries, by its inverse; returns false if a pivot is zero or not finite.
 ///
-/// Gauss-Jordan with the pivot on the diagonal unless that is below a tenth of the largest of its column, all beside their rows' entries. `exchanged` is
-/// room for as many numbers as there are columns, `room` for three times as many as there are rows.
+/// Gauss-Jordan elimination. The pivot is the diagonal entry unless it is below a tenth of the largest entry of its column, each relative
+/// to its row. `exchanged` is work space with one number per column, `room` with three numbers per row.
 #[inline(always)]
 pub(super) fn invert<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
-    // lengths that are known are loops that need no count
+    // loops of constant length need no counter
     match rows {
         4 => invert_by::<A>(d, 4, exchanged, room),
         8 => invert_by::<A>(d, 8, exchanged, room),
@@ -149,7 +151,7 @@ fn invert_by<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: 
     let inverse_of = |size: f64| if size > 0.0 { 1.0 / size } else { 0.0 };
     per_size.iter_mut().for_each(|size| *size = inverse_of(*size));
     for k in 0..n {
-        // rows that have been pivots count for nothing
+        // rows that have already been pivots are ignored
         let column = &d[k * rows..][..rows];
         let mut most = [0.0; LANES];
         for (column, per) in column
@@ -182,7 +184,7 @@ fn invert_by<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: 
             return false;
         }
         per_size[k] = 0.0;
-        // whole vectors are written, never an entry alone, which the next load would have to wait for
+        // writes whole vectors: the next load would have to wait for a single entry
         for (to, pivot) in pivots.iter_mut().zip(&d[k * rows..][..rows]) {
             *to = -pivot;
         }

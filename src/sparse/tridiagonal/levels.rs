@@ -1,8 +1,8 @@
-//! Level structures of a graph: sets of nodes of which each touches the one before and the one after alone.
+//! Level structures of a graph: sets of nodes, each adjacent only to the set before and the set after it.
 
 use crate::sparse::groups::groups;
 
-/// Searches for a node far from the others, at most.
+/// Maximum number of searches for a node far from the others.
 const SEARCHES: usize = 6;
 
 /// Neighbours of every node: those of node k are `to[starts[k]..starts[k + 1]]`.
@@ -12,7 +12,7 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// Both directions of every edge between two nodes.
+    /// Stores both directions of every edge between two nodes.
     pub fn new(nodes: usize, edges: &[[u32; 2]]) -> Self {
         let ends = edges.iter().filter(|[a, b]| a != b);
         let (to, starts) = groups(nodes, ends.flat_map(|&[a, b]| [(a, b), (b, a)]));
@@ -23,7 +23,8 @@ impl Graph {
         &self.to[self.starts[node as usize]..self.starts[node as usize + 1]]
     }
 
-    /// Levels of every connected part, one part after the other; each begins at a node far from the rest of its part (George & Liu 1979).
+    /// Levels of every connected component, one after the other; each begins at a node far from the rest of its component (George & Liu
+    /// 1979).
     pub fn levels(&self) -> Vec<Vec<u32>> {
         let nodes = self.starts.len() - 1;
         let mut mark = vec![0_u32; nodes];

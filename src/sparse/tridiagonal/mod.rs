@@ -1,16 +1,17 @@
-//! LU factors of matrices that are block tridiagonal: what hangs together along a line.
+//! LU factors of block tridiagonal matrices: unknowns coupled along a line.
 //!
-//! Unknowns that a row of two entries gives by another one are left out first ([`condense`]). Levels of the graph of the rest, by distance from a
-//! node at its end, touch the level before and the one after alone ([`levels`]); each is a small dense block. Elimination goes
-//! from both ends to a block in the middle, so that two chains of operations do not wait for each other (a twisted factorisation):
+//! Unknowns that a row of two entries expresses by another one are eliminated first ([`condense`]). The rest is ordered in levels of its
+//! graph, by distance from an end node. Each level is a small dense block, adjacent only to the level before and the one after
+//! ([`levels`]). Elimination proceeds from both ends to a block in the middle: two independent chains of operations (a twisted
+//! factorization).
 //!
 //! ```text
 //! D_j = A_jj - A_ji D_i⁻¹ A_ij      i the block before on the way to the middle, or both at the middle
 //! y_j = D_j⁻¹ (b_j - A_ji y_i)      x_i = y_i - (D_i⁻¹ A_ij) x_j
 //! ```
 //!
-//! Rows are exchanged within blocks alone; whether that was enough is asked of every factorisation by a solution, whose backward error is
-//! to be small (Oettli & Prager 1964).
+//! Rows are exchanged only within blocks. After every factorization, a test solution checks that this was sufficient: its backward error
+//! must be small (Oettli & Prager 1964).
 
 mod condense;
 mod dense;
@@ -25,24 +26,25 @@ use plan::{Block, Plan};
 #[cfg(target_arch = "x86_64")]
 use sweeps::wide;
 
-/// Backward error up to which factors are taken for those of the matrix: Newton's iteration notices no sixth digit of its Jacobian.
+/// Largest accepted backward error of the factors: Newton's iteration does not notice the sixth digit of its Jacobian.
 ///
-/// With a rate that is nearly given, `v = cj u - b` of a very short step, v is a difference of numbers of the size of b: that is the largest there is.
+/// The largest errors occur for a rate that is nearly given, `v = cj u - b` of a very short step: v is a difference of numbers of the
+/// size of b.
 const BACKWARD: f64 = 1e-6;
 
 /// Factors of matrices that share a pattern.
 pub struct BlockTridiagonal {
     plan: Plan,
-    /// Of each block: its inverse, and what its unknowns take off the next block.
+    /// For each block: its inverse, and the factor for its contribution to the next block.
     onward: Vec<f64>,
-    /// What the next block takes off them.
+    /// Factor for the contribution of the next block.
     back: Vec<f64>,
-    /// What the row of each pair gives: `x_e = per b_r + ratio x_o`.
+    /// Coefficients of the row of each pair: `x_e = per b_r + ratio x_o`.
     per: Vec<f64>,
     ratio: Vec<f64>,
-    /// Its first part, of the solution at hand.
+    /// First term `per b_r` for the present right-hand side.
     given: Vec<f64>,
-    /// What `b_r` adds to other rows.
+    /// Contributions of `b_r` to other rows.
     shifts: Vec<f64>,
     /// Right-hand side and solution, block by block.
     x: Vec<f64>,
@@ -50,15 +52,15 @@ pub struct BlockTridiagonal {
     room: Room,
 }
 
-/// Room to work in.
+/// Work space.
 struct Room {
-    /// A block as it is assembled.
+    /// The block being assembled.
     block: Vec<f64>,
     exchanged: Vec<usize>,
     columns: Vec<f64>,
-    /// What both blocks before take off a block.
+    /// Contributions of both preceding blocks to a block.
     taken: [Vec<f64>; 2],
-    /// What the next block takes off a block.
+    /// Contribution of the next block to a block.
     through: Vec<f64>,
     solution: Vec<f64>,
     left: Vec<f64>,
@@ -66,8 +68,8 @@ struct Room {
 }
 
 impl BlockTridiagonal {
-    /// Analyses a square pattern; none where there is no line along which it could be cut so that a solution takes no more than `most` products of
-    /// blocks, or where 32 bits do not count all.
+    /// Analyzes a square pattern. None if no ordering along a line is found whose solution needs at most `most` products of blocks, or if
+    /// a number exceeds 32 bits.
     pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
         let plan = Plan::new(pattern, most)?;
         let most = |size: &dyn Fn(&Block) -> usize| plan.blocks.iter().map(size).max().unwrap_or(0);
@@ -109,19 +111,19 @@ impl BlockTridiagonal {
             + pairs
     }
 
-    /// Factors the matrix whose entries, in the order of the pattern that was analysed, are `values`; false where rows would have to be exchanged
-    /// between blocks. Panics when the number of values is not that of the pattern.
+    /// Factors the matrix with the entries `values`, in the order of the analyzed pattern; returns false if rows would have to be
+    /// exchanged between blocks. Panics if the number of values differs from that of the pattern.
     pub fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         assert_eq!(values.len(), pattern.entries(), "values of another pattern");
         #[cfg(target_arch = "x86_64")]
         if wide() {
-            // SAFETY: the processor has what the function is compiled for.
+            // SAFETY: the processor supports the enabled target features.
             return unsafe { self.factor_wide(pattern, values) };
         }
         self.factor_by::<Apart>(pattern, values)
     }
 
-    /// Replaces `b` by the solution of `A x = b`. Panics when `b` has another length.
+    /// Replaces `b` by the solution of `A x = b`. Panics if `b` has a wrong length.
     pub fn solve(&mut self, b: &mut [f64]) {
         assert_eq!(b.len(), self.plan.condensed.by.len(), "right-hand side of another size");
         if self.plan.apart {
@@ -129,7 +131,7 @@ impl BlockTridiagonal {
         }
         #[cfg(target_arch = "x86_64")]
         if wide() {
-            // SAFETY: the processor has what the function is compiled for.
+            // SAFETY: the processor supports the enabled target features.
             return unsafe { self.solve_wide(b) };
         }
         self.solve_by::<Apart>(b);
@@ -159,7 +161,7 @@ impl BlockTridiagonal {
         self.block::<A>(values, twist) && self.holds::<A>(pattern, values)
     }
 
-    /// Coefficients of the rows that give an unknown.
+    /// Computes the coefficients of the rows that eliminate an unknown.
     #[inline(always)]
     fn condense(&mut self, values: &[f64]) {
         let plan = &self.plan;
@@ -172,7 +174,7 @@ impl BlockTridiagonal {
         }
     }
 
-    /// Assembles a block, takes off it what those before tell ([`Room::taken`]), and inverts it.
+    /// Assembles a block, subtracts the contributions of the preceding blocks ([`Room::taken`]), and inverts it.
     #[inline(always)]
     fn block<A: Add>(&mut self, values: &[f64], j: usize) -> bool {
         let Self {
@@ -199,11 +201,11 @@ impl BlockTridiagonal {
             let rows = padded(theirs.len());
             for (c, taken) in theirs.clone().zip(taken.chunks_exact(rows.max(1))) {
                 let to = &mut d[c * block.rows + theirs.start..][..theirs.len()];
-                // both factors stand with the other sign
+                // both factors are stored with the opposite sign
                 to.iter_mut().zip(taken).for_each(|(to, taken)| *to -= taken);
             }
         };
-        // from the left, from the right; the twist has both
+        // from the left, from the right; the twist block has both
         let before = [
             (j <= plan.twist).then(|| j.checked_sub(1)).flatten(),
             (j >= plan.twist).then_some(j + 1).filter(|k| *k < plan.blocks.len()),
@@ -236,7 +238,7 @@ impl BlockTridiagonal {
             through,
         );
         dense::strips(through, rows, back);
-        // D of the next block loses A D⁻¹ A
+        // D of the next block is reduced by A D⁻¹ A
         let taken = &mut room.taken[usize::from(j > plan.twist)];
         let touched = padded(block.theirs.len());
         for (to, through) in taken.chunks_exact_mut(touched.max(1)).zip(through.chunks_exact(rows)) {
@@ -256,7 +258,7 @@ impl BlockTridiagonal {
         self.give(b);
     }
 
-    /// The same from both ends in two threads; to the same bits.
+    /// Like `solve_by`, but from both ends in two threads; the result is bitwise identical.
     fn solve_apart(&mut self, b: &mut [f64]) {
         self.take(b);
         let (plan, x, y) = (&self.plan, &mut self.x, &mut self.y);
@@ -264,7 +266,7 @@ impl BlockTridiagonal {
         let twist = &blocks[plan.twist];
         let beyond = twist.at + twist.rows;
         let (left, right) = plan.steps.split_at(plan.twist);
-        // what the right gives to the twist waits for the left
+        // the contribution of the right side to the twist must follow that of the left side
         let (right, last) = right.split_at(right.len().saturating_sub(1));
         {
             let (left_x, right_x) = x.split_at_mut(beyond);
@@ -285,7 +287,7 @@ impl BlockTridiagonal {
         self.give(b);
     }
 
-    /// Right-hand side, block by block.
+    /// Reads the right-hand side, block by block.
     #[inline(always)]
     fn take(&mut self, b: &[f64]) {
         let Self {
@@ -297,7 +299,8 @@ impl BlockTridiagonal {
             ..
         } = self;
         x.fill(0.0);
-        // SAFETY: the plan's rows and unknowns are below n, the length of b; its places below that of x and y.
+        // SAFETY: the plan's rows and unknowns are below n, the length of b; its places are below the length of x and
+        // y.
         unsafe {
             for kept in &plan.kept {
                 *x.get_unchecked_mut(kept.at as usize) = *b.get_unchecked(kept.row as usize);
@@ -311,7 +314,7 @@ impl BlockTridiagonal {
         }
     }
 
-    /// The solution, and what follows from it.
+    /// Writes the solution, including the eliminated unknowns.
     #[inline(always)]
     fn give(&self, b: &mut [f64]) {
         let Self {
@@ -328,7 +331,7 @@ impl BlockTridiagonal {
         }
     }
 
-    /// Whether a solution has a small backward error, row by row.
+    /// True if the backward error of a test solution is small in every row.
     #[inline(always)]
     fn holds<A: Add>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         let mut solution = std::mem::take(&mut self.room.solution);
@@ -336,7 +339,7 @@ impl BlockTridiagonal {
         let mut size = std::mem::take(&mut self.room.size);
         let mut state = 1_u64;
         for (left, size) in left.iter_mut().zip(&mut size) {
-            // signs and sizes that no matrix knows (Knuth's generator)
+            // pseudo-random right-hand side, unrelated to any matrix (Knuth's generator)
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1_442_695_040_888_963_407);
@@ -353,7 +356,7 @@ impl BlockTridiagonal {
                 size[*row as usize] += product.abs();
             }
         }
-        // written so that what is no number does not hold
+        // written so that a NaN fails the test
         let holds = left.iter().zip(&size).all(|(left, size)| left.abs() <= BACKWARD * size);
         (self.room.solution, self.room.left, self.room.size) = (solution, left, size);
         holds

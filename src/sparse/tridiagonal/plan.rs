@@ -1,4 +1,4 @@
-//! Which unknown stands in which block, and where every entry of the matrix goes.
+//! Assignment of unknowns to blocks, and the destination of every matrix entry.
 
 use std::ops::Range;
 
@@ -8,48 +8,48 @@ use super::levels::Graph;
 use crate::numerics::threads::LARGE;
 use crate::sparse::{Pattern, groups::groups};
 
-/// Unknowns up to which neighbouring levels become one block.
+/// Largest number of unknowns of a block merged from neighboring levels.
 const TOGETHER: usize = 12;
 
-/// Unknowns of a block, and how it touches the next one on the way to the twist.
+/// Unknowns of a block, and its coupling to the next one on the way to the twist.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Block {
-    /// Place of its first unknown among all.
+    /// Index of its first unknown among all.
     pub at: usize,
-    /// Its unknowns.
+    /// Number of its unknowns.
     pub size: usize,
-    /// The same, filled up.
+    /// Number of its unknowns, padded.
     pub rows: usize,
-    /// Those that touch the next block.
+    /// Its unknowns that are coupled to the next block.
     pub mine: Range<usize>,
-    /// Those of the next block that are touched.
+    /// Unknowns of the next block that are coupled to this one.
     pub theirs: Range<usize>,
-    /// Where its numbers begin: inverse with what it adds to the next block behind it, and what that adds to it.
+    /// Start of its values: inverse followed by its contribution to the next block; contribution of the next block.
     pub numbers: [usize; 2],
-    /// Its part of [`Plan::sources`] and of [`Plan::folded`].
+    /// Its range of [`Plan::sources`] and of [`Plan::folded`].
     pub sources: Range<usize>,
     pub folded: Range<usize>,
 }
 
 impl Block {
-    /// Sizes of the square block, of what stands in its rows and in its columns beside it, as they are assembled.
+    /// Sizes of the square block, and of the entries beside it in its rows and in its columns, during assembly.
     pub fn room(&self) -> [usize; 3] {
         let (mine, theirs) = (self.mine.len(), self.theirs.len());
         [self.rows * self.size, mine * theirs, padded(theirs) * mine]
     }
 
-    /// Products that a solution takes.
+    /// Number of products that a solution needs.
     pub fn products(&self) -> usize {
         self.rows * (self.size + self.theirs.len()) + padded(self.theirs.len()) * self.mine.len()
     }
 }
 
-/// An unknown that is kept.
+/// An unknown that is not eliminated.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kept {
-    /// Its place in the blocks.
+    /// Its index in the blocks.
     pub at: u32,
-    /// Its row, and itself.
+    /// Its row, and the unknown itself.
     pub row: u32,
     pub unknown: u32,
 }
@@ -57,29 +57,28 @@ pub(super) struct Kept {
 pub(super) struct Plan {
     pub condensed: Condensed,
     pub blocks: Vec<Block>,
-    /// The block at which elimination from both ends meets.
+    /// Block at which elimination from both ends meets.
     pub twist: usize,
-    /// Unknowns with their filling.
+    /// Number of unknowns including padding.
     pub places: usize,
-    /// Every block but the twist with its next one, in the order of elimination: from both ends in turns, so that neither waits for its neighbour, or where
-    /// two threads share them those from the left first.
+    /// Every block except the twist, paired with its next one, in the order of elimination. The order alternates between both ends, so
+    /// that consecutive steps are independent. If two threads share the work, the steps from the left come first.
     pub steps: Vec<[u32; 2]>,
-    /// Whether two threads share them.
+    /// True if two threads share the steps.
     pub apart: bool,
-    /// All numbers of the factors, in the order in which they are read: on the way to the twist, and back.
+    /// Numbers of factor values, in the order in which they are read: on the way to the twist, and back.
     pub numbers: [usize; 2],
     pub kept: Vec<Kept>,
     /// Destination and entry, block by block.
     pub sources: Vec<[u32; 2]>,
-    /// Destination, entry and pair of entries that belong to the column of an unknown that is given.
+    /// Destination, entry and pair of the entries in the column of an eliminated unknown.
     pub folded: Vec<[u32; 3]>,
-    /// Place of the row, pair and entry of each entry in the column of an unknown that is given.
+    /// Row index, pair and entry of each entry in the column of an eliminated unknown.
     pub shifts: Vec<[u32; 3]>,
 }
 
 impl Plan {
-    /// None where a solution would take more products than `most`, where 32 bits do not count everything, or where there is nothing to put in
-    /// blocks.
+    /// None if a solution would need more than `most` products, if a number exceeds 32 bits, or if there are no unknowns for blocks.
     pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
         let n = pattern.columns();
         u32::try_from(pattern.entries()).ok()?;
@@ -189,7 +188,7 @@ impl Plan {
         Some(this)
     }
 
-    /// Finds the destination of every entry.
+    /// Computes the destination of every entry.
     fn lay(&mut self, pattern: &Pattern, [node_of, row_node, place_of, level_of]: [&[u32]; 4]) -> Option<()> {
         let mut sources: Vec<(u32, [u32; 2])> = vec![];
         let mut folded: Vec<(u32, [u32; 3])> = vec![];
@@ -224,7 +223,8 @@ impl Plan {
         Some(())
     }
 
-    /// Block that assembles the entry in a row and column, each given by level and place, and where; see [`Block::room`].
+    /// Returns the block that assembles an entry, and the position in its work space, see [`Block::room`]. Row and column are given by
+    /// level and place.
     fn destination(&self, [row, column]: [(u32, u32); 2]) -> Option<(u32, u32)> {
         let of = |(level, place): (u32, u32)| {
             let block = &self.blocks[level as usize];
@@ -235,7 +235,7 @@ impl Plan {
         let (level, to) = if row.0 == column.0 {
             (row.0, c * row_block.rows + r)
         } else if far(row.0) > far(column.0) {
-            // in its rows, beside it
+            // beside the block, in its rows
             let [square, ..] = row_block.room();
             let (r, c) = (r - row_block.mine.start, c - row_block.theirs.start);
             (row.0, square + c * row_block.mine.len() + r)
@@ -252,7 +252,7 @@ impl Plan {
 
 const NONE: u32 = u32::MAX;
 
-/// Number of each unknown among those that are kept, and these unknowns.
+/// Number of each unknown among the remaining ones, and the list of remaining unknowns.
 fn nodes(condensed: &Condensed, n: usize) -> (Vec<u32>, Vec<u32>) {
     let mut node_of = vec![NONE; n];
     let mut unknown_of = vec![];
@@ -263,7 +263,7 @@ fn nodes(condensed: &Condensed, n: usize) -> (Vec<u32>, Vec<u32>) {
     (node_of, unknown_of)
 }
 
-/// Kept unknown that goes with each row.
+/// Remaining unknown paired with each row.
 fn row_nodes(condensed: &Condensed, node_of: &[u32]) -> Vec<u32> {
     let mut row_node = vec![NONE; node_of.len()];
     for (unknown, &node) in node_of.iter().enumerate().filter(|(_, node)| **node != NONE) {
@@ -286,7 +286,7 @@ fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[
     edges
 }
 
-/// Joins small neighbours.
+/// Merges small neighboring levels.
 fn together(levels: Vec<Vec<u32>>) -> Vec<Vec<u32>> {
     let mut joined: Vec<Vec<u32>> = vec![];
     for level in levels {
@@ -312,14 +312,14 @@ fn steps(blocks: usize, twist: usize) -> Vec<[u32; 2]> {
     steps
 }
 
-/// The same, one end after the other.
+/// Steps in the order from the left end first, then from the right end.
 fn left_first(blocks: usize, twist: usize) -> Vec<[u32; 2]> {
     let left = (0..twist as u32).map(|j| [j, j + 1]);
     let right = (twist as u32 + 1..blocks as u32).rev().map(|j| [j, j - 1]);
     left.chain(right).collect()
 }
 
-/// The level before and after which there is the same work.
+/// Level at which the work before and after it is balanced.
 fn middle(levels: &[Vec<u32>]) -> usize {
     let work = |level: &Vec<u32>| (level.len() * level.len()) as u64;
     let all: u64 = levels.iter().map(work).sum();

@@ -1,9 +1,9 @@
-//! From the ends to the twist and back, of vectors that begin at the place `first`.
+//! Sweeps from the ends to the twist and back, on vectors that begin at the place `first`.
 
 use super::dense::{self, Add, Apart, Fused, padded};
 use super::plan::Block;
 
-/// Right-hand side and what the blocks make of it.
+/// Right-hand side, and its product with the inverse blocks.
 type Vectors<'a> = [&'a mut [f64]; 2];
 
 /// `y = D⁻¹ b` of a block.
@@ -14,7 +14,7 @@ pub(super) fn apply<A: Add>(block: &Block, onward: &[f64], [b, y]: Vectors<'_>, 
     dense::multiply::<A, false>(inverse, &b[at..][..block.size], &mut y[at..][..block.rows]);
 }
 
-/// The same of blocks in this order, and what each takes off the next one.
+/// Applies the inverse of each block in this order, and subtracts its contribution to the next block.
 #[inline(always)]
 pub(super) fn inwards<'s, A: Add>(
     blocks: &[Block],
@@ -35,7 +35,7 @@ pub(super) fn inwards<'s, A: Add>(
     }
 }
 
-/// Takes off blocks, in this order, what each one's next one tells.
+/// Subtracts from blocks, in this order, the contribution of each one's next block.
 #[inline(always)]
 pub(super) fn outwards<'s, A: Add>(
     blocks: &[Block],
@@ -60,7 +60,7 @@ pub(super) fn outwards<'s, A: Add>(
     }
 }
 
-/// [`inwards`] in vectors as wide as the processor has.
+/// [`inwards`] in the widest vectors of the processor.
 pub(super) fn to_the_twist(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
     #[cfg(target_arch = "x86_64")]
     if wide() {
@@ -68,13 +68,13 @@ pub(super) fn to_the_twist(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64],
         fn fused(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
             inwards::<Fused>(blocks, steps.iter(), onward, [b, y], first);
         }
-        // SAFETY: the processor has what the function is compiled for.
+        // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(blocks, steps, onward, [b, y], first) };
     }
     inwards::<Apart>(blocks, steps.iter(), onward, [b, y], first);
 }
 
-/// [`apply`] likewise.
+/// [`apply`] in the widest vectors of the processor.
 pub(super) fn at_the_twist(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
     #[cfg(target_arch = "x86_64")]
     if wide() {
@@ -82,13 +82,13 @@ pub(super) fn at_the_twist(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
         fn fused(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
             apply::<Fused>(block, onward, [b, y], 0);
         }
-        // SAFETY: the processor has what the function is compiled for.
+        // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(block, onward, [b, y]) };
     }
     apply::<Apart>(block, onward, [b, y], 0);
 }
 
-/// [`outwards`] likewise, against the order of the steps.
+/// [`outwards`] in the widest vectors of the processor, in the reverse order of the steps.
 pub(super) fn from_the_twist(blocks: &[Block], steps: &[[u32; 2]], back: &[f64], y: &mut [f64], first: usize) {
     #[cfg(target_arch = "x86_64")]
     if wide() {
@@ -96,13 +96,13 @@ pub(super) fn from_the_twist(blocks: &[Block], steps: &[[u32; 2]], back: &[f64],
         fn fused(blocks: &[Block], steps: &[[u32; 2]], back: &[f64], y: &mut [f64], first: usize) {
             outwards::<Fused>(blocks, steps.iter().rev(), back, y, first);
         }
-        // SAFETY: the processor has what the function is compiled for.
+        // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(blocks, steps, back, y, first) };
     }
     outwards::<Apart>(blocks, steps.iter().rev(), back, y, first);
 }
 
-/// Whether the processor has the instructions of x86-64-v3 that are used here; asked for once.
+/// True if the processor supports the instructions of x86-64-v3 used here (AVX2 and FMA).
 #[cfg(target_arch = "x86_64")]
 pub(super) fn wide() -> bool {
     std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")

@@ -1,4 +1,4 @@
-//! Errors of a point: in time, in space, together.
+//! Errors of a point: temporal, spatial and total.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,30 +9,32 @@ use super::trial::Trial;
 /// Relative errors of one signal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Against the best run on the same mesh.
+    /// Temporal error: difference from the best run on the same mesh. For that run itself, its own estimated error.
     pub temporal: Option<Norms>,
-    /// Of that run against the limit; the same for all points of a mesh. `None` with one mesh only.
+    /// Spatial error: difference of the best run on the mesh from the limit. Equal for all points of a mesh; `None`
+    /// with one mesh only.
     pub spatial: Option<Norms>,
-    /// Against the limit.
+    /// Total error: difference from the limit.
     pub total: Norms,
-    /// What may be relied on: the total with the limit's own error, and no less than the error in time or in space, which
-    /// may cancel by luck.
+    /// Error bound: total error plus the error of the limit itself. At least the temporal and the spatial error, which
+    /// may cancel each other in the total.
     pub bound: Norms,
-    /// Whether the total is at least ten times the error of the limit itself, in the maximum norm.
+    /// True if the total error is at least ten times the error of the limit itself, in the maximum norm.
     pub judged: bool,
 }
 
-/// How much better than a point its reference must be.
+/// Least ratio of the total error of a judged point to the error of the limit itself.
 pub const BETTER: f64 = 10.0;
 
-/// Errors of every signal of a finished run.
+/// Computes the errors of every signal of a finished run.
 pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Vec<Errors>> {
     let signals = trial.signals.as_ref()?;
     let mesh = meshes.iter().find(|m| m.cells == trial.setting.cells);
     let one = |(k, limit): (usize, &Limit)| {
         let values = &signals[k].values;
         let own = limit.own();
-        // Where the finest mesh stands for the limit, nothing is nearer to the truth than what is believed of it.
+        // Without extrapolation the finest mesh replaces the limit. No error is then below the spatial error of that
+        // mesh.
         let least = match limit.extrapolated_with {
             None => limit.own_spatial.unwrap_or_default(),
             Some(_) => Norms::default(),

@@ -1,10 +1,10 @@
-//! What a cloud of points in the plane of error and time says.
+//! Pareto front of error and cost, and the figures derived from it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::run::null;
 
-/// A point: error, cost, and the tolerance that made it.
+/// Error and cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
     /// Relative error.
@@ -13,7 +13,7 @@ pub struct Mark {
     pub cost: f64,
 }
 
-/// Indices of the points that no other beats in error and cost at once, by falling error.
+/// Indices of the Pareto-optimal points (no other point has both less error and less cost), by falling error.
 pub fn front(marks: &[Mark]) -> Vec<usize> {
     let mut by_cost: Vec<usize> = (0..marks.len())
         .filter(|&k| marks[k].error.is_finite() && marks[k].cost.is_finite())
@@ -31,16 +31,16 @@ pub fn front(marks: &[Mark]) -> Vec<usize> {
     by_cost
 }
 
-/// The cheapest way to an accuracy.
+/// Cheapest point that reaches an accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// Accuracy asked for, relative.
+    /// Required accuracy, relative.
     pub accuracy: f64,
-    /// Point that has it at least cost; `None` when no point has.
+    /// Cheapest point that reaches the accuracy; `None` if no point does.
     pub point: Option<usize>,
 }
 
-/// For each accuracy the cheapest point on the front that has it.
+/// Returns the cheapest point on the front for each required accuracy.
 pub fn answers(marks: &[Mark], front: &[usize], accuracies: &[f64]) -> Vec<Answer> {
     let cheapest = |accuracy: f64| front.iter().copied().find(|&k| marks[k].error <= accuracy);
     accuracies
@@ -52,23 +52,23 @@ pub fn answers(marks: &[Mark], front: &[usize], accuracies: &[f64]) -> Vec<Answe
         .collect()
 }
 
-/// A line on which looser tolerances cost more than a tighter one.
+/// Cost minimum of a line: a looser tolerance costs more than a tighter one.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CostMinimum {
     /// The point that costs least.
     pub cheapest: usize,
     /// The looser point that costs most.
     pub looser: usize,
-    /// How many times as much.
+    /// Ratio of the two costs.
     #[serde(deserialize_with = "null::number")]
     pub factor: f64,
 }
 
-/// More than this many times the work of the cheapest run is no accident.
+/// Ratio of cost, and of work, above which the difference is not scatter.
 const MORE: f64 = 1.1;
 
-/// The foot of a line, if it has one. `line` are indices from loose to tight; `work` must show it as well as the cost,
-/// since clocks have accidents.
+/// Returns the cost minimum of a line, if it has one. `line` contains indices from loose to tight. Cost and work must
+/// both show the minimum, since wall times scatter.
 pub fn cost_minimum(line: &[usize], cost: &[f64], work: &[f64]) -> Option<CostMinimum> {
     let at = (0..line.len()).min_by(|&a, &b| cost[line[a]].total_cmp(&cost[line[b]]))?;
     let cheapest = line[at];
@@ -84,7 +84,7 @@ pub fn cost_minimum(line: &[usize], cost: &[f64], work: &[f64]) -> Option<CostMi
     })
 }
 
-/// Where on a line the temporal error falls to the spatial one, which is the same all along it.
+/// Point of a line at which temporal and spatial error are equal. The spatial error is constant along the line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Balance {
     /// Tolerance.
@@ -95,10 +95,10 @@ pub struct Balance {
     pub cost: f64,
 }
 
-/// What the balance is taken from: tolerance, temporal error, total error, cost; loose to tight.
+/// Tolerance, temporal error, total error and cost of a run. Lines are ordered from loose to tight.
 pub type Along = (f64, f64, f64, f64);
 
-/// Between the last point whose temporal error is above the spatial one and the first below, in logarithms.
+/// Interpolates in logarithms between the last point whose temporal error exceeds the spatial error and the next point.
 pub fn balance(line: &[Along], spatial: f64) -> Option<Balance> {
     let pair = line.windows(2).rev().find(|w| w[0].1 > spatial && w[1].1 <= spatial)?;
     let (a, b) = (pair[0], pair[1]);

@@ -1,25 +1,25 @@
-//! What accuracy costs: time against error over tolerance, mesh, order and method, for everything a case is asked for.
+//! Cost of accuracy: wall time and error of a case over tolerance, mesh, order and method.
 //!
 //! ```text
-//! plan       settings asked for, the case of each, what may be spent
-//! signals    what is compared: histories, fields, quantities; vectors that are equally long for every setting
-//! norms      how far apart two vectors are
-//! trial      one setting: run, repeated, counted
-//! price      what the next run will cost
-//! scheme     how a setting integrates in time
-//! tolerances runs of one mesh and scheme over tolerances: what their sequence says of the error of the last
+//! plan       requested settings, their cases, the budget
+//! signals    compared data: histories, fields, quantities; vectors of the same length for every setting
+//! norms      norms of vectors and of their differences
+//! trial      runs of one setting, with work and times
+//! price      expected cost of the next run
+//! scheme     time integration of a setting: method and order
+//! tolerances runs of one mesh and scheme over tolerances, and the error of the tightest run
 //! sweep      all runs within the budget: points, then references
-//! reference  the best run on each mesh; the limit to which the meshes point
+//! reference  best run on each mesh; limit of vanishing mesh size
 //! errors     temporal, spatial and total error of every point
-//! front      the cheapest points, answers, balance of the two errors, the foot
-//! study      everything in order
+//! front      Pareto front, cheapest points, balance of temporal and spatial error, cost minimum
+//! study      the complete study
 //! ```
 //!
-//! **Errors.** With `x(K, τ)` the result on mesh `K` at tolerance `τ`, `r(K)` the best run on mesh `K` and `X` the limit
-//! to which the finest meshes point: temporal `x(K, τ) - r(K)`, spatial `r(K) - X`, total `x(K, τ) - X`, all relative to
-//! the size of `X`. The error of `r(K)` is estimated by its own sequence of tolerances and, independently, by a run of
-//! another order; that of `X` by Richardson extrapolation from coarser meshes. What is not ten times larger than these
-//! is marked as not judged.
+//! **Errors.** Let `x(K, τ)` be the result on mesh `K` at tolerance `τ`, `r(K)` the best run on mesh `K`, and `X` the
+//! limit of vanishing mesh size. The temporal error is `x(K, τ) - r(K)`, the spatial error `r(K) - X`, the total error
+//! `x(K, τ) - X`, all relative to the size of `X`. The error of `r(K)` is estimated from its own sequence of tolerances
+//! and, independently, from a run of another order. The error of `X` is estimated by Richardson extrapolation from
+//! coarser meshes. A point whose error is less than ten times these estimates is marked as not judged.
 
 pub mod errors;
 pub mod front;

@@ -1,10 +1,10 @@
-//! How large a vector is and how far apart two are.
+//! Norms of vectors and of their differences.
 
 use serde::{Deserialize, Serialize};
 
 use crate::run::null;
 
-/// Mean square and maximum norm.
+/// Root mean square and maximum norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Norms {
     /// Root of the mean square.
@@ -16,12 +16,12 @@ pub struct Norms {
 }
 
 impl Norms {
-    /// Both the same.
+    /// Sets both norms to one value.
     pub fn both(value: f64) -> Self {
         Self { l2: value, max: value }
     }
 
-    /// Of a vector; zero for an empty one.
+    /// Computes the norms of a vector; zero for an empty one.
     pub fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = values.len().max(1) as f64;
         let (sum, max) = values.fold((0.0, 0.0_f64), |(sum, max), x| (sum + x * x, larger(max, x.abs())));
@@ -31,13 +31,13 @@ impl Norms {
         }
     }
 
-    /// Of a difference.
+    /// Computes the norms of the difference of two vectors.
     pub fn between(a: &[f64], b: &[f64]) -> Self {
         debug_assert_eq!(a.len(), b.len());
         Self::of(a.iter().zip(b).map(|(a, b)| a - b))
     }
 
-    /// Both combined with those of another.
+    /// Combines both norms with those of another by `f`.
     pub fn with(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
             l2: f(self.l2, other.l2),
@@ -45,7 +45,7 @@ impl Norms {
         }
     }
 
-    /// Both changed.
+    /// Applies `f` to both norms.
     pub fn map(self, f: impl Fn(f64) -> f64) -> Self {
         Self {
             l2: f(self.l2),
@@ -53,18 +53,18 @@ impl Norms {
         }
     }
 
-    /// Relative to a size.
+    /// Divides both norms by those of a size; a size of zero leaves them unchanged.
     pub fn over(self, size: Self) -> Self {
         self.with(size, |x, s| if s > 0.0 { x / s } else { x })
     }
 
-    /// The larger of each.
+    /// Returns the larger value of each norm.
     pub fn or_larger(self, other: Self) -> Self {
         self.with(other, larger)
     }
 }
 
-/// The larger one, and not a number when one of them is not: an error that cannot be computed is not small.
+/// Returns the larger number, or NaN if one of them is NaN: an error that cannot be computed is not small.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

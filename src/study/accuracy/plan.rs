@@ -1,4 +1,4 @@
-//! What is asked for.
+//! Settings and budget of an accuracy study.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,12 +7,12 @@ use crate::case::schema::{Case, Method};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 
-/// One way to compute a case.
+/// Mesh, time integration and tolerance of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
     /// Beam cells per segment; half as many fluid cells per bladder.
     pub cells: usize,
-    /// How time is integrated.
+    /// Time integration: method and order.
     pub scheme: Scheme,
     /// Tolerance.
     pub rtol: f64,
@@ -23,7 +23,7 @@ pub fn fluid_cells(cells: usize) -> usize {
     (cells / 2).max(1)
 }
 
-/// The case on a mesh of so many beam cells per segment, at a tolerance.
+/// Returns the case on a mesh of `cells` beam cells per segment, at a tolerance.
 pub fn refined(case: &Case, cells: usize, rtol: f64) -> Case {
     let mut case = case.clone();
     case.mesh.cells_per_segment = cells;
@@ -32,7 +32,7 @@ pub fn refined(case: &Case, cells: usize, rtol: f64) -> Case {
     case
 }
 
-/// The case for its figures alone: without checkpoints, each of which is a fresh start of the integrator, and thinned outputs.
+/// Returns the case without thinned output and without checkpoints, each of which restarts the integrator.
 pub fn unrecorded(case: &Case) -> Case {
     let mut case = case.clone();
     case.time.checkpoint_interval_s = None;
@@ -40,7 +40,8 @@ pub fn unrecorded(case: &Case) -> Case {
     case
 }
 
-/// The case on meshes of fourth order, where it does not name an order and can be computed so.
+/// Returns the case on a fourth-order mesh if it sets no order and the system can be built so; otherwise an unchanged
+/// copy.
 pub fn of_best_order(case: &Case) -> Case {
     let mut fourth = case.clone();
     fourth.mesh.order.get_or_insert(4);
@@ -52,7 +53,7 @@ pub fn of_best_order(case: &Case) -> Case {
 }
 
 impl Setting {
-    /// The case so computed.
+    /// Returns the case with this setting.
     pub fn case(&self, case: &Case) -> Case {
         let mut case = refined(case, self.cells, self.rtol);
         self.scheme.apply(&mut case.solver);
@@ -60,13 +61,13 @@ impl Setting {
     }
 }
 
-/// What may be spent on a whole study.
+/// Budget of a whole study.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Budget {
     /// Wall time [s].
     Wall(f64),
-    /// Steps of the integrator: the same on every machine.
+    /// Steps of the integrator, independent of the machine.
     Steps(u64),
 }
 
@@ -79,7 +80,7 @@ impl Budget {
         }
     }
 
-    /// A cost in words.
+    /// Formats a cost with its unit.
     pub fn words(self, cost: f64) -> String {
         match self {
             Self::Wall(_) => format!("{cost:.2} s"),
@@ -88,7 +89,7 @@ impl Budget {
     }
 }
 
-/// Settings asked for, each list in the order in which it is run.
+/// Requested settings, each list in the order of the runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Tolerances, loose to tight.
@@ -99,17 +100,17 @@ pub struct Plan {
     pub schemes: Vec<Scheme>,
     /// Timed runs of each setting, after one to warm up.
     pub repeats: usize,
-    /// For everything.
+    /// Budget of all runs.
     pub budget: Budget,
-    /// Runs at once; times suffer.
+    /// True if settings run in parallel, which distorts wall times.
     pub parallel: bool,
 }
 
-/// Tightest tolerance of a reference: below it round-off of the residual is in the way.
+/// Tightest tolerance of a reference; below it, rounding errors of the residual limit the accuracy.
 const TIGHTEST: f64 = 1e-11;
 
 impl Plan {
-    /// Checks and sorts.
+    /// Validates the plan and sorts its lists.
     ///
     /// # Errors
     /// [`Error::Usage`] for an empty list or a value out of range.
@@ -154,11 +155,11 @@ impl Plan {
         all
     }
 
-    /// Meshes for references: those of the points, and one beyond the finest, for the limit to which they point.
+    /// Meshes of the references: those of the points, and one finer mesh for the extrapolation to the limit.
     pub fn reference_cells(&self) -> Vec<usize> {
         let mut all = self.cells.clone();
         if let [.., before, finest] = self.cells.as_slice() {
-            // The ratio of the last two, so that three meshes in a row show an order.
+            // Use the ratio of the last two meshes, so that three successive meshes show an order of convergence.
             all.push(if finest % before == 0 {
                 finest * (finest / before)
             } else {
@@ -168,8 +169,8 @@ impl Plan {
         all
     }
 
-    /// Schemes for references: each is the check of the other. Where one-step methods are asked for, the one of order 4
-    /// takes the place of IDA at order 2: it costs less.
+    /// Schemes of the references; each checks the other. If one-step methods are requested, the one of order 4 replaces
+    /// IDA at order 2: it costs less.
     pub fn reference_schemes(&self) -> [Scheme; 2] {
         let other = if self.schemes.iter().all(|s| s.is_ida()) {
             None

@@ -1,13 +1,13 @@
-//! What the next run will cost, from those before it.
+//! Expected cost of the next run, from earlier runs.
 
 use super::plan::Setting;
 use super::trial::{Ending, Trial};
 
-/// Expected cost of a setting, in the unit of the trials' costs; `None` when nothing like it was run.
+/// Expected cost of a setting, in the unit of the trials' costs; `None` if no similar setting has finished.
 ///
-/// Along a line of tolerances, from the two that are nearest, the steps of order `p` grow as `τ^(-1/(p+1))`. From mesh to mesh the cost follows the
-/// unknowns where accuracy rules, and their cube where stability does, beyond order 2. The least of all guesses counts:
-/// a run that proves too slow is stopped anyway.
+/// Along a line of tolerances, the number of steps of order `p` grows as `τ^(-1/(p+1))`; the two nearest looser runs
+/// are extrapolated. From mesh to mesh, the cost grows with the unknowns if accuracy limits the step, and with their
+/// cube if stability does (orders above 2). The least estimate counts: a run that proves too slow is stopped anyway.
 pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
     let finished = || trials.iter().filter(|t| t.finished());
     let mut guesses = vec![];
@@ -15,7 +15,7 @@ pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
     let mut line: Vec<&Trial> = finished().filter(same_line).collect();
     line.sort_by(|a, b| a.setting.rtol.total_cmp(&b.setting.rtol));
     for known in line.iter().filter(|t| t.setting.rtol > next.rtol).take(2) {
-        // A single run may stand on the foot, where tighter tolerances cost less.
+        // A single run may lie where tighter tolerances cost less: assume no growth.
         let growth = if line.len() > 1 {
             along(next.scheme.order, known.setting.rtol, next.rtol)
         } else {
@@ -40,12 +40,13 @@ pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
     guesses.into_iter().reduce(f64::min)
 }
 
-/// Factor from one tolerance to another; looser ones are not expected to cost less.
+/// Cost factor from one tolerance to another; a looser tolerance is not expected to cost less.
 fn along(order: u8, from: f64, to: f64) -> f64 {
     (from / to).powf(1.0 / (f64::from(order) + 1.0)).max(1.0)
 }
 
-/// Why a line is not gone on with, if it is not: a tighter run was stopped, or two runs without any that finished.
+/// True if a line is not continued: a run after the last finished one was stopped, or two were stopped and none
+/// finished.
 pub fn hopeless(trials: &[Trial], next: Setting) -> bool {
     let line: Vec<&Trial> = trials
         .iter()

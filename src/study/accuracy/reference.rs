@@ -1,4 +1,4 @@
-//! What points are judged by: the best run on each mesh, and the limit to which the meshes point.
+//! References of points: the best run on each mesh, and the limit of vanishing mesh size.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::run::null;
 pub struct Temporal {
     /// Beam cells per segment.
     pub cells: usize,
-    /// How the run integrates in time.
+    /// Time integration of the run.
     pub scheme: Scheme,
     /// Its tolerance.
     pub rtol: f64,
@@ -23,24 +23,25 @@ pub struct Temporal {
     pub wall_s: f64,
     /// Scheme and tolerance of the run that checks it.
     pub checked_by: Option<(Scheme, f64)>,
-    /// Its error in each signal as its own sequence of tolerances has it, relative.
+    /// Estimated error of each signal from the run's own sequence of tolerances, relative.
     pub by_tolerance: Vec<Option<Norms>>,
-    /// Its distance to the run that checks it, relative.
+    /// Distance of each signal from the checking run, relative.
     pub by_order: Vec<Option<Norms>>,
-    /// The error that is believed, relative: by tolerance where the check does not contradict, else the larger one.
+    /// Accepted error of each signal, relative: combines the two estimates above.
     pub own: Vec<Norms>,
     /// Values.
     #[serde(skip)]
     pub values: Vec<Vec<f64>>,
 }
 
-/// How much farther from the checking run than that run's own error a reference may be.
+/// Largest distance from the checking run that the errors of both explain, in multiples of their sum.
 const DISAGREE: f64 = 3.0;
 
-/// How much looser than a reference the run that checks it may be.
+/// Largest ratio of the tolerance of the checking run to that of the reference.
 const LOOSER: f64 = 1e4;
 
-/// The best run on a mesh; `None` when none finished. `sizes` are those of the signals, `headline` decides which is best.
+/// Returns the best run on a mesh; `None` if none finished. `sizes` are the sizes of the signals; `headline` is the
+/// signal by which runs are ranked.
 pub fn temporal(
     trials: &[Trial],
     cells: usize,
@@ -59,7 +60,7 @@ pub fn temporal(
     let main = sequences.next()?;
     let best = main.last()?;
     let signals = best.signals.as_ref()?;
-    // A run that is far looser does not check anything.
+    // A much looser run is no check.
     let sharp = |sequence: &ToleranceSequence| {
         sequence
             .last()
@@ -94,10 +95,10 @@ pub fn temporal(
     })
 }
 
-/// Error of a reference from both routes; `expected` is the checking run's own error.
+/// Combines the two error estimates of a reference; `expected` is the own error of the checking run.
 ///
-/// Where the two runs are as far apart as their errors explain, the smaller of two bounds holds: that of the reference's
-/// own tolerances, and the distance with the checking run's error added. Else the larger of the two routes counts.
+/// If the errors of both runs explain their distance, the smaller of two bounds applies: the error by the reference's
+/// own tolerances, or the distance plus the error of the checking run. Otherwise the larger estimate applies.
 fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Option<Norms>) -> Norms {
     match (by_tolerance, by_order) {
         (Some(t), Some(o)) => {
@@ -130,15 +131,15 @@ pub struct Limit {
     pub kind: Kind,
     /// Size to which errors refer.
     pub size: Norms,
-    /// Order in the mesh size that the three finest meshes show.
+    /// Order of convergence in the mesh size, from the three finest meshes.
     pub order: Option<f64>,
-    /// Whether temporal errors are below a tenth of what the order was taken from.
+    /// True if temporal errors are below a tenth of the differences from which the order is computed.
     pub order_is_clean: bool,
-    /// Exponent of the Richardson extrapolation, when there is one; else the finest mesh stands for the limit.
+    /// Exponent of the Richardson extrapolation; `None` if the finest mesh replaces the limit.
     pub extrapolated_with: Option<f64>,
-    /// Error of the limit from the meshes, relative.
+    /// Error of the limit due to the meshes, relative.
     pub own_spatial: Option<Norms>,
-    /// Error of the limit from the references' own errors in time, relative.
+    /// Error of the limit due to the temporal errors of the references, relative.
     pub own_temporal: Norms,
     /// Values.
     #[serde(skip)]
@@ -153,7 +154,7 @@ impl Limit {
     }
 }
 
-/// The limit of signal `k` from the meshes' references, coarse to fine, of which there is at least one.
+/// Computes the limit of signal `k` from the references of the meshes, coarse to fine; `None` without references.
 pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Option<Limit> {
     let finest = meshes.last()?;
     let mut limit = Limit {
@@ -172,7 +173,7 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     let between = |a: &Temporal, b: &Temporal| Norms::between(&a.values[k], &b.values[k]).over(size);
     let ratio = fine.cells as f64 / coarse.cells as f64;
     let near = between(fine, coarse);
-    // Without a third mesh nothing is known of the order; first order is the cautious guess.
+    // With two meshes the order is unknown; first order is the cautious assumption.
     limit.own_spatial = Some(near.map(|d| d / (ratio - 1.0).min(1.0)));
     let [.., coarsest, _, _] = meshes else {
         return Some(limit);
@@ -190,7 +191,7 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     let noise = fine.own[k].l2 + coarse.own[k].l2;
     limit.order_is_clean = noise <= 0.1 * near.l2 && coarse.own[k].l2 + coarsest.own[k].l2 <= 0.1 * far.l2;
     let exponent = match order {
-        // The scheme's own.
+        // Nominal order of the scheme.
         1.5..2.6 => 2.0,
         0.8..1.5 => order,
         _ => return Some(limit),
@@ -201,8 +202,8 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     };
     limit.values = extrapolate(&fine.values[k], &coarse.values[k]);
     let before = extrapolate(&coarse.values[k], &coarsest.values[k]);
-    // What is left in the limits falls by a factor from one to the next: as a fourth mesh shows, at most the 8 of the
-    // third order, at least 2; without a fourth mesh 4.
+    // Factor by which the error falls from one limit to the next: 4, or the measured factor if there is a fourth mesh,
+    // from 2 to 8 (third order).
     let apart = Norms::between(&limit.values, &before);
     let falls = match meshes {
         [.., first, _, _, _] if (coarsest.cells as f64 / first.cells as f64 - ratio).abs() < 1e-9 => {
@@ -213,8 +214,8 @@ pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Opt
     };
     let falls = if falls.is_nan() { 4.0 } else { falls };
     let left = apart.over(size).map(|d| d / (falls - 1.0));
-    // An exponent that was fitted makes the limits agree where there is nothing to agree; half the way to the limit is
-    // then the cautious guess.
+    // A fitted exponent makes the limits agree by construction. Half the distance to the limit is then the cautious
+    // estimate.
     let way = Norms::between(&limit.values, &fine.values[k])
         .over(size)
         .map(|d| 0.5 * d);

@@ -1,4 +1,4 @@
-//! How a setting integrates in time.
+//! Time integration of a setting: method and order.
 
 use std::fmt;
 
@@ -12,11 +12,11 @@ use crate::error::{Error, Result};
 pub struct Scheme {
     /// Method; never "auto".
     pub method: Method,
-    /// Highest order of IDA's; a one-step method has its own.
+    /// Highest order of IDA, or the order of a one-step method.
     pub order: u8,
 }
 
-/// Everything that can be asked for beside IDA.
+/// One-step methods with names and orders.
 const ONE_STEP: [(Method, &str, u8); 4] = [
     (Method::Trbdf2, "trbdf2", 2),
     (Method::Esdirk34, "esdirk34", 3),
@@ -25,7 +25,7 @@ const ONE_STEP: [(Method, &str, u8); 4] = [
 ];
 
 impl Scheme {
-    /// IDA with a highest order.
+    /// Returns IDA with a highest order.
     pub fn ida(order: u8) -> Self {
         Self {
             method: Method::Ida,
@@ -33,13 +33,13 @@ impl Scheme {
         }
     }
 
-    /// A one-step method.
+    /// Returns the scheme of a one-step method; `None` for any other method.
     pub fn one_step(method: Method) -> Option<Self> {
         let (method, _, order) = ONE_STEP.into_iter().find(|(m, ..)| *m == method)?;
         Some(Self { method, order })
     }
 
-    /// Schemes of a list of methods, IDA with each of the orders.
+    /// Returns the schemes of a list of methods, IDA once per order.
     ///
     /// # Errors
     /// [`Error::Usage`] for an unknown name.
@@ -60,35 +60,35 @@ impl Scheme {
         Ok(all)
     }
 
-    /// Whether it is IDA.
+    /// True if the method is IDA.
     pub fn is_ida(self) -> bool {
         self.method == Method::Ida
     }
 
-    /// Whether the waves of an undamped beam make it unstable.
+    /// True if the waves of an undamped beam make the scheme unstable.
     pub fn trapped(self) -> bool {
         self.is_ida() && self.order > 2
     }
 
-    /// `2`, or `esdirk34`.
+    /// Label: `2` (highest order of IDA), or `esdirk34`.
     pub fn label(self) -> String {
         let known = ONE_STEP.iter().find(|(method, ..)| *method == self.method);
         known.map_or_else(|| self.order.to_string(), |(_, name, _)| (*name).into())
     }
 
-    /// Sets it.
+    /// Sets method and order of a solver.
     pub fn apply(self, solver: &mut Solver) {
         solver.method = self.method;
         solver.max_order = match self.order {
             _ if !self.is_ida() => MaxOrder::Auto,
-            // These two are refused where they are unstable; a study may look at what they do there.
+            // Orders 3 and 4 are rejected where they are unstable; a study may still examine them.
             3 | 4 => MaxOrder::Forced(self.order),
             _ => MaxOrder::Order(self.order),
         };
     }
 }
 
-/// `order 2`, or `esdirk34`.
+/// Writes `order 2`, or `esdirk34`.
 impl fmt::Display for Scheme {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of = if self.is_ida() { "order " } else { "" };

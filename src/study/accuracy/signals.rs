@@ -1,4 +1,4 @@
-//! What is compared between runs, and the recorder that keeps it and nothing else.
+//! Signals compared between runs, and a recorder that stores only these.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use crate::run::ports;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::Summary;
 
-/// Columns of the history that are compared.
+/// Compared columns of the history.
 fn histories() -> impl Iterator<Item = Observable> {
     Observable::ALL
         .iter()
@@ -18,12 +18,13 @@ fn histories() -> impl Iterator<Item = Observable> {
         .filter(|one| one.role() >= Role::Studied)
 }
 
-/// Fields that are compared, at the nodes between segments, which all meshes have.
+/// Compared fields, at the nodes between segments, which all meshes share.
 fn fields() -> impl Iterator<Item = Field> {
     Field::ALL.into_iter().filter(|one| one.role() >= Role::Studied)
 }
 
-/// Whether a case could have a signal of this name; figures of the summary, `quantity.figure`, are not known before a run.
+/// True if a case may have a signal of this name. Names of summary figures, `quantity.figure`, always pass: they are
+/// unknown before a run.
 pub fn possible(name: &str) -> bool {
     name.contains('.') || histories().any(|one| one.name() == name) || fields().any(|one| one.name() == name)
 }
@@ -34,49 +35,49 @@ pub fn names() -> String {
     all.collect::<Vec<_>>().join(", ")
 }
 
-/// What a signal is.
+/// Kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// One number an output time.
+    /// One number per output time.
     History,
-    /// Numbers at the nodes between segments, an output time after the other.
+    /// Numbers at the nodes between segments, one output time after another.
     Field,
-    /// One number a run.
+    /// One number per run.
     Quantity,
 }
 
-/// A vector that two runs can be compared by.
+/// Vector by which runs are compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Signal {
     /// Column, field or quantity: `tip_u1`, `v1_m_s`, `tip_u1_m.max_abs`.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// What it is.
+    /// Kind of the signal.
     pub kind: Kind,
     /// Values.
     pub values: Vec<f64>,
-    /// Size to which an error refers, when it is not the signal's own: a final value may well be zero.
+    /// Size to which errors refer, if it is not the signal's own; a final value may be zero.
     pub scale: Option<f64>,
 }
 
-/// When a run is stopped.
+/// Limit at which a run is stopped.
 #[derive(Clone, Copy, Debug)]
 pub enum Limit {
-    /// At this time.
+    /// Wall-clock time.
     Wall(Instant),
-    /// After so many steps.
+    /// Number of steps.
     Steps(u64),
 }
 
 /// Reason of a run that was stopped at its limit.
 pub const TOO_SLOW: &str = "too slow";
 
-/// Steps between two looks at the clock.
+/// Steps between two checks of the clock.
 const LOOK: u64 = 64;
 
-/// Keeps what is compared.
+/// Recorder of the compared signals.
 #[derive(Debug)]
 pub struct Keep {
     limit: Limit,
@@ -86,7 +87,7 @@ pub struct Keep {
 }
 
 impl Keep {
-    /// For a mesh of so many cells a segment.
+    /// Creates a recorder for a mesh of `cells` beam cells per segment.
     pub fn new(cells: usize, limit: Limit) -> Self {
         Self {
             limit,
@@ -96,7 +97,7 @@ impl Keep {
         }
     }
 
-    /// Everything, once the run is over.
+    /// Returns all signals after the run.
     pub fn signals(self, summary: &Summary) -> Vec<Signal> {
         let kept = self.columns.into_iter().chain(self.fields).map(|(_, signal)| signal);
         kept.chain(quantities(summary)).collect()

@@ -1,4 +1,4 @@
-//! The study of a case, from its settings to what they say.
+//! Accuracy study of a case: runs, errors, Pareto front, notes.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,9 +18,9 @@ use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::study::evaluations::Evaluations;
 
-/// Accuracies for which the cheapest point is sought.
+/// Accuracies for which the cheapest point is searched.
 const ACCURACIES: [f64; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
-/// Signals smaller than this beside others of their unit are round-off.
+/// Signals below this share of the largest one of their unit are rounding errors.
 const NOTHING: f64 = 1e-6;
 
 /// A run with its errors.
@@ -28,9 +28,9 @@ const NOTHING: f64 = 1e-6;
 pub struct Point {
     /// The run.
     pub trial: Trial,
-    /// Errors in every measure; only of finished runs.
+    /// Errors in every measure; finished runs only.
     pub errors: Option<Vec<Errors>>,
-    /// Whether no other point is both more accurate and cheaper, in the headline's measure.
+    /// True if no other point is both more accurate and cheaper, in the headline measure.
     pub on_front: bool,
 }
 
@@ -39,55 +39,55 @@ pub struct Point {
 pub struct LineBalance {
     /// Beam cells per segment.
     pub cells: usize,
-    /// How time is integrated.
+    /// Time integration.
     pub scheme: Scheme,
-    /// Where.
+    /// Tolerance, error and cost at the balance.
     pub at: Balance,
 }
 
-/// Everything that a study found.
+/// Result of a study.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Study {
     /// Name of the case.
     pub case: String,
-    /// What was asked for.
+    /// Requested settings.
     pub plan: Plan,
-    /// What it took, in the unit of the budget.
+    /// Total cost, in the unit of the budget.
     pub spent: f64,
-    /// What is measured, each in the limit to which the meshes point.
+    /// Measures, each in the limit of vanishing mesh size.
     pub measures: Vec<Limit>,
-    /// Signals that are nothing in this case, and not measured.
+    /// Signals that are not measured: prescribed, not in all runs, or rounding errors only.
     pub left_out: Vec<String>,
-    /// The measure that picture, table and sentence are about, in the maximum norm.
+    /// Index of the measure shown by picture, table and sentence, in the maximum norm.
     pub headline: usize,
     /// The best run on each mesh.
     pub references: Vec<Temporal>,
     /// All runs, references included.
     pub points: Vec<Point>,
-    /// Points that no other beats, by falling error.
+    /// Points of the Pareto front, by falling error.
     pub front: Vec<usize>,
-    /// Cheapest points for 10 %, 1 %, 0.1 %, 0.01 %.
+    /// Cheapest points for errors of 10 %, 1 %, 0.1 %, 0.01 %.
     pub answers: Vec<Answer>,
-    /// Lines on which looser tolerances cost more.
+    /// Cost minima of lines on which looser tolerances cost more.
     pub feet: Vec<CostMinimum>,
-    /// Where temporal equals spatial error.
+    /// Points at which temporal and spatial error are equal.
     pub balances: Vec<LineBalance>,
-    /// What to know before these numbers are used.
+    /// Notes on the reliability of these numbers.
     pub notes: Vec<String>,
 }
 
 impl Study {
-    /// What the headline measures.
+    /// Returns the headline measure.
     pub fn measure(&self) -> Option<&Limit> {
         self.measures.get(self.headline)
     }
 
-    /// Errors of a point in the headline's measure.
+    /// Returns the errors of a point in the headline measure.
     pub fn error(&self, point: usize) -> Option<&Errors> {
         self.points.get(point)?.errors.as_ref()?.get(self.headline)
     }
 
-    /// Finished points of a line, loose to tight; references are none of them.
+    /// Returns the finished points of a line, loose to tight, without references.
     pub fn line(&self, cells: usize, scheme: Scheme) -> Vec<usize> {
         let mut line: Vec<usize> = (0..self.points.len())
             .filter(|&k| {
@@ -106,7 +106,7 @@ impl Study {
     }
 }
 
-/// Studies a case; `measure` names the headline, by default the deflection of the tip. Runs among `evaluations` are not done again.
+/// Studies a case; `measure` names the headline measure, by default the tip deflection. Runs stored in `evaluations` are not repeated.
 pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evaluations, watch: Watch) -> Result<Study> {
     if let Some(name) = measure.filter(|name| !signals::possible(name)) {
         return Err(Error::Usage(format!(
@@ -129,7 +129,7 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evalu
         .into_iter()
         .filter_map(|k| reference::temporal(&trials, k, &schemes, &sizes, headline))
         .collect();
-    // The mesh beyond the finest helps where its own error in time is small enough.
+    // The mesh beyond the finest improves the limit only if its temporal error is small enough.
     let without = references
         .iter()
         .filter(|r| plan.cells.contains(&r.cells))
@@ -179,7 +179,7 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evalu
     Ok(study)
 }
 
-/// Signals of the run that was asked for most.
+/// Signals of the finished run with the finest mesh and, on that mesh, the tightest tolerance.
 fn best(trials: &[Trial]) -> Option<&Vec<Signal>> {
     let finest = trials.iter().filter(|t| t.finished()).max_by(|a, b| {
         a.setting
@@ -190,7 +190,7 @@ fn best(trials: &[Trial]) -> Option<&Vec<Signal>> {
     finest.and_then(|t| t.signals.as_ref())
 }
 
-/// Names of what a driven or held tip prescribes: no setting has an error there.
+/// Names of the signals that a driven or held tip prescribes: they have no error in any setting.
 fn prescribed(case: &Case) -> Vec<&'static str> {
     let tip = case.ends.tip.resolve();
     let moved = |direction: &Translation| matches!(direction, Translation::Displacement(_));
@@ -203,8 +203,8 @@ fn prescribed(case: &Case) -> Vec<&'static str> {
     names.collect()
 }
 
-/// Keeps the signals that all finished runs have, that are not prescribed and that are more than round-off, in the same order everywhere;
-/// returns the names of the others, and the sizes of those kept.
+/// Retains the signals that all finished runs have, that are not prescribed and that exceed rounding errors, in the same order in all runs.
+/// Returns the names of the others, and the sizes of those retained.
 fn agree(trials: &mut [Trial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>) {
     let Some(best) = best(trials) else {
         return (vec![], vec![]);
@@ -273,7 +273,7 @@ fn conclude(study: &mut Study) {
     let (totals, bounds) = (marks(|e| e.total.max), marks(|e| e.bound.max));
     let (of_totals, of_bounds) = (front::front(&totals), front::front(&bounds));
     study.answers = front::answers(&bounds, &of_bounds, &ACCURACIES);
-    // a setting that misses the loosest accuracy is not worth its time, however cheap
+    // exclude a setting that misses the loosest accuracy, however cheap it is
     study.front = of_totals;
     study.front.retain(|&k| totals[k].error <= ACCURACIES[0]);
     let cost: Vec<f64> = all.clone().map(|k| study.points[k].trial.wall_min_s).collect();

@@ -1,4 +1,4 @@
-//! All runs of a study, within its budget.
+//! Runs of a study, within its budget.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -13,33 +13,33 @@ use crate::error::Result;
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::pool;
 
-/// Share of the budget that points may take; references need the rest.
+/// Share of the budget for points; references need the rest.
 const POINTS: f64 = 0.5;
-/// Share that one run of a point may take.
+/// Share of the budget for one run of a point.
 const POINT: f64 = 0.06;
-/// Share that the repeats of a point may take.
+/// Share of the budget for the repeats of a point.
 const REPEATS: f64 = 0.015;
 
-/// A run is about to begin.
+/// Event before each run.
 #[derive(Clone, Copy, Debug)]
 pub struct Event {
-    /// Which.
+    /// Setting of the run.
     pub setting: Setting,
-    /// What for.
+    /// Purpose of the run.
     pub role: Role,
-    /// Expected cost of one run, when known.
+    /// Expected cost of one run, if known.
     pub expected: Option<f64>,
-    /// Spent so far.
+    /// Cost so far.
     pub spent: f64,
-    /// What may be spent.
+    /// Budget of the study.
     pub budget: Budget,
     /// Settings done, skipped ones included.
     pub done: usize,
-    /// Settings in all.
+    /// Total number of settings.
     pub of: usize,
 }
 
-/// Told of every run before it begins.
+/// Callback before each run.
 pub type Watch<'a> = &'a (dyn Fn(&Event) + Sync);
 
 #[derive(Default)]
@@ -49,7 +49,7 @@ struct State {
     reserved: f64,
     done: usize,
     lines_begun: usize,
-    /// Wall time of runs that an interrupted study had done [s].
+    /// Wall time of the runs that an interrupted study had finished [s].
     earlier: f64,
 }
 
@@ -62,7 +62,7 @@ struct Sweep<'a> {
     watch: Watch<'a>,
 }
 
-/// Runs points, then references; returns them with the cost of everything.
+/// Runs points, then references; returns the trials and the total cost.
 pub fn sweep(case: &Case, plan: &Plan, evaluations: &Evaluations, watch: Watch) -> Result<(Vec<Trial>, f64)> {
     let sweep = Sweep {
         case,
@@ -103,7 +103,7 @@ impl Sweep<'_> {
         }
     }
 
-    /// Does the work for every item, at once when asked.
+    /// Processes every item, in parallel if the plan requests it.
     fn each<T: Sync>(&self, items: &[T], work: impl Fn(&T) -> Result<()> + Sync) -> Result<()> {
         if !self.plan.parallel {
             return items.iter().try_for_each(work);
@@ -112,7 +112,7 @@ impl Sweep<'_> {
         pool::each(&numbers, pool::cores(), &|k| Some(work(&items[k])), &mut |ended| ended)
     }
 
-    /// What a line may spend: twice its share of what is left for points, since many need less.
+    /// Budget of a line: twice its share of the remaining budget for points, since many lines need less.
     fn room(&self, lines: usize) -> f64 {
         let mut state = self.lock();
         let to_come = (lines - state.lines_begun).max(1) as f64;
@@ -160,7 +160,7 @@ impl Sweep<'_> {
         Ok(())
     }
 
-    /// Runs, and returns the cost.
+    /// Runs a setting and returns its cost.
     fn run(&self, setting: Setting, role: Role, expected: Option<f64>, allowed: Allowance) -> Result<f64> {
         let most = allowed.run + allowed.repeats;
         let event = {
@@ -185,17 +185,18 @@ impl Sweep<'_> {
         state.reserved -= most;
         let (trial, cost) = outcome?;
         state.spent += cost;
-        // what was read took its time before, as many runs at once as now
+        // stored runs took their time earlier; assume the present number of parallel runs
         let before = (cost - begin.elapsed().as_secs_f64()).max(0.0);
         state.earlier += before / if self.plan.parallel { pool::cores() as f64 } else { 1.0 };
         state.trials.push(trial);
         Ok(cost)
     }
 
-    /// References of the first of these meshes: each scheme as tight as its share of the budget allows, to check the other.
+    /// Computes the references of the first of these meshes: each scheme, which checks the other, as tight as its share
+    /// of the budget allows.
     fn references(&self, meshes: &[usize]) -> Result<()> {
-        // What is left goes to the meshes by their unknowns and their stiffness. The mesh beyond the finest has what
-        // that has: it is worth a try, but no point depends on it.
+        // Divides the remaining budget among the meshes by their unknowns and their stiffness. The mesh beyond the
+        // finest has the weight of the finest, since no point depends on it.
         let finest = self.plan.cells.last().copied().unwrap_or(1);
         let weight = |cells: usize| (cells.min(finest) as f64).powi(2);
         let of_all: f64 = meshes.iter().map(|&k| weight(k)).sum();
@@ -210,7 +211,7 @@ impl Sweep<'_> {
         Ok(())
     }
 
-    /// One scheme on one mesh; returns what was spent.
+    /// Computes the reference of one scheme on one mesh; returns its cost.
     fn reference(&self, cells: usize, scheme: Scheme, room: f64) -> Result<f64> {
         let mut left = room;
         let mut too_tight = 0.0;
@@ -223,7 +224,7 @@ impl Sweep<'_> {
                 let mut candidates = self.plan.reference_rtols();
                 candidates.extend(self.plan.rtols.iter().rev());
                 if last.is_none() {
-                    // Nothing is known of this line; its tightest point comes first.
+                    // Without a finished run of this line, begin with its tightest point.
                     candidates.retain(|rtol| self.plan.rtols.contains(rtol));
                 }
                 let setting = |rtol| Setting { cells, scheme, rtol };

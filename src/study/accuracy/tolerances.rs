@@ -1,4 +1,4 @@
-//! Runs of one mesh and scheme over tolerances: what their sequence says of the error of the last.
+//! Runs of one mesh and scheme over tolerances, and the error of the tightest run.
 
 use super::norms::Norms;
 use super::scheme::Scheme;
@@ -7,14 +7,14 @@ use super::trial::Trial;
 /// Finished runs of one line, loose to tight.
 #[derive(Clone, Debug)]
 pub struct ToleranceSequence<'a> {
-    /// How time is integrated.
+    /// Time integration.
     pub scheme: Scheme,
     /// Runs.
     pub runs: Vec<&'a Trial>,
 }
 
 impl<'a> ToleranceSequence<'a> {
-    /// Of a mesh and a scheme.
+    /// Collects the runs of a mesh and a scheme.
     pub fn of(trials: &'a [Trial], cells: usize, scheme: Scheme) -> Self {
         let mut runs: Vec<&Trial> = trials
             .iter()
@@ -29,17 +29,17 @@ impl<'a> ToleranceSequence<'a> {
         self.runs.last().copied()
     }
 
-    /// Values of a signal in the run `back` places before the last.
+    /// Values of a signal in the run `back` places before the last, and the tolerance of that run.
     fn values(&self, back: usize, signal: usize) -> Option<(&'a [f64], f64)> {
         let run = self.runs.get(self.runs.len().checked_sub(back + 1)?)?;
         let signal = run.signals.as_ref()?.get(signal)?;
         Some((&signal.values, run.setting.rtol))
     }
 
-    /// Error of the last run in one signal: `d/(r^n - 1)`, `d` the distance to the run before it, `n` decades of tolerance
-    /// away, `r` the factor that a decade gains.
+    /// Estimates the error of the last run in one signal: `d/(r^n - 1)`. `d` is the distance to the run before it, `n`
+    /// the decades of tolerance between the two, `r` the gain of a decade.
     ///
-    /// `r` is what the runs before gained, at most the `10^(p/(p+1))` of order `p` and at least 1.3: a sequence that does
+    /// `r` is measured with the runs before, at most `10^(p/(p+1))` of order `p` and at least 1.3: a sequence that does
     /// not converge has a large error.
     pub fn last_error(&self, signal: usize) -> Option<Norms> {
         let (x0, t0) = self.values(0, signal)?;

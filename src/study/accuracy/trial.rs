@@ -1,4 +1,4 @@
-//! One setting: run, repeated, counted.
+//! Runs of one setting, with work and times.
 
 use std::time::{Duration, Instant};
 
@@ -15,63 +15,63 @@ use crate::run::null;
 use crate::run::summary::{Counters, Status};
 use crate::study::evaluations::Evaluations;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
     /// A point of the study.
     Point,
-    /// Tighter than asked for, to judge the points by.
+    /// Run tighter than requested, a reference of points.
     Reference,
 }
 
-/// How it went.
+/// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// To the end of the simulated time.
+    /// Reached the end of the simulated time.
     Finished,
     /// Stopped at its limit, or by the model.
     Stopped,
-    /// The solver could not go on.
+    /// The solver failed.
     Failed,
-    /// Not begun.
+    /// Not started.
     Skipped,
 }
 
-/// A setting and what came of it.
+/// Setting and the outcome of its runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    /// How.
+    /// Setting.
     pub setting: Setting,
-    /// What for.
+    /// Purpose.
     pub role: Role,
-    /// How it went.
+    /// Outcome.
     pub ending: Ending,
-    /// Why it did not finish.
+    /// Reason why it did not finish.
     pub reason: Option<String>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub unknowns: usize,
     /// Work of one run.
     pub counters: Counters,
     /// Least wall time of the timed runs [s].
     #[serde(deserialize_with = "null::number")]
     pub wall_min_s: f64,
-    /// Median of them [s].
+    /// Median wall time of the timed runs [s].
     #[serde(deserialize_with = "null::number")]
     pub wall_median_s: f64,
-    /// Timed runs.
+    /// Number of timed runs.
     pub repeats: usize,
-    /// Seconds or steps of one run, as the budget counts.
+    /// Cost of one run, in seconds or steps as in the budget.
     #[serde(deserialize_with = "null::number")]
     pub cost: f64,
-    /// What is compared; only of finished runs.
+    /// Compared signals; finished runs only.
     #[serde(skip)]
     pub signals: Option<Vec<Signal>>,
 }
 
 impl Trial {
-    /// A setting that is not run, for a reason.
+    /// Returns a setting that is not run, with the reason.
     pub fn skipped(setting: Setting, role: Role, reason: String) -> Self {
         Self {
             setting,
@@ -88,7 +88,7 @@ impl Trial {
         }
     }
 
-    /// Whether it can be compared.
+    /// True if the run finished, so that it can be compared.
     pub fn finished(&self) -> bool {
         self.ending == Ending::Finished
     }
@@ -99,20 +99,20 @@ impl Trial {
     }
 }
 
-/// What one setting may cost.
+/// Cost limits of one setting.
 #[derive(Clone, Copy, Debug)]
 pub struct Allowance {
-    /// One run; it is stopped there.
+    /// Limit of one run, which is stopped there.
     pub run: f64,
-    /// Further runs, together.
+    /// Limit of all further runs together.
     pub repeats: f64,
-    /// Timed runs wanted.
+    /// Requested number of timed runs.
     pub wanted: usize,
 }
 
-/// Runs a setting, unless it is among `evaluations`; returns it with the seconds or steps spent on all runs.
+/// Runs a setting, unless it is stored in `evaluations`; returns it with the seconds or steps of all its runs.
 ///
-/// The first run warms up. It counts when there is no allowance for others: a long run needs no warming.
+/// The first run is a warm-up. It counts if no further runs are allowed: a long run needs no warm-up.
 pub fn run(
     case: &Case,
     (setting, role): (Setting, Role),
@@ -150,7 +150,7 @@ fn computed(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: 
             Status::OutOfRange | Status::Failed => Ending::Failed,
         };
         let signals = (ending == Ending::Finished).then(|| keep.signals(&summary));
-        // Numbers that are none make every comparison worthless; a run that gives them has failed.
+        // Non-finite values make every comparison meaningless: the run has failed.
         let broken = signals
             .iter()
             .flatten()

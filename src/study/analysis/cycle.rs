@@ -16,7 +16,7 @@ use crate::run::stop::Stop;
 use crate::run::summary::{Status, Summary};
 use crate::study::refine::{self, meshes, numbers};
 
-/// Multipliers beside a cycle.
+/// Number of multipliers computed with a cycle.
 const MULTIPLIERS: usize = 2;
 
 /// `slcbeam periodic`.
@@ -76,7 +76,7 @@ impl Analysis for Periodic {
     }
 }
 
-/// The steady cycle.
+/// Computes the steady cycle.
 fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     let mut of = |case: &Case| numbers::of_cycle(case, 1, &Stop::default());
     let refined = ask
@@ -107,7 +107,7 @@ fn cycle(case: &Case, ask: Ask) -> Result<Found> {
     Ok(found)
 }
 
-/// Figures of the summary of a cycle, over its period [s], and its stability, where that is known.
+/// Returns the figures of the summary of a cycle over its period [s], and its stability if that is known.
 pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> Found {
     let mut found = Found {
         steps: Some(steps),

@@ -1,4 +1,4 @@
-//! Derivatives of figures by numbers of a case, and the systems of cases that differ in such numbers.
+//! Derivatives of figures with respect to numbers of a case, and systems of cases that differ in such numbers.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use crate::error::Result;
 use crate::run::record::Control;
 use crate::run::summary::{Status, Summary};
 
-/// Derivatives by figure, each by the numbers in their order.
+/// Derivatives of each figure with respect to the numbers, in their order.
 pub type Slopes = BTreeMap<String, Vec<f64>>;
 
-/// Stops a run, or a path of equilibria, once `stop` is true; asked after every step.
+/// Stops a run, or a path of equilibria, once `stop` returns true; checked after every step.
 pub fn until<T>(stop: &dyn Fn() -> bool) -> impl FnMut(&T) -> Control + '_ {
     |_| match stop() {
         true => Control::Stop("interrupted".into()),
@@ -20,7 +20,8 @@ pub fn until<T>(stop: &dyn Fn() -> bool) -> impl FnMut(&T) -> Control + '_ {
     }
 }
 
-/// The system of a case with the effects of another, where that is given and has the same unknowns.
+/// Returns the system of a case with the effects of `alike`, if that is given and has the same unknowns; otherwise a
+/// new system.
 ///
 /// # Errors
 /// Those of [`System::new`].
@@ -29,7 +30,7 @@ pub fn alike_or_own(case: &Case, alike: Option<&System>) -> Result<System> {
     found.map_or_else(|| System::new(case), Ok)
 }
 
-/// Derivatives of the figures of a summary; none of what did not finish.
+/// Derivatives of the figures of a summary; empty if the run did not finish.
 pub(super) fn of_summary(summary: &Summary, parameters: &[Parameter]) -> Gathered {
     let mut all = Gathered::new(parameters.len());
     if summary.status != Status::Finished {
@@ -48,14 +49,14 @@ pub(super) fn of_summary(summary: &Summary, parameters: &[Parameter]) -> Gathere
     all
 }
 
-/// Slopes by figure, as far as they are known.
+/// Derivatives by figure, possibly incomplete.
 pub struct Gathered {
     count: usize,
     all: BTreeMap<String, Vec<Option<f64>>>,
 }
 
 impl Gathered {
-    /// Of so many numbers.
+    /// Creates an empty collection for `count` numbers.
     pub fn new(count: usize) -> Self {
         Self {
             count,
@@ -63,13 +64,13 @@ impl Gathered {
         }
     }
 
-    /// The derivative of a figure by one of the numbers.
+    /// Stores the derivative of a figure with respect to one of the numbers.
     pub fn put(&mut self, number: usize, name: String, slope: f64) {
         let slopes = self.all.entry(name).or_insert_with(|| vec![None; self.count]);
         slopes[number] = Some(slope).filter(|slope| slope.is_finite());
     }
 
-    /// Those that are known by every number.
+    /// Returns the figures whose derivatives with respect to all numbers are known.
     pub fn whole(self) -> Slopes {
         let known = |(name, slopes): (String, Vec<Option<f64>>)| {
             let slopes: Option<Vec<f64>> = slopes.into_iter().collect();

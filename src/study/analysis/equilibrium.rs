@@ -12,7 +12,7 @@ use crate::run::summary::Status;
 use crate::run::{known, slow};
 use crate::study::refine::{self, meshes, numbers};
 
-/// Points on a path of equilibria at least, as the command has them.
+/// Least number of points on a path of equilibria, as in the command.
 const POINTS: usize = 16;
 
 /// `slcbeam equilibrium`.
@@ -65,7 +65,7 @@ impl Analysis for Equilibrium {
     }
 }
 
-/// How the equilibrium under the loads at the end of a case is sought.
+/// Options of the search for the equilibrium under the loads at the end of a case.
 fn at_the_end(case: &Case) -> Options {
     Options {
         points: Some(POINTS),
@@ -73,7 +73,7 @@ fn at_the_end(case: &Case) -> Options {
     }
 }
 
-/// The equilibrium under the loads at the end.
+/// Computes the equilibrium under the loads at the end.
 fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
     let options = at_the_end(case);
     let mut of = |case: &Case| numbers::of_equilibrium(case, &options);

@@ -1,33 +1,33 @@
-//! The figures of one case by name, and how the computation ended.
+//! Figures of one case by name, and the outcome of its computation.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, visible};
 use crate::run::summary::Status;
 
-/// Relative difference of figures of one design that another computer may make.
+/// Largest relative difference between figures of one design from two computers.
 const ALIKE: f64 = 1e-6;
 
-/// What was found of a case.
+/// Result of the analysis of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
-    /// How it ended.
+    /// Outcome of the computation.
     pub status: Status,
-    /// Why, when it did not finish, or not as well as was asked.
+    /// Reason, if it did not finish or missed the requested accuracy.
     pub reason: Option<String>,
-    /// Steps of time, of Newton along a path; none where there are none.
+    /// Time steps, or Newton iterations along a path; `None` for an analysis without steps.
     pub steps: Option<u64>,
     /// Figures by name, unit included; `NAME.error` is the estimated error of NAME, relative.
     pub figures: Vec<(String, f64)>,
-    /// Numbers of the warnings.
+    /// Codes of the warnings.
     pub warnings: Vec<String>,
-    /// The warnings themselves, which no table has.
+    /// Texts of the warnings, which tables do not contain.
     #[serde(skip)]
     pub told: Vec<String>,
 }
 
 impl Found {
-    /// Of what finished, to be filled.
+    /// Creates an empty result with the status finished.
     pub fn finished() -> Self {
         Self {
             status: Status::Finished,
@@ -39,7 +39,7 @@ impl Found {
         }
     }
 
-    /// That nothing was found.
+    /// Creates the result of a failed computation.
     pub fn failed(error: &Error) -> Self {
         let told = match error {
             Error::Solver(fault) => fault.what.clone(),
@@ -56,14 +56,14 @@ impl Found {
         }
     }
 
-    /// Adds a figure, where it is a number.
+    /// Adds a figure if it is a finite number.
     pub fn put(&mut self, name: impl Into<String>, value: impl Into<Option<f64>>) {
         if let Some(value) = value.into().filter(|x| x.is_finite()) {
             self.figures.push((name.into(), value));
         }
     }
 
-    /// A figure by name.
+    /// Returns a figure by name.
     pub fn figure(&self, name: &str) -> Option<f64> {
         self.figures
             .iter()
@@ -71,7 +71,8 @@ impl Found {
             .map(|(_, value)| *value)
     }
 
-    /// The first figure in which two that finished differ by more than computers do, with both values; NaN where one has none.
+    /// Returns the first figure in which two finished results differ by more than computers do, with both values; NaN
+    /// for a missing one.
     pub fn conflict(&self, other: &Self) -> Option<(String, [f64; 2])> {
         let lack = |name: &str, one: &Self| one.figure(name).unwrap_or(f64::NAN);
         let all = self.figures.iter().chain(&other.figures).map(|(name, _)| name);
@@ -81,7 +82,7 @@ impl Found {
             .map(|(name, values)| (name.clone(), values))
     }
 
-    /// Keeps warnings and their numbers, each once.
+    /// Stores warnings and their codes, each once.
     pub fn warn(&mut self, warnings: &[String]) {
         for warning in warnings {
             if !self.told.contains(warning) {
@@ -95,7 +96,7 @@ impl Found {
     }
 }
 
-/// A status in a word, as files have it.
+/// Name of a status, as in files.
 pub fn word(status: Status) -> &'static str {
     match status {
         Status::Finished => "finished",

@@ -7,13 +7,13 @@
 //! cycle        steady cycles                         slcbeam periodic
 //! multipliers  stability of cycles                   slcbeam floquet
 //!
-//! found        figures of a case, and how its computation ended
-//! derivatives  figures by numbers of the case
+//! found        figures of a case, and the outcome of its computation
+//! derivatives  derivatives of figures with respect to numbers of the case
 //! power        energies and mean powers of a cycle
 //! ```
 //!
-//! Whatever needs many designs (`sweep`, `fit`, `optimize`, `--uncertain`) knows an analysis by [`Analysis`] alone. A further analysis is a file
-//! here and a name in [`AnalysisKind`].
+//! Commands and options that compute many designs (`sweep`, `fit`, `optimize`, `--uncertain`) use an analysis only
+//! through [`Analysis`]. A new analysis needs a file here and a name in [`AnalysisKind`].
 
 mod cycle;
 pub mod derivatives;
@@ -41,10 +41,10 @@ use crate::study::{companion, target};
 use derivatives::Slopes;
 pub use found::{Found, word};
 
-/// Whether an accuracy that was asked for is reached, 1 or 0.
+/// Name of the figure that is 1 if the requested accuracy is reached, otherwise 0.
 pub const ACCURACY: &str = "accuracy_reached";
 
-/// Runs a case in time.
+/// Function that runs a case in time.
 pub type RunCase<'a> = &'a dyn Fn(&Case) -> Result<Outcome>;
 
 /// A computation of a case that yields figures.
@@ -52,10 +52,10 @@ pub trait Analysis: Sync {
     /// Rejects a case that the analysis cannot compute, before anything is computed.
     ///
     /// # Errors
-    /// In the words of the command.
+    /// The error that the command reports.
     fn check(&self, case: &Case) -> Result<()>;
 
-    /// Computes the figures of a case; `run` runs it in time, where that is asked for.
+    /// Computes the figures of a case. `run` runs the case in time, if the analysis needs that.
     ///
     /// # Errors
     /// Those of the command.
@@ -67,20 +67,20 @@ pub trait Analysis: Sync {
     /// Those of [`System::new`].
     fn names(&self, case: &Case) -> Result<Vec<String>>;
 
-    /// Rejects numbers of a case by which figures have no derivatives, before anything is computed.
+    /// Rejects numbers of a case for which figures have no derivatives, before anything is computed.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::error::Error::Usage) with the number.
+    /// [`Error::Usage`](crate::error::Error::Usage) that names the number.
     fn allows(&self, _: &Case, _: &[Parameter]) -> Result<()> {
         Ok(())
     }
 
-    /// Computes the figures of a case and the derivatives of those that have some by each of its numbers; none of what did not finish. A run has
-    /// the effects of the system that is given beside it. Exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44]
-    /// and cycles [E76].
+    /// Computes the figures of a case and their derivatives with respect to `parameters`, where these exist. A
+    /// computation that does not finish has no derivatives. A run uses the effects of the system `alike`. The
+    /// derivatives are exact for runs (IDA's sensitivities, [E41]), equilibria [E43], modes [E44] and cycles [E76].
     ///
     /// # Errors
-    /// Those of the command; a number by which nothing is differentiated.
+    /// Those of the command; a number without derivatives.
     fn derivatives(
         &self,
         case: &Case,
@@ -89,10 +89,10 @@ pub trait Analysis: Sync {
         stop: &dyn Fn() -> bool,
     ) -> Result<(Found, Slopes)>;
 
-    /// Code of a case without figures.
+    /// Error code of a case without figures.
     fn fault(&self) -> Code;
 
-    /// True if the tolerance of time steps limits figures.
+    /// True if the tolerance of time steps limits the accuracy of figures.
     fn is_in_time(&self) -> bool {
         true
     }
@@ -126,7 +126,7 @@ impl AnalysisKind {
         }
     }
 
-    /// Its analysis.
+    /// Returns the analysis.
     pub fn analysis(self) -> &'static dyn Analysis {
         match self {
             Self::Run => &run::Run,
@@ -143,15 +143,16 @@ impl AnalysisKind {
 pub struct Ask {
     /// The analysis.
     pub what: AnalysisKind,
-    /// Relative error below which every figure is wanted.
+    /// Requested relative error of every figure.
     pub accuracy: Option<f64>,
-    /// Mesh and tolerance with which a search for it begins.
+    /// Initial mesh and tolerance of the search for the accuracy.
     pub from: Option<target::Setting>,
-    /// True if errors are measured: by a companion of a run, by two or three meshes of what other commands compute.
+    /// True if errors are estimated: for runs by a companion, for other analyses by two or three meshes.
     pub meshes: bool,
 }
 
-/// Computes a case; `run` runs it in time, where that is asked for. `None` where `stop` became true on the way.
+/// Computes the figures of a case; `run` runs it in time, if the analysis needs that. `None` if `stop` became true
+/// meanwhile.
 pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Option<Found> {
     let found = ask.what.analysis().figures(case, ask, stop, run);
     if stop() {
@@ -160,7 +161,7 @@ pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Op
     Some(found.unwrap_or_else(|error| Found::failed(&error)))
 }
 
-/// What was found of a case under a key of a journal, with its warnings, or what `found` finds.
+/// Returns the result stored under a key of a journal, with its warnings; without one, the result of `found`.
 pub fn stored(
     evaluations: &Evaluations,
     key: &impl Serialize,
@@ -175,7 +176,7 @@ pub fn stored(
     Some(Found { told, ..found })
 }
 
-/// Runs a case for its summary alone.
+/// Runs a case without recording histories and fields.
 ///
 /// # Errors
 /// Those of [`companion::run`].
@@ -197,7 +198,7 @@ pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     }
 }
 
-/// Errors of an accuracy that was asked for.
+/// Adds the errors that the search for an accuracy estimated.
 fn accurate(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
     for (own, estimate) in &accuracy.quantities {
         found.put(format!("{}.error", name(own)), estimate.total);
@@ -205,7 +206,7 @@ fn accurate(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> Strin
     reached(found, accuracy);
 }
 
-/// Whether an accuracy that was asked for is reached: a row that lacks it tells so by its reason too.
+/// Adds a figure that is 1 if the requested accuracy is reached. Otherwise the reason of the row reports the miss, too.
 fn reached(found: &mut Found, accuracy: &Accuracy) {
     found.put(ACCURACY, f64::from(u8::from(accuracy.reached)));
     if let (false, None, Status::Finished) = (accuracy.reached, &found.reason, found.status) {
@@ -218,7 +219,7 @@ fn reached(found: &mut Found, accuracy: &Accuracy) {
     found.warn(refine::warning(accuracy).as_slice());
 }
 
-/// Errors that meshes make.
+/// Adds the errors estimated by comparing meshes.
 fn errors(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
     for (own, share) in &by_mesh.quantities {
         let total = share.known().then(|| share.total());

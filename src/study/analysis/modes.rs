@@ -1,4 +1,4 @@
-//! Modes about the start of a case.
+//! Modes about the initial state of a case.
 
 use std::f64::consts::TAU;
 
@@ -11,11 +11,11 @@ use crate::error::{Code, Result};
 use crate::run::{known, modes};
 use crate::study::refine::{self, numbers};
 
-/// Modes with figures, those lowest.
+/// Number of modes with figures, those of lowest frequency.
 pub const MODES: usize = 6;
-/// Modes looked for at most, where few of the slowest swing.
+/// Largest number of modes computed if few of the slowest oscillate.
 const MOST_MODES: usize = 384;
-/// Damping ratio above which a mode falls to less than a thirtieth within a period: it hardly swings.
+/// Damping ratio above which a mode decays to less than a thirtieth within a period: it hardly oscillates.
 const STRONG: f64 = 0.5;
 
 /// `slcbeam modes`.
@@ -53,7 +53,7 @@ impl Analysis for Modes {
                 let d = slope.s[place];
                 all.put(k, format!("{name}.frequency_hz"), d.im / TAU);
                 all.put(k, format!("{name}.growth_per_s"), d.re);
-                // of -re/|s|
+                // derivative of -re/|s|
                 let size = s.norm();
                 let ratio = -d.re / size + s.re * (s.re * d.re + s.im * d.im) / size.powi(3);
                 all.put(k, format!("{name}.damping_ratio"), ratio);
@@ -71,7 +71,8 @@ impl Analysis for Modes {
     }
 }
 
-/// Modes about the start of a case, so many that six of them swing, as far as there are so many; and what was looked for.
+/// Computes enough modes about the initial state of a case that six of them oscillate, if there are as many. Returns
+/// the modes and the plan that was used.
 ///
 /// # Errors
 /// Those of [`modes::modes`].
@@ -90,7 +91,7 @@ pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
     }
 }
 
-/// Places of those that swing among modes, the lowest first.
+/// Indices of the oscillating modes, the lowest first; at most [`MODES`].
 pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
     let mut swinging: Vec<usize> = (0..all.len()).filter(|k| all[*k].kind.swings()).collect();
     swinging.sort_by(|a, b| all[*a].s.im.total_cmp(&all[*b].s.im));
@@ -98,7 +99,7 @@ pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
     swinging
 }
 
-/// Small motions about the start: the lowest that swing.
+/// Figures of small motions about the initial state: the lowest modes that oscillate.
 fn small(case: &Case, ask: Ask) -> Result<Found> {
     let (mut all, plan) = swinging(case)?;
     let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
@@ -123,7 +124,7 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
         found.put("largest_error", worst.reduce(f64::max));
     }
     found.warn(&known::at_rest(case, &System::new(case)?));
-    // what is told of is warned of
+    // warn only about modes that are reported
     all.modes = lowest(&all.modes)
         .into_iter()
         .map(|place| all.modes[place].clone())
@@ -132,7 +133,7 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
     Ok(found)
 }
 
-/// Figures of modes: the lowest that swing.
+/// Figures of the lowest modes that oscillate.
 pub fn of_modes(all: &modes::Modes) -> Found {
     let mut found = Found::finished();
     let stable = !all.modes.iter().any(|mode| mode.kind.grows());

@@ -1,4 +1,5 @@
-//! Multipliers of cycles by the part of the motion that each is mostly of: its place among the others may change.
+//! Floquet multipliers of cycles, named by the part of the motion that dominates each of them, since their order may
+//! change.
 
 use super::derivatives::Slopes;
 use super::{Analysis, Ask, Found, RunCase};
@@ -11,7 +12,7 @@ use crate::run::periodic::Scene;
 use crate::run::stop::Stop;
 use crate::study::refine::{meshes, numbers};
 
-/// Multipliers with figures, those largest.
+/// Number of multipliers with figures, the largest ones.
 const COUNT: usize = 6;
 
 /// `slcbeam floquet`.
@@ -53,7 +54,7 @@ fn no_derivatives() -> Error {
     Error::Usage("multipliers of a cycle have no derivatives by numbers of the case".into())
 }
 
-/// The multipliers of a case, with the errors that meshes make on request.
+/// Computes the multipliers of a case, with errors estimated by comparing meshes on request.
 fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
     let stop = Stop::default();
     let (scene, mut cycle) = numbers::cycle(case, None, &stop)?;
@@ -66,7 +67,7 @@ fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
         let by_mesh = meshes::judge(case, &here, &mut of)?;
         let named = numbers::named(&all);
         for (k, (name, multiplier)) in named.iter().enumerate() {
-            // a share is of the size that counts, an error of the figure itself
+            // converts a share of the reference size into an error relative to the figure itself
             let error = |key: &str, value: f64, by_steps: f64| {
                 let share = by_mesh.quantities.get(key).filter(|share| share.known());
                 share.zip(here.get(key)).map(|(share, number)| {
@@ -89,7 +90,7 @@ fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
             }
         }
         found.warn(by_mesh.warning().as_slice());
-        // what is gone after a period is round-off, and is no figure of the case; of samples it is there where it is not
+        // multipliers that vanish within a period are rounding errors, not figures of the case
         let gone = named
             .iter()
             .filter(|(_, multiplier)| multiplier.modulus <= numbers::GONE);
@@ -102,7 +103,7 @@ fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
     Ok(found)
 }
 
-/// Moduli, rates and frequencies by part, and the rate of the largest.
+/// Moduli, rates and frequencies by part of the motion, and the rate of the largest multiplier.
 fn of_multipliers(all: &Floquet) -> Found {
     let mut found = Found::finished();
     let stable = all.verdict.stability != Stability::Unstable;

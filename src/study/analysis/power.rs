@@ -1,4 +1,5 @@
-//! What a cycle puts in and harvests: energies, mean powers, the efficiency, each with how far its balance is open and what meshes do.
+//! Energy figures of a cycle: energies, mean powers and efficiency, each with the residual of its balance and the error
+//! of the mesh.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +7,7 @@ use super::Found;
 use crate::discrete::quantities::Interest;
 use crate::run::summary::Quantity;
 
-/// Energies whose mean powers over a cycle are told.
+/// Energies whose mean powers over a cycle are reported, with the names of these powers.
 pub const POWERS: [(Interest, &str); 2] = [
     (Interest::HarvestedEnergy, "harvested_power_w.mean"),
     (Interest::InputEnergy, "input_power_w.mean"),
@@ -15,26 +16,26 @@ pub const POWERS: [(Interest, &str); 2] = [
 /// A figure of the energy of a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// As the table of a sweep names it.
+    /// Name in the table of a sweep.
     pub name: String,
-    /// What it is, in words.
+    /// Description.
     pub words: &'static str,
-    /// Its unit.
+    /// Unit.
     pub unit: &'static str,
-    /// Over the period.
+    /// Value over the period.
     pub value: f64,
-    /// How far the balance is open beside it, relative; in the table `NAME_error`.
+    /// Relative residual of its balance; in the table `NAME_error`.
     pub open: Option<f64>,
 }
 
 impl Figure {
-    /// The name of how far its balance is open.
+    /// Returns the name of the residual of its balance.
     pub fn open_name(&self) -> String {
         format!("{}_error", self.name)
     }
 }
 
-/// What there is to tell of the energies over a period [s], those of turbines where a case has some.
+/// Returns the energy figures over a period [s], those of turbines if the case has some.
 pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<Figure> {
     let mut all = vec![];
     let words = [
@@ -66,13 +67,13 @@ pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<Figu
     all
 }
 
-/// The energy over the period that a mean power is made of, by the name of the figure: their relative errors are the same.
+/// Name of the energy over the period from which a mean power is computed; both have the same relative error.
 pub fn energy_of(power: &str) -> Option<String> {
     let (energy, _) = POWERS.iter().find(|(_, name)| *name == power)?;
     Some(format!("{}.window", energy.name()))
 }
 
-/// Gives mean powers the errors of their energies, once these have them.
+/// Copies the relative errors of energies to their mean powers, after the former are known.
 pub(super) fn share_errors(found: &mut Found) {
     for (_, power) in POWERS {
         let error = energy_of(power).and_then(|energy| found.figure(&format!("{energy}.error")));

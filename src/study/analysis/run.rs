@@ -46,7 +46,7 @@ impl Analysis for Run {
     }
 }
 
-/// Names of the figures of quantities and probes: those of what moves, and those of what is summed up.
+/// Names of the figures of quantities and probes: `motion` for quantities of the motion, `sums` for accumulated ones.
 pub(super) fn names(case: &Case, motion: &[&str], sums: &[&str]) -> Result<Vec<String>> {
     let system = System::new(case)?;
     let network = system.model.wet.as_ref().map(|wet| &wet.network);
@@ -76,7 +76,7 @@ pub fn of_run(summary: &Summary) -> Found {
         told: vec![],
     };
     found.warn(&summary.warnings);
-    // what never began has no figures, and zeros would pass for some
+    // a run that never started has no figures, and zeros would look like results
     if summary.status == Status::Failed && summary.time_s == 0.0 {
         return found;
     }
@@ -93,7 +93,7 @@ pub fn of_run(summary: &Summary) -> Found {
     found
 }
 
-/// Every figure of a quantity.
+/// Adds every figure of a quantity.
 fn put(found: &mut Found, name: &str, quantity: &Quantity) {
     for (figure, value) in quantity.figures() {
         found.put(format!("{name}.{figure}"), value);

@@ -33,7 +33,11 @@ pub fn errors(run: &Summary, companion: &Summary) -> Figures {
 /// conserve energy.
 pub fn raise_to_balance(summary: &Summary, errors: &mut Figures, floors: &Floors) {
     let counted = relative(summary, errors, floors);
-    for (name, quantity) in summary.quantities.iter().filter(|(name, _)| counted.contains_key(*name)) {
+    for (name, quantity) in summary
+        .quantities
+        .iter()
+        .filter(|(name, _)| counted.contains_key(*name))
+    {
         let Some(errors) = errors.get_mut(name) else { continue };
         let open = [
             ("final", quantity.last, quantity.final_error),

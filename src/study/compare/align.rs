@@ -1,10 +1,10 @@
-//! A recording at the times and places of another.
+//! Interpolation of a recording to the times and positions of another.
 
 use super::interpolate::{cubic, hermite, interval, monotone};
 use super::recording::{Array, Recording};
 use crate::discrete::quantities::{Axis, Field};
 
-/// Field whose values are the slopes of another in time.
+/// Name of the field that contains the time derivatives of another.
 pub fn slopes_of(name: &str) -> Option<&'static str> {
     Some(Field::named(name)?.rate()?.name())
 }
@@ -14,20 +14,21 @@ pub fn axis_of(name: &str) -> Axis {
     Field::named(name).map_or(Axis::Nodes, Field::axis)
 }
 
-/// Positions of a field. Those along the beam are relative to its length, so that beams of different length compare.
-/// Those along the network come in pieces, one a connected array, between which nothing is interpolated.
+/// Positions of a field. Positions along the beam are relative to its length, so that beams of different length can be
+/// compared. Positions along the network are divided into pieces, one per connected array, across which nothing is
+/// interpolated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// Positions.
     pub x: Vec<f64>,
     /// Pieces, as ranges of positions.
     pub pieces: Vec<std::ops::Range<usize>>,
-    /// Whether the field may jump and kink along them.
+    /// True if the field may have jumps and kinks along the positions.
     pub rough: bool,
 }
 
 impl Places {
-    /// Of a field in a recording.
+    /// Returns the positions of a field in a recording; `None` if its coordinate is missing.
     pub fn of(recording: &Recording, field: &Array) -> Option<Self> {
         let axis = axis_of(&field.name);
         let raw = recording.axis(axis.name()).filter(|x| x.len() == field.len)?;
@@ -46,12 +47,12 @@ impl Places {
         Some(Self { x, pieces, rough })
     }
 
-    /// Whether two fields have the same number of pieces: the same network.
+    /// True if two fields have the same number of pieces: the same network.
     pub fn alike(&self, other: &Self) -> bool {
         self.pieces.len() == other.pieces.len()
     }
 
-    /// Values given here brought to the places of another.
+    /// Interpolates values at these positions to the positions of another.
     pub fn bring(&self, values: &[f64], to: &Self) -> Vec<f64> {
         if self.x == to.x {
             return values.to_vec();
@@ -71,7 +72,7 @@ impl Places {
     }
 }
 
-/// A field at a time: by values and slopes where both are recorded, else by four neighbours.
+/// Returns a field at a time: from values and slopes if both are recorded, else from four neighbors.
 pub fn row_at(recording: &Recording, field: &Array, t: f64) -> Vec<f64> {
     let times = &recording.field_times;
     let weights = cubic(times, t);
@@ -87,7 +88,7 @@ pub fn row_at(recording: &Recording, field: &Array, t: f64) -> Vec<f64> {
     }
 }
 
-/// The cubic through values and slopes at the instants `a` and `b`.
+/// Evaluates the cubic through values and slopes at the instants `a` and `b`.
 fn between(field: &Array, slopes: &Array, times: &[f64], a: usize, b: usize, t: f64) -> Vec<f64> {
     let h = times[b] - times[a];
     let w = hermite((t - times[a]) / h, h);
@@ -97,12 +98,13 @@ fn between(field: &Array, slopes: &Array, times: &[f64], a: usize, b: usize, t: 
         .collect()
 }
 
-/// Instants tried when the error of an interpolation is measured.
+/// Instants tested when the error of an interpolation is measured.
 const TRIED: usize = 200;
-/// What halving the interval leaves of a fourth-order error.
+/// Factor by which halving the interval reduces a fourth-order error.
 const HALVED: f64 = 16.0;
 
-/// Error of interpolating a field in time: every second instant from its neighbours, over 16.
+/// Estimates the error of interpolating a field in time: interpolates instants at twice the spacing and divides the
+/// largest error by 16.
 pub fn field_interpolation_error(recording: &Recording, field: &Array) -> f64 {
     let times = &recording.field_times;
     let slopes = slopes_of(&field.name).and_then(|name| recording.field(name));
@@ -121,7 +123,8 @@ pub fn field_interpolation_error(recording: &Recording, field: &Array) -> f64 {
     }) / HALVED
 }
 
-/// The same of a column of the history.
+/// Estimates the error of interpolating a column of the history in time, by the method of
+/// [`field_interpolation_error`].
 pub fn column_interpolation_error(times: &[f64], values: &[f64]) -> f64 {
     tried(times).fold(0.0, |worst: f64, k| {
         let guess: f64 = skipping(times, k).iter().map(|&(j, w)| w * values[j]).sum();
@@ -134,7 +137,7 @@ fn tried(times: &[f64]) -> impl Iterator<Item = usize> {
     (3..end).step_by((end / TRIED).max(1))
 }
 
-/// The instant `k` from `k - 3`, `k - 1`, `k + 1`, `k + 3`.
+/// Weights that interpolate the instant `k` from `k - 3`, `k - 1`, `k + 1`, `k + 3`.
 fn skipping(times: &[f64], k: usize) -> [(usize, f64); 4] {
     let used = [k - 3, k - 1, k + 1, k + 3];
     let xs = used.map(|j| times[j]);

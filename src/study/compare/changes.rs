@@ -1,20 +1,20 @@
-//! What differs between two cases.
+//! Differences between two cases.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// A value that is not the same.
+/// Value that differs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// JSON pointer.
     pub pointer: String,
-    /// In the first case, null when absent.
+    /// Value in the first case, null if absent.
     pub a: Value,
-    /// In the second case.
+    /// Value in the second case.
     pub b: Value,
 }
 
-/// How a case is computed and not what it is.
+/// Pointers of numerical settings, which are not part of the physics.
 const NUMERICS: [&str; 7] = [
     "/mesh",
     "/solver",
@@ -25,10 +25,10 @@ const NUMERICS: [&str; 7] = [
     "/time/history",
 ];
 
-/// Names and words.
+/// Pointers of names and descriptions, which are not compared.
 const WORDS: [&str; 3] = ["/name", "/about", "/$schema"];
 
-/// Changes of the physics, and changes of the numerics.
+/// Returns the changes of the physics, and the changes of the numerics.
 pub fn changes(a: &Value, b: &Value) -> (Vec<Change>, Vec<Change>) {
     let mut all = vec![];
     walk(a, b, String::new(), &mut all);

@@ -1,4 +1,4 @@
-//! How far apart two recordings are.
+//! Differences between two recordings.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,78 +12,78 @@ use crate::run::null;
 use crate::run::schedule::SAME;
 use crate::study::accuracy::Norms;
 
-/// One field or column.
+/// Difference of one field or column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Difference {
     /// Name.
     pub name: String,
-    /// Unit; empty for a field, whose name has it.
+    /// Unit; empty for a field, whose name contains it.
     pub unit: String,
-    /// Norms relative to those of the larger of the two.
+    /// Norms of the difference, relative to the larger norms of the two.
     pub relative: Norms,
-    /// Size to which they refer.
+    /// Size to which the norms refer.
     pub size: Norms,
     /// Time of the largest difference [s].
     #[serde(deserialize_with = "null::number")]
     pub at_s: f64,
-    /// Its place, a share of the beam's length or of the network, for fields.
+    /// Position of the largest difference, a share of the beam's length or of the network; fields only.
     pub place: Option<f64>,
-    /// What interpolation in time may add to the largest difference, relative; 0 where the times coincide.
+    /// Estimated error of interpolation in time, relative as the largest difference; 0 if the times coincide.
     #[serde(deserialize_with = "null::number")]
     pub interpolation: f64,
-    /// Instants compared.
+    /// Number of instants compared.
     pub instants: usize,
 }
 
-/// One figure of the summary.
+/// Difference of one figure of the summary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FigureDifference {
-    /// `tip_u1_m.max_abs`.
+    /// Name, such as `tip_u1_m.max_abs`.
     pub name: String,
-    /// In the first.
+    /// Value in the first result.
     pub a: f64,
-    /// In the second.
+    /// Value in the second result.
     pub b: f64,
-    /// Difference over the largest figure of the quantity.
+    /// Difference relative to the largest figure of the quantity.
     pub relative: f64,
-    /// Second less first, over the size of the first; nothing where that is 0.
+    /// Second minus first, relative to the size of the first; `None` if that is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub change: Option<f64>,
-    /// Sum of the absolute errors of both, where both are known.
+    /// Sum of the absolute errors of both, if both are known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub errors: Option<f64>,
 }
 
 impl FigureDifference {
-    /// True if the difference is not larger than the errors of both; nothing where these are not known.
+    /// True if the difference is not larger than the errors of both; `None` if these are unknown.
     pub fn is_within_errors(&self) -> Option<bool> {
         Some((self.a - self.b).abs() <= self.errors?)
     }
 }
 
-/// What each run took.
+/// Cost of both runs by one measure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
-    /// What is counted.
+    /// Name of the measure.
     pub name: String,
-    /// By the first.
+    /// Cost of the first run.
     pub a: f64,
-    /// By the second.
+    /// Cost of the second run.
     pub b: f64,
 }
 
-/// Two results side by side.
+/// Comparison of two results.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// The two folders.
     pub folders: [String; 2],
-    /// Time that both cover [s].
+    /// Start of the time that both cover [s].
     pub from_s: f64,
-    /// End of it [s].
+    /// End of the time that both cover [s].
     pub to_s: f64,
-    /// What differs in the physics: differences are then no errors.
+    /// Differences in the physics; if there are any, differences of results are not errors.
     pub physics: Vec<Change>,
-    /// What differs in the numerics.
+    /// Differences in the numerics.
     pub numerics: Vec<Change>,
     /// Histories.
     pub histories: Vec<Difference>,
@@ -93,14 +93,14 @@ pub struct Comparison {
     pub figures: Vec<FigureDifference>,
     /// Wall time and work.
     pub costs: Vec<Cost>,
-    /// What could not be compared, and why.
+    /// Data that could not be compared, with reasons.
     pub left_out: Vec<String>,
-    /// What to know of the two before one believes a number: that they do not end together, that a history is short.
+    /// Remarks on the reliability of the comparison: different end times, short histories.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
 }
 
-/// Smaller than this beside others of the same unit is round-off.
+/// Values below this share of the largest one of the same unit are rounding errors.
 const NOTHING: f64 = 1e-9;
 
 /// Compares two recordings.
@@ -125,7 +125,7 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
         let alike = [a, b].into_iter().flat_map(|r| &r.columns).filter(|c| c.unit == unit);
         alike.flat_map(|c| &c.values).fold(0.0, |m: f64, x| m.max(x.abs()))
     };
-    // The residual of the balance is an error itself.
+    // The energy residual is an error itself and is not compared.
     for column in a.columns.iter().filter(|c| c.name != Observable::EnergyResidual.name()) {
         match b
             .column(&column.name)
@@ -154,7 +154,7 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
     out
 }
 
-/// That figures of the two are of other instants, and that histories end before their runs did.
+/// Reports figures taken at different end times, and histories that end before their runs.
 fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
     let short = |one: &Recording| {
         let (end, run) = (one.times.last().copied().unwrap_or(0.0), one.summary.time_s);
@@ -181,7 +181,7 @@ fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
     apart.into_iter().chain([a, b].into_iter().filter_map(short)).collect()
 }
 
-/// Largest value among the fields of the same unit, which is what follows the first underscore of a name.
+/// Largest value among the fields of the same unit, which is the part of the name after the first underscore.
 fn largest_field(a: &Recording, b: &Recording, name: &str) -> f64 {
     let unit = |name: &str| name.split_once('_').map(|n| n.1.to_string());
     let alike = [a, b]
@@ -191,13 +191,13 @@ fn largest_field(a: &Recording, b: &Recording, name: &str) -> f64 {
     alike.flat_map(|f| &f.values).fold(0.0, |m: f64, x| m.max(x.abs()))
 }
 
-/// Instants of the recording with fewer of them that both cover; whether these are the first one's.
+/// Returns the instants that both cover, of the recording with fewer of them; true if that is the first recording.
 fn shared(a: &[f64], b: &[f64]) -> (Vec<f64>, bool) {
     let (Some(from), Some(to)) = (a.first().zip(b.first()), a.last().zip(b.last())) else {
         return (vec![], true);
     };
     let (from, to) = (from.0.max(*from.1), to.0.min(*to.1));
-    // A hair of grace: two ends that differ by round-off are the same.
+    // Tolerance for ends that differ by rounding errors.
     let hair = 1e-9 * (to - from).abs();
     let within = |times: &[f64]| -> Vec<f64> {
         times
@@ -214,7 +214,7 @@ fn shared(a: &[f64], b: &[f64]) -> (Vec<f64>, bool) {
     }
 }
 
-/// Collects a difference over instants.
+/// Norms of a difference, accumulated over instants.
 #[derive(Default)]
 struct Sum {
     squares: [f64; 3],

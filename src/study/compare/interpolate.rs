@@ -1,16 +1,16 @@
-//! Cubics between samples.
+//! Cubic interpolation between samples.
 
-/// Samples around a place, and what each weighs.
+/// Weights of the samples around a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// First sample.
     pub first: usize,
-    /// Weights of it and those after it; zero where there is none.
+    /// Weights of this sample and the following ones; zero for unused ones.
     pub weights: [f64; 4],
 }
 
 impl Weights {
-    /// The sample `k` itself.
+    /// Returns the weights that select the sample `k`.
     pub fn exactly(k: usize) -> Self {
         Self {
             first: k,
@@ -18,27 +18,28 @@ impl Weights {
         }
     }
 
-    /// Whether it is a sample itself.
+    /// True if a single sample is selected.
     pub fn is_exact(&self) -> bool {
         self.weights.iter().filter(|w| **w != 0.0).count() == 1
     }
 
-    /// The weighted mean of values.
+    /// Returns the weighted mean of values.
     pub fn mean(&self, value: impl Fn(usize) -> f64) -> f64 {
         let used = self.weights.iter().enumerate().filter(|(_, w)| **w != 0.0);
         used.map(|(k, w)| w * value(self.first + k)).sum()
     }
 }
 
-/// Samples within this share of an interval are taken as they are: their times differ by round-off only.
+/// Distance from a sample, as a share of the interval, below which the sample itself is used: such times differ by
+/// rounding errors only.
 const SAME: f64 = 1e-7;
 
-/// Interval of `xs` in which `x` lies, the first or last one beyond the ends. At least two samples.
+/// Index of the interval of `xs` that contains `x`; the first or last one beyond the ends. Needs at least two samples.
 pub fn interval(xs: &[f64], x: f64) -> usize {
     xs.partition_point(|s| *s <= x).clamp(1, xs.len() - 1) - 1
 }
 
-/// The polynomial through the four samples around `x` (fewer when there are fewer): exact for cubics.
+/// Weights of the polynomial through the four samples around `x` (fewer if there are fewer); exact for cubics.
 pub fn cubic(xs: &[f64], x: f64) -> Weights {
     if xs.len() < 2 {
         return Weights::exactly(0);
@@ -62,8 +63,8 @@ pub fn cubic(xs: &[f64], x: f64) -> Weights {
     Weights { first, weights }
 }
 
-/// Values and slopes of a cubic between two samples, at the share `s` of the interval of width `h`:
-/// weights of the two values, then of the two slopes.
+/// Weights of a cubic Hermite polynomial at the share `s` of an interval of width `h`: of the two values, then of the
+/// two slopes.
 pub fn hermite(s: f64, h: f64) -> [f64; 4] {
     let (s2, s3) = (s * s, s * s * s);
     [
@@ -74,8 +75,8 @@ pub fn hermite(s: f64, h: f64) -> [f64; 4] {
     ]
 }
 
-/// A cubic that has no extrema but those of the samples (Fritsch and Carlson 1980, slopes after Brodlie): for what
-/// jumps and kinks along its coordinate.
+/// Monotone cubic interpolation (Fritsch and Carlson 1980, slopes after Brodlie): no extrema except those of the
+/// samples. For data with jumps and kinks along the coordinate.
 pub fn monotone(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     if xs.len() < 2 {
         return ys.first().copied().unwrap_or(f64::NAN);

@@ -1,4 +1,4 @@
-//! Several results beside one of them.
+//! Several results compared with one of them.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,28 +6,29 @@ use super::difference::{Comparison, compare};
 use super::interpolate::cubic;
 use super::recording::Recording;
 
-/// Several results beside one of them.
+/// Several results compared with one of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Beside {
-    /// Folder that the others are compared with.
+    /// Folder of the reference.
     pub reference: String,
-    /// Each of the others with it, in the order in which they were named; the reference is the first of each.
+    /// Comparisons of the reference, always the first, with each of the others, in the order in which these were named.
     pub comparisons: Vec<Comparison>,
 }
 
-/// A figure of all results.
+/// Figure of all results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// `tip_u1_m.max_abs`.
     pub name: String,
-    /// In the reference.
+    /// Value in the reference.
     pub reference: f64,
-    /// In each of the others, with the difference over the size of the reference's, where that is not 0; nothing where it has none.
+    /// Value in each of the others, with the change relative to the size of the reference value unless that is 0;
+    /// `None` if it has none.
     pub others: Vec<Option<(f64, Option<f64>)>>,
 }
 
 impl Beside {
-    /// Compares all but the reference, by its place, with it.
+    /// Compares all other recordings with the reference, given by its index.
     pub fn of(all: &[Recording], reference: usize) -> Self {
         let others = all.iter().enumerate().filter(|(k, _)| *k != reference);
         Self {
@@ -42,7 +43,7 @@ impl Beside {
         std::iter::once(self.reference.as_str()).chain(others).collect()
     }
 
-    /// What to know of all before one believes a number, each once.
+    /// Remarks on the reliability of all comparisons, each once.
     pub fn remarks(&self) -> Vec<&str> {
         let mut all: Vec<&str> = vec![];
         for remark in self.comparisons.iter().flat_map(|one| &one.remarks) {
@@ -53,7 +54,7 @@ impl Beside {
         all
     }
 
-    /// Figures that the reference shares with one of the others at least.
+    /// Figures that the reference shares with at least one of the others.
     pub fn figures(&self) -> Vec<Figure> {
         let mut all: Vec<Figure> = vec![];
         for (k, one) in self.comparisons.iter().enumerate() {
@@ -72,7 +73,7 @@ impl Beside {
         all
     }
 
-    /// Histories and fields by name, with the relative L2 norm of each difference from the reference, where there is one.
+    /// Names of histories and fields, with the relative L2 norm of each difference from the reference, if there is one.
     pub fn norms(&self) -> Vec<(String, Vec<Option<f64>>)> {
         let mut all: Vec<(String, Vec<Option<f64>>)> = vec![];
         for (k, one) in self.comparisons.iter().enumerate() {
@@ -88,7 +89,7 @@ impl Beside {
     }
 }
 
-/// A column of a result at other times [s], by cubics; NaN where it has none.
+/// Interpolates a column of a result to other times [s] by cubics; NaN outside its times.
 pub fn column_at(one: &Recording, name: &str, times: &[f64]) -> Option<Vec<f64>> {
     let series = one.column(name)?;
     let (first, last) = (*one.times.first()?, *one.times.last()?);

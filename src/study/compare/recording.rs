@@ -14,18 +14,18 @@ pub struct Series {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// One value an output time.
+    /// One value per output time.
     pub values: Vec<f64>,
 }
 
-/// A field over time and place.
+/// Field over time and position.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
     /// Name, unit included: `u1_m`.
     pub name: String,
-    /// Positions.
+    /// Number of positions.
     pub len: usize,
-    /// Values, position by position, time after time.
+    /// Values: all positions of an instant, one instant after another.
     pub values: Vec<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Array {
     }
 }
 
-/// What a result has to know of its case. That of another version may no longer be one as a whole.
+/// Properties of the case that a comparison needs. A case of another version may not be readable as a whole.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Known {
     beam: Long,
@@ -57,20 +57,20 @@ struct Times {
     history: Thinning,
 }
 
-/// Everything that a result folder holds.
+/// Contents of a result folder.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// Folder.
     pub label: String,
     /// `case.json`.
     pub case: Value,
-    /// What is known of it.
+    /// Properties read from the case.
     pub known: Known,
     /// `summary.json`.
     pub summary: Summary,
     /// Times of the history [s].
     pub times: Vec<f64>,
-    /// Columns of the history, time not among them.
+    /// Columns of the history, without time.
     pub columns: Vec<Series>,
     /// Times of the fields [s].
     pub field_times: Vec<f64>,
@@ -81,7 +81,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// The window alone, where not all output times before it were written: nothing is interpolated over what is not there.
+    /// Removes the data before the window if their output was thinned: values are not interpolated across gaps.
     pub fn without_gaps(mut self) -> Self {
         let time = &self.known.time;
         if time.history == Thinning::All {
@@ -117,12 +117,12 @@ impl Recording {
         self.axes.iter().find(|a| a.0 == name).map(|a| a.1.as_slice())
     }
 
-    /// Length of the beam [m], to which positions along it refer.
+    /// Length of the beam [m], the reference of positions along it.
     pub fn length(&self) -> f64 {
         self.known.beam.length_m
     }
 
-    /// Length of its bladders [m]; nothing in a dry beam.
+    /// Length of the bladders [m]; `None` for a dry beam.
     pub fn bladder_length(&self) -> Option<f64> {
         self.known.bladders.as_ref().map(|bladders| bladders.length_m)
     }

@@ -1,4 +1,4 @@
-//! `COLUMN=QUANTITY[@PLACE]`: which column of a result a measured column is beside.
+//! `COLUMN=QUANTITY[@PLACE]`: assigns a measured column to a column of a result.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,23 +10,23 @@ use crate::case::units::suffixed;
 use crate::discrete::quantities::probes;
 use crate::error::{Error, Result, listed};
 
-/// What was asked for.
+/// Requested assignment of a measured column.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Match {
     /// Column of the data.
     pub column: String,
     /// Quantity of the result, with or without its unit.
     pub quantity: String,
-    /// Where, as far as it was told.
+    /// Position, if given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<String>,
 }
 
 impl Match {
-    /// Of `COLUMN=QUANTITY[@PLACE]`.
+    /// Parses `COLUMN=QUANTITY[@PLACE]`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let wanted = || {
             let what = "COLUMN=QUANTITY[@PLACE] is wanted, such as angle_deg=tip_angle or p_kpa=pressure@'bladder 3'";
@@ -48,16 +48,17 @@ impl Match {
         })
     }
 
-    /// As it is asked for.
+    /// Formats the assignment as on the command line.
     pub fn words(&self) -> String {
         let place = self.place.as_ref().map_or(String::new(), |place| format!("@{place}"));
         format!("{}={}{place}", self.column, self.quantity)
     }
 
-    /// The name of the result's column, with its unit where that was given; a probe that this needs is put into the case.
+    /// Returns the name of the result's column, with its unit if that was given. Adds the probe that the column needs
+    /// to the case.
     ///
     /// # Errors
-    /// [`Error::Usage`]: there is no such place.
+    /// [`Error::Usage`] if there is no such position.
     pub fn placed(&self, case: &mut Case) -> Result<String> {
         let Some(place) = &self.place else {
             return Ok(self.quantity.clone());
@@ -68,27 +69,27 @@ impl Match {
     }
 }
 
-/// A measured column beside a column of results.
+/// Measured column assigned to a column of results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Matched {
-    /// As it was asked for.
+    /// Requested assignment.
     pub asked: Match,
-    /// Column of the table.
+    /// Index of the column in the table.
     pub column: usize,
-    /// Column of the result.
+    /// Index of the column in the result.
     pub index: usize,
-    /// Its name without unit.
+    /// Name of the result's column, without unit.
     pub name: String,
-    /// Its unit.
+    /// Unit of the result's column.
     pub unit: String,
-    /// How many of that unit one of the column's is.
+    /// Factor from the unit of the measured column to that of the result.
     pub scale: f64,
-    /// The values in the result's unit; nothing where none was measured.
+    /// Measured values in the unit of the result; `None` for empty cells.
     pub values: Vec<Option<f64>>,
 }
 
 impl Matched {
-    /// Name with unit, as keys of results have it.
+    /// Name with unit, as in keys of results.
     pub fn key(&self) -> String {
         probes::key(&self.name, &self.unit)
     }
@@ -97,11 +98,11 @@ impl Matched {
 /// Name without unit, and unit, of a column of a result.
 pub type Named = (String, String);
 
-/// Finds the columns of matches among those of a result; `names` are theirs by [`Match::placed`].
+/// Finds the columns of assignments among those of a result; `names` are the names returned by [`Match::placed`].
 ///
 /// # Errors
-/// [`Error::Usage`] for columns and quantities that are not there, units that do not match, two matches of one column, a column without a
-/// number; [`Error::Case`] for cells that are none.
+/// [`Error::Usage`] for unknown columns and quantities, units that do not match, two matches of one column, a column
+/// without numbers; [`Error::Case`] for cells that are not numbers.
 pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Named]) -> Result<Vec<Matched>> {
     if matches.is_empty() {
         let what = "nothing to compare: --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle";
@@ -146,7 +147,7 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
     Ok(found)
 }
 
-/// What there is, where nothing is near; of very many the first.
+/// Lists the available columns, only the first of very many.
 fn available(columns: &[Named]) -> String {
     let names = columns.iter().map(|(name, _)| name.as_str());
     format!(
@@ -155,7 +156,7 @@ fn available(columns: &[Named]) -> String {
     )
 }
 
-/// The column of a name, with or without its unit.
+/// Index of the column of a name, with or without its unit.
 fn find(columns: &[Named], name: &str) -> Option<usize> {
     let plain = columns.iter().position(|(own, _)| own == name);
     plain.or_else(|| {

@@ -1,9 +1,9 @@
-//! Measured data: a table of numbers and what of a simulation its columns are.
+//! Measured data: a table of numbers, and the assignment of its columns to quantities of a simulation.
 //!
 //! ```text
 //! table     a CSV file: one line of headings, then numbers
-//! matching  COLUMN=QUANTITY[@PLACE]: a column beside a column of a result
-//! places    where along the beam and the network a quantity is
+//! matching  COLUMN=QUANTITY[@PLACE]: assigns a column to a column of a result
+//! places    positions of quantities along the beam and in the network
 //! ```
 
 pub mod matching;

@@ -1,25 +1,25 @@
-//! Where a quantity is: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
+//! Positions of quantities: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
 
 use crate::case::schema::{Case, Probe};
 use crate::discrete::quantities::stations;
 use crate::error::{Error, Result};
 
-/// What the name of a column begins with, and the probe that has to be there for it.
+/// Name of a column at a position, and the probe that it requires.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
-    /// The column's name, with its unit where it was given.
+    /// Name of the column, with its unit if that was given.
     pub name: String,
-    /// A probe that the case does not have.
+    /// Probe that the case lacks.
     pub probe: Option<Probe>,
 }
 
-/// What a place can be, for people.
+/// Accepted positions, for messages.
 const WANTED: &str = "a share of the length from 0 to 1, tip, the name of a probe, `bladder 3`, `port NAME`, `accumulator NAME` or `contact NAME`";
 
-/// The column of a quantity at a place.
+/// Returns the column of a quantity at a position.
 ///
 /// # Errors
-/// [`Error::Usage`]: the case has no such place, or the quantity is none of it.
+/// [`Error::Usage`]: the case has no such position, or the quantity does not exist there.
 pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
     let wrong = |what: String| Error::Usage(format!("--match ..={quantity}@{place}: {what}"));
     let placed = |begin: &str, probe| Placed {
@@ -54,7 +54,7 @@ pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
     }
 }
 
-/// The pressure of a bladder is that at its middle.
+/// Returns the column of the pressure of a bladder, which is the pressure at its middle.
 fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<Placed, String> {
     let Some(bladders) = &case.bladders else {
         return Err("the case has no bladders".into());
@@ -79,7 +79,7 @@ fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<P
     })
 }
 
-/// The probe of a case at a place, or one that is named by it.
+/// Returns the probe of the case at a position, or a new one named after the position.
 fn at_place(case: &Case, at: f64) -> Probe {
     let there = case.probes.iter().find(|probe| (probe.at - at).abs() < 1e-12);
     there.cloned().unwrap_or_else(|| Probe {

@@ -1,5 +1,5 @@
-//! A table of measurements: one line of headings, then a line a row; commas, semicolons or tabs between cells. Blank lines and those
-//! that begin with # count not; an empty cell was not measured.
+//! Table of measurements: one line of headings, then one line per row; commas, semicolons or tabs separate cells. Blank
+//! lines and lines that begin with # are ignored. An empty cell was not measured.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -11,26 +11,26 @@ use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result, Violation, listed, shown};
 use crate::study::measure::table::{MOST, cells, fault, lines};
 
-/// Largest number that counts as measured, in the unit of its column and in SI units: its square is finite in any sum.
+/// Largest number accepted as measured, in the unit of its column and in SI units; its square stays finite in any sum.
 const LARGEST: f64 = 1e30;
 
-/// A cell and where it stands in the text.
+/// Cell and its position in the text.
 type Cell = (String, Range<usize>);
 
-/// A row of cells with its line, counted from 1.
+/// Row of cells with its line number, counted from 1.
 #[derive(Clone, Debug)]
 struct Row {
     line: usize,
     cells: Vec<Cell>,
 }
 
-/// A table as it was read.
+/// Table of measurements, as read.
 #[derive(Clone, Debug)]
 pub struct Table {
     source: Source,
     /// Check sum of the text.
     pub crc32: u32,
-    /// Its columns.
+    /// Headings of the columns.
     pub columns: Vec<Heading>,
     rows: Vec<Row>,
 }
@@ -39,7 +39,7 @@ impl Table {
     /// Reads a file.
     ///
     /// # Errors
-    /// It cannot be read, or as [`Table::parse`].
+    /// The file cannot be read; otherwise as [`Table::parse`].
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(path, &case::text(path)?)
     }
@@ -47,7 +47,8 @@ impl Table {
     /// Reads a text.
     ///
     /// # Errors
-    /// [`Error::Case`] with every fault at its place: no headings, two that are alike, no rows, rows of another length.
+    /// [`Error::Case`] with the position of every fault: no headings, duplicate headings, no rows, rows of another
+    /// length.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         let source = Source::of(path, text);
         let mut lines = lines(text);
@@ -113,22 +114,22 @@ impl Table {
         })
     }
 
-    /// Rows.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there are none, which a table that was read never is.
+    /// True if there are no rows, which never applies to a table that was read.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Line of a row in the file, from 1.
+    /// Line number of a row in the file, from 1.
     pub fn line(&self, row: usize) -> usize {
         self.rows[row].line
     }
 
-    /// The column of a name: a whole heading, or one without its unit.
+    /// Index of the column of a name: a whole heading, or one without its unit.
     pub fn find(&self, name: &str) -> Option<usize> {
         let whole = self.columns.iter().position(|column| column.heading == name);
         whole.or_else(|| {
@@ -137,14 +138,15 @@ impl Table {
         })
     }
 
-    /// The column with the standard deviations of another: of its whole heading or of its name, with `_sd` behind.
+    /// Index of the column with the standard deviations of another: the heading or name of that column with the suffix
+    /// `_sd`.
     pub fn deviation(&self, column: usize) -> Option<usize> {
         let own = &self.columns[column];
         let mut names = [&own.heading, &own.name].into_iter();
         names.find_map(|name| self.find(&format!("{name}_sd")))
     }
 
-    /// The column of a name that was asked for by an option.
+    /// Index of a column requested by an option.
     ///
     /// # Errors
     /// [`Error::Usage`] with the nearest heading.
@@ -160,10 +162,10 @@ impl Table {
         })
     }
 
-    /// The column of time: that which is asked for, or the one that is called `t` or `time`.
+    /// Index of the column of time: the requested one, or the one named `t` or `time`.
     ///
     /// # Errors
-    /// [`Error::Usage`] where there is none.
+    /// [`Error::Usage`] if there is none.
     pub fn time(&self, asked: Option<&str>) -> Result<usize> {
         if let Some(name) = asked {
             return self.wanted(name, "--time");
@@ -179,10 +181,10 @@ impl Table {
         })
     }
 
-    /// The numbers of a column, nothing where a cell is empty, times a scale.
+    /// Numbers of a column times a scale; `None` for empty cells.
     ///
     /// # Errors
-    /// [`Error::Case`] with every cell that is no finite number, at its place.
+    /// [`Error::Case`] with the position of every cell that is not a finite number or is too large.
     pub fn numbers(&self, column: usize, scale: f64) -> Result<Vec<Option<f64>>> {
         let mut faults = vec![];
         let numbers = self.rows.iter().map(|row| {
@@ -216,10 +218,10 @@ impl Table {
         self.sound(faults).map(|()| numbers)
     }
 
-    /// The numbers of a column in which every cell has one.
+    /// Numbers of a column that has no empty cells, times a scale.
     ///
     /// # Errors
-    /// As [`Table::numbers`], and where a cell is empty.
+    /// As [`Table::numbers`], and for empty cells.
     pub fn all_numbers(&self, column: usize, scale: f64) -> Result<Vec<f64>> {
         let numbers = self.numbers(column, scale)?;
         let empty = (0..self.len()).filter(|row| numbers[*row].is_none()).take(MOST);
@@ -231,7 +233,7 @@ impl Table {
     /// Instants [s] of a column of time: ascending, none below 0.
     ///
     /// # Errors
-    /// As [`Table::all_numbers`], with times out of order at their places; a column in another unit than one of time.
+    /// As [`Table::all_numbers`], with the positions of times out of order; a unit that is not one of time.
     pub fn instants(&self, column: usize) -> Result<Vec<f64>> {
         let scale = self.scale(column, "s", "time")?;
         let times = self.all_numbers(column, scale)?;
@@ -249,15 +251,15 @@ impl Table {
         self.sound(faults).map(|()| times)
     }
 
-    /// How many SI units of a dimension the numbers of a column are; those without a unit are taken for SI units.
+    /// Factor from the unit of a column to the SI unit of a dimension; numbers without a unit count as SI.
     ///
     /// # Errors
-    /// [`Error::Usage`] where the heading names another dimension, or a unit that is not known.
+    /// [`Error::Usage`] if the heading has a unit of another dimension, or an unknown unit.
     pub fn scale(&self, column: usize, si: &str, what: &str) -> Result<f64> {
         self.columns[column].scale(si, what).map_err(Error::Usage)
     }
 
-    /// A fault at a cell.
+    /// Describes a fault at a cell.
     pub fn fault(&self, row: usize, column: usize, what: &str) -> Violation {
         let Row { line, cells } = &self.rows[row];
         let heading = shown(&self.columns[column].heading);
@@ -267,10 +269,10 @@ impl Table {
         )
     }
 
-    /// Nothing, or the error of faults at their places.
+    /// Returns an error that contains the faults, if there are any.
     ///
     /// # Errors
-    /// [`Error::Case`] where there are any.
+    /// [`Error::Case`] if there are any.
     pub fn sound(&self, faults: Vec<Violation>) -> Result<()> {
         match faults.is_empty() {
             true => Ok(()),

@@ -1,4 +1,5 @@
-//! Everything in order: the full model, itself at a tenth of the tolerance, each effect left out, the program's own choice.
+//! Ablation: runs the full model, the full model at a tenth of the tolerance, the model without each effect, and the
+//! automatic choice.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,25 +16,25 @@ use crate::study::evaluations::Evaluations;
 
 /// Tightest tolerance that is allowed.
 const TIGHTEST: f64 = 1e-13;
-/// Own error of the full model beyond which its motion cannot be followed.
+/// Error of the full model above which the integrator cannot follow its motion.
 const LOST: f64 = 0.3;
-/// Part of the work, and of the time, that is worth leaving something out for.
+/// Least relative saving of work, or of time, that justifies leaving an effect out.
 pub const WORTH: f64 = 0.05;
 
-/// The measure that is, for each effect, the quantity that changes most.
+/// Name of the measure that is, for each effect, the quantity with the largest change.
 pub const LARGEST: &str = "largest";
 
-/// What became of an effect.
+/// Verdict on an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// Results change by more than the tolerance.
+    /// Without it, results change by more than the tolerance.
     Needed,
-    /// They do not, and nothing is saved.
+    /// Without it, results change by less than the tolerance, and nothing is saved.
     Harmless,
-    /// They do not, and work or time is saved.
+    /// Without it, results change by less than the tolerance, and work or time is saved.
     Saves,
-    /// The integrator's own error is above the tolerance.
+    /// The change exceeds the tolerance, but not the integrator's own error.
     Undecided,
     /// The model without it could not be run to the end.
     Failed,
@@ -43,12 +44,12 @@ pub enum Verdict {
     Absent,
 }
 
-/// A run beside another.
+/// Run compared with another run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Compared {
     /// The run.
     pub trial: Trial,
-    /// What it is compared with.
+    /// Model with which it is compared.
     pub against: String,
     /// Relative change by quantity.
     #[serde(deserialize_with = "null::by_name")]
@@ -56,71 +57,71 @@ pub struct Compared {
     /// Name and change of the quantity that changes most.
     #[serde(deserialize_with = "null::named")]
     pub largest: Option<(String, f64)>,
-    /// Whether that is above the integrator's own error.
+    /// True if that change is above the integrator's own error.
     pub above_own_error: bool,
-    /// Unknowns more, or fewer.
+    /// Difference of the numbers of unknowns.
     pub unknowns: i64,
-    /// Work over work.
+    /// Ratio of the work.
     #[serde(deserialize_with = "null::number")]
     pub work: f64,
-    /// Least wall time over least wall time.
+    /// Ratio of the least wall times.
     #[serde(deserialize_with = "null::number")]
     pub wall: f64,
 }
 
-/// An effect of the table.
+/// Row of the table: one effect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
     /// The effect.
     pub name: Effect,
-    /// What became of it.
+    /// Verdict.
     pub verdict: Verdict,
-    /// Why it was not run, or did not finish.
+    /// Reason why it was not run, or did not finish.
     pub reason: Option<String>,
-    /// Whether `"auto"` keeps it.
+    /// True if `"auto"` keeps it.
     pub auto: bool,
-    /// The number by which `"auto"` decides.
+    /// Criterion by which `"auto"` decides.
     pub number: String,
-    /// Effects that are left out of both models that are compared.
+    /// Effects left out of both models that are compared.
     pub without: Vec<Effect>,
     /// Effects that have no meaning without it.
     pub takes: Vec<Effect>,
-    /// The model without it.
+    /// Comparison of the model without it.
     pub left_out: Option<Compared>,
 }
 
-/// What each effect does to a case.
+/// Result of an ablation: the influence of each effect on a case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Ablation {
     /// Name of the case.
     pub case: String,
-    /// What was asked for.
+    /// Requested repeats and budget.
     pub plan: Plan,
     /// The case's `effects_tolerance`.
     pub tolerance: f64,
     /// Relative tolerance of the integrator.
     pub rtol: f64,
-    /// Which figures count: where the motion cannot be followed, those over the window.
+    /// Figures that are compared: only those over the window if the motion cannot be followed.
     pub judged_by: Judged,
     /// Quantities of the full model.
     pub measures: Vec<Measure>,
     /// The full model.
     pub full: Trial,
-    /// Itself at a tenth of the tolerance.
+    /// The full model at a tenth of the tolerance.
     pub tighter: Trial,
-    /// Every effect of the table.
+    /// Rows of the table, one per effect.
     pub rows: Vec<Row>,
-    /// The program's own choice.
+    /// The automatic choice.
     pub auto: Option<Compared>,
-    /// The case's choices by name, if it has any.
+    /// The choices that the case sets by name, if any.
     pub given: Option<Compared>,
-    /// What the case should say.
+    /// Recommended choices.
     pub recommendation: Option<Recommendation>,
     /// Wall time of everything [s].
     pub spent_s: f64,
 }
 
-/// What a comparison needs to know of the full model.
+/// Criteria of comparisons, from the full model.
 pub struct Judge {
     reference: Reference,
     measures: Vec<Measure>,
@@ -129,7 +130,7 @@ pub struct Judge {
 }
 
 impl Judge {
-    /// One run beside another that finished; `None` where that did not.
+    /// Compares the run `other` with the run `base`; `None` if only the latter did not finish.
     pub fn compare(&self, runs: &Runs, base: usize, other: usize) -> Option<Compared> {
         let (base, trial) = (runs.trial(base), runs.trial(other));
         let changes = match &trial.summary {
@@ -149,7 +150,7 @@ impl Judge {
         })
     }
 
-    /// What a comparison says of what was left out.
+    /// Verdict of a comparison; `scatter` is the relative scatter of the wall times of `base`.
     pub fn verdict(&self, compared: &Compared, scatter: f64) -> Verdict {
         if compared.trial.summary.is_none() {
             return Verdict::Failed;
@@ -174,11 +175,11 @@ impl Judge {
     }
 }
 
-/// Runs the full model, then each effect left out, then the program's own choice, then what is recommended. Runs among `evaluations` are
-/// not done again.
+/// Runs the full model, the model without each effect, the automatic choice and the recommended choices. Runs stored in
+/// `evaluations` are not repeated.
 ///
 /// # Errors
-/// [`Error::Usage`] for a measure that the full model has not.
+/// [`Error::Usage`] for a measure that the full model lacks.
 pub fn ablate(
     case: &Case,
     plan: Plan,
@@ -290,7 +291,7 @@ pub fn ablate(
     Ok(found)
 }
 
-/// Refuses a measure that there is not.
+/// Rejects an unknown measure.
 fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
     let Some(name) = measure else { return Ok(()) };
     let names: Vec<&str> = [LARGEST]
@@ -303,7 +304,8 @@ fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
     Err(Error::Usage(format!("--measure {name}: one of {}", names.join(", "))))
 }
 
-/// What others are judged by: every figure, or those over the window where the integrator cannot follow the motion.
+/// Returns the criteria of comparisons: every figure, or only those over the window if the integrator cannot follow the
+/// motion.
 fn judged(found: &mut Ablation, plan: Plan, floors: &Floors) -> Option<Judge> {
     let full = found.full.summary.as_ref()?;
     let mut reference = Reference::new(full, floors);

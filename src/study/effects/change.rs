@@ -1,4 +1,4 @@
-//! How far the figures of two runs are apart, beside the integrator's own error.
+//! Changes of figures between two runs, and the integrator's own error.
 
 use std::collections::BTreeMap;
 
@@ -8,14 +8,14 @@ use crate::run::null;
 use crate::run::summary::{Quantity, Summary};
 use crate::study::counted::{Floors, counted};
 
-/// Which figures of quantities are compared.
+/// Figures of quantities that are compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judged {
-    /// All of them.
+    /// All figures.
     #[default]
     Figures,
-    /// Those over the window alone: root mean squares and increments.
+    /// Only figures over the window: root mean squares and increments.
     WindowStatistics,
 }
 
@@ -30,20 +30,20 @@ pub struct Measure {
     /// Its largest figure, in its unit.
     #[serde(deserialize_with = "null::number")]
     pub size: f64,
-    /// The integrator's own relative error; unknown when the run at a tenth of the tolerance did not finish.
+    /// The integrator's own relative error; `None` if the run at a tenth of the tolerance did not finish.
     pub own: Option<f64>,
 }
 
-/// The full model's quantities, and what others are compared by.
+/// Quantities of the full model, and the figures by which runs are compared.
 #[derive(Clone, Debug)]
 pub struct Reference {
     quantities: BTreeMap<String, Quantity>,
-    /// Which figures count.
+    /// Figures that are compared.
     pub judged_by: Judged,
 }
 
 impl Reference {
-    /// Of the full model's run: the quantities that are more than round-off.
+    /// Collects the quantities of the full model that exceed rounding errors.
     pub fn new(full: &Summary, floors: &Floors) -> Self {
         Self {
             quantities: counted(full, floors).map(|(name, q)| (name.clone(), *q)).collect(),
@@ -51,7 +51,7 @@ impl Reference {
         }
     }
 
-    /// Change of every quantity from one run to another.
+    /// Returns the relative change of every quantity from one run to another.
     pub fn changes(&self, from: &Summary, to: &Summary) -> Changes {
         let judged = |q: &Quantity| match self.judged_by {
             Judged::Figures => q.figures().collect::<Vec<_>>(),
@@ -71,7 +71,7 @@ impl Reference {
         self.quantities.iter().map(change).collect()
     }
 
-    /// The quantities with the integrator's own error.
+    /// Returns the quantities with the integrator's own error.
     pub fn measures(&self, own: Option<&Changes>) -> Vec<Measure> {
         let measure = |(name, q): (&String, &Quantity)| Measure {
             name: name.clone(),
@@ -82,7 +82,7 @@ impl Reference {
     }
 }
 
-/// What changes say.
+/// Size of changes relative to the tolerance and to the integrator's own error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// Above the tolerance, and above the integrator's own error.
@@ -93,7 +93,7 @@ pub enum Size {
     Small,
 }
 
-/// Judges changes against a tolerance.
+/// Compares changes with a tolerance.
 pub fn judge(changes: &Changes, measures: &[Measure], tolerance: f64) -> Size {
     let beyond: Vec<_> = measures.iter().filter(|m| of(changes, m) > tolerance).collect();
     if beyond.iter().any(|m| of(changes, m) > m.own.unwrap_or(0.0)) {
@@ -105,8 +105,8 @@ pub fn judge(changes: &Changes, measures: &[Measure], tolerance: f64) -> Size {
     }
 }
 
-/// The quantity that changes most: of those that change by more than the integrator's own error, if there is one, and if that
-/// error does not hide whether the tolerance is kept.
+/// Returns the quantity with the largest change. Changes above the integrator's own error have priority, unless that
+/// error hides whether the tolerance is met.
 pub fn largest<'a>(changes: &Changes, measures: &'a [Measure], tolerance: f64) -> Option<(&'a Measure, f64)> {
     let hidden = judge(changes, measures, tolerance) == Size::Hidden;
     let above = |m: &&Measure| !hidden && of(changes, m) > m.own.unwrap_or(0.0);

@@ -1,4 +1,4 @@
-//! Which effects can be left out of a case, and which others that takes.
+//! Effects that can be left out of a case, and other effects that are left out with them.
 
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
@@ -6,34 +6,34 @@ use crate::error;
 use crate::model::effects::{Cause, EffectSet, Scene, needs};
 use crate::model::{Model, Network};
 
-/// An effect, and what leaving it out takes.
+/// Effect, and the way to leave it out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
     /// The effect.
     pub effect: Effect,
-    /// How it is left out, or why it is not.
+    /// Way to leave it out, or the reason to keep it.
     pub out: Result<Out, Kept>,
 }
 
-/// How an effect is left out.
+/// Way to leave an effect out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Out {
-    /// Effects that must be left out first; what is compared is with and without it, both without these.
+    /// Effects that must be left out first; neither of the compared models has them.
     pub without: Vec<Effect>,
     /// Effects that have no meaning without it.
     pub takes: Vec<Effect>,
 }
 
-/// Why an effect is not left out.
+/// Reason to keep an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kept {
-    /// Whether it is in the full model at all.
+    /// True if it is in the full model.
     pub there: bool,
-    /// Why, one clause.
+    /// Reason, one clause.
     pub why: String,
 }
 
-/// The case with other effects.
+/// Returns the case with other effects.
 pub fn with(case: &Case, effects: Effects) -> Case {
     Case {
         effects,
@@ -41,24 +41,24 @@ pub fn with(case: &Case, effects: Effects) -> Case {
     }
 }
 
-/// The full model, with what the case names beyond that.
+/// Returns the full model, with effects that the case names beyond it.
 ///
 /// # Errors
-/// Of [`Network::of`].
+/// Those of [`Network::of`].
 pub fn whole(case: &Case) -> error::Result<Case> {
     without(case, &[])
 }
 
-/// The same without some effects.
+/// Returns the full model without some effects.
 ///
 /// # Errors
-/// Of [`Network::of`].
+/// Those of [`Network::of`].
 pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let named = case.effects.choices();
     let full = EffectSet::whole(&with(case, Effects::Full), Network::of(case)?.as_ref());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
-        // what needs what is left out goes along, and is not asked for
+        // effects that need an omitted effect are omitted, too
         let along = needs(effect).iter().any(|needed| choices.of(*needed) == Choice::Off);
         let choice = match along || off.contains(&effect) {
             true => Choice::Off,
@@ -70,13 +70,13 @@ pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     Ok(with(case, Effects::Chosen(choices)))
 }
 
-/// The effects of a case's model, which may be refused.
+/// Returns the effects of a case's model, with refusals if there are any.
 pub fn effects(case: &Case) -> error::Result<EffectSet> {
     Ok(Model::new(case)?.effects)
 }
 
-/// Whether the program keeps an effect, whatever its number, since without it an instability might not show. A run need not
-/// show it either: what is not disturbed stays straight.
+/// Returns the effects that the program always keeps because an instability might not show without them. A run need not
+/// show the instability either: an undisturbed beam stays straight.
 pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
     let full = whole(case)?;
     let model = Model::new(&full)?;
@@ -88,16 +88,16 @@ pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
     }))
 }
 
-/// What must not be left out, and why.
+/// Effects that must not be left out, and the reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
     /// The effects.
     pub effects: Vec<Effect>,
-    /// One clause.
+    /// Reason, one clause.
     pub why: String,
 }
 
-/// Every effect.
+/// Returns all effects with the way to leave each out.
 pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
     let (full, plain) = (effects(&whole(case)?)?, effects(&with(case, Effects::Full))?);
     let candidate = |effect: Effect| -> error::Result<Candidate> {
@@ -115,7 +115,7 @@ pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
     Effect::ALL.iter().copied().map(candidate).collect()
 }
 
-/// Alone where that is possible, else together with one other without which it can be compared.
+/// Leaves an effect out alone if possible, otherwise together with one other effect that neither compared model has.
 fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Result<Out, String>> {
     let alone = effects(&without(case, &[effect])?)?;
     if alone.refusals.is_empty() {
@@ -144,7 +144,7 @@ fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Res
     Ok(Err(refused.collect::<Vec<_>>().join("; ")))
 }
 
-/// What goes with an effect.
+/// Effects that are left out together with an effect.
 fn taken(with: &EffectSet, without: &EffectSet, effect: Effect) -> Vec<Effect> {
     let gone = |other: &Effect| *other != effect && with.has(*other) && !without.has(*other);
     Effect::CHOSEN.iter().copied().filter(gone).collect()

@@ -1,4 +1,4 @@
-//! Which effects a case leaves out by itself, and the cases that have more of them.
+//! Effects that a case leaves out by itself, and the case that includes them.
 
 use super::choices::{effects, with};
 use crate::case::Case;
@@ -7,17 +7,18 @@ use crate::discrete::System;
 use crate::error::Result;
 use crate::model::effects::EffectSet;
 
-/// A case with the effects that another leaves out.
+/// Case with the effects that another case leaves out.
 #[derive(Clone, Debug)]
 pub struct Full {
     /// The case.
     pub case: Case,
-    /// What it has more.
+    /// Additional effects.
     pub left_out: Vec<Effect>,
 }
 
-/// The case with everything that it leaves to the program. What it names off stays off, and so does what comes by name only; motion
-/// across stays out where nothing makes the beam leave its line, which is exact. `None` where nothing is then left out.
+/// Returns the case with all effects that it leaves to the program. Effects that the case switches off stay off, and so
+/// do effects that are active by name only. Transverse motion stays off if nothing deflects the beam, which is exact.
+/// `None` if the case leaves nothing out.
 pub fn full(case: &Case) -> Result<Option<Full>> {
     let auto = effects(case)?;
     let mut choices = named(case, &auto);
@@ -41,13 +42,13 @@ pub fn full(case: &Case) -> Result<Option<Full>> {
     Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
 }
 
-/// Effects of one set that another has not.
+/// Effects of `many` that `few` lacks.
 fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
     let more = |effect: &Effect| many.has(*effect) && !few.has(*effect);
     Effect::ALL.iter().copied().filter(more).collect()
 }
 
-/// What the case names, and what is there anyway.
+/// Choices of the case, with present effects switched on.
 fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
     let mut choices = case.effects.choices();
     for &effect in Effect::CHOSEN {
@@ -59,7 +60,7 @@ fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
     choices
 }
 
-/// Whether an effect is motion across a beam that nothing makes leave its line, or follows from it.
+/// True if the effect is transverse motion and nothing deflects the beam.
 fn straight(auto: &EffectSet, effect: Effect) -> bool {
     effect == Effect::TransverseMotion && !auto.has(effect)
 }

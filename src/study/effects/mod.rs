@@ -1,17 +1,17 @@
-//! Ablation: what each effect does to a case, by running the full model without it.
+//! Ablation: the influence of each effect on a case, from runs of the full model without it.
 //!
 //! ```text
-//! choices      which effects can be left out, and which others that takes
+//! choices      effects that can be left out, and others that are left out with them
 //! full         the case with all effects that it leaves to the program
 //! trial        one run: work, time, figures; every set of effects is run once
-//! change       how far the figures of two runs are apart, beside the integrator's own error
-//! ablation     everything in order
-//! recommend    what the case should leave out, checked by a run
+//! change       changes of figures between two runs, and the integrator's own error
+//! ablation     all runs, and the verdict on each effect
+//! recommend    effects that the case should leave out, checked by a run
 //! ```
 //!
-//! **Change.** Largest difference of a quantity's figures to those of the full model, relative to the quantity's largest
-//! figure; 1 where the quantity is gone. **Own error.** The same between the full model and itself at a tenth of the
-//! tolerance: what is below it says nothing. **Work.** Residual evaluations times unknowns.
+//! **Change.** Largest difference of a quantity's figures from those of the full model, relative to the quantity's
+//! largest figure; 1 if the quantity is missing. **Own error.** Change between the full model and the full model at a
+//! tenth of the tolerance. Changes below it are not significant. **Work.** Residual evaluations times unknowns.
 
 pub mod ablation;
 pub mod change;

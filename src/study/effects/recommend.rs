@@ -1,4 +1,5 @@
-//! What the case should leave out: everything that saves and changes nothing, checked by a run of all of it together.
+//! Recommended choices of a case: leave out every effect that saves work and changes nothing, checked by a run without
+//! all of them.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -12,21 +13,22 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::effects::EffectSet;
 
-/// What a case should say, and how that was checked.
+/// Recommended choices, and their check.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Recommendation {
     /// The value of `effects`.
     pub effects: Value,
-    /// What is left out, in the order of the table.
+    /// Effects left out, in the order of the table.
     pub off: Vec<Effect>,
-    /// What was not left out after all, and why.
+    /// Effects that are retained after all, with the reasons.
     pub dropped: Vec<(Effect, String)>,
-    /// The model so chosen, beside the full one.
+    /// The recommended model compared with the full one.
     pub run: Option<Compared>,
 }
 
-/// Never leaves out what the program keeps for the sake of stability. Else leaves out everything that saves, and what is harmless where the
-/// program leaves it out by itself, then takes back what changes most until the rest together changes nothing.
+/// Never leaves out effects that the program keeps for stability. Otherwise leaves out every effect that saves work,
+/// and harmless effects that the program leaves out by itself. Then restores the effect with the largest change until
+/// the rest together changes nothing.
 pub fn recommend(
     case: &Case,
     rows: &[Row],
@@ -46,7 +48,7 @@ pub fn recommend(
     {
         off.extend(r.without.iter().chain([&r.name]));
     }
-    // What makes no difference is left to the program.
+    // Harmless effects follow the choice of the program.
     off.extend(
         rows.iter()
             .filter(|r| r.verdict == Verdict::Harmless && !r.auto && r.without.is_empty())
@@ -99,7 +101,7 @@ pub fn recommend(
             };
             (most, why)
         };
-        // What needs it out stays with it.
+        // Effects that require the restored one to be left out are restored, too.
         let Some(out) = out else { continue };
         let bound = |name: Effect| row(name).is_some_and(|r| r.without.contains(&out));
         off.retain(|name| *name != out && !bound(*name));
@@ -107,7 +109,7 @@ pub fn recommend(
     }
 }
 
-/// The fewest choices by name that make the program choose these effects.
+/// Returns the fewest choices by name with which the program selects these effects.
 fn naming(case: &Case, wanted: &EffectSet) -> Result<EffectChoices> {
     let mut named = EffectChoices::default();
     loop {
@@ -121,7 +123,7 @@ fn naming(case: &Case, wanted: &EffectSet) -> Result<EffectChoices> {
     }
 }
 
-/// As a case says it.
+/// Value of `effects` in a case.
 fn value(choices: &EffectChoices) -> Value {
     if *choices == EffectChoices::default() {
         return "auto".into();

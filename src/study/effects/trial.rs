@@ -1,4 +1,5 @@
-//! One run: work, time, figures. Every set of effects is run once and then, by turns with the others, again for its time.
+//! Runs with work, time and figures. Every set of effects is run once, then repeated in turns with the others to
+//! measure its time.
 
 use std::time::Instant;
 
@@ -17,61 +18,61 @@ use crate::run::summary::{Counters, Status, Summary};
 use crate::study::accuracy::trial::Ending;
 use crate::study::evaluations::Evaluations;
 
-/// Steps between two looks at the clock.
+/// Steps between two checks of the clock.
 const LOOK: u64 = 64;
 
-/// What is asked for.
+/// Requested repeats and budget.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
-    /// Timed runs of each model, after one to warm up; with none no verdict looks at time.
+    /// Timed runs of each model, after a warm-up run; without any, verdicts ignore time.
     pub repeats: usize,
-    /// Wall time for everything [s].
+    /// Budget of wall time [s].
     pub budget_s: f64,
 }
 
-/// A run is about to begin.
+/// Event before each run.
 #[derive(Clone, Debug)]
 pub struct Event<'a> {
-    /// Of what.
+    /// Name of the model.
     pub what: &'a str,
     /// Runs so far.
     pub done: usize,
     /// Wall time so far [s].
     pub spent_s: f64,
-    /// What may be spent [s].
+    /// Budget [s].
     pub budget_s: f64,
 }
 
-/// Told of every run before it begins.
+/// Callback before each run.
 pub type Watch<'a> = &'a dyn Fn(&Event);
 
-/// A model, and what came of it.
+/// Model, and the outcome of its runs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trial {
-    /// Of what.
+    /// Name of the model.
     pub what: String,
-    /// How it went.
+    /// Outcome.
     pub ending: Ending,
-    /// Why it did not finish.
+    /// Reason why it did not finish.
     pub reason: Option<String>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub unknowns: usize,
     /// Work of one run.
     pub counters: Counters,
     /// Residual evaluations times unknowns.
     #[serde(deserialize_with = "null::number")]
     pub work: f64,
-    /// Wall times of the timed runs, least first [s]; of the first run where there are no others.
+    /// Wall times of the timed runs in ascending order [s]; that of the first run if there are no others.
     pub walls_s: Vec<f64>,
-    /// Timed runs.
+    /// Number of timed runs.
     pub repeats: usize,
-    /// What came out; only of finished runs.
+    /// Results; finished runs only.
     #[serde(skip)]
     pub summary: Option<Summary>,
 }
 
 impl Trial {
-    /// Not begun.
+    /// Returns a trial that was not started.
     pub fn skipped(what: &str) -> Self {
         Self {
             what: what.to_string(),
@@ -91,7 +92,7 @@ impl Trial {
         self.walls_s.first().copied().unwrap_or(f64::NAN)
     }
 
-    /// How far the median of the wall times is above the least, relative; 0 for fewer than two.
+    /// Excess of the median wall time over the least, relative to the latter; 0 for fewer than two.
     pub fn scatter(&self) -> f64 {
         let median = self.walls_s.get(self.walls_s.len() / 2);
         median.map_or(0.0, |median| median / self.wall_s() - 1.0)
@@ -106,12 +107,12 @@ pub struct Runs<'a> {
     evaluations: Evaluations,
     all: Vec<(Case, EffectSet, Trial)>,
     done: usize,
-    /// Wall time of runs that an interrupted command had done [s].
+    /// Wall time of the runs that an interrupted command had finished [s].
     earlier_s: f64,
 }
 
 impl<'a> Runs<'a> {
-    /// None yet; those among `evaluations` are not done again.
+    /// Creates an empty collection; runs stored in `evaluations` are not repeated.
     pub fn new(plan: Plan, evaluations: &Evaluations, watch: Watch<'a>) -> Self {
         Self {
             plan,
@@ -124,7 +125,7 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// A run by its number.
+    /// Returns a run by its number.
     pub fn trial(&self, k: usize) -> &Trial {
         &self.all[k].2
     }
@@ -138,7 +139,7 @@ impl<'a> Runs<'a> {
         self.plan.budget_s - self.spent_s()
     }
 
-    /// Runs a case, unless one with the same effects and tolerance was run. Returns its number.
+    /// Runs a case, unless a case with the same effects and tolerance was run; returns the number of the run.
     pub fn run(&mut self, what: &str, case: Case) -> Result<usize> {
         let set = effects(&case)?;
         let alike = |c: &Case, s: &EffectSet| c.solver.rtol == case.solver.rtol && on(s) == on(&set);
@@ -198,12 +199,12 @@ impl<'a> Runs<'a> {
         trial
     }
 
-    /// Runs what has finished again, by turns, as far as the budget goes.
+    /// Repeats the finished runs in turns, as far as the budget allows.
     pub fn repeat(&mut self) {
         for round in 1..=self.plan.repeats {
             for k in 0..self.all.len() {
                 let (case, set, trial) = &self.all[k];
-                // What is judged by a tighter tolerance is not judged by its time.
+                // Runs at a tighter tolerance are not compared by time.
                 if case.solver.rtol < self.all[0].0.solver.rtol {
                     continue;
                 }
@@ -232,13 +233,13 @@ impl<'a> Runs<'a> {
         }
     }
 
-    /// Runs a case for the so manieth time, unless that is known; returns what came out and the wall time [s].
+    /// Runs a case for repeat `round`, unless that run is stored; returns its summary and wall time [s].
     fn once(&mut self, case: &Case, set: &EffectSet, round: usize, most_s: f64) -> Result<(Summary, f64)> {
         let begin = Instant::now();
         let key = (on(set), case.solver.rtol, round);
         let compute = || once(case, most_s);
         let found = self.evaluations.try_get(&key, &halt::asked, compute)?;
-        // what was read took its time before
+        // stored runs took their time earlier
         self.earlier_s += (found.1 - begin.elapsed().as_secs_f64()).max(0.0);
         Ok(found)
     }
@@ -254,12 +255,12 @@ impl<'a> Runs<'a> {
     }
 }
 
-/// Which effects are on.
+/// True for each effect that is on.
 fn on(set: &EffectSet) -> Vec<bool> {
     set.decisions.iter().map(|d| d.on).collect()
 }
 
-/// Runs a case; returns what came out and the wall time [s].
+/// Runs a case; returns its summary and wall time [s].
 fn once(case: &Case, most_s: f64) -> Result<(Summary, f64)> {
     let begin = Instant::now();
     let mut clock = Unrecorded(|progress: &Progress| {

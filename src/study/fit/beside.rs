@@ -1,4 +1,4 @@
-//! A run that is there already, over measured data.
+//! Comparison of an existing run with measured data.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::study::compare::Recording;
 use crate::study::compare::interpolate::cubic;
 use crate::study::data::{Match, Matched, Table, matching, places};
 
-/// A run over data.
+/// Run compared with data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Beside {
     /// Name of the case.
@@ -18,38 +18,38 @@ pub struct Beside {
     pub run: String,
     /// File of the data.
     pub data: String,
-    /// Check sum of its text.
+    /// Checksum of the data file.
     pub data_crc32: u32,
     /// Columns of the data.
     pub columns: Vec<Column>,
 }
 
-/// A column of the data over a quantity of the run.
+/// Column of the data compared with a quantity of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// As it was asked for.
+    /// Requested assignment.
     pub matched: Match,
-    /// Name of the quantity without its unit.
+    /// Name of the quantity, without unit.
     pub quantity: String,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: String,
-    /// Run less data.
+    /// Deviations, run minus data.
     #[serde(flatten)]
     pub left: Left,
-    /// When the two differ most [s].
+    /// Time of the largest deviation [s].
     pub max_at_s: f64,
     /// Instants of the data [s].
     pub times_s: Vec<f64>,
-    /// The data, in the quantity's unit.
+    /// Data, in the unit of the quantity.
     pub measured: Vec<f64>,
-    /// The run at these instants: cubics through its output times.
+    /// Values of the run at these instants, by cubics through its output times.
     pub computed: Vec<f64>,
 }
 
-/// Compares; `data` is the file's name.
+/// Compares a run with data; `data` is the name of the file.
 ///
 /// # Errors
-/// Columns, quantities or places that are not there, units that do not match, data before or after the run.
+/// Unknown columns, quantities or positions, units that do not match, data before or after the run.
 pub fn compare(
     run: &Recording,
     case: Option<&Case>,

@@ -1,4 +1,4 @@
-//! What a fit finds, as its file holds it.
+//! Result of a fit, as in its file.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,61 +8,61 @@ use crate::run::null;
 use crate::study::data::Match;
 pub use crate::study::span::Bound;
 
-/// A fit.
+/// Result of a fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
     /// Name of the case.
     pub case: String,
     /// File of the data.
     pub data: String,
-    /// Check sum of its text.
+    /// Checksum of the data file.
     pub data_crc32: u32,
-    /// What the case went through.
+    /// Analysis of the case: a run or equilibria.
     pub command: Through,
-    /// Numbers of the case that rows set.
+    /// Numbers of the case that each row of the data sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub drives: Vec<Drive>,
-    /// Whether the search ended at a minimum, as far as the data tell.
+    /// True if the search ended at a minimum, as far as the data determine it.
     pub found: bool,
-    /// Whether somebody ended the search early: estimates are the best so far.
+    /// True if the search was stopped early: estimates are the best so far.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub interrupted: bool,
     /// Estimates.
     pub parameters: Vec<Estimate>,
-    /// Covariance of the estimates, in their units; nothing where a number is held at a bound or not determined.
+    /// Covariance of the estimates, in their units; `None` for a number that is held at a bound or not determined.
     pub covariance: Vec<Vec<Option<f64>>>,
-    /// Their correlation, likewise.
+    /// Correlation of the estimates; `None` as in `covariance`.
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Columns of the data.
     pub columns: Vec<Column>,
-    /// Headings of those that say nothing here.
+    /// Headings of the columns that the fit does not use.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_alone: Vec<String>,
-    /// Measured values.
+    /// Number of measured values.
     pub observations: usize,
-    /// Sum of the squares of residuals in their standard deviations, weighted.
+    /// Weighted sum of the squares of residuals over their standard deviations.
     pub chi_square: f64,
-    /// Measured values less numbers that were fitted.
+    /// Number of measured values minus number of fitted numbers that are not at a bound.
     pub degrees_of_freedom: f64,
-    /// What large residuals count.
+    /// Loss function.
     pub loss: Loss,
-    /// What the data do not tell, in sentences.
+    /// Directions that the data do not determine, described in sentences.
     pub unseen: Vec<String>,
-    /// What to know first.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// What the simulator itself adds.
+    /// Error of the simulator.
     pub simulator: Simulator,
-    /// Searches.
+    /// Searches from all starts.
     pub starts: Vec<Start>,
-    /// Steps of all searches.
+    /// Total number of steps of all searches.
     pub steps: usize,
-    /// Simulations of the whole of the data.
+    /// Number of simulations of all data.
     pub simulations: usize,
-    /// Wall time.
+    /// Wall time [s].
     pub wall_s: f64,
 }
 
-/// A number of the case.
+/// Estimate of a number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// JSON pointer into the case.
@@ -71,65 +71,66 @@ pub struct Estimate {
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// Whether it was sought by its logarithm, in which its interval is even.
+    /// True if the search used its logarithm, in which the interval is symmetric.
     pub logarithmic: bool,
-    /// Where the search began.
+    /// Start of the search.
     pub start: f64,
     /// The estimate.
     pub value: f64,
-    /// Its standard error; nothing at a bound, or where the data determine it only together with a number at a bound, or not at all.
+    /// Standard error; `None` at a bound, or if the data determine it only together with a number at a bound, or not at
+    /// all.
     pub standard_error: Option<f64>,
-    /// The interval that holds the truth in 95 of 100 repetitions, cut at the bounds.
+    /// Interval of 95 % confidence, limited to the bounds.
     pub interval_95: Option<[f64; 2]>,
-    /// The bound at which it lies.
+    /// Bound at which it lies.
     pub at_bound: Option<Bound>,
-    /// How far it would move on a finer mesh with a tenth of the tolerance.
+    /// Change of the estimate on a finer mesh with a tenth of the tolerance.
     pub finer_change: Option<f64>,
 }
 
-/// A column of the data beside its quantity.
+/// Column of the data compared with its quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Column {
-    /// As it was asked for.
+    /// Requested assignment.
     pub matched: Match,
     /// Name of the quantity with its unit.
     pub quantity: String,
-    /// What the column leaves.
+    /// Deviations of the quantity from the column.
     #[serde(flatten)]
     pub left: Left,
-    /// Standard deviation of its noise in the quantity's unit, the mean where it differs from row to row.
+    /// Standard deviation of its noise in the unit of the quantity; the mean if it differs between rows.
     pub noise: f64,
-    /// Whether the noise was given; else it is what the fit leaves.
+    /// True if the noise was given; otherwise it is estimated from the residuals.
     pub noise_given: bool,
 }
 
-/// What is between a column and its quantity, in the quantity's unit.
+/// Deviations of a quantity from a column, in the unit of the quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Left {
-    /// Values.
+    /// Number of values.
     pub count: usize,
-    /// Root of the mean square of quantity less data.
+    /// Root mean square of quantity minus data.
     pub rms: f64,
-    /// The largest.
+    /// Largest absolute deviation.
     pub max: f64,
-    /// Both over the largest value of the data; not finite where all data are zero.
+    /// `rms` relative to the largest value of the data; not finite if all data are zero.
     #[serde(deserialize_with = "null::number")]
     pub rms_relative: f64,
-    /// The largest over the largest value of the data, likewise.
+    /// `max` relative to the largest value of the data; not finite if all data are zero.
     #[serde(deserialize_with = "null::number")]
     pub max_relative: f64,
     /// Mean of quantity less data.
     pub bias: f64,
-    /// `1 - sum e²/sum (y - mean y)²`; not finite where all data are alike.
+    /// `1 - sum e²/sum (y - mean y)²`; not finite if all data are equal.
     #[serde(deserialize_with = "null::number")]
     pub r_squared: f64,
-    /// Correlation of what is left of one row with that of the next.
+    /// Correlation of the residuals of successive rows.
     #[serde(deserialize_with = "null::number")]
     pub lag_1: f64,
 }
 
 impl Left {
-    /// Of values of a model and the data beside them.
+    /// Computes the deviations of model values from data.
     pub fn of(model: &[f64], data: &[f64]) -> Self {
         let count = data.len();
         let n = count.max(1) as f64;
@@ -154,22 +155,22 @@ impl Left {
     }
 }
 
-/// What the simulator adds to the errors of the estimates.
+/// Error of the simulator in the estimates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Simulator {
-    /// With what the data were simulated once more at the estimates.
+    /// Mesh and tolerance of the additional, finer simulation at the estimates.
     pub finer: String,
-    /// Why it was not, where it was not.
+    /// Reason why that simulation failed, if it did.
     pub unknown: Option<String>,
 }
 
-/// A search from one place.
+/// Search from one start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Start {
-    /// Where it began.
+    /// Start.
     pub from: Vec<f64>,
-    /// Where it ended; nothing where the case could not be simulated.
+    /// End; `None` if the case could not be simulated.
     pub to: Option<Vec<f64>>,
-    /// Sum of the squares there, with the noise that was given or first assumed.
+    /// Sum of squares at the end, with the noise that was given or assumed first.
     pub chi_square: Option<f64>,
 }

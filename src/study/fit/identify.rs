@@ -1,48 +1,50 @@
-//! What data do not tell: numbers by which nothing measured changes, and combinations of which one part alone is seen.
+//! Identifiability: numbers on which no measured value depends, and combinations of numbers that the data determine
+//! only in part.
 //!
 //! ```text
-//! J  derivatives of the values in their standard deviations by the places of the numbers between their bounds, 0 to 1
-//! a column shorter than the noise, or than the derivatives' own error: the number is not seen
-//! J/|columns| = U S V^T       along a column of V the estimate spreads by 1/s: more than half of the bounds' width is no estimate
+//! J  derivatives of the values over their standard deviations with respect to positions between the bounds, 0 to 1
+//! a column shorter than the noise, or than the error of the derivatives: the number is not determined
+//! J/|columns| = U S V^T       the spread along a column of V is 1/s; above half of the bounds' width: not determined
 //! ```
 //!
-//! Along such a direction the logarithms of the numbers change by `a_k`; what stays is their product `p_1^(b_1) p_2^(b_2)` with `b·a = 0`.
+//! Along such a direction the logarithms of the numbers change by `a_k`. The data determine only the product
+//! `p_1^(b_1) p_2^(b_2)` with `b·a = 0`.
 
 use nalgebra::DMatrix;
 
 use crate::study::span::Span;
 
-/// What is known of the numbers.
+/// Estimates with bounds, derivatives and noise.
 pub struct Seen<'a> {
     /// Numbers and bounds.
     pub spans: &'a [Span],
     /// Their estimates.
     pub values: &'a [f64],
-    /// Derivatives of the values in their standard deviations, by places.
+    /// Derivatives of the values over their standard deviations, with respect to positions between the bounds.
     pub jacobian: &'a DMatrix<f64>,
-    /// Standard deviation of a residual in that of its noise.
+    /// Standard deviation of a residual, relative to that of its noise.
     pub spread: f64,
     /// Relative error of the derivatives.
     pub exact: f64,
 }
 
-/// A direction that is not seen.
+/// Direction that the data do not determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unseen {
-    /// Numbers that it moves.
+    /// Indices of the numbers that change along it.
     pub numbers: Vec<usize>,
-    /// In a sentence.
+    /// Description, one sentence.
     pub words: String,
-    /// Whether not even derivatives without noise would tell.
+    /// True if even data without noise would not determine it.
     pub entirely: bool,
 }
 
-/// Share of the bounds' width that an estimate may spread.
+/// Largest spread of a determined estimate, as a share of the bounds' width.
 const WIDE: f64 = 0.5;
-/// Share of the largest part of a direction above which a number belongs to it.
+/// Least component of a number that belongs to a direction, relative to the largest component.
 const PART: f64 = 0.1;
 
-/// All directions that are not seen.
+/// Returns all directions that the data do not determine.
 pub fn unseen(seen: &Seen) -> Vec<Unseen> {
     let lengths: Vec<f64> = seen.jacobian.column_iter().map(|column| column.norm()).collect();
     let longest = lengths.iter().copied().fold(0.0, f64::max);

@@ -1,14 +1,15 @@
-//! Numbers of a case from measured data: nonlinear least squares between bounds, by exact derivatives, with errors and with what the data do not tell.
+//! Fit of numbers of a case to measured data: bounded nonlinear least squares with exact derivatives, errors and
+//! identifiability.
 //!
 //! ```text
-//! problem     case, numbers that are sought, measured values; everything that does not fit is told here
-//! simulate    what a case gives beside each value, with its derivatives
-//! robust      what large residuals count, how large noise is where it is not given
-//! search      from starts to the minimum
-//! identify    what the data do not see
+//! problem     case, numbers to be fitted, measured values; rejects inconsistent input
+//! simulate    simulated value for each measured one, with derivatives
+//! robust      loss functions, and estimates of noise that is not given
+//! search      search from the starts to the minimum
+//! identify    directions that the data do not determine
 //! statistics  errors and intervals
 //! found       the result
-//! beside      a run that is there already, over data
+//! beside      comparison of an existing run with data
 //! ```
 
 pub mod beside;
@@ -38,27 +39,28 @@ use statistics::Basis;
 
 /// Relative error of the derivatives of equilibria.
 const EXACT: f64 = 1e-8;
-/// That of IDA's sensitivities over its tolerance.
+/// Relative error of IDA's sensitivities, in multiples of its tolerance.
 const CARRIED: f64 = 10.0;
-/// Deviations by which chi-square may lie off its mean.
+/// Deviation of chi-square from its mean, in standard deviations, above which the fit warns.
 const UNLIKELY: f64 = 3.0;
-/// The same of the correlation of neighbours.
+/// Correlation of successive residuals, in standard deviations, above which the fit warns.
 const TOGETHER: f64 = 2.5;
 
-/// A fit with what its files tell besides.
+/// Fit, with the additional data of its files.
 #[derive(Clone, Debug)]
 pub struct Fitted {
     /// The result.
     pub fit: Fit,
     /// The case with the estimates.
     pub case: crate::case::Case,
-    /// What it gives beside each observation.
+    /// Simulated value for each observation.
     pub model: Vec<f64>,
-    /// Weight of each observation: the inverse of its variance, times what its loss leaves.
+    /// Weight of each observation: the inverse of its variance, times the weight of its loss.
     pub weights: Vec<f64>,
 }
 
-/// Headings of a table that are neither matched, nor time, nor set by rows, nor the noise of what is matched.
+/// Headings of the columns that the fit does not use: neither matched, nor time, nor set by rows, nor noise of a
+/// matched column.
 pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
     let matched = asked.matches.iter().filter_map(|one| table.find(&one.column));
     let noise = matched.clone().filter_map(|k| table.deviation(k));
@@ -75,8 +77,8 @@ pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
         .collect()
 }
 
-/// Fits. `tell` hears of every simulation: how many there were, and the sum of squares so far; where `stop` becomes true, the best so far is
-/// told, and said to be that.
+/// Runs a fit. `tell` is called after every simulation with their number and the sum of squares. If `stop` becomes
+/// true, the result is the best so far and is marked as interrupted.
 ///
 /// # Errors
 /// The case cannot be simulated at any start.
@@ -197,7 +199,7 @@ fn bound(place: f64, free: bool) -> Option<Bound> {
     }
 }
 
-/// What each column leaves.
+/// Deviations of each column.
 fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
     let of = |(k, one): (usize, &crate::study::data::Matched)| {
         let model: Vec<f64> = problem.of(k).map(|(i, _)| reached.simulated.values[i]).collect();
@@ -213,7 +215,8 @@ fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
     problem.matched.iter().enumerate().map(of).collect()
 }
 
-/// How far estimates would move on a finer mesh with a tenth of the tolerance: Gauss and Newton's step from what the finer simulation leaves.
+/// Change of the estimates on a finer mesh with a tenth of the tolerance: one Gauss-Newton step from the change of the
+/// simulated values.
 fn finer(
     problem: &Problem,
     reached: &Reached,
@@ -322,7 +325,7 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
     all
 }
 
-/// What the plain command warns of with the estimates.
+/// Warnings of the plain command at the estimates.
 fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)) -> Vec<String> {
     if stop() {
         return vec![];
@@ -338,7 +341,7 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
     found.map_or(vec![], |found| found.told)
 }
 
-/// Residuals and derivatives in standard deviations, as a search wants them.
+/// Residuals and derivatives over the standard deviations, as the search needs them.
 fn evaluation(model: &simulate::Simulated, problem: &Problem, values: &[f64], scale: &[f64]) -> Evaluation {
     let all = &problem.observations;
     let slope: Vec<f64> = problem

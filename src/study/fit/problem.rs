@@ -1,4 +1,4 @@
-//! What is fitted to what: a case, the numbers of it that are sought, and measured values.
+//! Fit problem: a case, the numbers to be fitted, and measured values.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,18 +19,18 @@ use crate::study::data::{Match, Matched, Table, matching};
 use crate::study::evaluations::Evaluations;
 use crate::study::span::{self, Span};
 
-/// What the case goes through.
+/// Analysis of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Through {
-    /// A run in time: a row is an instant.
+    /// Run in time: one row per instant.
     Run,
-    /// Equilibria: a row is a case.
+    /// Equilibria: one case per row.
     Equilibrium,
 }
 
 impl Through {
-    /// The command.
+    /// Returns the command.
     pub fn command(self) -> AnalysisKind {
         match self {
             Self::Run => AnalysisKind::Run,
@@ -49,10 +49,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Of `COLUMN=POINTER`.
+    /// Parses `COLUMN=POINTER`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let parts = text
             .rsplit_once('=')
@@ -69,73 +69,73 @@ impl Drive {
     }
 }
 
-/// What is asked for.
+/// Requested fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
-    /// Numbers that are sought, and where.
+    /// Numbers to be fitted, with bounds.
     pub spans: Vec<Span>,
-    /// Which columns are beside which quantities.
+    /// Assignments of columns to quantities.
     pub matches: Vec<Match>,
     /// Column of time of a run.
     pub time: Option<String>,
-    /// What rows set, of equilibria; a run where there is nothing.
+    /// Numbers that rows set, for equilibria; empty for a run.
     pub drives: Vec<Drive>,
     /// Standard deviations of columns in their own units.
     pub noise: Vec<(String, f64)>,
-    /// What large residuals count.
+    /// Loss function.
     pub loss: Loss,
-    /// Searches, each from another place.
+    /// Number of searches, each from another start.
     pub starts: usize,
-    /// Simulations at once.
+    /// Number of parallel simulations.
     pub jobs: usize,
 }
 
-/// What stands at the side of the rows.
+/// Independent variable of the rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Abscissa {
     /// Instants [s].
     Time(Vec<f64>),
-    /// Numbers of the case, a list of values each.
+    /// Numbers of the case, with a list of values each.
     Drives(Vec<(Drive, Vec<f64>)>),
 }
 
 /// A measured value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Observation {
-    /// Number of its [`Matched`].
+    /// Index of its [`Matched`].
     pub of: usize,
     /// Row of the abscissa.
     pub row: usize,
     /// The value, in the unit of the quantity.
     pub value: f64,
-    /// Its standard deviation, where it was given.
+    /// Standard deviation, if given.
     pub sigma: Option<f64>,
 }
 
-/// Everything that a fit needs.
+/// All data of a fit.
 #[derive(Clone, Debug)]
 pub struct Problem {
-    /// The case, with the probes that are looked at.
+    /// Case, with the probes that are compared.
     pub case: Case,
-    /// Numbers that are sought, and where.
+    /// Numbers to be fitted, with bounds.
     pub spans: Vec<Span>,
-    /// Their values to begin with.
+    /// Initial values.
     pub start: Vec<f64>,
-    /// Columns.
+    /// Matched columns.
     pub matched: Vec<Matched>,
-    /// What stands beside the rows in which something was measured.
+    /// Independent variable of the rows with measured values.
     pub abscissa: Abscissa,
     /// Measured values, row after row.
     pub observations: Vec<Observation>,
-    /// Simulations that are computed already.
+    /// Stored simulations.
     pub evaluations: Evaluations,
 }
 
 impl Problem {
-    /// Brings a case and data together.
+    /// Combines a case and data.
     ///
     /// # Errors
-    /// Everything that does not fit, before anything is computed.
+    /// Inconsistent input, found before anything is computed.
     pub fn new(case: &Case, table: &Table, asked: &Asked) -> Result<Self> {
         if asked.spans.is_empty() {
             let what = "nothing to fit: --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
@@ -207,7 +207,7 @@ impl Problem {
         Ok(problem)
     }
 
-    /// Measured values of a column, with their numbers.
+    /// Measured values of a column, with their indices.
     pub fn of(&self, column: usize) -> impl Iterator<Item = (usize, &Observation)> {
         self.observations
             .iter()
@@ -215,7 +215,7 @@ impl Problem {
             .filter(move |(_, one)| one.of == column)
     }
 
-    /// What the case goes through.
+    /// Returns the analysis of the case.
     pub fn through(&self) -> Through {
         match self.abscissa {
             Abscissa::Time(_) => Through::Run,
@@ -223,7 +223,7 @@ impl Problem {
         }
     }
 
-    /// Rows in which something was measured.
+    /// Number of rows with measured values.
     pub fn rows(&self) -> usize {
         match &self.abscissa {
             Abscissa::Time(instants) => instants.len(),
@@ -231,15 +231,15 @@ impl Problem {
         }
     }
 
-    /// The case with values of the numbers that are sought.
+    /// Returns the case with values of the fitted numbers.
     ///
     /// # Errors
-    /// It is not valid with them.
+    /// The case is not valid with them.
     pub fn with(&self, values: &[f64]) -> Result<Case> {
         with(&self.case, &self.changes(values).collect::<Vec<_>>())
     }
 
-    /// Pointers and values.
+    /// Returns pointers and values.
     pub fn changes<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (&'a str, f64)> {
         self.spans
             .iter()
@@ -247,7 +247,7 @@ impl Problem {
             .zip(values.iter().copied())
     }
 
-    /// The numbers that are sought at values.
+    /// Returns the fitted numbers at values.
     pub fn parameters(&self, values: &[f64]) -> Vec<Parameter> {
         let parameter = |(pointer, value): (&str, f64)| Parameter {
             pointer: pointer.into(),
@@ -256,13 +256,13 @@ impl Problem {
         self.changes(values).map(parameter).collect()
     }
 
-    /// Values at places between the bounds.
+    /// Converts positions between the bounds to values.
     pub fn values(&self, places: &[f64]) -> Vec<f64> {
         span::values(&self.spans, places)
     }
 }
 
-/// Columns that a case's result has.
+/// Columns of the result of a case.
 fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
     let all = match through {
         Through::Run => Observer::header(case, &System::new(case)?).columns,
@@ -274,7 +274,7 @@ fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
         .collect())
 }
 
-/// Instants of the rows, none after the end of the run.
+/// Returns the instants of the rows; rejects instants after the end of the run.
 fn instants(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<f64>> {
     let column = table.time(asked.time.as_deref())?;
     let all = table.instants(column)?;
@@ -291,7 +291,7 @@ fn instants(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result
     Ok(rows.iter().map(|row| all[*row].min(end)).collect())
 }
 
-/// What each row sets.
+/// Returns the values that each row sets.
 fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<(Drive, Vec<f64>)>> {
     let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
     let mut all = vec![];
@@ -313,7 +313,7 @@ fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<V
         let chosen: Vec<f64> = rows.iter().map(|row| values[*row]).collect();
         all.push((drive.clone(), chosen));
     }
-    // a case that a row cannot set is none of a fit
+    // every row must give a valid case
     for row in 0..rows.len() {
         let changes: Vec<(&str, f64)> = all
             .iter()
@@ -324,8 +324,8 @@ fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<V
     Ok(all)
 }
 
-/// How many units of a number of the case a column's are, where the key has none that is known (`_pa_s_m3`, or none at all): one, in the
-/// key's own unit or without any.
+/// Factor from the unit of a column to that of a number whose key has no known unit (`_pa_s_m3`, or none): 1 for the key's own unit or for
+/// none, the scale of a dimensionless unit.
 fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> {
     let key = pointer
         .rsplit('/')
@@ -353,7 +353,7 @@ fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> 
     }
 }
 
-/// Standard deviations of each column in the unit of its quantity, row by row, where they are given.
+/// Standard deviations of each column in the unit of its quantity, row by row; `None` if not given.
 fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Option<Vec<f64>>>> {
     for (name, _) in &asked.noise {
         let column = table.wanted(name, "--noise")?;

@@ -1,28 +1,28 @@
-//! What large residuals count, and how large noise is where it is not given.
+//! Loss functions of residuals, and estimates of noise that is not given.
 //!
 //! ```text
-//! u = (model - data)/s         a residual in its standard deviations
+//! u = (model - data)/s         a residual over its standard deviation
 //! squares   w = 1
 //! huber     w = min(1, k/|u|)              k = 1.345
 //! cauchy    w = 1/(1 + (u/c)²)             c = 2.385
 //! s² = sum e²/(n - m n/N)                  of a column of n values among N, m numbers fitted; with a loss 1.4826 median |e|
 //! ```
 //!
-//! Both constants leave 95 % of the efficiency of least squares where residuals are normal. Weights are found again after each fit until
-//! they stay.
+//! Both constants preserve 95 % of the efficiency of least squares for normal residuals. Weights are computed again
+//! after each fit until they no longer change.
 
 use serde::{Deserialize, Serialize};
 
-/// What a residual counts.
+/// Loss function of a residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Loss {
-    /// Its square.
+    /// Square of the residual.
     #[default]
     Squares,
-    /// Its square, and beyond some deviations its size (Huber).
+    /// Square of the residual; beyond some standard deviations, its size (Huber).
     Huber,
-    /// Hardly anything where it is large (Cauchy).
+    /// Very small weight for large residuals (Cauchy).
     Cauchy,
 }
 
@@ -30,7 +30,7 @@ const HUBER: f64 = 1.345;
 const CAUCHY: f64 = 2.385;
 
 impl Loss {
-    /// Weight of a residual of so many standard deviations.
+    /// Weight of a residual of `u` standard deviations.
     pub fn weight(self, u: f64) -> f64 {
         match self {
             Self::Squares => 1.0,
@@ -39,7 +39,7 @@ impl Loss {
         }
     }
 
-    /// Derivative of `w u` by u.
+    /// Derivative of `w u` with respect to `u`.
     fn slope(self, u: f64) -> f64 {
         match self {
             Self::Squares => 1.0,
@@ -51,8 +51,8 @@ impl Loss {
         }
     }
 
-    /// What the variance of estimates is of that of least squares with unit noise: `sum (w u)²/(N - m)` over the square of the mean slope
-    /// (Huber, 1973).
+    /// Ratio of the variance of estimates to that of least squares with unit noise: `sum (w u)²/(N - m)` over the
+    /// square of the mean slope (Huber, 1973).
     pub fn variance(self, residuals: &[f64], numbers: usize) -> f64 {
         let freedom = residuals.len().saturating_sub(numbers).max(1) as f64;
         let squares: f64 = residuals.iter().map(|u| (self.weight(*u) * u).powi(2)).sum();
@@ -60,7 +60,7 @@ impl Loss {
         squares / freedom / slope.max(0.05).powi(2)
     }
 
-    /// Standard deviation of the residuals of a column, whose share of the numbers that are fitted is `lost`.
+    /// Standard deviation of the residuals of a column; `lost` is its share of the fitted numbers.
     pub fn deviation(self, errors: &[f64], lost: f64) -> f64 {
         let count = errors.len() as f64;
         let freedom = (count - lost).max(0.5 * count.min(1.0));

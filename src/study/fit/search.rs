@@ -1,4 +1,4 @@
-//! From starts to the minimum, with noise and weights found on the way where they are not given.
+//! Search from the starts to the minimum; estimates noise and weights that are not given on the way.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,16 +16,16 @@ use crate::run::stop::INTERRUPTED;
 use crate::study::span;
 use crate::study::sweep::pool;
 
-/// Steps of a search at most.
+/// Largest number of steps of a search.
 const STEPS: usize = 100;
-/// Fits at most, each with the noise and weights of the one before.
+/// Largest number of fits, each with the noise and weights of the previous one.
 const ROUNDS: usize = 30;
-/// Change of noise and weights that counts as none.
+/// Change of noise and weights below which they have converged.
 const SAME: f64 = 1e-3;
-/// Noise over the size of a column that counts as none.
+/// Least noise, relative to the size of a column.
 const LEAST: f64 = 1e-12;
 
-/// A search.
+/// Search for the minimum.
 pub struct Search<'a> {
     problem: &'a Problem,
     asked: &'a Asked,
@@ -35,35 +35,35 @@ pub struct Search<'a> {
     fault: Mutex<Option<Error>>,
 }
 
-/// A minimum, and what the case gives there.
+/// Minimum, and the simulation there.
 #[derive(Clone, Debug)]
 struct Found {
     minimum: Minimum,
     simulated: Simulated,
 }
 
-/// Where it ended.
+/// Result of all searches.
 pub struct Reached {
     /// The minimum.
     pub minimum: Minimum,
-    /// Values of the numbers there.
+    /// Values of the numbers at the minimum.
     pub values: Vec<f64>,
-    /// What the case gives there.
+    /// Simulation at the minimum.
     pub simulated: Simulated,
     /// Standard deviation of each observation.
     pub sigmas: Vec<f64>,
-    /// Of each column, whether it was given.
+    /// True for each column whose noise was given.
     pub given: Vec<bool>,
-    /// What a loss leaves of each observation.
+    /// Weight of each observation by the loss function.
     pub weights: Vec<f64>,
-    /// Searches.
+    /// Searches from all starts.
     pub starts: Vec<Start>,
-    /// Their steps.
+    /// Total number of steps.
     pub steps: usize,
 }
 
 impl Reached {
-    /// Residuals and derivatives in standard deviations, whatever the loss.
+    /// Residuals and derivatives over the standard deviations, without the weights of the loss.
     pub fn plain(&self, problem: &Problem) -> (DVector<f64>, DMatrix<f64>) {
         let scale: Vec<f64> = self.sigmas.iter().map(|sigma| sigma.recip()).collect();
         let plain = evaluation(&self.simulated, problem, &self.values, &scale);
@@ -72,7 +72,7 @@ impl Reached {
 }
 
 impl<'a> Search<'a> {
-    /// Of a problem.
+    /// Creates the search of a problem.
     pub fn new(
         problem: &'a Problem,
         asked: &'a Asked,
@@ -89,15 +89,15 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Simulations so far.
+    /// Number of simulations so far.
     pub fn simulations(&self) -> usize {
         self.simulations.load(Ordering::Relaxed)
     }
 
-    /// Searches from every start, and on from the best of what they find; the best so far where somebody wants the end.
+    /// Searches from every start, then continues from the best end. After a stop, returns the best so far.
     ///
     /// # Errors
-    /// The case cannot be simulated at any of them, or the end is wanted before it was.
+    /// The case cannot be simulated at any start, or the search was stopped before the first simulation.
     pub fn go(&self) -> Result<Reached> {
         let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
@@ -115,7 +115,7 @@ impl<'a> Search<'a> {
             to: found.as_ref().map(|one| self.problem.values(&one.minimum.x)),
             chi_square: found.as_ref().map(|one| one.minimum.at.cost()),
         };
-        // searches that had not begun when the end was wanted are none
+        // omit starts that had not begun at the stop
         let begun = |(_, found): &(&Vec<f64>, &Option<Found>)| found.is_some() || !(self.stop)();
         let starts = places.iter().zip(&found).filter(begun).map(start).collect();
         let best = found
@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
     }
 
     fn minimise(&self, start: &[f64], scale: &[f64], jobs: usize) -> Option<Found> {
-        // the best so far with what the case gives there
+        // best point so far, with its simulation
         let mut best: Option<Found> = None;
         let mut evaluate = |places: &[f64]| {
             if (self.stop)() {
@@ -223,7 +223,8 @@ impl<'a> Search<'a> {
         own.unwrap_or_else(|| Error::Usage(otherwise()))
     }
 
-    /// The noise that was given, elsewhere the size of the column; and of each column whether it was given.
+    /// Initial noise of each observation: the given noise, otherwise the size of the column. Second: true for each
+    /// column whose noise was given.
     fn first_noise(&self) -> (Vec<f64>, Vec<bool>) {
         let all = &self.problem.observations;
         let sizes: Vec<f64> = (0..self.problem.matched.len()).map(|k| self.size(k)).collect();
@@ -232,14 +233,14 @@ impl<'a> Search<'a> {
         (sigmas, (0..sizes.len()).map(given).collect())
     }
 
-    /// The largest value of a column, 1 where all are 0.
+    /// Largest value of a column; 1 if all are 0.
     fn size(&self, column: usize) -> f64 {
         let own = self.problem.of(column);
         let largest = own.map(|(_, one)| one.value.abs()).fold(0.0, f64::max);
         if largest > 0.0 { largest } else { 1.0 }
     }
 
-    /// Finds noise and weights from what a fit leaves; how much they change.
+    /// Estimates noise and weights from the residuals of a fit; returns their largest change.
     fn weigh(&self, simulated: &Simulated, given: &[bool], sigmas: &mut [f64], weights: &mut [f64]) -> f64 {
         let (all, loss) = (&self.problem.observations, self.asked.loss);
         let mut change = 0.0_f64;
@@ -262,7 +263,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// What residuals are multiplied by.
+/// Factors by which residuals are multiplied.
 fn scale(sigmas: &[f64], weights: &[f64]) -> Vec<f64> {
     sigmas
         .iter()

@@ -1,5 +1,5 @@
-//! What a case gives beside each measured value, with its derivatives by the numbers that are sought: IDA's sensitivities of a run, read off
-//! at the instants of the data [E41], and those of equilibria [E43].
+//! Simulated value for each measured one, with derivatives with respect to the fitted numbers: IDA's sensitivities of a
+//! run, evaluated at the instants of the data [E41], and those of equilibria [E43].
 
 use nalgebra::DMatrix;
 
@@ -16,19 +16,20 @@ use crate::study::analysis::derivatives;
 use crate::study::followed::{Followed, Row};
 use crate::study::sweep::pool;
 
-/// What a case gives.
+/// Result of a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulated {
-    /// Beside each observation, in its unit.
+    /// Value for each observation, in its unit.
     pub values: Vec<f64>,
-    /// Derivatives by each number, per unit of it.
+    /// Derivatives with respect to each number, per unit of it.
     pub slopes: DMatrix<f64>,
 }
 
 /// Simulates a problem with values of its numbers.
 ///
 /// # Errors
-/// The case is none with them, or is not simulated to the end of the data, because `stop` became true too.
+/// The case is not valid with them, or the simulation does not reach the end of the data, for example because of
+/// `stop`.
 pub fn simulate(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
     let compute = || {
         let found = computed(problem, values, jobs, stop)?;
@@ -56,7 +57,7 @@ fn computed(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> 
 
 fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> bool + Sync)) -> Result<Vec<Row>> {
     let case = problem.with(values)?;
-    // effects stay those of the case itself: a sum of squares must not jump where another would be chosen
+    // keep the effects of the case itself: the sum of squares must not jump where others would be chosen
     let system = derivatives::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
     let parameters = problem.parameters(values);
     let names: Vec<String> = problem.matched.iter().map(|one| one.name.clone()).collect();
@@ -66,7 +67,7 @@ fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> 
     recorder.of(outcome)
 }
 
-/// Every row an equilibrium of its own; as many at once as there are jobs.
+/// Computes an equilibrium for every row, up to `jobs` in parallel.
 fn rest(
     problem: &Problem,
     values: &[f64],

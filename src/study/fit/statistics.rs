@@ -1,13 +1,13 @@
 //! Errors of estimates from the derivatives at the minimum.
 //!
 //! ```text
-//! cov x = v (J^T J)^-1        x places between the bounds; v = 1 where noise is given, else what the fit leaves
+//! cov x = v (J^T J)^-1        x positions between the bounds; v = 1 for given noise, else the variance of residuals
 //!        cov p = (dp/dx) cov x (dp/dx)^T
 //!        p(x ± q √cov x_kk)          q of Student's distribution, of the normal one where noise is given
 //! ```
 //!
-//! Numbers at a bound are taken as known; what is not determined has no error, nor has a number of which the data see only a
-//! combination with one at a bound: its value is the choice of that bound.
+//! Numbers at a bound count as known. Undetermined numbers have no error. A number has no error either if the data
+//! determine it only in combination with one at a bound: its value depends on the choice of that bound.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -20,7 +20,7 @@ use crate::study::span::Span;
 pub struct Errors {
     /// Standard errors, in units of the numbers.
     pub standard: Vec<Option<f64>>,
-    /// Intervals of 95 %, cut at the bounds.
+    /// Intervals of 95 %, limited to the bounds.
     pub intervals: Vec<Option<[f64; 2]>>,
     /// Covariance.
     pub covariance: Vec<Vec<Option<f64>>>,
@@ -28,26 +28,26 @@ pub struct Errors {
     pub correlation: Vec<Vec<Option<f64>>>,
 }
 
-/// What errors come of.
+/// Input of the error estimate.
 pub struct Basis<'a> {
     /// Numbers and bounds.
     pub spans: &'a [Span],
     /// Estimates.
     pub values: &'a [f64],
-    /// Numbers that are not at a bound.
+    /// Indices of the numbers that are not at a bound.
     pub free: &'a [usize],
-    /// What is not determined.
+    /// Directions that the data do not determine.
     pub unseen: &'a [Unseen],
-    /// Derivatives of the values in their standard deviations, by places.
+    /// Derivatives of the values over their standard deviations, with respect to positions between the bounds.
     pub jacobian: &'a DMatrix<f64>,
-    /// v above.
+    /// `v` of the equations above.
     pub variance: f64,
-    /// Degrees of freedom; nothing where noise is known.
+    /// Degrees of freedom; `None` if the noise is known.
     pub freedom: Option<f64>,
 }
 
 impl Basis<'_> {
-    /// Their errors.
+    /// Computes the errors of the estimates.
     pub fn errors(&self) -> Errors {
         let m = self.spans.len();
         let lost = |k: &usize| {
@@ -82,9 +82,9 @@ impl Basis<'_> {
         }
     }
 
-    /// `v (J^T J)^-1` by singular values of columns of length one.
+    /// `v (J^T J)^-1`, from singular values of the columns scaled to unit length.
     fn covariance_of_places(&self, own: &[usize]) -> DMatrix<f64> {
-        // of nothing there are no singular values
+        // an empty matrix has no singular values
         if own.is_empty() {
             return DMatrix::zeros(0, 0);
         }
@@ -113,7 +113,7 @@ mod tests {
     use super::*;
     use crate::study::fit::identify::{Seen, unseen};
 
-    /// Goal: where the data see only a product and one factor ends at its bound, the other has no narrow interval.
+    /// Goal: if the data determine only a product and one factor ends at its bound, the other factor has no interval.
     #[test]
     fn a_factor_beside_one_at_its_bound_has_no_interval() {
         let spans = ["/a", "/b", "/c"].map(|pointer| Span {

@@ -1,4 +1,4 @@
-//! Coefficients of a beam from a laboratory's data: the experiments of A.4.1 and A.4.2 of the paper with their errors.
+//! Coefficients of a beam from laboratory data, with errors: the experiments of A.4.1 and A.4.2 of the paper.
 //!
 //! ```text
 //! y = g x + a [+ c x^3]                                             least squares, equal weights
@@ -11,8 +11,8 @@
 //! flow-pressure       q_1  = g mu L                                 along a duct of length L
 //! ```
 //!
-//! The interval holds the truth in 95 of 100 repetitions if deviations are normal, independent and alike (Student's t). Whether a straight
-//! line is right is asked twice: by x^3 beside it, and by |x| beside it, which gives each side of zero a slope of its own.
+//! The interval contains the truth in 95 of 100 repetitions if deviations are normal, independent and of equal variance (Student's t). Two
+//! terms test whether a straight line is right: x^3, and |x|, which gives each side of zero its own slope.
 
 pub mod table;
 
@@ -22,7 +22,7 @@ use crate::error::{Error, Result};
 use crate::numerics::regression::{self, Regression};
 use table::{Points, Quantity};
 
-/// What was measured.
+/// Experiment: the relation that was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Experiment {
     /// Volume of pumped bladders over pressure.
@@ -66,7 +66,7 @@ impl Experiment {
         }
     }
 
-    /// What is set, and what is measured.
+    /// Returns the quantity that is set, and the quantity that is measured.
     pub fn columns(self) -> [Quantity; 2] {
         match self {
             Self::PressureVolume => [Quantity::Pressure, Quantity::Volume],
@@ -80,16 +80,16 @@ impl Experiment {
     }
 }
 
-/// How the fit is made.
+/// Options of the fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Options {
-    /// The line goes through zero.
+    /// True if the line passes through zero.
     pub through_zero: bool,
-    /// A cubic term stands beside the slope.
+    /// True if the fit has a cubic term.
     pub cubic: bool,
-    /// Bladders that are pumped or observed; those of one row where none is given.
+    /// Number of bladders that are pumped or observed; by default those of one row.
     pub bladders: Option<u32>,
-    /// The duct is a bladder, not a tube.
+    /// True if the duct is a bladder, false if it is a tube.
     pub through_bladder: bool,
 }
 
@@ -100,7 +100,7 @@ pub struct Estimate {
     pub value: f64,
     /// Standard error.
     pub error: f64,
-    /// The interval of 95 %.
+    /// Interval of 95 %.
     pub interval: [f64; 2],
 }
 
@@ -114,7 +114,7 @@ impl Estimate {
         }
     }
 
-    /// Times a factor.
+    /// Multiplies by a factor.
     fn times(self, factor: f64) -> Self {
         let [a, b] = self.interval.map(|x| x * factor);
         Self {
@@ -124,7 +124,7 @@ impl Estimate {
         }
     }
 
-    /// A factor over it; none where it may be zero.
+    /// Divides a factor by the estimate; `None` if the interval contains zero.
     fn under(self, factor: f64) -> Option<Self> {
         let [a, b] = self.interval;
         (a * b > 0.0).then(|| Self {
@@ -134,16 +134,16 @@ impl Estimate {
         })
     }
 
-    /// As a positive number: areas count where the bladder opens.
+    /// Returns the estimate with positive sign: areas are positive where the bladder opens.
     fn upright(self) -> Self {
         if self.value < 0.0 { self.times(-1.0) } else { self }
     }
 }
 
-/// The two sides of zero.
+/// Slopes on both sides of zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sides {
-    /// Chance of slopes that differ as much if they are the same.
+    /// Probability of slopes that differ at least as much if the true slopes are equal.
     pub chance: f64,
     /// Slope above zero.
     pub above: Estimate,
@@ -158,38 +158,38 @@ pub struct Coefficient {
     pub pointer: &'static str,
     /// Unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Estimate.
     pub estimate: Estimate,
 }
 
-/// What the data say.
+/// Result of a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
     /// The experiment.
     pub experiment: Experiment,
     /// The data [SI].
     pub points: Points,
-    /// The fit: slope, then the offset, then the cubic term, as far as they are in it.
+    /// Fit: slope, then offset and cubic term, if it has them.
     pub fit: Regression,
     /// Slope.
     pub slope: Estimate,
     /// Value at zero, if it is fitted.
     pub offset: Option<Estimate>,
-    /// Part of the data's variance that the fit explains, about zero for lines through zero.
+    /// Share of the data's variance that the fit explains; for lines through zero, of the mean square.
     pub explained: f64,
-    /// Chance of a cubic term as large if there is none; absent where there are too few points.
+    /// Probability of a cubic term as large if there is none; `None` if there are too few points.
     pub cubic_chance: Option<f64>,
-    /// The two sides of zero; absent where there are no three points on each.
+    /// Slopes on both sides of zero; `None` with fewer than three points on one of them.
     pub sides: Option<Sides>,
     /// Coefficients of the case.
     pub coefficients: Vec<Coefficient>,
     options: Options,
 }
 
-/// Chance below which a deviation from the straight line is told and slopes of both sides are taken.
+/// Significance level below which a deviation from the straight line is reported and slopes of both sides are used.
 pub const SIGNIFICANT: f64 = 0.05;
 
-/// Columns of the fit at a value of what is set.
+/// Regressors of the fit at a value of the set quantity.
 fn regressors(options: Options, x: f64) -> Vec<f64> {
     let offset = (!options.through_zero).then_some(1.0);
     let cubic = options.cubic.then_some(x.powi(3));
@@ -205,7 +205,7 @@ fn columns(points: &Points, of: impl Fn(f64) -> Vec<f64>) -> Vec<Vec<f64>> {
 /// Fits the data and turns the slope into coefficients of a case.
 ///
 /// # Errors
-/// [`Error::Usage`]: too few points, a slope that is not told from zero, or a case without what the coefficient needs.
+/// [`Error::Usage`]: too few points, a slope not significantly different from zero, or a case without data that the coefficient needs.
 pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Options) -> Result<Measured> {
     let [x, y] = experiment.columns();
     let fit = regression::fit(&columns(&points, |x| regressors(options, x)), &points.y).ok_or_else(|| {
@@ -294,14 +294,14 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
 }
 
 impl Measured {
-    /// The fit at a value of what is set, and half of the width of the band that holds the true curve there in 95 of 100 repetitions.
+    /// Fit at a value of the set quantity, and half the width of the band that contains the true curve there in 95 of 100 repetitions.
     pub fn at(&self, x: f64) -> [f64; 2] {
         let row = regressors(self.options, x);
         [self.fit.value(&row), self.fit.half_width(&row)]
     }
 }
 
-/// Coefficients by the formulas above.
+/// Computes coefficients by the equations above.
 fn coefficients(
     experiment: Experiment,
     case: &Case,
@@ -322,7 +322,7 @@ fn coefficients(
         unit,
         estimate,
     };
-    // slopes above and below zero: one where they are not told apart
+    // slopes above and below zero; a single slope if they do not differ significantly
     let split = |factor: f64| {
         let apart = sides.filter(|sides| sides.chance < SIGNIFICANT);
         let pair = apart.map_or([slope, slope], |sides| [sides.above, sides.below]);

@@ -1,4 +1,5 @@
-//! A laboratory's table: two columns with units in their headers, `pressure [kPa], volume [ml]`; blank lines and those that begin with # count not.
+//! Laboratory table: two columns with units in their headers, `pressure [kPa], volume [ml]`. Blank lines and lines that
+//! begin with # are ignored.
 
 use std::ops::Range;
 use std::path::Path;
@@ -7,12 +8,12 @@ use crate::case::heading::Heading;
 use crate::case::{Source, nearest, units};
 use crate::error::{Code, Result, Violation};
 
-/// What a column holds.
+/// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Pressure above the atmosphere, or a difference [Pa].
     Pressure,
-    /// Volume that has gone into the bladders [m^3].
+    /// Volume that flowed into the bladders [m^3].
     Volume,
     /// Normal force, tension positive [N].
     Force,
@@ -57,19 +58,19 @@ impl Quantity {
 /// Points of a table, in SI units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
-    /// What was set.
+    /// Values that were set.
     pub x: Vec<f64>,
-    /// What was measured.
+    /// Values that were measured.
     pub y: Vec<f64>,
 }
 
-/// Rows with faults that are told.
+/// Largest number of reported faults.
 pub(in crate::study) const MOST: usize = 20;
 
 /// Reads the columns of two quantities.
 ///
 /// # Errors
-/// [`crate::error::Error::Case`] with every header and row that cannot be read, each at its place.
+/// [`crate::error::Error::Case`] with the position of every header and row that cannot be read.
 pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points> {
     let source = Source::of(path, text);
     let mut lines = lines(text);
@@ -111,7 +112,7 @@ pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points>
     }
 }
 
-/// A line with its number, counted from 1, and where it begins.
+/// Line with its number, counted from 1, and its start in the text.
 pub(in crate::study) struct Line<'t> {
     pub text: &'t str,
     pub number: usize,
@@ -119,13 +120,13 @@ pub(in crate::study) struct Line<'t> {
 }
 
 impl Line<'_> {
-    /// What stands between cells where this is the first line: semicolons or tabs where there are any, else commas.
+    /// Separator of cells if this is the first line: a semicolon or a tab if there is one, else a comma.
     pub fn separator(&self) -> char {
         [';', '\t'].into_iter().find(|s| self.text.contains(*s)).unwrap_or(',')
     }
 }
 
-/// Lines that count.
+/// Lines that are neither blank nor comments.
 pub(in crate::study) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     let mut next = 0;
     let all = text.split_inclusive('\n').enumerate().map(move |(k, whole)| {
@@ -143,7 +144,7 @@ pub(in crate::study) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// Cells without blanks and a pair of quotes around them, and their places in the text.
+/// Cells without surrounding blanks and quotes, with their positions in the text.
 pub(in crate::study) fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t str, Range<usize>)> {
     let mut at = line.start;
     let cells = line.text.split(separator).map(|whole| {
@@ -158,7 +159,7 @@ pub(in crate::study) fn cells<'t>(line: &Line<'t>, separator: char) -> Vec<(&'t 
 
 type Read<T> = std::result::Result<T, Box<Violation>>;
 
-/// A fault at its place.
+/// Fault at its position.
 pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
     Violation {
         span: Some(span),
@@ -166,7 +167,7 @@ pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
     }
 }
 
-/// Place and scale of the column of a quantity.
+/// Index and scale of the column of a quantity.
 fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> Read<(usize, f64)> {
     let (name, unit) = (quantity.name(), quantity.unit());
     let headings: Vec<Heading> = names.iter().map(|(cell, _)| Heading::of(cell)).collect();

@@ -1,4 +1,4 @@
-//! How flat the best is: second derivatives by differences of slopes.
+//! Curvature at the optimum: second derivatives from differences of slopes.
 
 use nalgebra::DMatrix;
 
@@ -6,23 +6,24 @@ use super::found::Curvature;
 use super::problem::Problem;
 use super::search::{Reached, Search};
 
-/// Change of a place in a difference, to either side.
+/// Change of a position in a difference, to either side.
 const BESIDE: f64 = 0.01;
-/// Share by which values and slopes may tell second derivatives apart.
+/// Largest relative difference between second derivatives from values and from slopes.
 const ALIKE: f64 = 0.3;
-/// What counts as 1 % of the figure.
+/// Relative change of the figure, 1 %, for which [`Bend::within`] returns the numbers.
 const SHARE: f64 = 0.01;
 
-/// Second derivatives at a best.
+/// Second derivatives at an optimum.
 pub struct Bend {
-    /// By the numbers that are free there, as they were sought.
+    /// Indices of the numbers that are not at a bound.
     pub free: Vec<usize>,
-    /// By places between the bounds, of the figure over its size, 1 or -1 times.
+    /// Second derivatives of the figure over its size, times the sign of the goal, with respect to positions between
+    /// the bounds.
     matrix: DMatrix<f64>,
 }
 
-/// Second derivatives of what is sought by the numbers that are not at a bound. Nothing where
-/// a design beside the best cannot be computed.
+/// Computes second derivatives of the goal with respect to the numbers that are not at a bound. `None` if a design next
+/// to the optimum cannot be computed, or if there is a kink or noise.
 pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: usize) -> Option<Bend> {
     let minimum = &reached.minimum;
     let inside = |k: &usize| minimum.at_bounds[*k] == 0.0 && minimum.x[*k] > BESIDE && minimum.x[*k] < 1.0 - BESIDE;
@@ -37,7 +38,7 @@ pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: us
         };
         let (above, below) = (at(BESIDE)?, at(-BESIDE)?);
         let change = (&above.slope - &below.slope) / (2.0 * BESIDE);
-        // where values bend otherwise than slopes tell there is a kink, or noise
+        // different second derivatives from values and from slopes indicate a kink, or noise
         let by_values = (above.value + below.value - 2.0 * minimum.at.value) / (BESIDE * BESIDE);
         if (by_values - change[*k]).abs() > ALIKE * change[*k].abs() {
             return None;
@@ -49,8 +50,8 @@ pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: us
 }
 
 impl Bend {
-    /// Values of a number to either side of the best at which the figure would be worse by 1 %, others held; nothing where one of them lies
-    /// beyond its bounds.
+    /// Values of a number on both sides of the optimum at which the figure would be worse by 1 %, with the others
+    /// fixed; `None` if one of the values lies beyond its bounds.
     pub fn within(&self, problem: &Problem, reached: &Reached, k: usize) -> Option<[f64; 2]> {
         let i = self.free.iter().position(|own| *own == k)?;
         let bend = self.matrix[(i, i)];
@@ -62,7 +63,7 @@ impl Bend {
         within.then(|| places.map(|place| span.value(place)))
     }
 
-    /// As it is told: of the figure itself, by numbers or their logarithms.
+    /// Returns the second derivatives of the figure itself, with respect to numbers or their logarithms.
     pub fn told(&self, problem: &Problem, reached: &Reached) -> Curvature {
         let per = |k: usize| {
             let span = &problem.spans[k];

@@ -1,4 +1,4 @@
-//! A mode that is another at the best than it was to begin with, though its number is the same.
+//! Modes at the optimum that differ from the initial modes of the same number.
 
 use super::problem::Problem;
 use crate::case::Case;
@@ -7,13 +7,14 @@ use crate::run::modes::{Mode, likeness};
 use crate::study::analysis::AnalysisKind;
 use crate::study::analysis::modes::{lowest, swinging};
 
-/// Likeness of shapes from which on two modes are one, and by how much it must be larger than that of the modes of one number.
+/// Likeness of shapes above which two modes are the same. It must exceed that of the modes of one number by [`BETTER`].
 const ALIKE: f64 = 0.5;
 const BETTER: f64 = 0.2;
-/// Likeness below which two are not one whatever else there is.
+/// Likeness below which two modes differ in any case.
 const APART: f64 = 0.1;
 
-/// What to know of modes that are looked at: by their shapes [E33] those of the case as the search began are others at the best.
+/// Warns if a mode in goal or limits is, by its shape [E33], another mode at the optimum than at the start of the
+/// search.
 pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
     let mut numbers: Vec<usize> = problem.figures().into_iter().filter_map(number).collect();
     numbers.sort_unstable();
@@ -38,7 +39,7 @@ pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
     told.map(|what| Code::ModesExchanged.warning(what)).collect()
 }
 
-/// The number of a mode whose figure this is.
+/// Number of the mode of a figure.
 fn number(figure: &str) -> Option<usize> {
     figure.strip_prefix("mode_")?.split('.').next()?.parse().ok()
 }

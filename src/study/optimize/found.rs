@@ -1,4 +1,4 @@
-//! What a search for the best finds, as its file holds it.
+//! Result of an optimization, as in its file.
 
 use std::collections::BTreeMap;
 
@@ -13,74 +13,74 @@ use crate::numerics::sqp::HELD;
 use crate::study::analysis::AnalysisKind;
 pub use crate::study::span::Bound;
 
-/// The best that was found.
+/// Result of an optimization.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Optimum {
     /// Name of the case.
     pub case: String,
-    /// What every design went through.
+    /// Analysis of every design.
     pub command: AnalysisKind,
-    /// What is sought.
+    /// Goal.
     pub goal: Goal,
-    /// Whether the search ended at a best within bounds and limits, as far as derivatives tell.
+    /// True if the search ended at an optimum within bounds and limits, according to derivatives.
     pub found: bool,
-    /// The figure there, in its unit.
+    /// Figure at the optimum, in its unit.
     pub value: f64,
-    /// The same as the plain command gives it; nothing where that failed.
+    /// Figure of the plain command at the optimum; `None` if that failed.
     pub plain: Option<f64>,
-    /// Estimated error of steps, mesh and effects left out, absolute.
+    /// Estimated absolute error due to steps, mesh and omitted effects.
     pub error: Option<f64>,
-    /// The figure where the first search began.
+    /// Figure at the first start.
     pub begin: Option<f64>,
-    /// Alternatives that were compared, each at its best; nothing where there was no choice.
+    /// Compared alternatives, each at its optimum; empty if there was no choice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub alternatives: Vec<Compared>,
-    /// Which of them is best, from 0.
+    /// Index of the best alternative, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<usize>,
-    /// Numbers that were sought.
+    /// Optimized numbers.
     pub variables: Vec<Variable>,
-    /// What was to be held.
+    /// Limits of other figures.
     pub limits: Vec<Held>,
-    /// Second derivatives of the figure by numbers between their bounds; nothing where a limit is reached, or where they were not to be
-    /// had.
+    /// Second derivatives of the figure with respect to numbers between their bounds; `None` if a limit is active, or
+    /// if they are not available.
     pub curvature: Option<Curvature>,
-    /// Why the search that found the best ended, in words; nothing where no numbers were sought.
+    /// Reason why the best search ended; `None` if no numbers were optimized.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
-    /// Where derivatives came from.
+    /// Source of the derivatives.
     pub derivatives: Derivatives,
-    /// Searches, the first from the case's own numbers.
+    /// Searches; the first starts from the case's own numbers.
     pub starts: Vec<Start>,
-    /// Designs that were computed for the search.
+    /// Number of designs computed for the search.
     pub evaluations: usize,
-    /// Why designs had nothing to offer, and how many.
+    /// Number of failed designs by reason.
     pub failed: BTreeMap<String, usize>,
-    /// What to know first.
+    /// Warnings.
     pub warnings: Vec<String>,
-    /// Wall time.
+    /// Wall time [s].
     pub wall_s: f64,
 }
 
-/// One of what was chosen from.
+/// Alternative at its optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// What it sets in the case, each as `POINTER=JSON`.
+    /// Settings in the case, each as `POINTER=JSON`.
     pub sets: Vec<String>,
-    /// The figure at its best; nothing where no design was to be had.
+    /// Figure at its optimum; `None` if no design could be computed.
     pub value: Option<f64>,
-    /// Whether limits are held there.
+    /// True if the limits are met there.
     pub held: bool,
     /// Values of the numbers there.
     pub values: Vec<f64>,
-    /// Why there is nothing.
+    /// Reason why there is no result.
     pub reason: Option<String>,
 }
 
 impl Compared {
-    /// Of where a search with an alternative ended.
+    /// Summarizes the end of the search with an alternative.
     pub(super) fn of(alternative: &Alternative, reached: &Result<Reached>) -> Self {
         let there = reached.as_ref().ok();
         Self {
@@ -94,17 +94,17 @@ impl Compared {
     }
 }
 
-/// Where derivatives of figures came from.
+/// Source of the derivatives of figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Derivatives {
-    /// They are exact: those of `--sensitivity`.
+    /// Exact derivatives, those of `--sensitivity`.
     Exact,
     /// Differences of designs, two for each number.
     Differences,
 }
 
-/// A number of the case.
+/// Optimized number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Variable {
     /// JSON pointer into the case.
@@ -113,86 +113,87 @@ pub struct Variable {
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// Whether it was sought by its logarithm.
+    /// True if the search used its logarithm.
     pub logarithmic: bool,
-    /// Where the first search began.
+    /// Value at the first start.
     pub start: f64,
-    /// The best.
+    /// Value at the optimum.
     pub value: f64,
-    /// The bound at which it lies.
+    /// Bound at which it lies.
     pub at_bound: Option<Bound>,
-    /// What the figure would gain for each unit by which that bound were moved; above 0 for better.
+    /// Gain of the figure per unit by which that bound is moved; positive for an improvement.
     pub gain: Option<f64>,
-    /// Values to either side at which the figure would be worse by 1 %, others held, as far as the curvature tells.
+    /// Values on both sides at which the figure would be worse by 1 %, with the others fixed, according to the
+    /// curvature.
     pub within_1_percent: Option<[f64; 2]>,
 }
 
-/// A limit at the best.
+/// Limit at the optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Held {
     /// The limit.
     #[serde(flatten)]
     pub limit: Limit,
-    /// The figure.
+    /// Figure at the optimum.
     pub value: f64,
-    /// Whether the figure lies at it.
+    /// True if the limit is active.
     pub reached: bool,
-    /// What the goal would gain for each unit by which the limit were let go; nothing where it is not held.
+    /// Gain of the goal per unit by which the limit is relaxed; `None` if the limit is violated.
     pub gain: Option<f64>,
 }
 
 impl Held {
-    /// Whether the figure lies beyond it.
+    /// True if the figure violates the limit.
     pub fn beyond(&self) -> bool {
         self.limit.beyond(self.value) > REACHED * self.limit.bound.abs()
     }
 }
 
 impl Optimum {
-    /// Whether a limit is not held.
+    /// True if a limit is violated.
     pub fn beyond_limits(&self) -> bool {
         self.limits.iter().any(Held::beyond)
     }
 }
 
-/// Second derivatives.
+/// Second derivatives of the figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Curvature {
-    /// Numbers by which, in their order.
+    /// Pointers of the numbers, in the order of the rows.
     pub pointers: Vec<String>,
-    /// The matrix, by the logarithms of numbers that were sought so.
+    /// Matrix; with respect to logarithms for numbers that were searched in their logarithms.
     pub matrix: Vec<Vec<f64>>,
 }
 
-/// A search from one place.
+/// Search from one start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Start {
-    /// Where it began.
+    /// Start.
     pub from: Vec<f64>,
-    /// Where it ended; nothing where there was nothing to begin with.
+    /// End; `None` if the start could not be computed.
     pub to: Option<Vec<f64>>,
-    /// The figure there.
+    /// Figure at the end.
     pub value: Option<f64>,
-    /// Whether limits are held there.
+    /// True if the limits are met there.
     pub held: bool,
-    /// Steps it took.
+    /// Number of steps.
     pub steps: usize,
 }
 
-/// A design that was computed: a row of `history.csv`.
+/// Computed design: a row of `history.csv`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// Place of its alternative.
+    /// Index of its alternative.
     pub alternative: usize,
-    /// Number of the search; one more than there are for what is computed about the best.
+    /// Index of the search; the number of searches for designs about the optimum.
     pub start: usize,
     /// Values of the numbers.
     pub values: Vec<f64>,
-    /// What is sought and what is limited; nothing where the design failed.
+    /// Figures of goal and limits; `None` if the design failed.
     pub figures: Option<Vec<f64>>,
-    /// Whether limits are held.
+    /// True if the limits are met.
     pub held: bool,
-    /// Why it failed.
+    /// Reason why it failed.
     pub reason: Option<String>,
     /// Wall time [s].
     pub wall_s: f64,

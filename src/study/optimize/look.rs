@@ -1,4 +1,4 @@
-//! One design: its figures, and their derivatives by the numbers that are sought.
+//! Figures of one design, and their derivatives with respect to the optimized numbers.
 
 use std::time::Instant;
 
@@ -15,27 +15,27 @@ use crate::study::analysis::derivatives;
 use crate::study::analysis::{self, Ask};
 use crate::study::span;
 
-/// Change of a place between the bounds in a difference, to either side.
+/// Change of a position between the bounds in a difference, to either side.
 const BESIDE: f64 = 0.01;
 
-/// What was seen of a design.
+/// Figures and derivatives of a design.
 #[derive(Clone, Debug)]
 pub struct Seen {
     /// Figures in the order of [`Problem::figures`].
     pub figures: Vec<f64>,
-    /// Of each the derivatives by places between the bounds.
+    /// Derivatives of each figure with respect to positions between the bounds.
     pub slopes: Vec<Vec<f64>>,
-    /// Where the derivatives are from.
+    /// Source of the derivatives.
     pub from: Derivatives,
 }
 
-/// What hears of a design: values of the numbers, figures or why there are none, wall time [s].
+/// Callback after each design: values of the numbers, figures or the reason of a failure, wall time [s].
 pub type Tell<'a> = dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64) + 'a;
 
-/// Looks at a place between the bounds; `tell` hears of every design that is computed.
+/// Evaluates a position between the bounds; `tell` is called after every design that is computed.
 ///
 /// # Errors
-/// Why there is nothing to see, in words.
+/// Reason of the failure, as text.
 pub fn look(
     problem: &Problem,
     places: &[f64],
@@ -80,10 +80,10 @@ pub fn look(
     })
 }
 
-/// Figures of a design, and what is seen of it with exact derivatives where there are any.
+/// Figures of a design, with derivatives if exact ones are available.
 type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
 
-/// Looks at a place with exact derivatives; nothing where there cannot be any.
+/// Evaluates a position with exact derivatives; `None` if these are not available.
 fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Tell<'_>) -> Option<Exactly> {
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
@@ -112,7 +112,7 @@ fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Te
     }))
 }
 
-/// Whether a number is so near to the end of what its key can be that the steps of its derivatives lie beyond.
+/// True if a number is so close to the end of its valid range that the steps of its derivatives lie outside.
 fn at_an_end(problem: &Problem, values: &[f64]) -> bool {
     let Ok(case) = problem.with(values) else { return false };
     let beyond = |one: &Parameter| {
@@ -122,10 +122,11 @@ fn at_an_end(problem: &Problem, values: &[f64]) -> bool {
     problem.parameters(values).iter().any(beyond)
 }
 
-/// Figures with their derivatives per unit of the numbers, where every figure has them.
+/// Figures, with their derivatives per unit of the numbers if every figure has these.
 type Exact = (Vec<f64>, Option<Vec<Vec<f64>>>);
 
-/// Figures with exact derivatives; `None` where derivatives by one of the numbers are refused, so that differences take over.
+/// Returns figures with exact derivatives; `None` if derivatives with respect to one of the numbers are rejected, so
+/// that differences are used.
 fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> Option<std::result::Result<Exact, String>> {
     let compute = || differentiated(problem, values, stop);
     problem.evaluations.get(&("exact", values), stop, compute)
@@ -152,7 +153,7 @@ fn differentiated(
         Ok(figures) => figures,
         Err(reason) => return Some(Err(reason)),
     };
-    // derivatives of a root mean square are those of its samples, not of the integral that is told
+    // derivatives of a root mean square are those of its samples, not of the integral that is reported
     let own = |name: &&str| !name.ends_with("window_rms");
     let all = problem
         .figures()
@@ -161,7 +162,7 @@ fn differentiated(
     Some(Ok((figures, all.collect())))
 }
 
-/// What the plain command tells of a design.
+/// Figures of a design from the plain command.
 fn plain(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
     let compute = || computed(problem, values, stop);
     problem.evaluations.get(&("plain", values), stop, compute)
@@ -185,7 +186,7 @@ fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcom
     dynamics::run_with(case, system, &[], &mut Unrecorded(derivatives::until(stop)))
 }
 
-/// What is looked at, of everything that a design tells.
+/// Selects the figures of goal and limits from the result of a design.
 fn wanted(problem: &Problem, found: &Found) -> std::result::Result<Vec<f64>, String> {
     if found.status != Status::Finished {
         return Err(found.reason.clone().unwrap_or_else(|| "it did not finish".into()));

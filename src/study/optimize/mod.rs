@@ -1,15 +1,16 @@
-//! The numbers of a case with which a figure is largest or least, between bounds and under limits to other figures.
+//! Optimization: numbers of a case that maximize or minimize a figure, between bounds and under limits of other
+//! figures.
 //!
 //! ```text
 //! names      figures by name
-//! problem    case, numbers that are sought, goal and limits; everything that does not fit is told here
-//! look       one design, with derivatives
-//! search     from starts to the best
-//! exchanged  modes that are others at the best
-//! curvature  how flat it is
-//! wiring     what is chosen from sets, in all combinations
+//! problem    case, numbers to be optimized, goal and limits; rejects inconsistent input
+//! look       figures of one design, with derivatives
+//! search     search from the starts to the optimum
+//! exchanged  modes that differ at the optimum
+//! curvature  second derivatives at the optimum
+//! wiring     alternatives to choose from, in all combinations
 //! found      the result
-//! told       what to know before it is believed
+//! told       warnings about the result
 //! ```
 
 mod curvature;
@@ -39,33 +40,33 @@ use search::{Reached, Search, better};
 use told::{broken, warnings};
 use wiring::Alternative;
 
-/// A figure over its size that is nearer to a limit lies at it.
+/// Distance of a figure from a limit, over its size, below which the limit is active.
 pub(super) const REACHED: f64 = 1e-4;
 
-/// One of what is chosen from.
+/// Alternative with its problem.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// What it is.
+    /// Alternative.
     pub alternative: Alternative,
-    /// The case with it, and what is sought.
+    /// The case with the alternative, and the goal.
     pub problem: Problem,
 }
 
-/// The best with what its files tell besides.
+/// Optimum, with the additional data of its files.
 #[derive(Clone, Debug)]
 pub struct Optimised {
     /// The result.
     pub optimum: Optimum,
-    /// What was sought, with the best of what was chosen from.
+    /// Problem with the best alternative.
     pub problem: Problem,
-    /// The case with its numbers.
+    /// The case with the optimized numbers.
     pub case: Case,
     /// Every design that was computed.
     pub history: Vec<Design>,
 }
 
-/// Searches, for every candidate. `tell` hears of every design: how many there were, and the best figure so far; `stop` ends the search
-/// early.
+/// Optimizes every candidate. `tell` is called after every design with their number and the best figure so far; `stop`
+/// ends the search early.
 ///
 /// # Errors
 /// No design can be computed at any start.
@@ -79,7 +80,7 @@ pub fn optimise(
     let tell_all = together(asked, tell);
     let searches = candidates.iter().map(|one| &one.problem).enumerate();
     let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
-    // the starts of one at once, of many these themselves
+    // one search runs its starts in parallel; several searches run in parallel themselves
     let mut all = match &searches[..] {
         [search] => vec![search.go(asked.jobs)],
         _ => {
@@ -106,7 +107,7 @@ pub fn optimise(
     finish(candidates, &searches, (chosen, reached), compared, stop, begin)
 }
 
-/// Counts designs of all searches, and the best figure of all.
+/// Counts the designs of all searches, and keeps the best figure of all.
 fn together<'a>(
     asked: &Asked,
     tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
@@ -122,7 +123,7 @@ fn together<'a>(
     }
 }
 
-/// The result of where the best search ended: how flat it is there, what holds it, what the plain command says.
+/// Result at the end of the best search: curvature, active limits, and figures of the plain command.
 fn finish(
     candidates: &[Candidate],
     searches: &[Search<'_>],
@@ -135,7 +136,7 @@ fn finish(
     let minimum = &reached.minimum;
     let case = problem.with(&reached.values)?;
     let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
-    // where a limit is reached the figure changes along numbers in the first order
+    // at an active limit the figure changes with numbers to first order
     let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0) && !minimum.x.is_empty();
     let bend = (found && inner && !stop())
         .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
@@ -182,7 +183,7 @@ fn finish(
     if !stop() {
         optimum.warnings.extend(exchanged::warnings(problem, &case));
     }
-    // of what holds no limits nothing better can be told by smaller steps
+    // where limits are violated anyway, smaller steps do not help
     if !optimum.beyond_limits() {
         let broken = checked.iter().flat_map(|plain| broken(problem, plain));
         optimum.warnings.extend(broken);
@@ -207,7 +208,7 @@ fn finish(
     })
 }
 
-/// What the plain command tells of the best, with errors.
+/// Result of the plain command at the optimum, with errors.
 fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Found> {
     let ask = Ask {
         what: problem.what,
@@ -219,7 +220,7 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
     analysis::stored(&problem.evaluations, &("check", &case.name), stop, found)
 }
 
-/// The estimated error of a figure, absolute.
+/// Estimated absolute error of a figure.
 fn error(found: &Found, figure: &str) -> Option<f64> {
     let quantity = figure.split('.').next().unwrap_or_default();
     let relative = [figure, quantity]
@@ -236,7 +237,7 @@ fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>
         x if x >= 1.0 => Some(Bound::High),
         _ => None,
     };
-    // what the value would fall by, per place between the bounds, is what the figure gains
+    // the decrease of the value per position between the bounds is the gain of the figure
     let gain = at_bound.map(|_| slope.abs() * reached.sizes[0] / span.slope(reached.values[k]).abs());
     Variable {
         pointer: span.pointer.clone(),

@@ -1,10 +1,10 @@
-//! Figures by name, as the table of `slcbeam sweep` has them.
+//! Figures by name, as in the table of `slcbeam sweep`.
 
 use crate::case::nearest;
 use crate::error::{Error, Result};
 use crate::study::analysis::AnalysisKind;
 
-/// Which figure of a quantity is meant where none is named, the first that there is.
+/// Figures that the bare name of a quantity may refer to, in order of priority.
 const MEANT: [&str; 7] = [
     "mean",
     "max_abs",
@@ -14,13 +14,13 @@ const MEANT: [&str; 7] = [
     "window",
     "window_rms",
 ];
-/// Names listed in a message at most.
+/// Largest number of names listed in a message.
 const LISTED: usize = 24;
 
-/// The figure that a text means: one by its whole name, or the foremost of a quantity.
+/// Returns the figure that a text names: by its full name, or the main figure of a quantity.
 ///
 /// # Errors
-/// [`Error::Usage`] with the nearest where there is none of that name.
+/// [`Error::Usage`] with the nearest name if there is no such figure.
 pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -> Result<String> {
     let text = text.trim();
     let meant = MEANT.iter().map(|figure| format!("{text}.{figure}"));

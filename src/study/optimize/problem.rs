@@ -1,4 +1,4 @@
-//! What is sought, within what.
+//! Goal, numbers and limits of an optimization.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,23 +11,23 @@ use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::span::{self, Span};
 
-/// The figure that is to be largest or least.
+/// Figure to be maximized or minimized.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Goal {
-    /// The figure, by its name in the table of `slcbeam sweep`.
+    /// Name of the figure in the table of `slcbeam sweep`.
     pub figure: String,
-    /// Whether the largest is sought; else the least.
+    /// True to maximize, false to minimize.
     pub largest: bool,
 }
 
 impl Goal {
-    /// 1 where the least is sought, -1 where the largest is.
+    /// Returns 1 to minimize, -1 to maximize.
     pub fn sign(&self) -> f64 {
         if self.largest { -1.0 } else { 1.0 }
     }
 }
 
-/// On which side of a limit a figure has to stay.
+/// Side of a limit on which a figure must stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
@@ -37,22 +37,22 @@ pub enum Side {
     AtLeast,
 }
 
-/// What a figure has to hold.
+/// Limit of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// The figure.
     pub figure: String,
-    /// On which side.
+    /// Side of the bound.
     pub side: Side,
-    /// Of what, in its unit.
+    /// Bound, in the unit of the figure.
     pub bound: f64,
 }
 
 impl Limit {
-    /// Of `FIGURE<=VALUE` or `FIGURE>=VALUE`.
+    /// Parses `FIGURE<=VALUE` or `FIGURE>=VALUE`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let sides = [("<=", Side::AtMost), (">=", Side::AtLeast)];
         let parts = sides.iter().find_map(|(sign, side)| {
@@ -71,7 +71,7 @@ impl Limit {
         }
     }
 
-    /// As it is typed.
+    /// Returns the sign as on the command line.
     pub fn sign(&self) -> &'static str {
         match self.side {
             Side::AtMost => "<=",
@@ -79,12 +79,12 @@ impl Limit {
         }
     }
 
-    /// How far a figure is beyond the limit; below 0 where it is held.
+    /// Excess of a figure over the limit; negative if the limit is met.
     pub fn beyond(&self, figure: f64) -> f64 {
         self.sense() * (figure - self.bound)
     }
 
-    /// 1 where the figure is at most the limit, -1 where it is at least that.
+    /// Returns 1 for an upper limit, -1 for a lower limit.
     pub fn sense(&self) -> f64 {
         match self.side {
             Side::AtMost => 1.0,
@@ -93,51 +93,51 @@ impl Limit {
     }
 }
 
-/// What is asked for.
+/// Requested optimization.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Asked {
-    /// What every design goes through.
+    /// Analysis of every design.
     pub what: AnalysisKind,
-    /// Numbers that are sought, and where.
+    /// Numbers to be optimized, with bounds.
     pub spans: Vec<Span>,
-    /// What is sought; its figure as it was typed.
+    /// Goal, its figure as typed.
     pub goal: Goal,
-    /// What is to be held, likewise.
+    /// Limits, their figures as typed.
     pub limits: Vec<Limit>,
-    /// Searches, each from another place.
+    /// Number of searches, each from another start.
     pub starts: usize,
-    /// Designs at once.
+    /// Number of parallel designs.
     pub jobs: usize,
 }
 
-/// Everything that a search needs.
+/// All data of an optimization.
 #[derive(Clone, Debug)]
 pub struct Problem {
     /// The case.
     pub case: Case,
-    /// What every design goes through.
+    /// Analysis of every design.
     pub what: AnalysisKind,
-    /// Its effects, which every design of a run has: a figure must not jump where others would be chosen.
+    /// System of a run, whose effects every design uses: a figure must not jump where others would be chosen.
     pub system: Option<System>,
-    /// Numbers that are sought, and where.
+    /// Numbers to be optimized, with bounds.
     pub spans: Vec<Span>,
-    /// Their values to begin with.
+    /// Initial values.
     pub start: Vec<f64>,
-    /// What is sought.
+    /// Goal.
     pub goal: Goal,
-    /// What is to be held.
+    /// Limits.
     pub limits: Vec<Limit>,
-    /// Why there are no exact derivatives, where there are none.
+    /// Reason why exact derivatives are not available, if they are not.
     pub differences: Option<String>,
-    /// Designs that are computed already.
+    /// Stored designs.
     pub evaluations: Evaluations,
 }
 
 impl Problem {
-    /// Brings a case and what is asked for together.
+    /// Combines a case and a request.
     ///
     /// # Errors
-    /// Everything that does not fit, before anything is computed.
+    /// Inconsistent input, found before anything is computed.
     pub fn new(case: &Case, asked: &Asked) -> Result<Self> {
         let start = span::begin(case, &asked.spans, std::iter::empty())?;
         asked.what.analysis().check(case)?;
@@ -179,16 +179,16 @@ impl Problem {
         Ok(problem)
     }
 
-    /// The case with values of the numbers that are sought.
+    /// Returns the case with values of the optimized numbers.
     ///
     /// # Errors
-    /// It is not valid with them.
+    /// The case is not valid with them.
     pub fn with(&self, values: &[f64]) -> Result<Case> {
         let all = self.spans.iter().map(|span| span.pointer.as_str());
         with(&self.case, &all.zip(values.iter().copied()).collect::<Vec<_>>())
     }
 
-    /// The numbers that are sought at values.
+    /// Returns the optimized numbers at values.
     pub fn parameters(&self, values: &[f64]) -> Vec<Parameter> {
         let parameter = |(span, value): (&Span, &f64)| Parameter {
             pointer: span.pointer.clone(),
@@ -197,14 +197,14 @@ impl Problem {
         self.spans.iter().zip(values).map(parameter).collect()
     }
 
-    /// Figures that are looked at: what is sought, then what is limited.
+    /// Returns the figures that are evaluated: the goal, then the limits.
     pub fn figures(&self) -> Vec<&str> {
         let limits = self.limits.iter().map(|limit| limit.figure.as_str());
         std::iter::once(self.goal.figure.as_str()).chain(limits).collect()
     }
 }
 
-/// Limits of one figure between which nothing lies.
+/// Rejects limits of one figure that contradict each other.
 fn contradictions(limits: &[Limit]) -> Result<()> {
     for low in limits.iter().filter(|one| one.side == Side::AtLeast) {
         let high = limits

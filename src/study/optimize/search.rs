@@ -1,4 +1,4 @@
-//! From starts to the best, every design on the way kept.
+//! Search from the starts to the optimum; stores every design on the way.
 
 use std::cmp::Ordering;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -14,17 +14,19 @@ use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
 use crate::study::span;
 use crate::study::sweep::pool;
 
-/// Steps of a search at most.
+/// Largest number of steps of a search.
 const STEPS: usize = 60;
-/// A step between the bounds that counts as none.
+/// Step between the bounds below which a search has converged.
 const CLOSE: f64 = 3e-5;
-/// Searches from where one has ended, at most: what is flat beside the figure at the start may be steep beside that at the end.
+/// Largest number of searches from one start, each from the end of the previous one: a slope that is small relative to
+/// the initial figure may be large relative to the final figure.
 const AGAIN: usize = 6;
-/// Slope over the figure, between the bounds, that counts as none at the end of a search.
+/// Slope between the bounds, relative to the figure, below which the end of a search is stationary.
 const LEVEL: f64 = 1e-3;
-/// The same where derivatives and kinks are told from each other.
+/// Slope, in the same measure, above which an end does not count as an optimum: derivatives contradict values, or there
+/// is a kink.
 const STEEP: f64 = 2e-2;
-/// Error of figures at rest and of modes.
+/// Relative error of figures of equilibria and modes.
 const EXACT: f64 = 1e-9;
 
 /// A search.
@@ -38,22 +40,23 @@ pub struct Search<'a> {
     alternative: usize,
 }
 
-/// Where it ended.
+/// Result of all searches.
 pub struct Reached {
-    /// Of the best.
+    /// Minimum of the best search.
     pub minimum: Minimum,
-    /// Values of the numbers there.
+    /// Values of the numbers at the minimum.
     pub values: Vec<f64>,
-    /// Figures there.
+    /// Figures at the minimum.
     pub figures: Vec<f64>,
-    /// Sizes by which figures were divided, in their order.
+    /// Sizes by which figures are divided, in their order.
     pub sizes: Vec<f64>,
-    /// Searches.
+    /// Searches from all starts.
     pub starts: Vec<Start>,
 }
 
 impl<'a> Search<'a> {
-    /// Of a problem, one of alternatives. `tell` hears of every design: how many there were, and the best figure that holds the limits.
+    /// Creates the search of a problem, one of several alternatives. `tell` is called after every design with their
+    /// number and the best figure that meets the limits.
     pub fn new(
         (alternative, problem): (usize, &'a Problem),
         asked: &'a Asked,
@@ -76,7 +79,7 @@ impl<'a> Search<'a> {
         self.history.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Where derivatives came from.
+    /// Source of the derivatives.
     pub fn derivatives(&self) -> Derivatives {
         match self.differences.load(Relaxed) {
             true => Derivatives::Differences,
@@ -84,12 +87,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Searches from every start, so many at once; the best is what holds the limits, and of these what is best.
+    /// Searches from every start, `jobs` of them in parallel. The best end meets the limits and, among these, has the
+    /// best figure.
     ///
     /// # Errors
     /// No design can be computed at any start.
     pub fn go(&self, jobs: usize) -> Result<Reached> {
-        // without numbers there is nowhere else to begin
+        // without numbers there is only one start
         let starts = if self.problem.spans.is_empty() {
             1
         } else {
@@ -155,7 +159,7 @@ impl<'a> Search<'a> {
         std::iter::once(goal).chain(limits).collect()
     }
 
-    /// The least from one place, and sizes of figures.
+    /// Minimizes from one start; returns the minimum and the sizes of figures.
     fn minimise(&self, start: usize, from: &[f64]) -> Option<(Minimum, Vec<f64>)> {
         let mut sizes: Option<Vec<f64>> = None;
         let options = Options {
@@ -166,7 +170,7 @@ impl<'a> Search<'a> {
         let mut found: Option<Minimum> = None;
         for _ in 0..AGAIN {
             let from = found.as_ref().map_or(from, |found| &found.x);
-            // what there is where the last search has ended is not computed again
+            // do not compute the end of the last search again
             let mut here = found
                 .as_ref()
                 .zip(sizes.as_ref())
@@ -202,7 +206,7 @@ impl<'a> Search<'a> {
         Some((found, sizes?))
     }
 
-    /// Error of figures.
+    /// Relative error of figures.
     fn noise(&self) -> f64 {
         match self.problem.what.analysis().is_in_time() {
             true => self.problem.case.solver.rtol.max(EXACT),
@@ -210,7 +214,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What there is at the end of a search, with sizes of the figures there.
+    /// Point at the end of a search, scaled with the size of the figure there.
     fn rescaled(&self, found: &Minimum, sizes: &[f64]) -> (Point, Vec<f64>) {
         let figures = self.figures(found, sizes);
         let mut own = sizes.to_vec();
@@ -226,7 +230,7 @@ impl<'a> Search<'a> {
         (point, own)
     }
 
-    /// Sizes of figures: of what is sought at the start, of limits themselves.
+    /// Sizes of figures: the initial figure of the goal, the bounds of limits.
     fn sizes(&self, figures: &[f64]) -> Vec<f64> {
         let size = |x: f64, otherwise: f64| match x.abs() > 0.0 {
             true => x.abs(),
@@ -238,7 +242,7 @@ impl<'a> Search<'a> {
         std::iter::once(size(figures[0], 1.0)).chain(limits).collect()
     }
 
-    /// What was seen, as the search wants it.
+    /// Converts figures and derivatives of a design to the scaled form of the search.
     pub fn point(&self, seen: &Seen, sizes: &[f64]) -> Point {
         let (n, limits) = (self.problem.spans.len(), &self.problem.limits);
         let scale = self.problem.goal.sign() / sizes[0];
@@ -253,7 +257,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Looks at a place and keeps what is computed for it.
+    /// Evaluates a position, and stores the designs that are computed for it.
     pub fn look(&self, start: usize, places: &[f64]) -> Option<Seen> {
         if (self.stop)() {
             return None;
@@ -302,7 +306,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Which of two ends of searches is the better, each with the size of the figure: the one that holds the limits, or nearer does, then the one with
+/// Compares the ends of two searches, each with the size of the figure: less violation of the limits is better, then
 /// the better figure.
 pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
     let worth = |(minimum, size): (&Minimum, f64)| {
@@ -314,8 +318,8 @@ pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
     a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
 }
 
-/// How steep what is sought still is at the end of a search, over its size there: by the numbers that no bound holds, limits with their multipliers
-/// taken along.
+/// Steepness at the end of a search, relative to the figure there: the largest slope of the goal, including limits with
+/// their multipliers, with respect to numbers that no bound holds.
 fn steepness(found: &Minimum) -> f64 {
     let lambda = DVector::from_column_slice(&found.multipliers);
     let slope = &found.at.slope + found.at.slopes.tr_mul(&lambda);

@@ -1,4 +1,4 @@
-//! What to know of a best before it is believed.
+//! Warnings about an optimum.
 
 use super::REACHED;
 use super::found::{Derivatives, Design, Held, Optimum};
@@ -10,15 +10,15 @@ use crate::numerics::sqp::Ended;
 use crate::study::analysis::Found;
 use crate::study::span::Span;
 
-/// What the plain command may differ by without a word.
+/// Largest relative difference from the plain command without a warning.
 const SAME: f64 = 1e-3;
 
-/// Six digits of a number.
+/// Formats a number with six digits.
 fn six(number: f64) -> String {
     plain(rounded(number, 6))
 }
 
-/// Limits that the plain command breaks at the best.
+/// Warns of limits that the plain command violates at the optimum.
 pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
     let of = |limit: &Limit| {
         let value = plain.figure(&limit.figure)?;
@@ -36,7 +36,7 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
     problem.limits.iter().filter_map(of).collect()
 }
 
-/// Why a search ended.
+/// Reason why a search ended.
 pub(super) fn ended(ended: Ended, stopped: bool) -> &'static str {
     match ended {
         _ if stopped => "it was interrupted",
@@ -47,7 +47,7 @@ pub(super) fn ended(ended: Ended, stopped: bool) -> &'static str {
     }
 }
 
-/// What is to be said of where the search ended.
+/// Warnings about the end of the search.
 pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Optimum.warning(what));
@@ -105,12 +105,13 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
     all
 }
 
-/// Part of a figure below which its changes are the rounding of the program.
+/// Share of a figure below which its changes are rounding errors.
 const ROUNDING: f64 = 1e-6;
-/// Part of the bounds that designs have to cover before a figure is called independent.
+/// Share of the bounds that designs must cover before a figure is called independent.
 const COVERED: f64 = 0.1;
 
-/// That the figure does not depend on what is sought, where designs across the bounds differ by no more than its error.
+/// Warns that the figure does not depend on the optimized numbers, if designs across the bounds differ by no more than
+/// its error.
 pub(super) fn flat(problem: &Problem, found: &Optimum, history: &[Design]) -> Option<String> {
     if !found.alternatives.is_empty() {
         return None;

@@ -1,26 +1,26 @@
-//! Wirings, or anything else of a case, as something that is chosen.
+//! Alternatives to choose from: wirings, or any other part of a case.
 
 use serde_json::Value;
 
 use crate::case::Case;
 use crate::error::{Error, Result};
 
-/// Alternatives at most.
+/// Largest number of alternatives.
 pub const MOST: usize = 5000;
 
-/// One of a set.
+/// Alternative of a set.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Alternative {
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// What it sets in the case, each as `POINTER=JSON`.
+    /// Settings in the case, each as `POINTER=JSON`.
     pub sets: Vec<String>,
 }
 
-/// Alternatives of `POINTER=JSON|JSON|..`.
+/// Parses the alternatives of `POINTER=JSON|JSON|..`.
 ///
 /// # Errors
-/// [`Error::Usage`] with what is wanted.
+/// [`Error::Usage`] with the expected form.
 pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     let wrong = |what: &str| Error::Usage(format!("--choose '{text}': {what}"));
     let wanted = "a JSON pointer and alternatives are wanted, such as '/network/chains/0/bladders=[1, 2, 3]|[1, 3, 2]'";
@@ -32,7 +32,7 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     if all.len() < 2 || all.iter().any(|one| one.is_empty()) {
         return Err(wrong("two alternatives at least, with | between them"));
     }
-    // 0.50 is 0.5
+    // 0.50 equals 0.5
     let read = |text: &str| match serde_json::from_str::<Value>(text) {
         Ok(number) if number.is_number() => number.as_f64().into(),
         Ok(other) => other,
@@ -51,7 +51,7 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     Ok(all.iter().map(one).collect())
 }
 
-/// Every combination of one of each set.
+/// Returns every combination of one alternative of each set.
 ///
 /// # Errors
 /// [`Error::Usage`] for more than [`MOST`].
@@ -78,11 +78,11 @@ pub fn combinations(sets: Vec<Vec<Alternative>>) -> Result<Vec<Alternative>> {
     Ok(all)
 }
 
-/// Wirings in which the first two chains of a case, of opposite bladders one beside the other, change sides at most so often along the beam.
-/// Both begin on the sides on which they do in the case.
+/// Wirings in which the first two chains of a case change sides at most `most` times along the beam. The chains must
+/// contain opposite bladders in the same order. Both begin on the sides on which they begin in the case.
 ///
 /// # Errors
-/// [`Error::Usage`] where there are no two such chains, and for more than [`MOST`] wirings.
+/// [`Error::Usage`] if there are no two such chains, and for more than [`MOST`] wirings.
 pub fn crossings(case: &Case, most: usize) -> Result<Vec<Alternative>> {
     let chains = case.network.as_ref().map_or(&[][..], |network| &network.chains);
     let sides = |chain: usize| -> Vec<i64> { chains.get(chain).map_or_else(Vec::new, |chain| chain.bladders.clone()) };
@@ -116,7 +116,7 @@ pub fn crossings(case: &Case, most: usize) -> Result<Vec<Alternative>> {
     Ok(all)
 }
 
-/// The wiring that changes sides after so many bladders each.
+/// Wiring that changes sides after each of the given numbers of bladders.
 fn wiring(chain: &[i64], after: &[usize]) -> Alternative {
     let mut side = chain[0].signum();
     let upper: Vec<i64> = chain
@@ -142,7 +142,7 @@ fn wiring(chain: &[i64], after: &[usize]) -> Alternative {
     }
 }
 
-/// More alternatives than [`MOST`].
+/// Error for more alternatives than [`MOST`].
 fn too_many(option: &str) -> Error {
     Error::Usage(format!(
         "{option}: more than {MOST} alternatives, all of which would be computed: choose between fewer"

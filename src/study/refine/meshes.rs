@@ -1,13 +1,13 @@
-//! What the meshes of a case do to its numbers, and the effects that it leaves out: half the cells of the beam, twice those of a bladder, and all
-//! effects beside it.
+//! Errors of a case's numbers due to its meshes and to omitted effects: comparison with half the cells of the beam,
+//! twice the cells of a bladder, and all effects.
 //!
 //! ```text
 //! beam      second order   e = S |x(K) - x(K/2)|/3,  or 4 S |x(2K) - x(K)|/3 where cells cannot be halved
 //! bladders  first order    e = 2 |x(2G) - x(G)|
 //! ```
 //!
-//! What is largest along a bladder is that of a cell, whose middle is half a cell from its end: of first order. A bladder has few cells;
-//! half of them say nothing of what a pressure does within one.
+//! The largest value along a bladder is that of a cell, whose center is half a cell from its end: first order. A
+//! bladder has few cells; half of them do not resolve the pressure within it.
 
 use std::collections::BTreeMap;
 
@@ -20,45 +20,45 @@ use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
 use crate::study::effects::full::full;
 
-/// What meshes do to one number, relative to it.
+/// Errors of one number due to meshes and effects, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Share {
-    /// Cells of the beam; nothing where the other mesh has no such number.
+    /// Error due to the cells of the beam; `None` if the other mesh has no such number.
     pub beam: Option<f64>,
-    /// Cells along bladders, likewise.
+    /// Error due to the cells along bladders; `None` as for `beam`.
     pub bladders: Option<f64>,
-    /// Effects that are left out, of equilibria and cycles.
+    /// Error due to omitted effects, for equilibria and cycles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub effects: Option<f64>,
 }
 
 impl Share {
-    /// All together.
+    /// Sum of all errors.
     pub fn total(&self) -> f64 {
         let parts = [self.beam, self.bladders, self.effects];
         parts.into_iter().flatten().sum()
     }
 
-    /// Whether one of them is.
+    /// True if the error of a mesh is known.
     pub fn known(&self) -> bool {
         self.beam.is_some() || self.bladders.is_some()
     }
 }
 
-/// What meshes do to numbers.
+/// Errors of numbers due to meshes and effects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meshes {
-    /// By name.
+    /// Relative errors by name.
     pub quantities: BTreeMap<String, Share>,
     /// Absolute errors by name, each in the unit of its number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub errors: BTreeMap<String, f64>,
-    /// Why a mesh could not be compared.
+    /// Reasons why a mesh could not be compared.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unknown: Vec<String>,
 }
 
-/// Computes a case on other meshes; `here` are its numbers on its own.
+/// Compares a case with other meshes; `here` are its numbers on its own mesh.
 ///
 /// # Errors
 /// As [`System::new`](crate::discrete::System::new).
@@ -84,7 +84,7 @@ pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Resu
 }
 
 impl Meshes {
-    /// Adds what the effects that a case leaves out do to its numbers.
+    /// Adds the errors due to the effects that a case omits.
     ///
     /// # Errors
     /// As [`System::new`](crate::discrete::System::new).
@@ -129,7 +129,7 @@ impl Meshes {
         }
     }
 
-    /// Takes over absolute errors.
+    /// Computes the absolute errors from the relative ones.
     fn sum(&mut self, here: &Numbers) {
         let known = self.quantities.iter().filter(|(_, share)| share.known());
         let error = known.filter_map(|(name, share)| Some((name.clone(), share.total() * here.get(name)?.counted())));
@@ -142,7 +142,7 @@ impl Meshes {
             .max_by(|a, b| a.1.total().total_cmp(&b.1.total()))
     }
 
-    /// The worst of them, in a line.
+    /// Describes the largest error in one line.
     pub fn words(&self) -> Option<String> {
         let (name, share) = self.worst()?;
         Some(format!(
@@ -152,7 +152,7 @@ impl Meshes {
         ))
     }
 
-    /// What to know where it is large, or not known.
+    /// Warns of a large or unknown error.
     pub fn warning(&self) -> Option<String> {
         let large = self.worst().filter(|(_, share)| share.total() > LARGE);
         let large = large.map(|(name, share)| {

@@ -1,14 +1,14 @@
-//! Named numbers with estimated errors, of whatever computes a case at once: equilibria, modes, cycles, multipliers.
+//! Named numbers with estimated errors, for analyses other than runs: equilibria, modes, cycles, multipliers.
 //!
-//! With `x(K, G, τ)` a number on a mesh of K cells a segment and G a bladder at tolerance τ,
+//! With `x(K, G, τ)` a number on a mesh of K cells per segment and G per bladder at tolerance τ,
 //!
 //! ```text
 //! e_beam = S ρ/(1 - ρ) |x(K) - x(K/2)|      ρ = |x(K) - x(K/2)|/|x(K/2) - x(K/4)|      likewise with G/2, G/4 and 10 τ, 100 τ
 //! ```
 //!
-//! the sum of the geometric series of differences, with a factor S for safety. No mesh is believed whose half and quarter have not
-//! been looked at, no tolerance without ten times it. What is worst is refined; what was a tenth of the accuracy that is asked for is not
-//! looked at again while others are refined.
+//! the sum of the geometric series of differences, with a safety factor S. A mesh is accepted only if its half and quarter were computed, a
+//! tolerance only if ten times and a hundred times it were. The axis with the largest error is refined. An error below a tenth of the
+//! requested accuracy is not computed again while others are refined.
 
 pub mod meshes;
 pub mod numbers;
@@ -25,30 +25,30 @@ use crate::error::{Code, Result};
 use crate::model::Model;
 use crate::run::summary::{Accuracy, Estimate, Pilot};
 
-/// Finest meshes and tightest tolerance that are tried: cells a segment, cells a bladder, decades.
+/// Finest meshes and tightest tolerance: cells per segment, cells per bladder, decades.
 const FINEST: usize = 64;
 const FINEST_ALONG_BLADDERS: usize = 64;
 const TIGHTEST: i32 = 9;
-/// First mesh and tolerance that may do.
+/// Initial mesh and tolerance.
 const FIRST: At = At {
     cells: 4,
     along: None,
     decades: 5,
 };
-/// First cells a bladder that may do: their quarter is one.
+/// Initial cells per bladder: their quarter is one.
 const FIRST_ALONG_BLADDERS: usize = 4;
-/// Coarsest first mesh, where coarser ones have no answer.
+/// Finest initial mesh, if coarser ones have no result.
 const LAST_FIRST: usize = 16;
-/// Ratios of differences that are believed: beyond them differences happen to be small or large.
+/// Range of accepted ratios of differences: outside it, differences are small or large by chance.
 const BELIEVED: [f64; 2] = [0.2, 0.7];
-/// Part of what is asked for below which an error is not looked at again.
+/// Share of the requested accuracy below which an error is not computed again.
 const SETTLED: f64 = 0.1;
-/// Of an estimate, for safety.
+/// Safety factor of an estimate.
 const SAFETY: f64 = 1.25;
-/// Largest dimensionless accuracy that makes sense, and least.
+/// Range of reasonable accuracies, dimensionless.
 const SENSIBLE: std::ops::RangeInclusive<f64> = 1e-6..=0.5;
 
-/// Cells a segment, cells a bladder where flows along bladders are resolved, and `k` of `rtol = 10^-k`.
+/// Cells per segment, cells per bladder if flows along bladders are resolved, and `k` of `rtol = 10^-k`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct At {
     cells: usize,
@@ -56,7 +56,7 @@ struct At {
     decades: i32,
 }
 
-/// What can be refined.
+/// Axis of refinement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Axis {
     Bladders,
@@ -65,7 +65,7 @@ enum Axis {
 }
 
 impl At {
-    /// So many times coarser, or finer, by a factor of two, or of ten.
+    /// Returns the setting that is finer by `finer` factors of two, or of ten for the tolerance; coarser if negative.
     fn moved(self, axis: Axis, finer: i32) -> Self {
         let times = |count: usize| {
             if finer < 0 { count >> -finer } else { count << finer }
@@ -85,22 +85,22 @@ impl At {
     }
 }
 
-/// A number that is computed, and the size beside which its errors count when it is smaller itself.
+/// Computed number, and the reference size of its error if the number itself is smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
     /// Its value.
     pub value: f64,
-    /// What would be large.
+    /// Reference size.
     pub size: f64,
 }
 
 impl Number {
-    /// A number, and what would be large.
+    /// Creates a number with its reference size.
     pub fn new(value: f64, size: f64) -> Self {
         Self { value, size }
     }
 
-    /// The size beside which its errors count.
+    /// Size to which errors refer: the larger of number and reference size.
     pub fn counted(&self) -> f64 {
         self.value.abs().max(self.size).max(f64::MIN_POSITIVE)
     }
@@ -109,11 +109,11 @@ impl Number {
 /// Numbers by name.
 pub type Numbers = BTreeMap<String, Number>;
 
-/// Finds mesh, and tolerance where `in_time`, at which every number of `compute` has an estimated error below `asked`, relative to
-/// it. Returns the case so, and what is known.
+/// Finds the mesh, and the tolerance if `in_time`, at which every number of `compute` has an estimated relative error below `asked`.
+/// Returns the case with these settings, and the accuracy.
 ///
 /// # Errors
-/// Those of `compute`, on the first mesh; when a finer one fails, the one before stands.
+/// Those of `compute` on the initial mesh. If a finer mesh fails, the last one is used.
 pub fn refine(
     case: &Case,
     asked: f64,
@@ -133,14 +133,14 @@ pub fn refine(
         known: vec![],
         pilots: vec![],
     };
-    // a quarter of the cells is of the same order
+    // a quarter of the cells must allow the same order
     let cells = (4 * Mesh::fewest(case.mesh.order())).div_ceil(case.segments());
     let mut at = At {
         along: along.then_some(FIRST_ALONG_BLADDERS),
         cells: FIRST.cells.max(cells.next_power_of_two()),
         ..FIRST
     };
-    // a coarse mesh may have no answer at all: fewer modes than are asked for, no equilibrium
+    // a coarse mesh may have no result: fewer modes than requested, no equilibrium
     let settled = SETTLED * asked;
     while let Err(fault) = search.look(at, settled, compute) {
         if at.cells >= LAST_FIRST.max(cells) {
@@ -172,12 +172,12 @@ pub fn refine(
     Ok((case, accuracy))
 }
 
-/// Whether an accuracy makes sense.
+/// True if an accuracy is reasonable.
 pub fn sensible(asked: f64) -> bool {
     SENSIBLE.contains(&asked)
 }
 
-/// What to say where an accuracy is not reached.
+/// Warns if an accuracy is not reached.
 pub fn warning(found: &Accuracy) -> Option<String> {
     let short = |(name, e): (&String, &Estimate)| {
         let parts = [
@@ -210,9 +210,9 @@ pub fn warning(found: &Accuracy) -> Option<String> {
     })
 }
 
-/// Whether a case has cells along its bladders: flows within them, and effects that keep these.
+/// True if a case has cells along its bladders: flow within them, and the effect that retains it.
 pub fn has_cells_along_bladders(case: &Case) -> Result<bool> {
-    // meshes of second order are there for every model
+    // second-order meshes exist for every model
     let mut second = case.clone();
     second.mesh.order = None;
     let system = System::with(&second, Model::whole(&second, true)?)?;
@@ -220,7 +220,7 @@ pub fn has_cells_along_bladders(case: &Case) -> Result<bool> {
     Ok(flows && system.model.effects.has(Effect::FlowAlongBladders))
 }
 
-/// Errors by name, relative; none where they are not known.
+/// Relative errors by name; `None` if unknown.
 type Errors = BTreeMap<String, Option<f64>>;
 
 struct Search<'a> {
@@ -228,7 +228,7 @@ struct Search<'a> {
     axes: Vec<Axis>,
     in_time: bool,
     runs: BTreeMap<At, Numbers>,
-    /// Of every axis, in its order.
+    /// Errors of every axis, in the order of `axes`.
     known: Vec<Errors>,
     pilots: Vec<Pilot>,
 }
@@ -247,9 +247,9 @@ impl Search<'_> {
         case
     }
 
-    /// Computes what a setting is judged by.
+    /// Computes the results from which the errors of a setting are estimated.
     fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
-        // coarse before fine, as long as nothing is known
+        // at first, coarse before fine
         if self.known.is_empty() {
             for &axis in &self.axes.clone() {
                 for coarser in [-2, -1] {
@@ -278,7 +278,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// What is worst, refined; nothing where what cannot be refined is too much by itself.
+    /// Refines the axis with the largest error; `None` if the errors of axes that cannot be refined exceed the accuracy.
     fn next(&self, at: At, asked: f64) -> Option<At> {
         let mut worst: Vec<(f64, At)> = self
             .axes
@@ -346,7 +346,7 @@ impl Search<'_> {
         names.map(of).collect()
     }
 
-    /// Error of a number, relative to it, by what it was twice before.
+    /// Error of a number, relative to it, from its values at two coarser settings.
     fn series(&self, name: &str, number: &Number, [coarsest, coarse]: [At; 2]) -> Option<f64> {
         let value = |at: At| Some(self.runs.get(&at)?.get(name)?.value);
         let (coarsest, coarse) = (value(coarsest)?, value(coarse)?);
@@ -369,7 +369,7 @@ fn largest(estimates: &BTreeMap<String, Estimate>) -> f64 {
     most(estimates.values().map(|e| e.total))
 }
 
-/// The largest of errors, without bounds where one is not known.
+/// Largest error; infinite if one is unknown.
 fn most(errors: impl Iterator<Item = Option<f64>>) -> f64 {
     errors.map(|e| e.unwrap_or(f64::INFINITY)).fold(0.0, f64::max)
 }

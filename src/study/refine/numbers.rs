@@ -1,4 +1,4 @@
-//! What each command computes, as numbers that can be compared from mesh to mesh.
+//! Numbers that each command computes, in a form that can be compared between meshes.
 
 use std::collections::BTreeMap;
 
@@ -17,21 +17,21 @@ use crate::run::stop::Stop;
 use crate::run::summary::{Status, Summary};
 use crate::study::counted::{Floors, counted};
 
-/// Numbers of a unit below this part of others are round-off.
+/// Share of the largest number of a unit below which others are rounding errors.
 const NOTHING: f64 = 1e-6;
-/// A number counts beside this part of the largest of its kind: its error is relative to the larger of both.
+/// Share of the largest number of a kind that is the reference size: errors refer to the larger of it and the number.
 const BESIDE: f64 = 0.01;
-/// Strain that is round-off beside moving as a whole.
+/// Strain that is a rounding error compared with rigid-body motion.
 const STRAIN: f64 = 1e-9;
-/// Multipliers below this are of what is gone after a period.
+/// Modulus below which a multiplier belongs to motion that vanishes within a period.
 pub const GONE: f64 = 0.01;
-/// A rate of growth counts beside this part of the mode's own frequency.
+/// Share of a mode's own frequency that is the reference size of its growth rate.
 const DAMPING: f64 = 0.01;
 
-/// The last state of a load path.
+/// Numbers of the last state of a load path.
 ///
 /// # Errors
-/// Where the path ends before.
+/// The path ends early.
 pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
     let path = equilibrium::follow(case, options, &mut |_| Control::Continue)?;
     if let Some(fault) = path.fault {
@@ -41,12 +41,12 @@ pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
     of_path(case, &columns, &path)
 }
 
-/// The last state of a load path that was followed.
+/// Numbers of the last state of a load path that was computed before.
 pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
     let modulus = case.beam.young_modulus_pa;
-    // an angle counts beside displacements, a stress of the solid beside strains
+    // compare angles with displacements, stresses of the solid with strains
     let alike = |column: &Column| match column.unit {
         "rad" => ("m", length),
         "Pa" if probes::is_stress(&column.name) => ("1", 1.0 / modulus),
@@ -57,9 +57,9 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         let same = all().map(|(c, x)| (alike(c), x)).filter(|((u, _), _)| *u == unit);
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
-    // what nothing moves or presses is round-off, and so is all that is made of it
+    // displacements and pressures below these floors are rounding errors, and so is everything computed from them
     let (floors, model) = (Floors::of(case)?, Model::new(case)?);
-    // pressures that differ by no more are equal, and drive no flow
+    // smaller differences of pressure are zero and drive no flow
     let even = (NOTHING * largest("Pa")).max(floors.pressure);
     let conductance = model.wet.as_ref().map_or(0.0, |wet| {
         wet.network
@@ -74,7 +74,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         "J" => model.section.axial_stiffness * length * STRAIN * STRAIN,
         "m^3" => floors.volume,
         "m^3/s" => conductance * even,
-        // of probes: strain that is round-off beside what moves
+        // of probes: strain that is a rounding error compared with displacements
         "1" => floors.displacement.max(STRAIN * largest("m")) / length,
         "W" if largest("Pa") <= floors.pressure => f64::INFINITY,
         "W" => conductance * even * even,
@@ -82,13 +82,13 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
     };
     let number = |column: &Column, value: f64| {
         let (unit, factor) = alike(column);
-        // a pressure counts beside those of ports, a force beside those that act
+        // compare pressures with those of ports, forces with those that act
         let acting = match unit {
             "Pa" => model.scales.pressure,
             "N" => model.scales.force,
             _ => 0.0,
         };
-        // the largest of a field of pressures, which are all negative under suction, counts beside the field
+        // compare extrema of a pressure field, which are all negative under suction, with the whole field
         let extreme = [Observable::MaxPressure, Observable::MinPressure].map(Observable::name);
         let part = if extreme.contains(&column.name.as_str()) {
             1.0
@@ -100,7 +100,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
     Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }
 
-/// Frequencies and rates of the modes: those across by their order, those along, those of the fluid.
+/// Frequencies and growth rates of the modes: transverse ones by their order, axial ones, those of the fluid.
 ///
 /// # Errors
 /// As [`modes::modes`].
@@ -127,7 +127,7 @@ pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &Plan) -> Result<
     Ok(all)
 }
 
-/// What of a mode does not depend on the mesh.
+/// Kind of a mode, independent of the mesh.
 fn sort(mode: &Mode) -> &'static str {
     match mode.shape.transverse() {
         _ if !mode.kind.swings() && mode.kind != Kind::Volume => "decaying",
@@ -137,10 +137,10 @@ fn sort(mode: &Mode) -> &'static str {
     }
 }
 
-/// The cycle of a case.
+/// Computes the cycle of a case.
 ///
 /// # Errors
-/// Where there is none, or nothing holds the beam.
+/// There is no cycle, or nothing holds the beam.
 pub fn cycle(case: &Case, period: Option<f64>, stop: &Stop) -> Result<(Scene, Cycle)> {
     let scene = Scene::new(case, period)?.heeding(stop);
     scene.held(&case.name)?;
@@ -148,10 +148,10 @@ pub fn cycle(case: &Case, period: Option<f64>, stop: &Stop) -> Result<(Scene, Cy
     Ok((scene, cycle))
 }
 
-/// Figures over the cycle of so many periods.
+/// Figures over a cycle of `periods` periods.
 ///
 /// # Errors
-/// As [`cycle`], and where the cycle cannot be followed for a period.
+/// As [`cycle`], and if the cycle cannot be followed for a period.
 pub fn of_cycle(case: &Case, periods: usize, stop: &Stop) -> Result<Numbers> {
     let (scene, cycle, _) = subharmonic::find_until(case, periods, stop)?;
     recorded(case, &scene, &cycle)
@@ -169,7 +169,7 @@ fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
     of_summary(case, &outcome.summary)
 }
 
-/// Figures over a cycle that was recorded.
+/// Figures over a recorded cycle.
 pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
     let mut all = Numbers::new();
     for (name, quantity) in counted(summary, &Floors::of(case)?) {
@@ -181,7 +181,7 @@ pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
     Ok(all)
 }
 
-/// Figures over the cycle, and so many multipliers.
+/// Figures over the cycle, and `count` multipliers.
 ///
 /// # Errors
 /// As [`of_cycle`].
@@ -192,7 +192,7 @@ pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize, stop:
     Ok(all)
 }
 
-/// The multipliers of the cycle: each beside one, at which stability ends.
+/// Multipliers of the cycle; their reference size is 1, the limit of stability.
 ///
 /// # Errors
 /// As [`cycle`].
@@ -201,7 +201,7 @@ pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize, stop: &Sto
     Ok(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 
-/// The multipliers of the cycle, and how fast that grows or decays which is not gone after a period.
+/// Multipliers of the cycle, and growth rates of those that do not vanish within a period.
 ///
 /// # Errors
 /// As [`cycle`].
@@ -210,7 +210,7 @@ pub fn of_growth(case: &Case, period: Option<f64>, count: usize, stop: &Stop) ->
     Ok(of_stability(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 
-/// Multipliers that were found, and what is shown of them.
+/// Moduli of multipliers, and growth rates of those above [`GONE`].
 pub fn of_stability(found: &Floquet) -> Numbers {
     let mut all = of_floquet(found);
     for (k, m) in found.multipliers.iter().enumerate().filter(|(_, m)| m.modulus > GONE) {
@@ -223,14 +223,14 @@ pub fn of_stability(found: &Floquet) -> Numbers {
     all
 }
 
-/// Multipliers that were found.
+/// Moduli of multipliers.
 fn of_floquet(found: &Floquet) -> Numbers {
     let all = named(found).into_iter();
     all.map(|(name, m)| (format!("{name}.modulus"), Number::new(m.modulus, 1.0)))
         .collect()
 }
 
-/// Multipliers by the part of the motion that each is mostly of, `mode_1`; of one part the largest first.
+/// Multipliers named by the dominant part of the motion, such as `mode_1`; of one part, the largest first.
 pub fn named(found: &Floquet) -> Vec<(String, &Multiplier)> {
     let mut counts = BTreeMap::new();
     let name = |m: &Multiplier| {

@@ -1,4 +1,4 @@
-//! Loads that are looked for: what is known of them is where they act, what is not is how large they are.
+//! Loads of known position and unknown amplitude.
 
 use std::fmt;
 
@@ -11,27 +11,27 @@ use crate::functions::{Interpolation, Signal};
 
 use crate::functions::profile::{PlaceTable, Profile};
 
-/// A kind of load, with an amplitude or several.
+/// Kind of load, with one or several amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum Basis {
-    /// Dead force across on the tip.
+    /// Transverse dead force on the tip.
     TipForce,
     /// Moment on the tip.
     TipMoment,
-    /// Dead force along on the tip.
+    /// Axial dead force on the tip.
     TipAxial,
-    /// Force per length across, the same everywhere.
+    /// Uniform transverse force per length.
     Uniform,
-    /// Force per length along, the same everywhere.
+    /// Uniform axial force per length.
     UniformAxial,
-    /// Force per length across, straight between so many places from root to tip.
+    /// Transverse force per length, piecewise linear between this many equally spaced places from root to tip.
     Profile(usize),
-    /// Dead force across at a share of the length.
+    /// Transverse dead force at this share of the length.
     Point(f64),
 }
 
-/// Pointers of the loads of a case that act at an instant [s] besides those that are looked for.
+/// Pointers of the case's own loads that act at an instant [s], in addition to the estimated ones.
 pub fn own(case: &Case, at_s: f64) -> Vec<String> {
     let acts = |signal: &Signal| signal.value(at_s) != 0.0;
     let mut all = vec![];
@@ -65,17 +65,17 @@ pub fn own(case: &Case, at_s: f64) -> Vec<String> {
     all
 }
 
-/// Places of a profile at most.
+/// Largest number of places of a profile.
 const MOST: usize = 200;
 
-/// What can be asked for.
+/// Names of the loads, for error messages.
 const WANTED: &str = "tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places, point:S at a share S of the length";
 
 impl Basis {
-    /// Of its name.
+    /// Parses the name of a load.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what there is.
+    /// [`Error::Usage`] with the names there are.
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = |what: String| Error::Usage(format!("--load '{text}': {what}"));
         let (name, number) = text.split_once(':').unwrap_or((text, ""));
@@ -106,14 +106,14 @@ impl Basis {
         }
     }
 
-    /// What is looked for where nothing is asked for: a force on a tip that is free to move across, and a uniform load.
+    /// Loads to estimate by default: a transverse force on the tip, if it can move transversely, and a uniform load.
     pub fn usual(case: &Case) -> Vec<Self> {
         let free = matches!(case.ends.tip.resolve().transverse, Translation::Force(_));
         let both = [free.then_some(Self::TipForce), Some(Self::Uniform)];
         both.into_iter().flatten().collect()
     }
 
-    /// Its amplitudes.
+    /// Amplitudes of this load.
     fn amplitudes(self, case: &Case) -> Vec<Amplitude> {
         let length = case.beam.length_m;
         let stiffness = case.beam.young_modulus_pa
@@ -185,7 +185,7 @@ impl From<Basis> for String {
     }
 }
 
-/// 1 at one of equally spaced places, 0 at the others, straight between them.
+/// Hat function: 1 at place `k` of equally spaced places, 0 at the others, linear between them.
 fn hat(k: usize, places: usize) -> Profile {
     let at = |k: usize| k as f64 / (places - 1) as f64;
     let near: Vec<usize> = (k.saturating_sub(1)..=(k + 1).min(places - 1)).collect();
@@ -196,7 +196,7 @@ fn hat(k: usize, places: usize) -> Profile {
     ))
 }
 
-/// Where a load of amplitude 1 acts.
+/// Position and direction of a load of amplitude 1.
 #[derive(Clone, Debug, PartialEq)]
 enum Acts {
     TipForce,
@@ -207,24 +207,24 @@ enum Acts {
     Point(f64),
 }
 
-/// The size of one load.
+/// Amplitude of one load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Amplitude {
     /// Name without unit.
     pub name: String,
     /// Unit.
     pub unit: &'static str,
-    /// What bends the beam by about its length, in this unit: `EI/l^2` of forces, `EI/l` of moments, `EI/l^3` of forces per length.
+    /// Size that bends the beam by about its length, in `unit`: `EI/l^2` of forces, `EI/l` of moments, `EI/l^3` of forces per length.
     pub size: f64,
-    /// Share of the length at which it acts, of those that have a place.
+    /// Share of the length at which the load acts, if it has a place.
     pub place: Option<f64>,
     acts: Acts,
 }
 
-/// The amplitudes of loads, of which each is asked for once.
+/// Amplitudes of all loads.
 ///
 /// # Errors
-/// [`Error::Usage`]: something is asked for twice, or acts where an end is held.
+/// [`Error::Usage`] for a load that is given twice, a second profile, or a load on a fixed degree of freedom of the tip.
 pub fn amplitudes(case: &Case, loads: &[Basis]) -> Result<Vec<Amplitude>> {
     let tip = case.ends.tip.resolve();
     for (k, load) in loads.iter().enumerate() {
@@ -249,7 +249,7 @@ pub fn amplitudes(case: &Case, loads: &[Basis]) -> Result<Vec<Amplitude>> {
     Ok(loads.iter().flat_map(|load| load.amplitudes(case)).collect())
 }
 
-/// The case with loads besides its own, one signal for each amplitude.
+/// Adds loads to a case, with one signal per amplitude.
 pub fn loaded(case: &Case, amplitudes: &[Amplitude], signals: impl IntoIterator<Item = Signal>) -> Case {
     let mut case = case.clone();
     for (amplitude, signal) in amplitudes.iter().zip(signals) {

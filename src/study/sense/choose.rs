@@ -1,16 +1,16 @@
-//! Which bladders to measure.
+//! Optimal choice of the bladders to measure.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::numerics::inverse::{Linear, Posterior, Seen};
 
-/// What a set of sensors is judged by.
+/// Criterion for a set of sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Criterion {
-    /// The sum of the variances of the amplitudes, each over its size (A-optimal).
+    /// Sum of the variances of the amplitudes, each over its size (A-optimal).
     #[default]
     Variances,
-    /// The volume within which they lie (D-optimal).
+    /// Volume of the confidence region of the amplitudes (D-optimal).
     Volume,
 }
 
@@ -19,22 +19,21 @@ pub enum Criterion {
 pub struct Choice {
     /// Rows of the matrix, ascending.
     pub sensors: Vec<usize>,
-    /// Standard error of every unknown, for data of deviation 1; none where it is not told by itself.
+    /// Standard error of each unknown for data of deviation 1; none if the data do not determine it by itself.
     pub errors: Vec<Option<f64>>,
 }
 
-/// Share by which another set must be better: of sets that are as good the first stays.
+/// Relative improvement required to replace a set; among equally good sets the first remains.
 const BETTER: f64 = 1e-9;
 
-/// The best sets of k of the rows of J, for k from the number of unknowns on: the next row that helps most, then exchanges of one
-/// row for another as long as they help,
+/// Best sets of k rows of J, for k from the number of unknowns on. Adds the row that improves the criterion most, then exchanges rows as
+/// long as that improves it:
 ///
 /// ```text
 /// A: tr (J_k^T J_k + R^T R)^-1 least        D: det (J_k^T J_k + R^T R) largest
 /// ```
 ///
-/// `before` are the rows R of what is known before. Where fewer rows than unknowns are taken, or rows that do not tell all of them, a set is
-/// judged by how many directions it tells first.
+/// `before` are the rows R of the prior. The number of determined directions counts first, the criterion second.
 pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> Vec<Choice> {
     let rank_before = before.nrows();
     let least = matrix.ncols().saturating_sub(rank_before).max(1);
@@ -62,7 +61,7 @@ pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion
     all
 }
 
-/// Those of a set, and what is known before.
+/// Rows of a set of sensors, followed by those of the prior.
 fn rows_of(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> DMatrix<f64> {
     let m = set.len();
     DMatrix::from_fn(m + before.nrows(), matrix.ncols(), |i, j| {
@@ -76,7 +75,7 @@ fn told(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> Posterio
     Linear::new(rows, right).posterior(&DMatrix::zeros(0, matrix.ncols()))
 }
 
-/// Directions that are not told, and the criterion: both to be small.
+/// Number of undetermined directions, and the criterion; both are minimized.
 fn cost(rows: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> (usize, f64) {
     let told = told(rows, matrix, before);
     let size = match criterion {
@@ -102,7 +101,7 @@ fn best_of(
         .map(|best| best.1)
 }
 
-/// The set with one row exchanged for another, as often as that helps.
+/// Exchanges single rows of the set as long as that improves it.
 fn exchanged(mut set: Vec<usize>, matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> Vec<usize> {
     let rows = matrix.nrows();
     for _ in 0..rows {
@@ -129,7 +128,7 @@ fn exchanged(mut set: Vec<usize>, matrix: &DMatrix<f64>, before: &DMatrix<f64>, 
 mod tests {
     use super::*;
 
-    /// Source: every set of three of twelve, looked at.
+    /// Source: exhaustive search of all sets of three of twelve rows.
     #[test]
     fn sets_are_the_best_of_all() {
         let matrix = DMatrix::from_fn(12, 3, |i, j| {

@@ -1,4 +1,4 @@
-//! Amplitudes from measurements: least squares, weighted with what is known of noise and of the loads.
+//! Amplitudes from measurements by least squares, weighted with the noise and a prior of the loads.
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -10,43 +10,43 @@ use crate::error::{Error, Result};
 use crate::numerics::inverse::{Linear, Posterior, Seen};
 use crate::numerics::{normal, student};
 
-/// What amplitudes make of the quantities that are measured.
+/// Forward model: values as a function of amplitudes.
 pub trait Forward {
-    /// Values at amplitudes, and their derivatives, a row a value and a column an amplitude.
+    /// Values at given amplitudes, and their derivatives: a row per value, a column per amplitude.
     ///
     /// # Errors
-    /// There is no such state.
+    /// Those of states that are not found.
     fn at(&mut self, amplitudes: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)>;
 
-    /// Share of the values below which they are not smooth in the amplitudes.
+    /// Relative noise of the values as a function of the amplitudes.
     fn grain(&self) -> f64 {
         CLOSE
     }
 
-    /// Steps of Gauss and Newton's iteration at most, and halvings of a step.
+    /// Largest numbers of Gauss-Newton steps and of halvings of a step.
     fn patience(&self) -> [u32; 2] {
         [STEPS, HALVINGS]
     }
 }
 
-/// Measurements that some amplitudes are to explain.
+/// Measurements to be explained by one set of amplitudes.
 pub struct Problem<'a> {
-    /// What would be measured.
+    /// Forward model of the measured values.
     pub forward: Box<dyn Forward + 'a>,
-    /// What was; nothing where nothing was.
+    /// Measured values; `None` for a missing one.
     pub data: Vec<Option<f64>>,
-    /// Deviation of the noise of each value, where that is known; else in proportion to it.
+    /// Deviation of the noise of each value if known, else in proportion to it.
     pub deviation: Vec<f64>,
-    /// Line of the measurements, where it is one.
+    /// Line of the measurements, if they are one line.
     pub line: Option<usize>,
-    /// Amplitudes to begin with.
+    /// Initial amplitudes.
     pub start: DVector<f64>,
-    /// Values there, and derivatives.
+    /// Values and derivatives at `start`.
     pub first: (DVector<f64>, DMatrix<f64>),
 }
 
 impl Problem<'_> {
-    /// An error with the line of the measurements that leads to it.
+    /// Adds the line of the measurements to an error.
     pub(super) fn named(&self, mut error: Error) -> Error {
         if let (Error::Solver(fault), Some(line)) = (&mut error, self.line) {
             fault.what = format!("line {line} of the measurements: {}", fault.what);
@@ -55,90 +55,90 @@ impl Problem<'_> {
     }
 }
 
-/// How much is made of what is known before: that loads change little from one place, or instant, to the next.
+/// Weight of the prior that loads vary smoothly along the beam or in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Smoothing {
-    /// As the data say themselves: the largest likelihood.
+    /// By the data: maximum likelihood.
     #[default]
     Likelihood,
-    /// So that what is left of the data is their noise (Morozov's discrepancy principle).
+    /// Residuals as large as the noise (Morozov's discrepancy principle).
     Discrepancy,
-    /// Second differences of this deviation.
+    /// Fixed deviation of second differences.
     Fixed(f64),
-    /// Nothing is known before.
+    /// No prior.
     Off,
 }
 
-/// What is asked of the estimate.
+/// Options of the estimate.
 pub struct Ask<'a> {
-    /// Differences that are small, a row each; without rows nothing is known before.
+    /// Rows of differences that the prior assumes to be small; no rows, no prior.
     pub differences: &'a DMatrix<f64>,
-    /// What is made of them.
+    /// Weight of the prior.
     pub smoothing: Smoothing,
-    /// Whether the deviation of the noise is known.
+    /// True if the deviation of the noise is known.
     pub noise_known: bool,
 }
 
-/// Amplitudes of one problem.
+/// Estimated amplitudes of one problem.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// The mean.
+    /// Mean of the amplitudes.
     pub mean: DVector<f64>,
-    /// Their covariance.
+    /// Covariance of the amplitudes.
     pub covariance: DMatrix<f64>,
-    /// What they make of every value, measured or not.
+    /// Modelled values, measured or not.
     pub predicted: DVector<f64>,
-    /// Derivatives of these.
+    /// Derivatives of the modelled values.
     pub jacobian: DMatrix<f64>,
-    /// What of the amplitudes is told, by the measurements and what is known before.
+    /// Observability by measurements and prior.
     pub seen: Seen,
-    /// Times that values were computed.
+    /// Number of evaluations of the forward model.
     pub runs: u32,
-    /// Whether the last iteration came to an end by itself.
+    /// True if the last iteration converged.
     pub settled: bool,
 }
 
-/// Amplitudes of all problems, and what they share.
+/// Estimates of all problems, and their common quantities.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// One a problem.
+    /// One per problem.
     pub found: Vec<Found>,
-    /// Deviation of the noise over that which was given: 1 where it is known.
+    /// Deviation of the noise over the given one; 1 if it is known.
     pub noise: f64,
-    /// What is left of all values.
+    /// Residuals of all values.
     pub misfit: Misfit,
-    /// By how much bands are wider than the noise makes them, since more is left than it explains; 1 where it is not known.
+    /// Factor by which bands are widened because residuals exceed the noise; 1 if the noise is unknown.
     pub widened: f64,
-    /// Half of a band of 95 %, in deviations.
+    /// Half-width of a 95 % band in standard deviations.
     pub quantile: f64,
-    /// Deviation of the differences that was used; none where nothing is known before.
+    /// Prior deviation of the differences; none without a prior.
     pub deviation_of_differences: Option<f64>,
 }
 
-/// Steps of Gauss and Newton's iteration at most.
+/// Largest number of Gauss-Newton steps.
 const STEPS: u32 = 40;
-/// Halvings of a step at most.
+/// Largest number of halvings of a step.
 const HALVINGS: u32 = 12;
-/// What a step may still change of the values, over these, when it is the last one.
+/// Stop criterion: relative change of the values by a step.
 const CLOSE: f64 = 1e-9;
-/// Rounds between amplitudes and the weight of what is known before.
+/// Largest number of rounds between amplitudes and the weight of the prior.
 const ROUNDS: u32 = 12;
-/// Change of the logarithm of that weight that is none.
+/// Stop criterion of the rounds: change of the logarithm of the weight.
 const SAME_WEIGHT: f64 = 0.02;
 
-/// Finds the amplitudes a of problems with p(a) measured, which share the deviation σ of the noise and the weight 1/τ of what is known:
+/// Estimates the amplitudes a of problems with measured p(a). All share the deviation σ of the noise and the weight 1/τ of the prior:
 ///
 /// ```text
 /// a = argmin |p - p(a)|^2/σ^2 + |R a|^2/τ^2        cov a = (J^T J/σ^2 + R^T R/τ^2)^-1        J = ∂p/∂a
 /// τ:  |A|^(-1/2) τ^(-rank R) exp(-S/2) largest        A = cov^-1, S the minimum
 /// ```
 ///
-/// by Gauss and Newton's iteration. Where σ is not known it is estimated by `S = (m - k) σ^2`, k the directions of a that R leaves free, and bands are
-/// Student's.
+/// Solved by Gauss-Newton iteration. An unknown σ is estimated by `S = (m - k) σ^2`, with k the directions of a that R leaves free; bands
+/// then are Student's.
 ///
 /// # Errors
-/// Those of the problems; noise that cannot be told from so few values.
+/// Those of the problems; [`Error::Usage`] if there are too few values to estimate the noise.
 pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     let rank = match ask.smoothing {
         Smoothing::Off => 0,
@@ -146,7 +146,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     };
     let mut weight = match ask.smoothing {
         Smoothing::Fixed(deviation) => 1.0 / deviation,
-        // begins weak, so that the data are heard first
+        // starts weak, so that the data dominate at first
         _ => 1.0,
     };
     let chosen = rank > 0 && matches!(ask.smoothing, Smoothing::Likelihood | Smoothing::Discrepancy);
@@ -159,7 +159,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         _ => ask.differences * weight,
     };
     let mut states: Vec<State> = problems.iter().map(State::of).collect();
-    // where loads alone could follow every pressure, a weight chosen by the data would take their noise for nothing
+    // if loads alone can reproduce every pressure, a weight chosen by the data would make the noise vanish
     let alone = |state: &State| state.measured.len() - Seen::of(&state.weighted()).values.len();
     if !ask.noise_known && chosen && states.iter().map(alone).sum::<usize>() == 0 {
         return Err(few(&states));
@@ -170,7 +170,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     for round in 0..ROUNDS {
         let mut posteriors = vec![];
         for (problem, state) in problems.iter_mut().zip(&mut states) {
-            // a fixed deviation is one of the amplitudes themselves, not of their share of the noise
+            // a fixed deviation is that of the amplitudes themselves, not relative to the noise
             let own = match ask.smoothing {
                 Smoothing::Fixed(_) => weight * noise,
                 _ => weight,
@@ -241,7 +241,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     })
 }
 
-/// Differences that do not follow from the others.
+/// Number of linearly independent differences.
 fn rank(differences: &DMatrix<f64>) -> usize {
     match differences.is_empty() {
         true => 0,
@@ -249,7 +249,7 @@ fn rank(differences: &DMatrix<f64>) -> usize {
     }
 }
 
-/// The rows of both, each of size 1.
+/// Stacks two matrices, each scaled to a largest entry of 1.
 fn stacked(upper: &DMatrix<f64>, lower: &DMatrix<f64>) -> DMatrix<f64> {
     let m = upper.nrows();
     let size = |rows: &DMatrix<f64>| {
@@ -276,7 +276,7 @@ fn few(states: &[State]) -> Error {
     ))
 }
 
-/// What problems add up to.
+/// Sums over all problems.
 struct Sums {
     misfit: f64,
     rough: f64,
@@ -301,12 +301,12 @@ impl Sums {
     }
 }
 
-/// Where the iteration of a problem stands.
+/// Current iterate of a problem.
 struct State {
     at: DVector<f64>,
     values: DVector<f64>,
     jacobian: DMatrix<f64>,
-    /// Values that were measured: place, measurement, deviation.
+    /// Measured values: index, value, deviation.
     measured: Vec<(usize, f64, f64)>,
     runs: u32,
     settled: bool,
@@ -327,7 +327,7 @@ impl State {
         }
     }
 
-    /// What is left of the measurements, over their deviations.
+    /// Residuals of the measurements over their deviations.
     fn residual(&self, values: &DVector<f64>) -> DVector<f64> {
         let left = self
             .measured
@@ -344,14 +344,14 @@ impl State {
         })
     }
 
-    /// The problem, linear about where it stands.
+    /// Linearization about the current iterate.
     fn linear(&self) -> Linear {
         let jacobian = self.weighted();
         let right = self.residual(&self.values) + &jacobian * &self.at;
         Linear::new(jacobian, right)
     }
 
-    /// Goes on to the minimum.
+    /// Iterates to the minimum.
     fn descend(&mut self, problem: &mut Problem, before: &DMatrix<f64>) -> Result<Posterior> {
         let size = self
             .measured
@@ -390,7 +390,7 @@ impl State {
             self.runs += runs;
             match taken {
                 Some(taken) => (self.at, self.values, self.jacobian) = taken,
-                // no step makes it better: it is as good as round-off lets it be
+                // no step reduces the cost: the iterate is accurate to rounding errors
                 None => return Ok(posterior),
             }
         }

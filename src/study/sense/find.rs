@@ -1,4 +1,4 @@
-//! Loads behind measured pressures at rest.
+//! Estimates loads from pressures measured at rest.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -18,32 +18,32 @@ use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::equilibrium::{self, Options};
 use crate::run::{known, slow};
 
-/// What is asked for.
+/// Options of the estimate.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Asked {
-    /// Loads; the usual ones where there are none.
+    /// Loads to estimate; [`Basis::usual`] if empty.
     pub loads: Vec<Basis>,
-    /// Deviation of the noise [Pa], where it is known.
+    /// Standard deviation of the noise [Pa], if known.
     pub noise_pa: Option<f64>,
-    /// What is made of it that a profile is smooth; a fixed deviation in N/m.
+    /// Weight of the prior that a profile is smooth; a fixed deviation in N/m.
     pub smoothing: Smoothing,
-    /// Instant whose own loads of the case act besides [s].
+    /// Instant [s] whose own loads of the case also act.
     pub at_s: f64,
-    /// Loads that change while pressures are measured, where they do.
+    /// Options of loads that change during the measurement; none for pressures at rest.
     pub dynamic: Option<Dynamic>,
-    /// What the best bladders to measure are judged by, where they are asked for.
+    /// Criterion of the best bladders to measure; none to skip that choice.
     pub choose: Option<Criterion>,
 }
 
-/// Loads that change.
+/// Options of time-dependent loads.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Dynamic {
-    /// Knots of their curves; the usual number where none is given.
+    /// Number of knots of each load curve; the usual number if none.
     pub knots: Option<usize>,
 }
 
 impl Asked {
-    /// Loads that are looked for.
+    /// Loads to estimate: the given ones or the usual ones.
     pub(super) fn loads(&self, case: &Case) -> Vec<Basis> {
         match self.loads.is_empty() {
             true => Basis::usual(case),
@@ -58,16 +58,17 @@ pub(super) fn nothing_told() -> Error {
     Error::Usage(what.into())
 }
 
-/// Loads over their sizes that are none: they lead nowhere.
+/// Amplitudes over their sizes below this count as zero load; their path is not checked.
 const UNLOADED: f64 = 1e-12;
 
-/// Share by which pressures may differ from those along the path from rest.
+/// Relative difference of fitted pressures from those on the path from rest, above which a warning is given.
 const SAME: f64 = 1e-6;
 
-/// Looks for loads; `measured` none: what pressures would tell of them. `stop` is asked before every state.
+/// Estimates loads from measured pressures; without `measured`, only their observability. Checks `stop` before every state.
 ///
 /// # Errors
-/// [`Error::Usage`]: a case without pressures, loads that act where nothing moves, a noise that cannot be told; states that are not found.
+/// [`Error::Usage`] for a case without pressures, loads that no pressure responds to, or noise that cannot be estimated; errors of states
+/// that are not found.
 pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn Fn() -> bool) -> Result<Sensed> {
     if let (Some(dynamic), Some(measured)) = (&asked.dynamic, measured) {
         return over_time::find(case, measured, asked, dynamic.knots, stop);
@@ -83,7 +84,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
     let columns = measured.map_or_else(|| (0..all.len()).collect(), |measured| measured.bladders.clone());
     let own = first.1.select_rows(&columns);
     let seen = Seen::of(&own);
-    // about which the best bladders are looked for: the largest loads that are found
+    // sensitivities for the choice of bladders: at the largest loads found, else at zero load
     let mut about = first.1.clone();
     let system = equilibrium::system(case, asked.at_s)?;
     let mut warnings = known::at_rest(case, &system);
@@ -150,7 +151,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             found.band = BandKind::LocalMean;
             means = local_means(&problems, &mut all_found, (fine, model), ask.noise_known)?;
         }
-        // what goes together is another sum where the beam is bent far
+        // large deflection changes which combinations of amplitudes are observable
         if let Some((_, largest)) = largest(&all_found) {
             sight(&mut found, &amplitudes, &largest.jacobian.select_rows(&columns));
         }
@@ -170,7 +171,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
                     .collect(),
             }
         };
-        // sums of means are not those of loads that are straight between places
+        // local means do not add up like amplitudes of a piecewise linear load, so sums have no bands here
         let sum =
             |one: &Found, factors: &Vec<f64>| means.is_empty().then(|| banded(&all_found, one, factors)).flatten();
         found.rows = measured
@@ -219,7 +220,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
     Ok(found)
 }
 
-/// Measurements with a place for every bladder.
+/// Measurements padded to all bladders; `None` for a bladder that was not measured.
 fn whole(measured: &Measured, columns: &[usize], count: usize) -> Vec<Vec<Option<f64>>> {
     let of = |row: &Vec<Option<f64>>| {
         let mut all = vec![None; count];
@@ -231,13 +232,13 @@ fn whole(measured: &Measured, columns: &[usize], count: usize) -> Vec<Vec<Option
     measured.rows.iter().map(of).collect()
 }
 
-/// The size of forces per length across.
+/// Size of a transverse force per length; 1 without a profile.
 fn spread(amplitudes: &[Amplitude]) -> f64 {
     let one = amplitudes.iter().find(|a| a.place.is_some() && a.unit == "N/m");
     one.map_or(1.0, |a| a.size)
 }
 
-/// Second differences of the amplitudes of a profile.
+/// Matrix of second differences of the amplitudes of a profile.
 pub(super) fn differences(amplitudes: &[Amplitude], loads: &[Basis]) -> DMatrix<f64> {
     let of_profile = |a: &Amplitude| a.place.is_some() && a.unit == "N/m";
     let first = amplitudes.iter().position(of_profile).unwrap_or(0);
@@ -253,13 +254,13 @@ pub(super) fn differences(amplitudes: &[Amplitude], loads: &[Basis]) -> DMatrix<
     all
 }
 
-/// The row with the largest loads, and these.
+/// Row with the largest loads, and its estimate.
 fn largest(estimate: &Estimate) -> Option<(usize, &Found)> {
     let rows = estimate.found.iter().enumerate();
     rows.max_by(|(_, a), (_, b)| a.mean.norm().total_cmp(&b.mean.norm()))
 }
 
-/// What is said where the state of the largest loads, those of a line, is not that to which they lead from rest.
+/// Warns if the path from rest to the largest loads, found in line `line`, fails or ends at other pressures than the fit.
 fn aside(model: &AtRest, loads: &DVector<f64>, predicted: &DVector<f64>, line: usize) -> Result<Vec<String>> {
     if loads.amax() < UNLOADED {
         return Ok(vec![]);
@@ -282,7 +283,7 @@ fn aside(model: &AtRest, loads: &DVector<f64>, predicted: &DVector<f64>, line: u
     Ok(warnings)
 }
 
-/// The best bladders, for noise of a deviation.
+/// Best sets of bladders for noise of the given deviation.
 fn chosen(
     jacobian: &DMatrix<f64>,
     all: &[i64],

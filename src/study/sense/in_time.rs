@@ -1,4 +1,4 @@
-//! Pressures in time under loads that are curves through knots: the run itself, with IDA's sensitivities to every value at a knot [E41].
+//! Pressures over time under loads that are splines. The run computes IDA's sensitivities to the value at every knot [E41].
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,18 +15,18 @@ use crate::run::sensitivity::forward::By;
 use crate::study::analysis::derivatives;
 use crate::study::followed::Followed;
 
-/// Equally spaced instants between which a load is a natural cubic spline: one before the start and one after the end, since a natural spline has no
-/// curvature at its ends, which a load may have.
+/// Equally spaced knots of natural cubic splines. One lies before the start and one after the end: a natural spline has zero curvature at
+/// its ends, a load need not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knots {
-    /// The instants [s].
+    /// Knots [s].
     pub at: Vec<f64>,
-    /// Splines that are 1 at a knot and 0 at the others.
+    /// Cardinal splines: 1 at one knot and 0 at the others.
     each: Vec<Signal>,
 }
 
 impl Knots {
-    /// So many for the time up to an instant; at least [`Knots::FEWEST`].
+    /// `count` knots for the time from 0 to `end` [s]; at least [`Knots::FEWEST`].
     pub fn new(count: usize, end: f64) -> Self {
         let every = end / (count - 3) as f64;
         let at: Vec<f64> = (0..count).map(|m| (m as f64 - 1.0) * every).collect();
@@ -40,47 +40,47 @@ impl Knots {
         }
     }
 
-    /// Knots at least: start, middle, end and those beyond.
+    /// Smallest number of knots: start, middle, end and one beyond each end.
     pub const FEWEST: usize = 5;
 
-    /// Time between two [s].
+    /// Spacing of the knots [s].
     pub fn every(&self) -> f64 {
         self.at[1] - self.at[0]
     }
 
-    /// How much the value at each knot counts at an instant.
+    /// Weight of the value at each knot at an instant.
     pub fn weights(&self, t: f64) -> Vec<f64> {
         self.each.iter().map(|one| one.value(t)).collect()
     }
 }
 
-/// The spline through values at instants.
+/// Cubic spline through given values.
 fn curve(at: &[f64], values: Vec<f64>) -> Signal {
     Signal::Table(Table::new(at.to_vec(), values, Interpolation::Cubic))
 }
 
-/// Pressures at instants, row by row, over the values of loads at knots in their sizes: knot by knot all loads.
+/// Pressures at the instants, row by row, as a function of the loads at the knots over their sizes. Knots vary slowest, loads fastest.
 pub struct InTime<'a> {
     case: &'a Case,
     amplitudes: &'a [Amplitude],
     knots: &'a Knots,
     instants: &'a [f64],
-    /// Columns of a run with the pressures.
+    /// Names of the pressure columns.
     names: Vec<String>,
-    /// Whose effects every run has: of loads that change as fast as they can.
+    /// System whose effects are used in every run; chosen for loads that alternate from knot to knot.
     system: System,
-    /// Asked at every step whether to stop.
+    /// Stop request, checked at every step.
     stop: &'a dyn Fn() -> bool,
 }
 
-/// Share of the sizes of loads by which effects are chosen.
+/// Loads, in their sizes, for which the effects are chosen.
 const CHOOSING: f64 = 0.1;
 
 impl<'a> InTime<'a> {
-    /// Of a case with probes at its bladders, `names` their columns.
+    /// For a case with probes at its bladders; `names` are the pressure columns.
     ///
     /// # Errors
-    /// The case is none with such loads.
+    /// Those of [`System::new`] for the case with such loads.
     pub fn new(
         case: &'a Case,
         names: Vec<String>,
@@ -109,12 +109,12 @@ impl<'a> InTime<'a> {
         })
     }
 
-    /// The case with loads of so many of their sizes at the knots.
+    /// The case with loads of the given values at the knots, over their sizes.
     pub fn loaded(&self, values: &[f64]) -> Case {
         with(self.case, self.amplitudes, self.knots, values)
     }
 
-    /// The system of such a case, with the effects that all have.
+    /// System of a case, with the common effects if it has the same unknowns.
     ///
     /// # Errors
     /// Those of [`System::new`].

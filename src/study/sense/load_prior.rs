@@ -1,20 +1,21 @@
-//! A distributed load before any measurement: a mixture of Gaussian processes, and what measurements leave of it.
+//! Prior of a distributed load, a mixture of Gaussian processes, and its posterior after measurements.
 //!
-//! A load q has values at the places of a mesh that is finer than sensors resolve. Its covariance is
+//! A load q is given at the places of a mesh that is finer than sensors resolve. Its covariance is
 //!
 //! ```text
 //! σ² d(s) d(s') exp(-|s - s'|/ℓ)        d = 1, or e + exp(-(s - c)²/(2 w²)) of a load around a place c
 //! ```
 //!
-//! Scale σ, length ℓ, envelope d are not known. Each combination has its marginal likelihood, and the answer is the mixture:
+//! Scale σ, length ℓ and envelope d are unknown. The posterior is a mixture over all combinations, weighted with their marginal
+//! likelihoods:
 //!
 //! ```text
 //! b = J q + L o + e        S = I + β² L Lᵀ + σ² J K Jᵀ        log weight = -(log|S| + bᵀ S⁻¹ b)/2
 //! mean of g·q: gᵀ C S⁻¹ b        variance: gᵀ (P - C S⁻¹ Cᵀ) g        C = P (J L)ᵀ, P = diag(σ² K, β² I)
 //! ```
 //!
-//! o are amplitudes of other loads, of a wide deviation β. Hyperparameters are integrated over because a handful of pressures does not
-//! determine them (Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, 5.2).
+//! o are amplitudes of other loads, with the wide prior deviation β. Hyperparameters are integrated over because a handful of pressures
+//! does not determine them (Rasmussen & Williams, Gaussian Processes for Machine Learning, 2006, 5.2).
 
 use std::ops::Range;
 
@@ -22,65 +23,65 @@ use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 use crate::numerics::normal;
 
-/// Lengths ℓ over that of the beam, of loads without a place: the least, the largest, their number.
+/// Correlation lengths ℓ of stationary kernels over the length of the beam: smallest, largest, number.
 const LENGTHS: (f64, f64, usize) = (0.03, 2.0, 8);
-/// Envelopes of loads around a place: how many places, width w, background e, length ℓ.
+/// Kernels with an envelope around a place: number of places, width w, background e, correlation length ℓ.
 const ENVELOPES: [(usize, f64, f64, f64); 2] = [(40, 0.02, 0.005, 0.03), (40, 0.1, 0.005, 0.03)];
-/// Deviation β of other loads, in sizes that bend the beam by about its length.
+/// Prior deviation β of other loads, in sizes that bend the beam by about its length.
 const OTHERS: f64 = 30.0;
-/// Scales σ: the pressures of a load over their noise, from the first number to as many times the measured pressures as the second says.
+/// Scales σ, by the ratio of load pressures to noise: smallest ratio; largest ratio over that of the measured pressures; number of scales.
 const SCALES: (f64, f64, usize) = (0.5, 30.0, 32);
-/// Deviation after the measurements over that before, above which they do not determine a quantity.
+/// Ratio of posterior to prior deviation above which the measurements do not determine a quantity.
 const DETERMINED: f64 = 0.5;
-/// Weights below this share of the largest count as zero.
+/// Weights below this part of the largest are dropped.
 const LIGHT: f64 = 1e-7;
-/// Probability of a band.
+/// Probability of a confidence band.
 const PROBABILITY: f64 = 0.95;
 
-/// The mixture before the data.
+/// Prior mixture.
 #[derive(Clone, Debug)]
 pub struct LoadPrior {
-    /// Amplitudes that are values of the distributed load, from root to tip.
+    /// Indices of the amplitudes that are values of the distributed load, from root to tip.
     block: Range<usize>,
     kernels: Vec<Kernel>,
 }
 
-/// The covariance of one load of the mixture, over σ².
+/// Covariance of one component of the mixture, over σ².
 #[derive(Clone, Debug)]
 struct Kernel {
     covariance: DMatrix<f64>,
     log_weight: f64,
-    /// True if it is alike everywhere.
+    /// True for a stationary kernel, without an envelope.
     stationary: bool,
 }
 
-/// What measurements leave of a quantity that is linear in the amplitudes.
+/// Posterior of a quantity that is linear in the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The mean.
+    /// Mean.
     pub mean: f64,
     /// Standard deviation.
     pub deviation: f64,
-    /// Half of the symmetric interval of 95 %.
+    /// Half-width of the symmetric 95 % interval.
     pub half: f64,
-    /// True if the measurements determine it, rather than what is assumed before.
+    /// True if the measurements determine the quantity, not the prior.
     pub determined: bool,
 }
 
-/// What measurements leave of a load.
+/// Posterior of all amplitudes.
 #[derive(Clone, Debug)]
 pub struct MixturePosterior {
-    /// The mean of all amplitudes.
+    /// Mean of all amplitudes.
     pub mean: DVector<f64>,
-    /// The quantities that were asked for.
+    /// Intervals of the requested quantities.
     pub intervals: Vec<Interval>,
-    /// `bᵀ S⁻¹ b` of the combination with the largest weight: about as many as there are measurements.
+    /// `bᵀ S⁻¹ b` of the component with the largest weight; expected to be about the number of measurements.
     pub chi_square: f64,
-    /// Scale σ of that combination, in the unit of the amplitudes: deviation of the load at its largest.
+    /// Scale σ of that component, in the unit of the amplitudes: largest deviation of the load.
     pub scale: f64,
 }
 
-/// One combination of scale and covariance, after the data.
+/// One combination of scale and kernel, after the data.
 struct Member {
     kernel: usize,
     log_weight: f64,
@@ -94,7 +95,7 @@ struct Member {
 }
 
 impl LoadPrior {
-    /// Of a load with values at the amplitudes `block`, at equally spaced places from root to tip.
+    /// Prior of a load whose values are the amplitudes `block`, at equally spaced places from root to tip.
     pub fn new(block: Range<usize>) -> Self {
         let count = block.len();
         let at = |k: usize| k as f64 / (count.max(2) - 1) as f64;
@@ -125,8 +126,8 @@ impl LoadPrior {
         Self { block, kernels }
     }
 
-    /// What measurements leave: `jacobian` a row a measurement and a column an amplitude, both over the deviation of the noise, as `data` is;
-    /// `quantities` a row a quantity. None where the measurements depend on nothing.
+    /// Posterior of the given data. `jacobian` has a row per measurement and a column per amplitude; it and `data` are divided by the
+    /// deviation of the noise. `quantities` has a row per quantity. None if the measurements depend on no amplitude.
     pub fn posterior(
         &self,
         jacobian: &DMatrix<f64>,
@@ -140,7 +141,7 @@ impl LoadPrior {
         }
         let best = members.iter().max_by(|a, b| a.log_weight.total_cmp(&b.log_weight))?;
         let (largest, chi_square, scale) = (best.log_weight, best.chi_square, best.scale);
-        // envelopes assume that there is nothing beside them, which the measurements may not show
+        // envelopes assume no load outside them, so only stationary kernels can show that the data determine a quantity
         let determined = {
             let alike: Vec<&Member> = members
                 .iter()
@@ -171,7 +172,7 @@ impl LoadPrior {
         })
     }
 
-    /// The mean of all amplitudes.
+    /// Mean of all amplitudes over the mixture.
     fn mean(&self, jacobian: &DMatrix<f64>, members: &[Member], weights: &[f64]) -> DVector<f64> {
         let mut mean = DVector::zeros(jacobian.ncols());
         let mut duals = vec![DVector::<f64>::zeros(jacobian.nrows()); self.kernels.len()];
@@ -192,7 +193,7 @@ impl LoadPrior {
     }
 }
 
-/// The interval of a quantity.
+/// Mean, deviation and 95 % interval of one quantity.
 fn interval(row: usize, determined: bool, members: &[Member], weights: &[f64]) -> Interval {
     let all = || members.iter().zip(weights);
     let mean: f64 = all().map(|(one, w)| w * one.means[row]).sum();
@@ -224,19 +225,19 @@ fn interval(row: usize, determined: bool, members: &[Member], weights: &[f64]) -
     }
 }
 
-/// Measurements over noise and other loads together, which then have deviation 1.
+/// Measurements, whitened by noise and other loads together.
 struct Whitened {
-    /// Derivatives by the distributed load.
+    /// Derivatives with respect to the distributed load.
     own: DMatrix<f64>,
     data: DVector<f64>,
-    /// `W⁻¹`, from measurements to whitened ones.
+    /// `W⁻¹`, which whitens measurements.
     inverse: DMatrix<f64>,
-    /// Quantities over the distributed load.
+    /// Columns of the quantities that belong to the distributed load.
     over_own: DMatrix<f64>,
-    /// Covariance of quantities with the whitened measurements, and their variance, by other loads.
+    /// Contribution of other loads to the covariance of quantities with whitened measurements, and to their variance.
     with_others: DMatrix<f64>,
     of_others: DVector<f64>,
-    /// Whitened measurements, root mean square.
+    /// Root mean square of the whitened measurements.
     size: f64,
 }
 
@@ -262,7 +263,7 @@ impl Whitened {
         })
     }
 
-    /// All scales of one covariance.
+    /// Adds the members of all scales of one kernel.
     fn members(&self, number: usize, kernel: &Kernel, members: &mut Vec<Member>) {
         let rows = self.own.nrows();
         let spread = &self.own * &kernel.covariance;

@@ -1,10 +1,10 @@
-//! Means of a load around places, from measurements of a load on a finer mesh.
+//! Means of a distributed load around places, from an estimate on a finer mesh.
 //!
 //! ```text
-//! mean around place k = ∫ φ_k q ds / ∫ φ_k ds        φ_k: 1 at place k, straight to 0 at its neighbors
+//! mean around place k = ∫ φ_k q ds / ∫ φ_k ds        φ_k: 1 at place k, linear to 0 at its neighbors
 //! ```
 //!
-//! The load q itself is piecewise linear on a mesh of at least [`FINE`] intervals, so that an edge between places is no error of the basis.
+//! The load q is piecewise linear on a mesh of at least [`FINE`] intervals, so that the basis also resolves steps between places.
 
 use std::ops::Range;
 
@@ -21,28 +21,28 @@ use super::told::left;
 use crate::error::Result;
 use crate::numerics::normal;
 
-/// Intervals of the fine mesh at least.
+/// Smallest number of intervals of the fine mesh.
 const FINE: usize = 40;
-/// Linearizations about the mean at most.
+/// Largest number of linearizations about the mean.
 const ROUNDS: u32 = 8;
-/// Change of the pressures over their noise, root mean square, that ends them.
+/// Stop criterion of the linearizations: change of the pressures over their noise, root mean square.
 const CLOSE: f64 = 0.02;
 
-/// The mesh of a load between the places of a profile.
+/// Fine mesh of a load between the places of a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FineLoad {
-    /// The loads that were asked for, the profile on the fine mesh.
+    /// The given loads, with the profile on the fine mesh.
     pub loads: Vec<Basis>,
-    /// Amplitudes of the fine profile among all.
+    /// Indices of the fine profile among all amplitudes.
     pub block: Range<usize>,
-    /// Amplitudes on the fine mesh of the same load: a column an amplitude at the places.
+    /// Interpolation of the coarse load to the fine mesh: a column per amplitude at the places.
     pub interpolation: DMatrix<f64>,
-    /// Means around the places: a row an amplitude at the places, a column one on the fine mesh.
+    /// Means around the places: a row per amplitude at the places, a column per amplitude on the fine mesh.
     pub means: DMatrix<f64>,
 }
 
 impl FineLoad {
-    /// Of loads among which there is a profile.
+    /// Refines the profile among the loads; none if there is no profile.
     pub fn new(loads: &[Basis]) -> Option<Self> {
         let which = loads.iter().position(|load| matches!(load, Basis::Profile(_)))?;
         let Basis::Profile(places) = loads[which] else {
@@ -52,7 +52,7 @@ impl FineLoad {
         let fine = parts * (places - 1) + 1;
         let mut refined = loads.to_vec();
         refined[which] = Basis::Profile(fine);
-        // all others have one amplitude
+        // each of the other loads has one amplitude
         let others = loads.len() - 1;
         let block = which..which + fine;
         let hat = |k: usize, i: usize| (1.0 - (i as f64 / parts as f64 - k as f64).abs()).max(0.0);
@@ -85,24 +85,24 @@ impl FineLoad {
     }
 }
 
-/// A load on the fine mesh behind one set of measurements.
+/// Load on the fine mesh, estimated from one set of measurements.
 #[derive(Clone, Debug)]
 pub struct FineFound {
-    /// Its amplitudes, the mean of the mixture.
+    /// Amplitudes: posterior mean.
     pub amplitudes: DVector<f64>,
-    /// What they make of every value.
+    /// Modelled values at these amplitudes.
     pub predicted: DVector<f64>,
-    /// Derivatives of these.
+    /// Derivatives of the modelled values.
     pub jacobian: DMatrix<f64>,
-    /// What measurements leave of them.
+    /// Posterior of the amplitudes.
     pub posterior: MixturePosterior,
 }
 
-/// Finds the load from amplitudes on the fine mesh to begin with, by linearization about the mean until that stays; `noise` over the deviation of
-/// the problem; `quantities` are those whose intervals are wanted. None where the measurements depend on nothing.
+/// Estimates the load on the fine mesh from the amplitudes `start`, by repeated linearization about the posterior mean. `noise` is relative
+/// to the deviation of the problem; `quantities` are the rows whose intervals are wanted. None if the measurements depend on no amplitude.
 ///
 /// # Errors
-/// There is no state under these loads.
+/// Those of states that are not found.
 pub fn find(
     forward: &mut dyn Forward,
     problem: &Problem,
@@ -147,7 +147,7 @@ pub fn find(
     }))
 }
 
-/// Means of a profile around its places, a row of measurements each, in the place of the values of loads that are straight between them.
+/// Replaces the amplitudes of a profile at its places by local means, for each row of measurements.
 pub(super) fn local_means(
     problems: &[Problem],
     estimate: &mut Estimate,
@@ -190,7 +190,7 @@ pub(super) fn local_means(
     Ok(all)
 }
 
-/// The mean around a place with its band; none where measurements do not determine it.
+/// Local mean around a place with its band; none if the measurements do not determine it.
 pub(super) fn local_band(
     estimate: &Estimate,
     found: &FineFound,
@@ -198,7 +198,7 @@ pub(super) fn local_band(
     amplitude: &Amplitude,
 ) -> Option<Banded> {
     let one = found.posterior.intervals[which];
-    // noise that is estimated makes bands wider, as Student's are
+    // estimated noise widens bands, as in Student's distribution
     let times = estimate.widened * amplitude.size;
     let student = estimate.quantile / normal::quantile(0.975);
     let (value, half) = (one.mean * amplitude.size, one.half * times * student);
@@ -214,7 +214,7 @@ pub(super) fn local_band(
 mod tests {
     use super::*;
 
-    /// A load that is straight between the places has the same values on the fine mesh; a uniform load is its own mean.
+    /// Goal: a piecewise linear load has the same values on the fine mesh; a uniform load equals its own mean.
     #[test]
     fn the_fine_mesh_has_the_same_loads() {
         let fine = FineLoad::new(&[Basis::TipForce, Basis::Profile(6), Basis::Uniform]).expect("a profile");
@@ -224,7 +224,7 @@ mod tests {
         assert!((&fine.interpolation * &ones).iter().all(|x| (x - 1.0).abs() < 1e-14));
         let means = &fine.means * DVector::from_element(43, 1.0);
         assert!(means.iter().all(|x| (x - 1.0).abs() < 1e-14));
-        // ∫ φ² / ∫ φ of the hat itself
+        // ∫ φ² / ∫ φ of one hat function
         let whole = &fine.means * &fine.interpolation;
         assert!((whole[(3, 3)] - 2.0 / 3.0).abs() < 1e-14 && (whole[(1, 1)] - 2.0 / 3.0).abs() < 1e-14);
     }

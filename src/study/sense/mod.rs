@@ -1,21 +1,21 @@
 //! The beam as a sensor: loads from measured pressures of its bladders.
 //!
 //! ```text
-//! basis      loads that are looked for, by their amplitudes
-//! pressures  what was measured
+//! basis      loads of known position and unknown amplitude
+//! pressures  measured pressures
 //! rest       pressures at rest under loads
-//! estimate   amplitudes from measurements, with bands
-//! load_prior a distributed load before and after measurements
-//! local_mean means of such a load around places
-//! misfit     whether what they leave is noise
-//! weight     that of what is known before
-//! choose     which bladders to measure
-//! sight      what pressures tell at all
-//! told       what an estimate tells
-//! find       all of it, of a case
-//! in_time    pressures in time under loads that change
-//! over_time  loads that change
-//! sensed     what was found
+//! estimate   amplitudes from measurements, with confidence bands
+//! load_prior prior and posterior of a distributed load
+//! local_mean means of a distributed load around places
+//! misfit     chi-square test of the residuals
+//! weight     weight of the prior
+//! choose     optimal choice of bladders to measure
+//! sight      observability of loads by pressures
+//! told       reports and doubts of an estimate
+//! find       estimate of a case at rest
+//! in_time    pressures over time under time-dependent loads
+//! over_time  estimate of time-dependent loads
+//! sensed     the result
 //! ```
 
 pub mod basis;

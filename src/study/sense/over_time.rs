@@ -1,13 +1,13 @@
-//! Loads that change while pressures are measured, with inertia and flow.
+//! Estimates time-dependent loads from pressures, with inertia and flow.
 //!
-//! A load is a natural cubic spline through its values at knots, which are found as amplitudes of loads at rest are:
+//! A load is a natural cubic spline. Its values at the knots are estimated like amplitudes of loads at rest:
 //!
 //! ```text
 //! a = argmin Σ ((p(t_i) - p(t_i; a))/σ)² + |R a|²/τ²        R: second differences of each load in time
 //! ```
 //!
-//! The spline through given values is the curve with the least integral of its squared second derivative: with many knots, the mean is that
-//! of a load that is the integral of a Wiener process before anything is measured (Wahba, J. R. Stat. Soc. B 40, 364, 1978).
+//! Among all curves through given values, the spline has the least integral of the squared second derivative. With many knots, the estimate
+//! is the posterior mean of a load whose prior is an integrated Wiener process (Wahba, J. R. Stat. Soc. B 40, 364, 1978).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -27,21 +27,22 @@ use crate::model::characteristic;
 use crate::numerics::inverse::{Seen, second_differences};
 use crate::run::known;
 
-/// Knots at most.
+/// Largest number of knots at which a warning still suggests more.
 const MOST: usize = 200;
-/// Knots where nothing else is asked for, at most.
+/// Default number of knots, at most.
 const USUAL: usize = 41;
-/// Amplitudes of all loads at all knots, at most: every one of them is differentiated by in each run.
+/// Largest number of amplitudes of all loads at all knots; each is a sensitivity parameter of every run.
 const ALL: usize = 400;
-/// Share of the values at knots, told by the pressures themselves, from which on nothing shows that there are enough of them.
+/// Part of the knot values determined by the pressures above which the number of knots may be too small.
 const ALL_TOLD: f64 = 0.9;
-/// Standard errors of a correlation, above which what is left is not noise.
+/// Correlation, in standard errors, above which residuals are not white noise.
 const UNLIKELY: f64 = 4.0;
 
-/// Looks for loads over time behind measured pressures.
+/// Estimates loads over time from measured pressures.
 ///
 /// # Errors
-/// [`Error::Usage`]: no instants, too few or after the end of the run; too many knots; those of the runs.
+/// [`Error::Usage`] without instants, with too few of them, with instants after the end of the run, or for too many knots; errors of the
+/// runs.
 pub(super) fn find(
     case: &Case,
     measured: &Measured,
@@ -134,7 +135,7 @@ pub(super) fn find(
     Ok(found)
 }
 
-/// Instants of the measurements, in the run.
+/// Instants of the measurements within the run [s].
 fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
     let usage = |what: String| Error::Usage(format!("--dynamic: {what}"));
     let Some(times) = &measured.times else {
@@ -185,14 +186,14 @@ fn knot_count(asked: Option<usize>, rows: usize, loads: usize) -> Result<usize> 
     }
 }
 
-/// Derivatives by loads that do not change.
+/// Derivatives with respect to loads that are constant in time.
 fn constant(jacobian: &DMatrix<f64>, loads: usize) -> DMatrix<f64> {
     DMatrix::from_fn(jacobian.nrows(), loads, |i, k| {
         (k..jacobian.ncols()).step_by(loads).map(|j| jacobian[(i, j)]).sum()
     })
 }
 
-/// Second differences of every load in time, and at every knot those of a profile along the beam.
+/// Second differences of every load in time, and of a profile along the beam at every knot.
 fn differences(amplitudes: &[Amplitude], found: &Sensed, knots: usize) -> DMatrix<f64> {
     let loads = amplitudes.len();
     let in_time = second_differences(knots).kronecker(&DMatrix::identity(loads, loads));
@@ -203,7 +204,7 @@ fn differences(amplitudes: &[Amplitude], found: &Sensed, knots: usize) -> DMatri
     all
 }
 
-/// A row an instant: loads and sums of them, read off their curves.
+/// One row per instant: loads and sums of loads, evaluated on their splines.
 fn rows(
     found: &Sensed,
     measured: &Measured,
@@ -236,7 +237,7 @@ fn rows(
     times.iter().enumerate().map(row).collect()
 }
 
-/// Values at knots of each load that the data tell: the trace of `cov a J^T J/σ^2`, a load's share of it.
+/// Number of knot values of each load that the data determine: its share of the trace of `cov a J^T J/σ^2`.
 fn resolved(one: &Found, problem: &Problem, estimate: &Estimate, loads: usize) -> Vec<f64> {
     let measured: Vec<usize> = (0..problem.data.len()).filter(|k| problem.data[*k].is_some()).collect();
     let weighted = DMatrix::from_fn(measured.len(), one.jacobian.ncols(), |i, j| {
@@ -247,7 +248,7 @@ fn resolved(one: &Found, problem: &Problem, estimate: &Estimate, loads: usize) -
     (0..loads).map(of).collect()
 }
 
-/// Correlation of what is left of a pressure with what is left of it at the instant before.
+/// Lag-1 autocorrelation of the residuals of each pressure.
 fn correlation(left: &[Left]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
     let mut last = std::collections::BTreeMap::new();
@@ -260,7 +261,7 @@ fn correlation(left: &[Left]) -> f64 {
     products / squares.max(f64::MIN_POSITIVE)
 }
 
-/// What is said where the pressures tell every value at the knots: what is between them may be another curve.
+/// Warns if the pressures determine nearly every knot value: the load may change faster than the spline.
 fn fast(found: &Sensed, over_time: &OverTime, rows: usize) -> Option<String> {
     let told = found.amplitudes.iter().zip(&over_time.told);
     let names = told.filter(|(_, told)| **told > ALL_TOLD * over_time.knots as f64);
@@ -280,7 +281,7 @@ fn fast(found: &Sensed, over_time: &OverTime, rows: usize) -> Option<String> {
     })
 }
 
-/// What is said where neighbours in time go together in what is left.
+/// Warns if residuals are autocorrelated in time.
 fn coloured(found: &Sensed, correlation: f64, count: usize, knots: usize) -> Option<String> {
     (correlation * (count as f64).sqrt() > UNLIKELY).then(|| {
         Code::UnexplainedPressures.warning(format!(

@@ -1,4 +1,4 @@
-//! Measured pressures: a column a bladder, a row an instant or a measurement at rest.
+//! Measured pressures: a column per bladder, a row per instant or per measurement at rest.
 
 use std::path::Path;
 
@@ -7,24 +7,24 @@ use crate::case::wiring::{bladder_index, bladder_label};
 use crate::error::{Error, Result, listed, visible};
 use crate::study::data::Table;
 
-/// What was measured.
+/// Table of measured pressures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Instants [s], where the table has them.
+    /// Instants [s], if the table has them.
     pub times: Option<Vec<f64>>,
-    /// Bladders that were measured, by their places among all, ascending.
+    /// Indices of the measured bladders among all, ascending.
     pub bladders: Vec<usize>,
-    /// Pressures [Pa], a row each, in the order of `bladders`; nothing where nothing was measured.
+    /// Pressures [Pa] of each row, in the order of `bladders`; `None` for a missing value.
     pub rows: Vec<Vec<Option<f64>>>,
-    /// Deviations of the noise [Pa], likewise, where the table has them.
+    /// Deviations of the noise [Pa], in the same order, if the table has them.
     pub deviations: Option<Vec<Vec<f64>>>,
     /// Line of each row in the file.
     pub lines: Vec<usize>,
-    /// Columns that are none of pressures.
+    /// Headings of columns that contain no pressure.
     pub left_alone: Vec<String>,
 }
 
-/// What a column holds.
+/// Quantity of a column, with the label of its bladder.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Holds {
     Pressure(i64),
@@ -35,12 +35,12 @@ impl Measured {
     /// Reads a file.
     ///
     /// # Errors
-    /// It cannot be read; a bladder that the case does not have, or has two columns; other units than those of pressure; no pressure at all.
+    /// The file cannot be read; a bladder does not exist or has two columns; a unit is not one of pressure; there is no pressure.
     pub fn read(path: &Path, case: &Case) -> Result<Self> {
         Self::of(&Table::read(path)?, path, case)
     }
 
-    /// Of a table.
+    /// Reads measurements from a table.
     ///
     /// # Errors
     /// As [`Measured::read`].
@@ -51,7 +51,7 @@ impl Measured {
             .columns
             .iter()
             .position(|column| ["t", "time"].contains(&column.name.to_lowercase().as_str()));
-        // columns and the bladders that they are of
+        // columns and their bladders
         let mut pressures: Vec<(usize, usize)> = vec![];
         let mut deviations: Vec<(usize, usize)> = vec![];
         let mut left_alone = vec![];
@@ -140,7 +140,8 @@ impl Measured {
     }
 }
 
-/// Of which bladder a column is: `pressure_3`, `pressure@bladder -3`, `p3`, `bladder 3`, each with `sd` for its deviation; `NAME_pressure_upper` of a probe.
+/// Parses a column name: `pressure_3`, `pressure@bladder -3`, `p3`, `bladder 3`, each with `sd` for a deviation; `NAME_pressure_upper` of a
+/// probe.
 fn holds(name: &str, case: &Case) -> Option<Holds> {
     if let Some(label) = of_probe(name, case) {
         return Some(Holds::Pressure(label));
@@ -170,7 +171,7 @@ fn holds(name: &str, case: &Case) -> Option<Holds> {
     })
 }
 
-/// Whether a heading speaks of a pressure or a bladder with a number, and of no place that results have.
+/// True if a name begins with `pressure` or `bladder` and a number follows.
 fn seems_a_bladder(name: &str) -> bool {
     let name = name.to_lowercase();
     let words = ["pressure", "bladder"].iter().find_map(|word| name.strip_prefix(word));
@@ -180,7 +181,7 @@ fn seems_a_bladder(name: &str) -> bool {
     })
 }
 
-/// The bladder whose pressure a probe records in a column.
+/// Label of the bladder whose pressure a probe records in a column.
 fn of_probe(name: &str, case: &Case) -> Option<i64> {
     let per_row = case.bladders.as_ref()?.per_row;
     let ends = [("_pressure_upper", 1), ("_pressure_lower", -1)];

@@ -1,4 +1,4 @@
-//! Pressures at rest under loads.
+//! Computes pressures at rest under given loads.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,10 +13,10 @@ use crate::functions::Signal;
 use crate::functions::signals::{Ramp, RampShape};
 use crate::run::equilibrium::{self, Direction, Options, Resting};
 
-/// The case with a probe in the middle of each pair of bladders, and the names of the columns with the pressures of all bladders, upper row first.
+/// Adds a probe in the middle of each pair of bladders. Returns the case and the names of the pressure columns, upper row first.
 ///
 /// # Errors
-/// [`Error::Usage`]: the case has no bladders.
+/// [`Error::Usage`] if the case has no bladders with fluid.
 pub fn probed(case: &Case) -> Result<(Case, Vec<String>)> {
     let per_row = match &case.bladders {
         Some(bladders) if case.fluid.is_some() => bladders.per_row,
@@ -51,36 +51,36 @@ pub fn labels(case: &Case) -> Vec<i64> {
     (0..2 * per_row).map(|b| bladder_label(b, per_row)).collect()
 }
 
-/// The pressures of all bladders at rest, over loads in their sizes.
+/// Pressures of all bladders at rest, as a function of load amplitudes over their sizes.
 #[derive(Clone)]
 pub struct AtRest<'a> {
     case: &'a Case,
     amplitudes: &'a [Amplitude],
     options: &'a Options,
-    /// Columns of a state with the pressures.
+    /// Columns of the pressures in a state.
     columns: Vec<usize>,
     /// The last state.
     last: Resting,
-    /// When the last valve has shut, where one has that keeps fluid: the loads come then [s].
+    /// Closing time [s] of the last valve, if a valve traps fluid. The estimated loads begin then.
     since: Option<f64>,
-    /// Whether to stop, asked before every state.
+    /// Stop request, checked before every state.
     stop: Option<&'a dyn Fn() -> bool>,
 }
 
-/// A pressure that changes by less under loads that bend the beam by its length feels nothing of them: it is that of a port, but for
-/// round-off [Pa].
+/// Sensitivity [Pa] below which a pressure counts as independent of the loads, such as that of a port. It is the change under loads that
+/// bend the beam by its length.
 const NOTHING: f64 = 1e-6;
 
 impl<'a> AtRest<'a> {
-    /// Under the loads of the case alone; `case` and `names` are those of [`probed`].
+    /// Starts from the case's own loads; `case` and `names` are those of [`probed`].
     ///
     /// # Errors
     /// There is no such state.
     pub fn new(case: &'a Case, names: &[String], amplitudes: &'a [Amplitude], options: &'a Options) -> Result<Self> {
-        // what is behind a valve that has shut was there before the loads that are looked for came
+        // fluid behind a closed valve was trapped before the estimated loads began
         let since = options.resolved(case)?.via_s.last().copied();
         let own = with(case, amplitudes, &vec![0.0; amplitudes.len()], since);
-        // what is read off a state depends on which loads there are
+        // the columns of a state depend on which loads there are
         let columns = equilibrium::columns(&equilibrium::system(&own, options.at_s)?);
         let place = |name: &String| columns.iter().position(|column| column.name == *name);
         let columns: Vec<usize> = names.iter().filter_map(place).collect();
@@ -100,13 +100,13 @@ impl<'a> AtRest<'a> {
         })
     }
 
-    /// The same, asked before every state whether to stop.
+    /// Sets a stop request that is checked before every state.
     pub fn until(mut self, stop: &'a dyn Fn() -> bool) -> Self {
         self.stop = Some(stop);
         self
     }
 
-    /// Pressures along the path from rest to these loads, and what there is to warn of besides what valves trap.
+    /// Pressures on the path from rest to these loads, and warnings of the path, except that of trapped fluid.
     ///
     /// # Errors
     /// There is no such path.
@@ -139,7 +139,7 @@ impl<'a> AtRest<'a> {
     }
 }
 
-/// The case with loads of so many of their sizes, from an instant on where there is one.
+/// The case with loads of the given sizes, from the instant `since` on if there is one.
 fn with(case: &Case, amplitudes: &[Amplitude], sizes: &[f64], since: Option<f64>) -> Case {
     let signal = |load: f64| match since {
         None => Signal::Constant(load),

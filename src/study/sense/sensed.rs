@@ -1,186 +1,186 @@
-//! What was found, and what of it can be told.
+//! Result of an estimate of loads, and the observability of loads.
 
 use serde::{Deserialize, Serialize};
 
 use super::basis::Basis;
 use super::estimate::Smoothing;
 
-/// Loads behind measured pressures, or what measurements would tell.
+/// Loads estimated from measured pressures, or only their observability without measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sensed {
     /// Name of the case.
     pub case: String,
-    /// What does it again, within the folder of the result.
+    /// Command that repeats the estimate, in the folder of the result.
     #[serde(default)]
     pub command: String,
-    /// The file with the measurements.
+    /// File of the measurements.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub data: Option<String>,
-    /// Columns of it that hold no pressure.
+    /// Columns of the file that contain no pressure.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_alone: Vec<String>,
-    /// Loads that were looked for.
+    /// Estimated loads.
     pub loads: Vec<Basis>,
-    /// Instant whose own loads of the case act besides [s].
+    /// Instant [s] whose own loads of the case also act.
     pub loads_at_s: f64,
-    /// Pointers of those that do.
+    /// Pointers of these own loads.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub own_loads: Vec<String>,
-    /// Their amplitudes.
+    /// Amplitudes of the loads.
     pub amplitudes: Vec<Unknown>,
-    /// Bladders whose pressures are taken, upper ones first; all without measurements.
+    /// Labels of the measured bladders, upper row first; all without measurements.
     pub bladders: Vec<i64>,
-    /// What pressures of these bladders tell, before anything is known of their values.
+    /// Observability of the amplitudes by these bladders, independent of the measured values.
     pub seen: Sight,
     /// Noise of the pressures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
-    /// What was known before.
+    /// Prior of smooth loads.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub smoothing: Option<Smoothed>,
-    /// What the bands hold.
+    /// Meaning of the bands.
     #[serde(default)]
     pub band: BandKind,
-    /// How loads over time were found; none where each row is at rest.
+    /// Properties of time-dependent loads; none if each row is at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
-    /// One a row of the measurements.
+    /// One per row of the measurements.
     pub rows: Vec<Row>,
-    /// The best bladders to measure, where that was asked.
+    /// Best sets of bladders to measure, if requested.
     pub choice: Vec<Chosen>,
-    /// Noise of their pressures [Pa].
+    /// Noise [Pa] assumed for `choice`.
     pub choice_noise_pa: f64,
-    /// What to know before any number: pressures that the loads do not explain. They stand among the warnings too.
+    /// Doubts about the result, such as pressures that the loads do not explain. They are among the warnings, too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub doubts: Vec<String>,
-    /// What to know first.
+    /// Warnings, including the doubts.
     pub warnings: Vec<String>,
 }
 
-/// An amplitude.
+/// Unknown amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Unknown {
     /// Name without unit.
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Share of the length at which it acts, of those that have a place.
+    /// Share of the length at which the load acts, if it has a place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<f64>,
-    /// Its standard error, for pressures whose noise is 1 Pa; none where pressures alone do not tell it.
+    /// Standard error for pressure noise of 1 Pa; none if pressures alone do not determine the amplitude.
     pub error_per_pa: Option<f64>,
 }
 
-/// What of the amplitudes leaves traces.
+/// Observability of the amplitudes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sight {
-    /// Largest over least singular value of what is told, amplitudes in sizes that bend the beam by about its length.
+    /// Ratio of the largest to the smallest nonzero singular value, for amplitudes in sizes that bend the beam by about its length.
     pub condition: f64,
-    /// Combinations of several amplitudes that are told together, and not each by itself.
+    /// Combinations of amplitudes that are determined together, but not each by itself.
     pub together: Vec<Combination>,
-    /// Changes of amplitudes that leave no trace: how much each changes.
+    /// Unobservable changes: change of each amplitude that leaves all pressures as they are.
     pub blind: Vec<Vec<f64>>,
 }
 
-/// A sum of amplitudes.
+/// Sum of amplitudes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Combination {
-    /// In words, factors in SI units.
+    /// Formula in words, with factors in SI units.
     pub name: String,
     /// Unit of the sum.
     pub unit: String,
-    /// How many times each amplitude counts.
+    /// Factor of each amplitude.
     pub factors: Vec<f64>,
 }
 
-/// Where the deviation of the noise is from.
+/// Origin of the deviation of the noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseFrom {
-    /// `--noise`.
+    /// Option `--noise`.
     Given,
     /// Columns of the measurements.
     Table,
-    /// What the loads leave of the pressures.
+    /// Residuals of the pressures.
     Estimated,
 }
 
-/// Of results before bands were widened.
+/// Default of `widened`, for results written before bands were widened.
 fn one() -> f64 {
     1.0
 }
 
-/// Noise.
+/// Noise of the measured pressures.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// Where its deviation is from.
+    /// Origin of its deviation.
     pub from: NoiseFrom,
-    /// Standard deviation [Pa]; none where the table has one for each pressure.
+    /// Standard deviation [Pa]; none if the table has one for each pressure.
     pub sd_pa: Option<f64>,
-    /// Degrees of freedom: pressures less what was taken from them.
+    /// Degrees of freedom: number of pressures less that of fitted parameters.
     pub freedom: f64,
-    /// Sum of `misfit` and `roughness`: about `freedom` where the model holds.
+    /// Sum of `misfit` and `roughness`; about `freedom` if the model is right.
     pub chi_square: f64,
-    /// Sum of the squares of what is left of the pressures, over their noise.
+    /// Sum of the squared residuals of the pressures over their noise.
     #[serde(default)]
     pub misfit: f64,
-    /// Sum of the squares of second differences of the loads, over what was known of them.
+    /// Sum of the squared second differences of the loads over their prior deviation.
     #[serde(default)]
     pub roughness: f64,
-    /// By how much bands are wider than the noise makes them, since more is left than it explains by chance.
+    /// Factor by which bands are widened because residuals exceed the noise.
     #[serde(default = "one")]
     pub widened: f64,
-    /// Half of a band of 95 % in standard errors: of the normal distribution, or Student's where the noise is estimated.
+    /// Half-width of a 95 % band in standard errors: of the normal distribution, or of Student's if the noise is estimated.
     pub quantile: f64,
 }
 
-/// What was known before: that a profile, or a load over time, has small second differences.
+/// Prior: second differences of a profile, or of a load over time, are small.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Smoothed {
-    /// How their deviation was chosen.
+    /// Method that chose their deviation.
     pub by: Smoothing,
-    /// That of a profile at rest [N/m].
+    /// Prior deviation of second differences of a profile at rest [N/m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub deviation_n_m: Option<f64>,
-    /// Standard deviation of the load before the measurements, of the most likely scale and shape [N/m]; the largest of all rows.
+    /// Prior standard deviation of the load at the most likely scale and shape [N/m]; the largest of all rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load_deviation_n_m: Option<f64>,
 }
 
-/// Loads over time.
+/// Properties of time-dependent loads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OverTime {
-    /// Equally spaced instants between which each load is a natural cubic spline.
+    /// Number of knots of each load, which is a natural cubic spline.
     pub knots: usize,
-    /// Time between two of them; the first lies as much before the start of the run, the last as much after the last measurement [s].
+    /// Spacing of the knots [s]. The first lies one spacing before the start of the run, the last one spacing after the last measurement.
     pub every_s: f64,
-    /// Of each load how many of the values at knots the pressures tell; the others are known by its smoothness.
+    /// Number of knot values of each load that the pressures determine; the smoothness prior determines the others.
     pub told: Vec<f64>,
-    /// Correlation of what is left of a pressure with what is left of it an instant before: about nothing, where that is noise.
+    /// Lag-1 autocorrelation of the residuals of a pressure; about 0 for white noise.
     pub correlation: f64,
-    /// Runs that it took.
+    /// Number of runs.
     pub runs: u32,
 }
 
-/// What a band of 95 % holds.
+/// Meaning of a 95 % band.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BandKind {
-    /// The load, if loads act where and as they are looked for: noise is the only error.
+    /// The load, if loads act at the assumed positions: noise is the only error.
     #[default]
     AssumedForm,
-    /// The mean of the load around its place, whatever its shape between places.
+    /// The mean of the load around its place, for any shape between places.
     LocalMean,
-    /// The load, if it is straight between places and as smooth as assumed.
+    /// The load, if it is piecewise linear and as smooth as assumed.
     AssumedSmoothness,
     /// The load at an instant, if loads change as smoothly as estimated.
     SmoothInTime,
 }
 
-/// A number with its band of 95 %.
+/// A number with its 95 % band.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Banded {
-    /// The number.
+    /// Estimated value.
     pub value: f64,
     /// Standard error.
     pub sd: f64,
@@ -190,21 +190,21 @@ pub struct Banded {
     pub high: f64,
 }
 
-/// A row of the measurements.
+/// One row of the measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Line in the file.
     pub line: usize,
-    /// Instant [s], where the file has them.
+    /// Instant [s], if the file has a time column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub t_s: Option<f64>,
-    /// Amplitudes; none where one is not told.
+    /// Amplitudes; none for an undetermined one.
     pub amplitudes: Vec<Option<Banded>>,
-    /// Combinations of `seen`; none where one is not told.
+    /// Combinations of `seen`; none for an undetermined one.
     pub together: Vec<Option<Banded>>,
     /// Measured pressures [Pa], in the order of `bladders`.
     pub measured_pa: Vec<Option<f64>>,
-    /// What the loads make of them [Pa].
+    /// Modelled pressures under the estimated loads [Pa].
     pub modelled_pa: Vec<f64>,
 }
 
@@ -213,6 +213,6 @@ pub struct Row {
 pub struct Chosen {
     /// The bladders.
     pub bladders: Vec<i64>,
-    /// Standard errors of the amplitudes; none where one is not told.
+    /// Standard errors of the amplitudes; none for an undetermined one.
     pub errors: Vec<Option<f64>>,
 }

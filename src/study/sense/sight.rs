@@ -1,4 +1,4 @@
-//! What pressures tell of loads, by their derivatives.
+//! Observability: combinations of loads that pressures determine, from the derivatives of the pressures.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use super::basis::Amplitude;
 use super::sensed::{Combination, Sensed, Sight, Unknown};
 use crate::numerics::inverse::{Linear, Posterior, Seen};
 
-/// Puts it beside what was found.
+/// Stores amplitudes and observability in `found`.
 pub(super) fn sight(found: &mut Sensed, amplitudes: &[Amplitude], jacobian: &DMatrix<f64>) {
     let seen = Seen::of(jacobian);
     found.amplitudes = unknowns(amplitudes, &seen, jacobian);
@@ -18,7 +18,7 @@ pub(super) fn sight(found: &mut Sensed, amplitudes: &[Amplitude], jacobian: &DMa
     };
 }
 
-/// Factors of a sum for amplitudes over their sizes.
+/// Converts factors of amplitudes to factors of amplitudes over their sizes.
 pub(super) fn over_sizes(sum: &Combination, amplitudes: &[Amplitude]) -> Vec<f64> {
     sum.factors
         .iter()
@@ -43,18 +43,18 @@ fn linear(jacobian: &DMatrix<f64>) -> Posterior {
     Linear::new(jacobian.clone(), DVector::zeros(jacobian.nrows())).posterior(&none)
 }
 
-/// How much each amplitude changes, in its unit, the one that leads by 1.
+/// Change of each amplitude in its unit, for a change of the leading amplitude by 1.
 fn changed(change: &[f64], amplitudes: &[Amplitude]) -> Vec<f64> {
     let lead = amplitudes[leading(change)].size;
     change.iter().zip(amplitudes).map(|(c, a)| c * a.size / lead).collect()
 }
 
-/// Which of the factors of a reduced row is the 1 that no other has.
+/// Index of the leading 1 of a reduced row.
 fn leading(row: &[f64]) -> usize {
     row.iter().position(|c| (c - 1.0).abs() < 1e-9).unwrap_or(0)
 }
 
-/// Sums of several amplitudes that are told.
+/// Determined combinations of more than one amplitude.
 fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<Combination> {
     let several = |one: &&Vec<f64>| one.iter().filter(|c| **c != 0.0).count() > 1;
     let of = |one: &Vec<f64>| {
@@ -80,10 +80,10 @@ fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<Combination> {
             factors,
         }
     };
-    seen.told.iter().filter(several).map(of).collect()
+    seen.observable.iter().filter(several).map(of).collect()
 }
 
-/// Four digits.
+/// Formats a number with about four digits.
 fn short(x: f64) -> String {
     match (1e-3..1e4).contains(&x) {
         true => format!("{x:.4}"),

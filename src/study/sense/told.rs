@@ -1,4 +1,4 @@
-//! What an estimate tells: loads with their bands, noise, and whether the loads explain what was measured.
+//! Reports of an estimate: loads with confidence bands, noise, and doubts about the fit.
 
 use nalgebra::DVector;
 
@@ -10,23 +10,23 @@ use super::sensed::{Banded, Noise, NoiseFrom, Sensed};
 use crate::case::wiring::bladder_label;
 use crate::error::Code;
 
-/// Part of the pressures, root mean square, that no answer leaves.
+/// Unexplained part of the pressures (root mean square) above which the loads are no answer.
 const NO_ANSWER: f64 = 0.25;
-/// The same above which noise that is estimated may be no noise.
+/// Unexplained part of the pressures (root mean square) above which estimated noise may be a misfit of the model.
 const MUCH: f64 = 0.1;
-/// Times a size that bends the beam by about its length: no such load is meant.
+/// Largest plausible load, in sizes that bend the beam by about its length.
 const NO_LOAD: f64 = 30.0;
 
-/// One amplitude as a sum of them over their sizes.
+/// Factors of the sum that is one amplitude, over amplitudes in their sizes.
 pub(super) fn alone(amplitudes: &[Amplitude], which: usize) -> Vec<f64> {
     let mut factors = vec![0.0; amplitudes.len()];
     factors[which] = amplitudes[which].size;
     factors
 }
 
-/// A sum of amplitudes over their sizes, if it is told.
+/// Value and band of a sum of amplitudes over their sizes; none if the data do not determine it.
 pub(super) fn banded(estimate: &Estimate, found: &Found, factors: &[f64]) -> Option<Banded> {
-    found.seen.tells(factors).then(|| {
+    found.seen.observes(factors).then(|| {
         let factors = DVector::from_column_slice(factors);
         let value = factors.dot(&found.mean);
         let sd = estimate.widened * factors.dot(&(&found.covariance * &factors)).max(0.0).sqrt();
@@ -47,7 +47,7 @@ pub(super) fn noise(asked: &Asked, measured: &Measured, estimate: &Estimate) -> 
         (None, None) => (NoiseFrom::Estimated, Some(estimate.noise)),
     };
     let misfit = &estimate.misfit;
-    // pressures that all are what the loads make of them have no noise at all
+    // a fit without any residual has no noise to divide by
     let over_noise = |sum: f64| match estimate.noise > 0.0 {
         true => sum / (estimate.noise * estimate.noise),
         false => 0.0,
@@ -64,17 +64,17 @@ pub(super) fn noise(asked: &Asked, measured: &Measured, estimate: &Estimate) -> 
     }
 }
 
-/// What is left of one measured pressure, over its deviation.
+/// Residual of one measured pressure over its deviation.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Left {
-    /// The bladder, by its place among all.
+    /// Index of the bladder among all.
     pub bladder: usize,
     pub over_noise: f64,
-    /// What was measured, likewise.
+    /// Measured pressure over its deviation.
     pub measured: f64,
 }
 
-/// What is left of the values of a problem, whose places are those of `bladders`, again and again.
+/// Residuals of the measured values of a problem; value `k` belongs to bladder `bladders[k % bladders.len()]`.
 pub(super) fn left<'a>(
     problem: &'a Problem,
     found: &'a Found,
@@ -91,12 +91,12 @@ pub(super) fn left<'a>(
     })
 }
 
-/// What is said where loads explain too little.
+/// Ending of a warning if the loads explain too little of the pressures.
 const NO_NUMBERS: &str =
     "; the numbers are no answer: other loads act, the units or signs of the pressures are others, or the case is";
 
-/// What is to be known before any number: pressures that are further from the model than their noise, which is known, explains, with the bladder
-/// that is worst, or that leave so much that it may be no noise, and loads that no beam bears.
+/// Warnings that put the result in doubt: a misfit beyond known noise, with the worst bladder; a misfit so far below it that the given
+/// noise seems wrong; unexplained pressures taken for noise; implausibly large loads.
 pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &Estimate) -> Vec<String> {
     let mut all = vec![];
     let sizes = estimate.found.iter().map(|one| one.mean.amax());
@@ -156,7 +156,7 @@ pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &
         .collect()
 }
 
-/// Three digits of a number.
+/// Formats a number with three digits.
 fn three(number: f64) -> String {
     match number {
         x if x >= 100.0 => format!("{x:.0}"),
@@ -165,7 +165,7 @@ fn three(number: f64) -> String {
     }
 }
 
-/// The loads that are looked for.
+/// Names of the estimated loads, joined by " + ".
 pub(super) fn names(found: &Sensed) -> String {
     let loads: Vec<String> = found.loads.iter().map(ToString::to_string).collect();
     loads.join(" + ")

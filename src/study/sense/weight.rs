@@ -1,16 +1,16 @@
-//! The weight of what is known before the data.
+//! Weight of the prior relative to the data.
 
 use nalgebra::DMatrix;
 
 use super::estimate::{Ask, Smoothing};
 use crate::numerics::inverse::{Linear, Posterior};
 
-/// What is known before, over what is measured, at most.
+/// Largest ratio of prior rows to measured rows.
 const HEAVIEST: f64 = 1e6;
-/// Weights that are tried: logarithms, and their number.
+/// Search grid of the weight: lowest and highest logarithm, number of points.
 const WEIGHTS: (f64, f64, usize) = (-14.0, 25.0, 79);
 
-/// The weight of what is known before that the data speak for.
+/// Weight of the prior by the criterion of `ask.smoothing`: maximum likelihood or discrepancy.
 pub(super) fn choose(
     linear: &[Linear],
     before: &dyn Fn(f64) -> DMatrix<f64>,
@@ -19,7 +19,7 @@ pub(super) fn choose(
     most: f64,
 ) -> f64 {
     let rows: usize = linear.iter().map(|one| one.rows).sum();
-    // to be made small
+    // minimized
     let cost = |log_weight: f64| {
         let before = before(log_weight.exp());
         let all: Vec<Posterior> = linear.iter().map(|one| one.posterior(&before)).collect();
@@ -43,7 +43,7 @@ pub(super) fn choose(
     golden(&cost, best - step, (best + step).min(high)).exp()
 }
 
-/// The weight beyond which what is known before drowns what is measured in round-off, and changes nothing more.
+/// Largest useful weight: beyond it the measured rows vanish in rounding errors and the result no longer changes.
 pub(super) fn heaviest(weighted: impl Iterator<Item = DMatrix<f64>>, differences: &DMatrix<f64>) -> f64 {
     let measured = weighted.map(|rows| rows.amax()).fold(0.0, f64::max);
     let before = if differences.is_empty() {
@@ -57,7 +57,7 @@ pub(super) fn heaviest(weighted: impl Iterator<Item = DMatrix<f64>>, differences
     }
 }
 
-/// The least of a function between two places (golden section).
+/// Minimizes a function between two bounds by golden section.
 fn golden(f: &dyn Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let share = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut a, mut b) = (high - share * (high - low), low + share * (high - low));

@@ -1,4 +1,4 @@
-//! The cycle along one parameter, each found from the one before.
+//! Cycles along one parameter; each search starts from the previous cycle.
 
 use std::time::Instant;
 
@@ -15,59 +15,59 @@ use crate::run::stop::{INTERRUPTED, Stop};
 use crate::run::summary::{Quantity, Status};
 use crate::study::evaluations::Evaluations;
 
-/// Multipliers looked at.
+/// Number of multipliers computed.
 const COUNT: usize = 4;
 
-/// The cycle of one value.
+/// Cycle at one value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Member {
     /// Value of the parameter.
     pub value: f64,
-    /// Unknowns.
+    /// Number of unknowns.
     pub unknowns: usize,
-    /// How the cycle was found.
+    /// Search for the cycle.
     pub search: Search,
-    /// Its stability.
+    /// Stability of the cycle.
     pub floquet: Floquet,
     /// Quantities over the period.
     pub quantities: std::collections::BTreeMap<String, Quantity>,
-    /// Why the tolerance of the cycle is not the case's own.
+    /// Reason why the tolerance of the cycle is not the case's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub refined: Option<Refined>,
     /// Wall time of search and stability [s].
     pub wall_s: f64,
 }
 
-/// All values.
+/// Cycles at all values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Along {
     /// Name of the case.
     pub case: String,
     /// JSON pointer of the parameter.
     pub pointer: String,
-    /// Whether the values are spread evenly in their logarithms.
+    /// True if the values are evenly spaced in their logarithms.
     pub logarithmic: bool,
     /// Cycles.
     pub members: Vec<Member>,
-    /// Values for which none was found, and why.
+    /// Values without a cycle, with reasons.
     pub missing: Vec<(f64, String)>,
-    /// What to know of the first case.
+    /// Warnings about the first case.
     pub warnings: Vec<String>,
 }
 
-/// A value, and what the next one needs of it.
+/// Result at one value, with the state that the next one needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Step {
     found: std::result::Result<Member, String>,
-    /// That its energies do not add up.
+    /// Warning that its energies do not add up.
     open: Option<String>,
     /// State of its cycle.
     state: Option<Vec<f64>>,
 }
 
-/// Finds the cycle of every case; `tell` hears how many of them are done. Those that are not when somebody asks for the end are missing.
-/// Where turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle. A cycle among `evaluations`
-/// is not sought again.
+/// Finds the cycle of every case; `tell` is called with the number of finished cases. Cases not finished at a stop are
+/// missing. If turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle.
+/// Cycles stored in `evaluations` are not searched again.
 ///
 /// # Errors
 /// A case without a period, a beam that nothing holds.

@@ -1,4 +1,4 @@
-//! Growth over frequency and amplitude of a shaken root, beside Mathieu's equation.
+//! Growth over frequency and amplitude of a shaken root, compared with Mathieu's equation.
 
 use std::f64::consts::TAU;
 
@@ -19,56 +19,56 @@ use crate::run::stop::{INTERRUPTED, Stop};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::pool;
 
-/// Multipliers looked at in a point.
+/// Number of multipliers computed at a point.
 const COUNT: usize = 2;
 
-/// What is to be mapped.
+/// Range of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Frequencies of the shaking [Hz], ascending.
     pub frequencies_hz: Vec<f64>,
     /// Its amplitudes [m], ascending.
     pub amplitudes_m: Vec<f64>,
-    /// Permeability factors, one sheet each; one sheet without, in a dry beam.
+    /// Permeability factors, one sheet each; a dry beam has one sheet without a factor.
     pub permeability_factors: Vec<f64>,
 }
 
 /// One point of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// Growth rate of the largest multiplier [1/s]; none where no cycle was found.
+    /// Growth rate of the largest multiplier [1/s]; `None` without a cycle.
     pub growth_per_s: Option<f64>,
     /// Largest multiplier, real and imaginary part.
     pub multiplier: Option<(f64, f64)>,
-    /// What is to be said of the cycle, or why there is none.
+    /// Description of the cycle, or the reason why there is none.
     pub words: String,
-    /// The same in one word; none where no cycle was found, and in maps of before it was told.
+    /// Stability of the cycle; `None` without a cycle, and in maps of earlier versions.
     #[serde(default)]
     pub stability: Option<Stability>,
 }
 
 impl Point {
-    /// Whether bending swings up by itself. Of a map of before the word was told, by the rate alone.
+    /// True if bending oscillations grow by themselves. Maps of earlier versions are decided by the rate alone.
     pub fn grows(&self) -> bool {
         self.growth_per_s.is_some_and(|rate| rate > 0.0) && self.stability != Some(Stability::Neutral)
     }
 }
 
-/// One permeability.
+/// Points at one permeability.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
-    /// Factor of the case's permeabilities; none in a dry beam.
+    /// Factor of the case's permeabilities; `None` for a dry beam.
     pub permeability_factor: Option<f64>,
     /// Points by frequency, then by amplitude.
     pub points: Vec<Vec<Point>>,
 }
 
-/// Mathieu's equation of the dry beam's first mode.
+/// Mathieu's equation of the first mode of the dry beam.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mathieu {
     /// First bending frequency [Hz].
     pub frequency_hz: f64,
-    /// Amplitude from which the principal tongue holds each frequency of the map [m].
+    /// Amplitude above which the principal tongue contains each frequency of the map [m].
     pub onset_m: Vec<f64>,
 }
 
@@ -85,16 +85,16 @@ pub struct Map {
     pub amplitudes_m: Vec<f64>,
     /// Sheets.
     pub sheets: Vec<Sheet>,
-    /// The prediction without fluid and stretch; of a cantilever.
+    /// Prediction without fluid and stretch; cantilevers only.
     pub mathieu: Option<Mathieu>,
-    /// What to know of the case.
+    /// Warnings about the case.
     pub warnings: Vec<String>,
 }
 
-/// Frequency [Hz] and amplitude [m] of the sine by which the root is shaken along the beam.
+/// Frequency [Hz] and amplitude [m] of the sine that shakes the root along the beam.
 ///
 /// # Errors
-/// [`Error::Usage`] when there is none.
+/// [`Error::Usage`] if there is none.
 pub fn shaking(case: &Case) -> Result<(f64, f64)> {
     match settled(axial(&whole(case)?.ends)) {
         Signal::Sine(sine) => Ok((sine.frequency_hz, sine.amplitude.abs())),
@@ -112,11 +112,11 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
     }
 }
 
-/// Computes the map; `tell` hears how many of how many columns are done. Points that are not when somebody asks for the end have no answer,
-/// those among `evaluations` are not computed again.
+/// Computes the map; `tell` is called with the finished and the total number of columns. Points not finished at a stop
+/// have no result. Points stored in `evaluations` are not computed again.
 ///
 /// # Errors
-/// A case without shaken root, or with another period besides.
+/// A case without a shaken root, or with an additional period.
 pub fn map(
     case: &Case,
     plan: &Plan,
@@ -125,7 +125,7 @@ pub fn map(
     tell: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Map> {
     let own = shaking(case)?;
-    // another drive beside the shaking would have a period of its own
+    // another drive would have a period of its own
     crate::run::drive::drive(case, &whole(case)?, None)?;
     let wet = case.bladders.is_some();
     let factors: Vec<Option<f64>> = if wet && case.network.is_some() {
@@ -167,7 +167,7 @@ pub fn map(
     })
 }
 
-/// All amplitudes at one frequency, each cycle found from the one before.
+/// Points at all amplitudes of one frequency; each search starts from the previous cycle.
 fn column(
     case: &Case,
     factor: Option<f64>,
@@ -210,7 +210,7 @@ fn column(
         .collect()
 }
 
-/// A point, and the state of its cycle, where there is one.
+/// Returns a point, and the state of its cycle if there is one.
 fn point(scene: &Scene, from: Option<&[f64]>) -> (Point, Option<Vec<f64>>) {
     match shoot(scene, from) {
         Ok(mut cycle) => {
@@ -234,7 +234,7 @@ fn point(scene: &Scene, from: Option<&[f64]>) -> (Point, Option<Vec<f64>>) {
     }
 }
 
-/// The model with another shaking of the root.
+/// Returns the model with another shaking of the root.
 fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Result<Model> {
     let mut model = whole(case)?;
     model.replace_signals(settled, settled_opening);
@@ -244,7 +244,7 @@ fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Result<Model> {
     Ok(model)
 }
 
-/// `[E39]` Where the principal tongue begins, of the drained beam's first mode alone, to first order in the modulation:
+/// `[E39]` Onset of the principal tongue of the drained beam's first mode alone, to first order in the modulation:
 ///
 /// ```text
 /// |Ω/(2 ω1) - 1| < ε/4     ε = κ_1 U Ω²/(l_s ω1²)     U the amplitude of the root

@@ -1,4 +1,4 @@
-//! Which values design number k has. None of them is kept: each is made when it is asked for.
+//! Values of each design by its number. Designs are not stored; each is computed on request.
 
 use serde_json::Value;
 
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::numerics::chance::Chance;
 use crate::numerics::sobol::{self, Sobol};
 
-/// Designs at most.
+/// Largest number of designs.
 pub const MOST: usize = 1_000_000;
 
 /// One design.
@@ -18,14 +18,14 @@ pub const MOST: usize = 1_000_000;
 pub struct Design {
     /// Its number, from 0.
     pub number: usize,
-    /// Place of its case in the list of cases.
+    /// Index of its case in the list of cases.
     pub case: usize,
-    /// Values of what is varied, in the order of the axes.
+    /// Values of the varied numbers, in the order of the axes.
     pub values: Vec<Value>,
 }
 
 impl Design {
-    /// As arguments of `--set`.
+    /// Returns the arguments of `--set`.
     pub fn sets<'a>(&'a self, pointers: &'a [String]) -> impl Iterator<Item = String> + 'a {
         pointers
             .iter()
@@ -33,13 +33,13 @@ impl Design {
             .map(|(pointer, value)| format!("{pointer}={value}"))
     }
 
-    /// In words: `/a = 1, /b = 2`.
+    /// Describes the design: `/a = 1, /b = 2`.
     pub fn words(&self, pointers: &[String]) -> String {
         pairs(pointers, &self.values)
     }
 }
 
-/// Pointers with their values, in words.
+/// Lists pointers with their values.
 pub fn pairs(pointers: &[String], values: &[Value]) -> String {
     let pairs = pointers.iter().zip(values);
     let all: Vec<String> = pairs.map(|(pointer, value)| format!("{pointer} = {value}")).collect();
@@ -58,7 +58,7 @@ pub struct Designs {
 #[derive(Clone, Debug)]
 enum Made {
     Table(Vec<Vec<Value>>),
-    /// Values and, of each that is drawn, its samples.
+    /// Values of each axis, with samples if they are drawn; and the number of samples.
     Crossed(Vec<(Values, Samples)>, usize),
 }
 
@@ -70,7 +70,7 @@ enum Samples {
 }
 
 impl Designs {
-    /// Of a table, with each of so many cases.
+    /// Creates the designs of a table, with each of `cases` cases.
     ///
     /// # Errors
     /// [`Error::Usage`] for two columns of the same number, and for too many designs.
@@ -84,7 +84,7 @@ impl Designs {
         })
     }
 
-    /// The option that says what varies.
+    /// Returns the option that defines the designs.
     pub fn option(&self) -> &'static str {
         match self.made {
             Made::Table(_) => "--designs",
@@ -92,10 +92,11 @@ impl Designs {
         }
     }
 
-    /// Of what is varied, every listed value with every other and with every sample of those drawn, with each of so many cases.
+    /// Combines every listed value with every other one and with every drawn sample, for each of `cases` cases.
     ///
     /// # Errors
-    /// [`Error::Usage`] where distributions and their draw do not go together, for numbers within each other, for too many designs.
+    /// [`Error::Usage`] if distributions and draw do not match, for numbers that contain each other, for too many
+    /// designs.
     pub fn crossed(cases: usize, varied: &[Vary], draw: Draw, seed: Option<u64>) -> Result<Self> {
         let pointers: Vec<String> = varied.iter().map(|vary| vary.pointer.clone()).collect();
         apart("--vary", &pointers)?;
@@ -155,17 +156,18 @@ impl Designs {
         })
     }
 
-    /// How many there are.
+    /// Number of designs.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// What is varied.
+    /// Pointers of the varied numbers.
     pub fn pointers(&self) -> &[String] {
         &self.pointers
     }
 
-    /// Design number k; the last that varies varies fastest, samples faster still, cases slowest.
+    /// Returns design number `number`. The last axis varies faster than the other axes, samples faster still, cases
+    /// slowest.
     pub fn design(&self, number: usize) -> Design {
         let each = self.count / self.cases.max(1);
         let (case, mut left) = (number / each, number % each);
@@ -194,7 +196,7 @@ impl Designs {
     }
 }
 
-/// Where a sample lies within 0 and 1.
+/// Position of a sample between 0 and 1.
 fn share(samples: &Samples, sample: usize) -> f64 {
     match samples {
         Samples::None => 0.5,
@@ -206,7 +208,7 @@ fn share(samples: &Samples, sample: usize) -> f64 {
     }
 }
 
-/// The number of designs.
+/// Returns the number of designs; rejects too many.
 fn bounded(cases: usize, lengths: impl IntoIterator<Item = usize>) -> Result<usize> {
     let product = lengths.into_iter().try_fold(cases, usize::checked_mul);
     product.filter(|n| *n <= MOST).ok_or_else(|| {
@@ -216,7 +218,7 @@ fn bounded(cases: usize, lengths: impl IntoIterator<Item = usize>) -> Result<usi
     })
 }
 
-/// Whether no number is varied twice, or is part of another.
+/// Rejects numbers that are varied twice, or that are part of another one.
 fn apart(option: &str, pointers: &[String]) -> Result<()> {
     for (k, one) in pointers.iter().enumerate() {
         for other in &pointers[..k] {
@@ -265,7 +267,7 @@ mod tests {
         assert!(all.windows(2).all(|w| (w[1] / w[0] - 10_f64.sqrt()).abs() < 1e-12));
     }
 
-    /// Goal: each of N equally likely strata of each number holds one design; another seed draws others.
+    /// Goal: each of N equally likely strata of each number contains one design; another seed draws others.
     #[test]
     fn a_latin_hypercube_fills_every_stratum_once() {
         const N: usize = 50;

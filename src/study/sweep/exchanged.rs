@@ -1,13 +1,14 @@
-//! Modes that change places from one design to the next: the first of one is not what the first of the other is.
+//! Modes that change places between neighboring designs: the first mode of one is not the first mode of the other.
 //!
-//! Modes are told by their frequencies, the lowest first. Where one of the fluid, damped so much that it hardly swings, comes in below one of
-//! the beam, every number behind it goes to another mode. Which mode of one design is which of the next is told by the eigenvalues
+//! Modes are numbered by their frequencies, the lowest first. If a fluid mode with so much damping that it hardly
+//! oscillates appears below a mode of the beam, all following numbers refer to other modes. The modes of two designs
+//! are paired by their eigenvalues:
 //!
 //! ```text
 //! least over all pairings of   Σ |ln(s_k/s'_j)|
 //! ```
 //!
-//! so that a frequency and a damping ratio that change a little count little, whatever their sizes are.
+//! Small changes of a frequency or a damping ratio thus count little, whatever their sizes are.
 
 use std::collections::BTreeMap;
 
@@ -18,9 +19,9 @@ use super::{Plan, Row};
 use crate::run::summary::Status;
 use crate::study::analysis::modes::MODES;
 
-/// How much better another pairing must be than that by numbers.
+/// Least advantage of another pairing over that by numbers.
 const BETTER: f64 = 0.2;
-/// Designs compared at most.
+/// Largest number of designs compared.
 pub const MOST: usize = 2000;
 
 /// Modes of a design.
@@ -29,12 +30,12 @@ pub struct Swinging {
     number: usize,
     case: usize,
     values: Vec<Value>,
-    /// `s`, the lowest frequency first [1/s].
+    /// Eigenvalues `s`, the lowest frequency first [1/s].
     s: Vec<Complex<f64>>,
 }
 
 impl Swinging {
-    /// Those that a row tells; none of another command.
+    /// Reads the modes of a row; `None` if it has none, as for other commands.
     pub fn of(row: &Row) -> Option<Self> {
         let mode = |k: usize| {
             let figure = |name: &str| row.found.figure(&format!("mode_{k}.{name}"));
@@ -51,22 +52,22 @@ impl Swinging {
     }
 }
 
-/// Two designs beside each other whose modes do not go by the same numbers.
+/// Two neighboring designs in which modes have different numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Exchange {
-    /// Their numbers.
+    /// Numbers of the designs.
     pub designs: [usize; 2],
-    /// What is varied between them.
+    /// Pointer of the number that differs between them.
     pub pointer: String,
-    /// Its values.
+    /// Values of that number.
     pub values: [f64; 2],
-    /// Numbers, from 1, of one mode in both: the first that has two.
+    /// Numbers, from 1, of one mode in both designs: the first mode with two numbers.
     pub modes: [usize; 2],
-    /// Numbers, from 1, of modes that are another in the second.
+    /// Numbers, from 1, of all modes that have another number in the second design.
     pub all: Vec<usize>,
 }
 
-/// Exchanges between neighbours along each number that is listed.
+/// Finds exchanges between neighboring designs along each listed axis.
 pub fn exchanges(plan: &Plan, designs: &[Swinging]) -> Vec<Exchange> {
     let mut all = vec![];
     for (axis, varied) in plan.axes.iter().enumerate().filter(|(k, _)| plan.listed(*k)) {
@@ -105,7 +106,8 @@ pub fn exchanges(plan: &Plan, designs: &[Swinging]) -> Vec<Exchange> {
     all
 }
 
-/// Places of modes that have another in the other list; none where the pairing by numbers is as good as the best.
+/// Index pairs of modes that have another index in the second list; empty if the pairing by numbers is as good as the
+/// best.
 fn moved(a: &[Complex<f64>], b: &[Complex<f64>]) -> Vec<[usize; 2]> {
     let count = a.len().min(b.len());
     let far = |k: usize, j: usize| (a[k] / b[j]).ln().norm();
@@ -117,7 +119,7 @@ fn moved(a: &[Complex<f64>], b: &[Complex<f64>]) -> Vec<[usize; 2]> {
     found.map(|(k, j)| [k, j]).filter(|[k, j]| k != j).collect()
 }
 
-/// The best of all pairings that begin with those taken, where it is better than what is known.
+/// Searches all pairings that begin with `taken` for one that is better than the best so far.
 fn search(
     count: usize,
     far: &dyn Fn(usize, usize) -> f64,
@@ -151,8 +153,8 @@ mod tests {
         Complex::new(-ratio * size, frequency)
     }
 
-    /// Source: the published beam, its valves varied. Goal: a mode of the fluid that comes in below those of the beam moves them; one
-    /// that changes with its design, by much, does not.
+    /// Source: the published beam, its valves varied. Goal: a fluid mode that appears below the modes of the beam moves
+    /// them; a mode that changes with its design, even by much, does not.
     #[test]
     fn a_mode_that_comes_in_moves_the_others() {
         let before = [s(12.6, 0.03), s(78.0, 0.02), s(220.0, 0.01)];

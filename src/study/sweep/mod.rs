@@ -3,16 +3,16 @@
 //! ```text
 //! vary     POINTER=SPEC: the values of one number
 //! table    designs from a CSV file
-//! designs  which values design number k has, and its case
-//! plan     everything that decides what the rows are
+//! designs  values and case of each design, by its number
+//! plan     all settings that determine the rows
 //! row      figures of a design
 //! unit     units of figures, by their names
-//! exchanged modes that change places from one design to the next
-//! pool     designs on all cores
+//! exchanged modes that change places between designs
+//! pool     parallel computation of designs
 //! ```
 //!
-//! A design is known by its number alone, and what it computes by its case: rows depend neither on how many are computed at once
-//! nor on which came first.
+//! The number of a design alone determines the design, and its case alone determines its results. Rows depend neither
+//! on the number of parallel computations nor on their order.
 
 pub mod designs;
 pub mod exchanged;

@@ -1,4 +1,4 @@
-//! Everything that decides what the rows are: `plan.json`.
+//! All settings that determine the rows: `plan.json`.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,17 +7,17 @@ use super::row::Row;
 use super::vary::Draw;
 use crate::study::analysis::AnalysisKind;
 
-/// A part of the designs: those whose number leaves `index - 1` when it is divided by `of`.
+/// Part of the designs: those whose number leaves the remainder `index - 1` when divided by `of`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Which, from 1.
+    /// Index, from 1.
     pub index: usize,
-    /// Of how many.
+    /// Number of shards.
     pub of: usize,
 }
 
 impl Shard {
-    /// Of `2/8`.
+    /// Parses `2/8`.
     pub fn parse(text: &str) -> std::result::Result<Self, String> {
         let parts = text
             .split_once('/')
@@ -28,12 +28,12 @@ impl Shard {
         }
     }
 
-    /// Whether a design belongs to it.
+    /// True if a design belongs to the shard.
     pub fn has(self, number: usize) -> bool {
         number % self.of == self.index - 1
     }
 
-    /// As it is typed.
+    /// Formats the shard as typed.
     pub fn words(self) -> String {
         format!("{}/{}", self.index, self.of)
     }
@@ -44,52 +44,52 @@ impl Shard {
 pub struct Listed {
     /// Its name.
     pub name: String,
-    /// Its file, as it was named.
+    /// Its file, as typed.
     pub file: String,
-    /// Check sum of its text, and of its first design as resolved.
+    /// Checksums of its text, and of its first design as resolved.
     pub crc32: [u32; 2],
 }
 
-/// What is varied.
+/// Varied number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
     /// JSON pointer.
     pub pointer: String,
-    /// Its values, as they were asked for; nothing where a table has them.
+    /// Specification of its values; `None` if a table contains them.
     pub spec: Option<String>,
 }
 
-/// A sweep as it was asked for.
+/// Requested sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     /// Name of the first case.
     pub case: String,
-    /// What each design goes through.
+    /// Analysis of each design.
     pub command: AnalysisKind,
     /// The cases.
     pub cases: Vec<Listed>,
-    /// Changes to all of them.
+    /// Changes to all cases.
     pub sets: Vec<String>,
-    /// What is varied.
+    /// Varied numbers.
     pub axes: Vec<Axis>,
-    /// The file that lists designs, and its check sum.
+    /// File that lists designs, and its checksum.
     pub table: Option<(String, u32)>,
-    /// How designs are drawn.
+    /// Sampling of the designs.
     pub design: Draw,
-    /// From which seed, where one was given.
+    /// Seed, if given.
     pub seed: Option<u64>,
-    /// Relative error asked for.
+    /// Requested relative error.
     pub accuracy: Option<f64>,
-    /// Whether errors that meshes make are estimated.
+    /// True if errors due to meshes are estimated.
     pub mesh_errors: bool,
-    /// Designs of the whole sweep.
+    /// Number of designs of the whole sweep.
     pub designs: usize,
-    /// The part of them that is here; nothing: all.
+    /// Shard that is computed here; `None` for all designs.
     pub shard: Option<Shard>,
 }
 
 impl Plan {
-    /// The case that is varied; of two cases both, of more the first and how many others.
+    /// Name of the varied case; of two cases both names, of more cases the first name and the number of the others.
     pub fn title(&self) -> String {
         match &self.cases[..] {
             [one, other] => format!("{} and {}", one.name, other.name),
@@ -98,17 +98,17 @@ impl Plan {
         }
     }
 
-    /// Whether a design is computed here.
+    /// True if a design is computed here.
     pub fn has(&self, number: usize) -> bool {
         self.shard.is_none_or(|shard| shard.has(number))
     }
 
-    /// Designs that are computed here.
+    /// Number of designs computed here.
     pub fn share(&self) -> usize {
         (0..self.designs).filter(|number| self.has(*number)).count()
     }
 
-    /// The same without its shard.
+    /// Returns the plan without its shard.
     pub fn whole(&self) -> Self {
         Self {
             shard: None,
@@ -116,7 +116,8 @@ impl Plan {
         }
     }
 
-    /// CRC-32 of everything that decides the rows of all shards; files may have moved. Checksums of rows begin with it.
+    /// CRC-32 of everything that determines the rows of all shards, without the names of files. Checksums of rows begin
+    /// with it.
     pub fn crc32(&self) -> u32 {
         let mut plan = self.whole();
         plan.cases.iter_mut().for_each(|case| case.file.clear());
@@ -126,7 +127,7 @@ impl Plan {
         crc32fast::hash(&serde_json::to_vec(&plan).unwrap_or_default())
     }
 
-    /// Where two plans differ, in words; files may have moved.
+    /// Describes the first difference between two plans, except names of files.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let told = |what: &str, here: String, there: String| {
             (here != there).then(|| format!("{what} is {there} there and {here} here"))
@@ -179,7 +180,7 @@ impl Plan {
             })
     }
 
-    /// The options that ask for the same, `--shard`, `--out` and `--jobs` left out.
+    /// Returns the options that request the same sweep, without `--shard`, `--out` and `--jobs`.
     pub fn options(&self) -> Vec<String> {
         let mut all: Vec<String> = self.cases.iter().map(|case| case.file.clone()).collect();
         let mut put = |option: &str, value: String| all.extend([option.to_owned(), value]);
@@ -210,7 +211,7 @@ impl Plan {
         all
     }
 
-    /// A command that a shell takes as it is.
+    /// Returns a command line, quoted for a shell.
     pub fn command_line(&self, more: &[&str]) -> String {
         let head = ["slcbeam".to_owned(), "sweep".to_owned()];
         let options = self.options();
@@ -221,7 +222,7 @@ impl Plan {
         words.map(|word| quoted(&word)).collect::<Vec<_>>().join(" ")
     }
 
-    /// The command that does one design alone, as a shell takes it.
+    /// Returns the command line that computes one design alone, quoted for a shell.
     pub fn design_line(&self, row: &Row) -> String {
         let mut words = vec!["slcbeam".to_owned(), self.command.word().to_owned()];
         words.extend(self.cases.get(row.case).map(|case| case.file.clone()));
@@ -236,24 +237,24 @@ impl Plan {
         words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
     }
 
-    /// JSON pointers of what is varied.
+    /// JSON pointers of the varied numbers.
     pub fn pointers(&self) -> Vec<String> {
         self.axes.iter().map(|axis| axis.pointer.clone()).collect()
     }
 
-    /// Whether the values of an axis follow each other, as those of a list or a range do.
+    /// True if the values of an axis are ordered, as those of a list or a range.
     pub fn listed(&self, axis: usize) -> bool {
         let spec = self.axes.get(axis).and_then(|axis| axis.spec.as_deref());
         spec.is_some_and(|spec| !spec.starts_with("uniform:") && !spec.starts_with("normal:"))
     }
 
-    /// Whether the values of an axis lie evenly by their logarithms.
+    /// True if the values of an axis are evenly spaced in their logarithms.
     pub fn logarithmic(&self, axis: usize) -> bool {
         let spec = self.axes.get(axis).and_then(|axis| axis.spec.as_deref());
         spec.is_some_and(|spec| spec.starts_with("log:"))
     }
 
-    /// Axes as designs have them.
+    /// Creates the axes of designs.
     pub fn axes_of(designs: &Designs, specs: &[Option<String>]) -> Vec<Axis> {
         let pointers = designs.pointers().iter().cloned();
         pointers
@@ -270,7 +271,7 @@ fn optional_list(all: &[String]) -> String {
     if all.is_empty() { "none".into() } else { all.join(" ") }
 }
 
-/// A word as a shell reads it.
+/// Quotes a word for a shell.
 pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "_-./=:,%+@".contains(c);
     if !word.is_empty() && word.chars().all(plain) {

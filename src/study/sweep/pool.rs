@@ -1,4 +1,4 @@
-//! Work on all cores.
+//! Parallel work on all cores.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,11 +7,11 @@ use crate::error::Result;
 use crate::integrate::halt;
 use crate::numerics::threads::crew;
 
-/// Gives every number of a list to whoever of so many threads is free, and what `work` makes of it to `take`, one at a time. Ends
-/// early where `work` makes nothing, or `take` fails.
+/// Distributes the numbers of a list to `jobs` threads, and passes each result of `work` to `take`, one at a time. Ends
+/// early if `work` returns `None`, or if `take` fails.
 ///
 /// # Errors
-/// The first of `take`.
+/// The first error of `take`.
 pub fn each<T: Send>(
     numbers: &[usize],
     jobs: usize,
@@ -40,11 +40,12 @@ pub fn each<T: Send>(
     taken.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner).1
 }
 
-/// What `work` makes of every number below `count`, in order; nothing of what is left where it makes nothing.
+/// Returns the result of `work` for every number below `count`, in order. After a `None`, the remaining numbers are
+/// omitted.
 pub fn all<T: Send>(count: usize, jobs: usize, work: &(dyn Fn(usize) -> Option<T> + Sync)) -> Vec<Option<T>> {
     let numbers: Vec<usize> = (0..count).collect();
     let mut made: Vec<Option<T>> = std::iter::repeat_with(|| None).take(count).collect();
-    // nothing can fail where it is kept
+    // storing results cannot fail
     let _ = each(&numbers, jobs, &|k| Some((k, work(k)?)), &mut |(k, one)| {
         made[k] = Some(one);
         Ok(())
@@ -52,7 +53,7 @@ pub fn all<T: Send>(count: usize, jobs: usize, work: &(dyn Fn(usize) -> Option<T
     made
 }
 
-/// Cores of the machine.
+/// Number of cores of the machine.
 pub fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }

@@ -11,11 +11,11 @@ use crate::study::analysis::Found;
 pub struct Row {
     /// Number of the design, from 0.
     pub number: usize,
-    /// Place of its case in the list of cases, from 0.
+    /// Index of its case in the list of cases, from 0.
     pub case: usize,
-    /// Values of what is varied.
+    /// Values of the varied numbers.
     pub values: Vec<Value>,
-    /// What was found.
+    /// Results.
     #[serde(flatten)]
     pub found: Found,
     /// Wall time [s].
@@ -23,7 +23,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Of a design.
+    /// Creates the row of a design.
     pub fn of(design: Design, found: Found, wall_s: f64) -> Self {
         Self {
             number: design.number,

@@ -8,14 +8,14 @@ use super::vary::{check_pointer, plain};
 use crate::case;
 use crate::error::{Error, Result};
 
-/// Designs as they were listed.
+/// Table of designs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// What the columns are.
+    /// JSON pointers of the columns.
     pub pointers: Vec<String>,
-    /// Values, one row a design.
+    /// Values, one row per design.
     pub rows: Vec<Vec<Value>>,
-    /// Check sum of the text.
+    /// Checksum of the text.
     pub crc32: u32,
 }
 
@@ -69,7 +69,7 @@ impl Table {
     }
 }
 
-/// A cell as JSON; a word is a text.
+/// Parses a cell as JSON; a bare word is a text.
 fn value(cell: &str) -> Option<Value> {
     if let Ok(value) = serde_json::from_str(cell) {
         return Some(plain(value));

@@ -1,6 +1,6 @@
 //! Units of figures, by their names.
 
-/// Ends of names, the longer ones first, and the units that they are.
+/// Suffixes of names with their units, the longer ones first.
 const ENDS: [(&str, &str); 21] = [
     ("_frequency_hz", "Hz"),
     ("_bound_hz", "Hz"),
@@ -25,7 +25,7 @@ const ENDS: [(&str, &str); 21] = [
     ("_s", "s"),
 ];
 
-/// The unit that the name of a figure ends with, its quantity's before its own; `1` where there is none.
+/// Returns the unit with which the name of a figure ends, that of its quantity before its own; `1` if there is none.
 pub fn unit(name: &str) -> &'static str {
     let (quantity, figure) = name.split_once('.').unwrap_or((name, ""));
     if figure.ends_with("error") || name.ends_with("_relative") {

@@ -7,15 +7,15 @@ use crate::case::{amounts, short, unknown};
 use crate::error::{Error, Result};
 use crate::numerics::normal::quantile;
 
-/// Values of one axis at most.
+/// Largest number of values of one axis.
 pub const MOST_VALUES: usize = 1_000_000;
 
-/// What is varied, and how.
+/// Varied number, and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vary {
     /// JSON pointer into the case.
     pub pointer: String,
-    /// As it was asked for.
+    /// Specification, as typed.
     pub spec: String,
     /// Its values.
     pub values: Values,
@@ -24,29 +24,29 @@ pub struct Vary {
 /// Values of one number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// One after the other.
+    /// Listed values, in their order.
     Listed(Vec<Value>),
-    /// Anywhere between two numbers, each as likely.
+    /// Uniform distribution between two bounds.
     Uniform(f64, f64),
-    /// By a normal distribution with mean and standard deviation.
+    /// Normal distribution with mean and standard deviation.
     Normal(f64, f64),
 }
 
-/// How designs are chosen from distributions.
+/// Sampling of designs from distributions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Draw {
     /// All combinations of listed values; nothing is drawn.
     #[default]
     Grid,
-    /// So many by a Latin hypercube: each of as many equally likely strata of every number holds one.
+    /// Number of designs of a Latin hypercube: each of as many equally likely strata of every number contains one.
     Latin(usize),
-    /// The first so many of Sobol's sequence.
+    /// Number of points of Sobol's sequence, from its start.
     Sobol(usize),
 }
 
 impl Draw {
-    /// Of `grid`, `latin:N`, `sobol:N`.
+    /// Parses `grid`, `latin:N`, `sobol:N`.
     ///
     /// # Errors
     /// [`Error::Usage`].
@@ -70,7 +70,7 @@ impl Draw {
         }
     }
 
-    /// As it is asked for.
+    /// Formats the option as typed.
     pub fn words(self) -> String {
         match self {
             Self::Grid => "grid".into(),
@@ -79,7 +79,7 @@ impl Draw {
         }
     }
 
-    /// Designs that are drawn; one where nothing is.
+    /// Number of designs that are drawn; 1 if nothing is drawn.
     pub fn count(self) -> usize {
         match self {
             Self::Grid => 1,
@@ -89,18 +89,18 @@ impl Draw {
 }
 
 impl Vary {
-    /// Of `POINTER=SPEC`.
+    /// Parses `POINTER=SPEC`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         Self::parse_as("--vary", text)
     }
 
-    /// The same for another option than `--vary`.
+    /// Parses `POINTER=SPEC` of another option than `--vary`.
     ///
     /// # Errors
-    /// [`Error::Usage`] with what is wanted.
+    /// [`Error::Usage`] with the expected form.
     pub fn parse_as(option: &str, text: &str) -> Result<Self> {
         let wrong = |what: String| Error::Usage(format!("{option} '{text}': {what}"));
         let (pointer, spec) = text
@@ -116,16 +116,16 @@ impl Vary {
         })
     }
 
-    /// Whether its values are drawn and not listed.
+    /// True if its values are drawn, not listed.
     pub fn drawn(&self) -> bool {
         !matches!(self.values, Values::Listed(_))
     }
 }
 
-/// Whether a text is a pointer that can be varied.
+/// Checks that a text is a pointer that can be varied.
 ///
 /// # Errors
-/// In words.
+/// A description of the fault.
 pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
     let zeros = |part: &str| part.len() > 1 && part.starts_with('0') && part.bytes().all(|b| b.is_ascii_digit());
     let other_name = |part: &&str| part.starts_with('+') || zeros(part);
@@ -146,7 +146,7 @@ pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
 }
 
 impl Values {
-    /// The value below which a share of a distribution lies; nothing of a list.
+    /// Value below which a share of the distribution lies; `None` for a list.
     pub fn at(&self, share: f64) -> Option<f64> {
         match self {
             Self::Listed(_) => None,
@@ -155,7 +155,7 @@ impl Values {
         }
     }
 
-    /// Mean and standard deviation of a distribution; nothing of a list.
+    /// Mean and standard deviation of the distribution; `None` for a list.
     pub fn moments(&self) -> Option<[f64; 2]> {
         match self {
             Self::Listed(_) => None,
@@ -185,7 +185,7 @@ impl Values {
     }
 }
 
-/// Numbers between colons, all of them finite.
+/// Parses finite numbers separated by colons.
 pub(in crate::study) fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
     let number = |part: &str| {
         let read = part.trim().parse().ok().filter(|x: &f64| x.is_finite());
@@ -194,7 +194,7 @@ pub(in crate::study) fn numbers(text: &str) -> std::result::Result<Vec<f64>, Str
     text.split(':').map(number).collect()
 }
 
-/// `lin:LOW:HIGH:COUNT`, `log:LOW:HIGH:COUNT`.
+/// Parses `lin:LOW:HIGH:COUNT`, `log:LOW:HIGH:COUNT`.
 fn range(kind: &str, text: &str) -> std::result::Result<Vec<Value>, String> {
     let wanted = format!("{kind}:LOW:HIGH:COUNT, such as {kind}:0.1:1:10");
     let (ends, count) = text.rsplit_once(':').ok_or_else(|| wanted.clone())?;
@@ -223,7 +223,7 @@ fn range(kind: &str, text: &str) -> std::result::Result<Vec<Value>, String> {
     Ok((0..count).map(|k| number(value(k))).collect())
 }
 
-/// A number as JSON: a whole one without its point, which some keys want.
+/// Converts a number to JSON; a whole number has no decimal point, as some keys require.
 pub fn number(x: f64) -> Value {
     if x.fract() == 0.0 && x.abs() < 1e15 {
         Value::from(x as i64)
@@ -232,7 +232,7 @@ pub fn number(x: f64) -> Value {
     }
 }
 
-/// JSON values with commas between.
+/// Parses JSON values separated by commas.
 fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
     if text.trim().is_empty() {
         return Err("no values".into());
@@ -243,7 +243,7 @@ fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
         let forms = "lin:LOW:HIGH:COUNT, log:LOW:HIGH:COUNT, uniform:LOW:HIGH, normal:MEAN:SD";
         match kind {
             Some(kind) if kind.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-' || b == b'_') => {
-                // a slip of the finger, not another word
+                // a typing error, not another word
                 let slip = |known: &&str| strsim::damerau_levenshtein(&kind.to_lowercase(), known) <= 2;
                 let meant = kinds.into_iter().filter(slip).min_by_key(|known| strsim::damerau_levenshtein(kind, known));
                 match meant {
@@ -257,7 +257,7 @@ fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
     Ok(all.into_iter().map(plain).collect())
 }
 
-/// A value with a whole number as such.
+/// Converts a whole number to a JSON integer; returns other values unchanged.
 pub fn plain(value: Value) -> Value {
     match &value {
         Value::Number(own) if own.is_f64() => own.as_f64().map_or(value, number),

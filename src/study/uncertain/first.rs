@@ -1,4 +1,4 @@
-//! Derivatives of the figures about the means.
+//! Derivatives of the figures at the means.
 
 use std::collections::BTreeMap;
 
@@ -8,12 +8,12 @@ use crate::run::summary::Status;
 use crate::study::analysis::AnalysisKind;
 use crate::study::analysis::derivatives::{self, Gathered};
 
-/// Derivatives by figure, each by the numbers in their order; or why there are none.
+/// Derivatives of each figure with respect to the numbers, in their order; or the reason why there are none.
 pub type Slopes = Result<derivatives::Slopes, String>;
 
-/// Derivatives of the figures of a case by each of its numbers: exact, but by differences of cycles where a number moves their period, and of
-/// multipliers.
-/// `difference` is told which number, and gives differences of figures over a step of it.
+/// Derivatives of the figures of a case with respect to each of its numbers. They are exact, except for numbers that
+/// change the period of cycles, and for multipliers: these use differences. `difference` returns the difference
+/// quotients of the figures for the number of the given index.
 pub fn slopes(
     case: &Case,
     what: AnalysisKind,

@@ -1,36 +1,36 @@
-//! Which share of the variance of a figure is whose.
+//! Sobol's indices: the share of each number in the variance of a figure.
 //!
 //! ```text
 //! S_i  = V(E(q | p_i)) / V        of p_i alone          (Saltelli et al., Comput. Phys. Commun. 181, 259, 2010)
-//! ST_i = E(V(q | all but p_i)) / V    with all that it does together with others          (Jansen, 1999)
+//! ST_i = E(V(q | all but p_i)) / V    including interactions with others          (Jansen, 1999)
 //! ```
 //!
-//! Estimated from samples A, B and A with the i-th number of B; their errors by drawing rows again (bootstrap).
+//! Estimated from samples A, B and A with the i-th number of B; their errors by bootstrap, which draws rows again.
 
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::chance::Chance;
 
-/// Times that rows are drawn again.
+/// Number of bootstrap repetitions.
 const AGAIN: usize = 200;
-/// Rows at least.
+/// Least number of rows.
 const FEWEST: usize = 8;
 
 /// Shares of one number in the variance of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Index {
-    /// Of the number alone.
+    /// Share of the number alone.
     pub first: f64,
-    /// Standard error of that.
+    /// Standard error of `first`.
     pub first_error: f64,
-    /// With all that it does together with others.
+    /// Share including interactions with other numbers.
     pub total: f64,
-    /// Standard error of that.
+    /// Standard error of `total`.
     pub total_error: f64,
 }
 
-/// The indices of each number: a row has the figure at A, at B, and at A with each number of B in turn. Nothing of a figure that does not vary,
-/// or of too few rows.
+/// Returns the indices of each number. A row contains the figure at A, at B, and at A with each number of B in turn.
+/// `None` for a figure that does not vary, or for too few rows.
 pub fn indices(rows: &[Vec<f64>], inputs: usize, seed: u64) -> Option<Vec<Index>> {
     if rows.len() < FEWEST {
         return None;
@@ -66,7 +66,7 @@ pub fn indices(rows: &[Vec<f64>], inputs: usize, seed: u64) -> Option<Vec<Index>
     Some(found.into_iter().zip(moments).map(index).collect())
 }
 
-/// `S_i` and `ST_i` from some of the rows.
+/// Estimates `S_i` and `ST_i` from some of the rows.
 fn estimate(rows: &[Vec<f64>], which: &[usize], inputs: usize) -> Option<Vec<[f64; 2]>> {
     let n = which.len() as f64;
     let both = || which.iter().flat_map(|k| rows[*k][..2].iter().copied());
@@ -80,7 +80,7 @@ fn estimate(rows: &[Vec<f64>], which: &[usize], inputs: usize) -> Option<Vec<[f6
         let (mut first, mut total) = (0.0, 0.0);
         for k in which {
             let row = &rows[*k];
-            // less the mean: it takes nothing from the estimate and much from its error
+            // subtracting the mean does not change the estimate, but reduces its error
             first += (row[1] - mean) * (row[2 + i] - row[0]);
             total += (row[0] - row[2 + i]).powi(2);
         }

@@ -1,15 +1,15 @@
-//! What uncertain numbers of a case leave open of its figures: to first order, and by samples beside it.
+//! Uncertainty of figures due to uncertain numbers of a case: to first order, and by samples.
 //!
 //! ```text
-//! samples  which values sample number k has
-//! first    derivatives of the figures about the means
-//! nothing  figures that are round-off
-//! spread   what the figures of all samples tell
-//! indices  which share of a variance is whose (Sobol)
+//! samples  values of each sample, by its number
+//! first    derivatives of the figures at the means
+//! nothing  figures that are rounding errors
+//! spread   statistics of the figures of all samples
+//! indices  share of each number in a variance (Sobol)
 //! ```
 //!
-//! Numbers are taken as independent of each other. Samples are points of Sobol's sequence, its bits shifted by the seed, so that
-//! the same seed gives the same spread on every machine.
+//! Numbers are assumed to be independent of each other. Samples are points of Sobol's sequence, whose bits the seed
+//! shifts: the same seed gives the same spread on every machine.
 
 pub mod first;
 pub mod indices;
@@ -28,34 +28,34 @@ pub use spread::judge;
 
 use crate::run::band::{Band, Bands};
 
-/// What uncertain numbers leave open of the figures of a case.
+/// Uncertainty of the figures of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Name of the case.
     pub case: String,
-    /// Whose figures, as the command is typed.
+    /// Command that computes the figures, as typed.
     pub command: String,
-    /// What is uncertain.
+    /// Uncertain numbers.
     pub inputs: Vec<Input>,
-    /// Samples that were drawn.
+    /// Number of samples drawn.
     pub samples: usize,
-    /// Those of them that finished; figures are those of these alone.
+    /// Number of finished samples; only these enter the figures.
     pub finished: usize,
-    /// What the others ended with, and how many did.
+    /// Number of unfinished samples by reason.
     pub unfinished: BTreeMap<String, usize>,
-    /// The seed.
+    /// Seed.
     pub seed: u64,
     /// Figures by name, unit included, as in the table of `slcbeam sweep`.
     pub figures: BTreeMap<String, Spread>,
-    /// Why there are no derivatives; nothing where there are.
+    /// Reason why there are no derivatives; `None` if there are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_first_order: Option<String>,
-    /// What to know before trusting them.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
 impl Uncertainty {
-    /// Every figure with its band, as a result has it.
+    /// Returns every figure with its band, as in a result.
     pub fn bands(&self) -> Bands {
         let band = |one: &Spread| Band {
             value: one.value,
@@ -76,7 +76,7 @@ impl Uncertainty {
 pub struct Input {
     /// JSON pointer into the case.
     pub pointer: String,
-    /// Its distribution, as it was asked for.
+    /// Distribution, as typed.
     pub distribution: String,
     /// Mean, in the unit that the key names.
     pub mean: f64,
@@ -84,39 +84,39 @@ pub struct Input {
     pub sd: f64,
 }
 
-/// A figure and how far it spreads, in its unit.
+/// Spread of a figure, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// Of the case itself.
+    /// Figure of the case itself.
     pub value: f64,
-    /// Estimated error of steps, mesh and effects left out, absolute.
+    /// Estimated absolute error due to steps, mesh and omitted effects.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub numerical_error: Option<f64>,
-    /// To first order about the means.
+    /// Spread to first order about the means.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub first_order: Option<FirstOrder>,
-    /// Samples that have the figure.
+    /// Number of samples that have the figure.
     pub samples: usize,
-    /// Their mean.
+    /// Mean of the samples.
     pub mean: f64,
-    /// Their standard deviation.
+    /// Standard deviation of the samples.
     pub sd: f64,
-    /// Standard error of the latter, as of independent samples, which points of Sobol's sequence undercut.
+    /// Standard error of `sd` as for independent samples; that of points of Sobol's sequence is smaller.
     pub sd_error: f64,
     /// Quantile of 2.5 %.
     pub low: f64,
     /// Quantile of 97.5 %.
     pub high: f64,
-    /// Sobol's indices, a number each in the order of the inputs, where they were asked for and the figure varies.
+    /// Sobol's indices of the inputs in their order, if they were requested and the figure varies.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub indices: Option<Vec<Index>>,
 }
 
-/// A spread by derivatives: `sd² = Σ (∂q/∂p sd_p)²`.
+/// Spread from derivatives: `sd² = Σ (∂q/∂p sd_p)²`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstOrder {
     /// Standard deviation.
     pub sd: f64,
-    /// Share of each input in the variance, in their order.
+    /// Share of each input in the variance, in the order of the inputs.
     pub shares: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! Figures that are round-off: neither their samples nor their derivatives say anything.
+//! Figures that are rounding errors: neither their samples nor their derivatives are significant.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -7,10 +7,10 @@ use super::{FirstOrder, Spread};
 use crate::study::analysis::Found;
 use crate::study::sweep::unit::unit;
 
-/// Beside others of its unit a figure of this part is round-off.
+/// Share of the size of its kind below which a figure is a rounding error.
 const NOTHING: f64 = 1e-9;
 
-/// What a figure is beside others: its unit, or its own name where it has none.
+/// Kind of a figure, by which it is compared with others: its unit, or its own name if it has none.
 fn kind(name: &str) -> &str {
     match unit(name) {
         "1" => name.rsplit('.').next().unwrap_or(name),
@@ -18,8 +18,9 @@ fn kind(name: &str) -> &str {
     }
 }
 
-/// Figures with nothing in place of what is round-off beside others of their unit. Growth is beside what swings, damping beside one; an
-/// angle beside displacements over a length [m] of the beam, forces and couples beside the work that they would do over it.
+/// Sets figures to zero that are rounding errors compared with others of their unit. Growth rates are compared with
+/// frequencies, damping ratios with one, angles with displacements over a length [m] of the beam. Forces and couples
+/// are compared with the work that they would do over that length.
 pub(super) fn without_round_off(
     mut figures: BTreeMap<String, Spread>,
     own: &Found,
@@ -52,7 +53,7 @@ pub(super) fn without_round_off(
         };
         let first = one.first_order.as_ref().map_or(0.0, |first| first.sd);
         if one.sd.max(first) <= NOTHING * size(one) {
-            // what stays as it is but for round-off: the pressure of a port, a reaction by statics alone
+            // constant except for rounding errors: the pressure of a port, a reaction by statics alone
             (one.sd, one.sd_error, one.low, one.high) = (0.0, 0.0, one.value, one.value);
             one.indices = None;
             if let Some(first) = &mut one.first_order {
@@ -100,8 +101,8 @@ mod tests {
         }
     }
 
-    /// Goal: what stands alone with its unit is held beside what it makes or does, not beside itself: a beam that is pressed along its
-    /// axis neither turns nor pulls at its root, however its round-off spreads.
+    /// Goal: a figure without others of its unit is compared with its causes and effects, not with itself. A beam
+    /// compressed along its axis neither rotates nor pulls at its root, whatever the spread of its rounding errors.
     #[test]
     fn round_off_that_is_alone_with_its_unit_is_nothing() {
         let all = [
@@ -122,7 +123,7 @@ mod tests {
             .map(|(name, _)| name.as_str())
             .collect();
         assert_eq!(told, ["bladder_energy_j", "tip_u3_m"]);
-        // a pressure that a port holds spreads by nothing
+        // the pressure of a port has no spread
         let held = Spread {
             sd: 1e-8,
             first_order: Some(FirstOrder {

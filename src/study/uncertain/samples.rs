@@ -1,8 +1,8 @@
-//! Which values sample number k has.
+//! Values of each sample, by its number.
 //!
 //! ```text
 //! 0 .. N              A: points of Sobol's sequence
-//! N .. 2N             B: points of as many further directions, where indices are asked for
+//! N .. 2N             B: points of as many further directions, if indices are requested
 //! (2+i)N .. (3+i)N    A with the i-th number of B
 //! ```
 
@@ -12,12 +12,12 @@ use crate::numerics::sobol::{self, Sobol};
 use crate::study::sweep::designs::Designs;
 use crate::study::sweep::vary::{Draw, Vary};
 
-/// Samples at least: below, a quantile of 2.5 % is none.
+/// Least number of samples: with fewer, there is no quantile of 2.5 %.
 const FEWEST: usize = 16;
-/// Samples at most.
+/// Largest number of samples.
 const MOST: usize = 100_000;
 
-/// What is drawn.
+/// Samples to be drawn.
 #[derive(Clone, Debug)]
 pub struct Plan {
     inputs: Vec<Vary>,
@@ -29,10 +29,11 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// So many samples of some numbers.
+    /// Plans `samples` samples of some numbers.
     ///
     /// # Errors
-    /// [`Error::Usage`]: lists of values, numbers within each other, too many of them, too few or too many samples.
+    /// [`Error::Usage`]: lists of values, numbers that contain each other, too many numbers, too few or too many
+    /// samples.
     pub fn new(inputs: Vec<Vary>, samples: usize, seed: u64, indices: bool) -> Result<Self> {
         let usage = |what: String| Err(Error::Usage(what));
         if let Some(listed) = inputs.iter().find(|one| !one.drawn()) {
@@ -53,7 +54,7 @@ impl Plan {
                 inputs.len()
             ));
         }
-        // two of the same number, or one within another
+        // rejects two of the same number, or one within another
         Designs::crossed(1, &inputs, Draw::Latin(1), None)?;
         let direction = |k: usize| (Sobol::along(k), Chance::new(seed, k as u64).bits());
         Ok(Self {
@@ -65,22 +66,22 @@ impl Plan {
         })
     }
 
-    /// What is uncertain.
+    /// Uncertain numbers.
     pub fn inputs(&self) -> &[Vary] {
         &self.inputs
     }
 
-    /// Where these stand in the case.
+    /// JSON pointers of the numbers.
     pub fn pointers(&self) -> Vec<String> {
         self.inputs.iter().map(|input| input.pointer.clone()).collect()
     }
 
-    /// Samples from which a spread is told.
+    /// Number of samples from which a spread is computed.
     pub fn samples(&self) -> usize {
         self.samples * if self.indices { 2 } else { 1 }
     }
 
-    /// Samples of each of the sets that indices compare; nothing where none are asked for.
+    /// Number of samples of each set that indices compare; `None` if no indices are requested.
     pub fn each(&self) -> Option<usize> {
         self.indices.then_some(self.samples)
     }
@@ -90,12 +91,12 @@ impl Plan {
         self.seed
     }
 
-    /// Cases to compute.
+    /// Number of cases to compute.
     pub fn count(&self) -> usize {
         self.samples * if self.indices { 2 + self.inputs.len() } else { 1 }
     }
 
-    /// The values of sample number k, below [`Plan::count`], in the order of the inputs.
+    /// Returns the values of sample `number`, below [`Plan::count`], in the order of the inputs.
     pub fn values(&self, number: usize) -> Vec<f64> {
         let (set, point) = (number / self.samples, (number % self.samples) as u32);
         let own = self.inputs.len();
@@ -113,12 +114,13 @@ impl Plan {
         values.collect()
     }
 
-    /// Sample number k as arguments of `--set`.
+    /// Returns sample `number` as arguments of `--set`.
     pub fn sets(&self, number: usize) -> Vec<String> {
         self.sets_of(&self.values(number))
     }
 
-    /// What `value` makes of the mean and the standard deviation of each number in turn, as arguments of `--set`.
+    /// Returns arguments of `--set` with the values that `value` computes from mean and standard deviation of each
+    /// number.
     pub fn sets_at(&self, mut value: impl FnMut([f64; 2]) -> f64) -> Vec<String> {
         let values = self
             .inputs

@@ -1,4 +1,4 @@
-//! What the figures of all samples tell.
+//! Statistics of the figures of all samples.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::error::numbers::counted;
 use crate::run::summary::Status;
 use crate::study::analysis::{Found, word};
 
-/// Endings of what is told of figures and is none of them.
+/// Suffixes of results that are not figures, such as errors.
 const NO_FIGURES: [&str; 7] = [
     "error",
     "_at_s",
@@ -20,28 +20,28 @@ const NO_FIGURES: [&str; 7] = [
     "modes",
     "strongly_damped",
 ];
-/// The same, whole names.
+/// Names of results that are not figures.
 const NO_FIGURE: [&str; 3] = ["stable", "period_s", "load_factor"];
-/// Standard errors by which first order and samples may differ.
+/// Difference between first order and samples, in standard errors, above which there is a warning.
 const APART: f64 = 3.0;
-/// Part of a spread from which on the numerical error matters.
+/// Share of a spread above which the numerical error is significant.
 const MATTERS: f64 = 1.0 / 3.0;
-/// Distance of a number from its mean, in standard deviations, from which on the case is another than the spread is about.
+/// Distance of a number from its mean, in standard deviations, above which the case is not in the middle of the spread.
 const ELSEWHERE: f64 = 0.1;
-/// Spread beside the largest value that is none.
+/// Spread, relative to the largest value, below which it is a rounding error.
 const ROUND_OFF: f64 = 1e-12;
-/// Bands that come as near as this, over the frequency, meet.
+/// Distance of bands, relative to the frequency, below which they meet.
 const MEET: f64 = 1e-3;
-/// Figures named in a warning.
+/// Largest number of figures named in a warning.
 const NAMED: usize = 4;
 
-/// Whether something that was found is a figure, and no error of one.
+/// True if a result is a figure, and not an error of one.
 pub fn is_figure(name: &str) -> bool {
     !NO_FIGURES.iter().any(|end| name.ends_with(end)) && !NO_FIGURE.contains(&name)
 }
 
-/// Judges the samples of a case, whose own figures are `own`; of each uncertain number `own_values` has the case's own value, where it
-/// has one. `found` is in the order of the plan; a case comes with its name and the length [m] of its beam.
+/// Evaluates the samples of a case whose own figures are `own`. `own_values` contains the case's own value of each uncertain number, if it
+/// has one. `found` is in the order of the plan; the case is given by its name and the length [m] of its beam.
 pub fn judge(
     (case, length): (&str, f64),
     what: &str,
@@ -107,12 +107,12 @@ pub fn judge(
     }
 }
 
-/// A figure of a sample that finished.
+/// Returns a figure of a finished sample.
 fn of(found: &Found, name: &str) -> Option<f64> {
     found.figure(name).filter(|_| found.status == Status::Finished)
 }
 
-/// Estimated error of a figure, absolute: its own, or that of its quantity, which is relative to the largest figure of that.
+/// Estimated absolute error of a figure: its own, or that of its quantity, which is relative to the largest figure of the quantity.
 fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
     let largest = |quantity: &str| {
         let of_it = own.figures.iter().filter(|(other, _)| {
@@ -122,7 +122,7 @@ fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
     };
     let (quantity, figure) = name.rsplit_once('.').unzip();
     if let Some(error) = own.figure(&format!("{name}.error")) {
-        // that of a figure over a cycle counts beside the largest of its quantity
+        // the error of a figure over a cycle is relative to the largest figure of its quantity
         return Some(
             match quantity.filter(|_| figure.is_some_and(|own| own.starts_with("window"))) {
                 Some(quantity) => error * largest(quantity),
@@ -148,7 +148,7 @@ fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
     }
 }
 
-/// Moments and quantiles; nothing of fewer than two values.
+/// Computes moments and quantiles; `None` for fewer than two values.
 fn spread(value: f64, mut all: Vec<f64>) -> Option<Spread> {
     let n = all.len() as f64;
     if all.len() < 2 {
@@ -158,7 +158,7 @@ fn spread(value: f64, mut all: Vec<f64>) -> Option<Spread> {
     let mean = all.iter().sum::<f64>() / n;
     let moment = |power: i32| all.iter().map(|x| (x - mean).powi(power)).sum::<f64>();
     let variance = moment(2) / (n - 1.0);
-    // of the variance: (m4 - (n-3)/(n-1) s^4)/n
+    // squared standard error of the variance: (m4 - (n-3)/(n-1) s^4)/n
     let of_variance = (moment(4) / n - (n - 3.0) / (n - 1.0) * variance * variance) / n;
     let largest = all.iter().map(|x| x.abs()).fold(0.0, f64::max);
     let sd = match variance.sqrt() {
@@ -259,7 +259,7 @@ fn warnings(
     all
 }
 
-/// Modes of which one's frequencies reach into those of the next: in some samples the one may have been the other.
+/// Warns of successive modes whose frequency bands meet: they may have changed places in some samples.
 fn crossed(figures: &BTreeMap<String, Spread>) -> Option<String> {
     let frequency = |k: usize| figures.get(&format!("mode_{k}.frequency_hz"));
     let pairs = (1..).map_while(|k| Some((k, frequency(k)?, frequency(k + 1)?)));
@@ -297,7 +297,7 @@ mod tests {
         Plan::new(inputs.into(), 256, 1, true).expect("a plan")
     }
 
-    /// Goal: of a straight line first order and samples agree with the exact spread, 3 sd(a), sd(b) = 6/√12.
+    /// Goal: for a straight line, first order and samples agree with the exact spread, 3 sd(a), sd(b) = 6/√12.
     #[test]
     fn a_straight_line_spreads_as_its_derivatives_say() {
         let plan = plan();
@@ -322,7 +322,7 @@ mod tests {
         assert!(told.figures.len() == 1);
     }
 
-    /// Goal: an error that is relative to the largest figure of a quantity, as those of cycles are, is no smaller for a smaller one.
+    /// Goal: an error relative to the largest figure of a quantity, as for cycles, is not smaller for a smaller figure of that quantity.
     #[test]
     fn errors_are_of_what_they_are_relative_to() {
         let own = Found {

@@ -14,7 +14,7 @@ use crate::error::Result;
 const LOAD: f64 = 20.0509536;
 const FREQUENCY: f64 = 11.0155576;
 
-/// Deflection at the start [m], so small that 5 s of growth do not make it large.
+/// Initial deflection [m], so small that 5 s of growth do not make it large.
 const START: f64 = 1e-9;
 
 /// All rows.
@@ -27,12 +27,12 @@ fn column(cells: usize, p: f64, end: f64, interval: f64) -> Value {
     let mut case = motion(cells, |x| free_shape(1.875104068712, x), end, interval);
     case["beam"] = unit_beam(100.0);
     case["ends"]["tip"] = json!({"free": {"follower_normal_n": -p}});
-    // Compressed from the start, else an axial wave of the size of the load would run to and fro.
+    // Compressed at the start; otherwise an axial wave of the size of the load would travel along the column.
     case["start"]["u3_m"] = json!({"polynomial": {"coefficients": [0.0, -p / 1.2e7]}});
     case
 }
 
-/// Tip displacement after a small push under the load `p`, and the interval of its samples [s].
+/// Tip displacement after a small initial deflection under the load `p`, and the interval of its samples [s].
 fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
     let interval = 0.02;
     let mut case = column(cells, p, end, interval);
@@ -41,8 +41,8 @@ fn tip(cells: usize, p: f64, end: f64) -> Result<(Vec<f64>, f64)> {
     Ok((solve(&case)?.column("tip_u1"), interval))
 }
 
-/// Discriminant `((s1² - s2²)/2)²` and mean `-(s1² + s2²)/2` of the two slowest modes of the column: both are smooth in the
-/// load where the modes meet, and the discriminant goes through zero there.
+/// Discriminant `((s1² - s2²)/2)²` and mean `-(s1² + s2²)/2` of the two slowest modes of the column. Both are smooth
+/// functions of the load where the modes meet, and the discriminant passes through zero there.
 fn slowest(cells: usize, p: f64) -> Result<(f64, f64)> {
     let mut case = column(cells, p, 1.0, 1.0);
     case["start"]["u1_m"] = json!(0.0);
@@ -55,9 +55,9 @@ fn slowest(cells: usize, p: f64) -> Result<(f64, f64)> {
     Ok(((half * half).re, -0.5 * (a + b).re))
 }
 
-/// Loads between which flutter is looked for.
+/// Loads between which the onset of flutter is searched.
 const BETWEEN: [f64; 2] = [19.5, 21.5];
-/// Steps of the secant, each of which gains about two thirds more digits.
+/// Largest number of secant steps, each of which gains about two thirds more digits.
 const STEPS: usize = 8;
 
 /// Flutter load and frequency on a mesh: the root of the discriminant by secants.
@@ -66,7 +66,7 @@ fn onset(cells: usize) -> Result<[f64; 2]> {
     let (mut fa, mut fb) = (slowest(cells, a)?, slowest(cells, b)?);
     for _ in 0..STEPS {
         let next = b - fb.0 * (b - a) / (fb.0 - fa.0);
-        // beyond this the discriminant of two eigenvalues that meet is round-off
+        // below this, the discriminant of two eigenvalues that meet is a rounding error
         if (next - b).abs() < 1e-7 {
             break;
         }

@@ -1,4 +1,4 @@
-//! Relaxation of equal bladders joined by equal tubes, and what it dissipates.
+//! Relaxation of equal bladders joined by equal tubes, and the energy that it dissipates.
 
 use std::f64::consts::PI;
 
@@ -11,11 +11,11 @@ use super::wet::{BLADDER, COMPLIANCE, TUBE, TUBE_LENGTH, case, pressures};
 use crate::error::Result;
 use crate::run::modes::Kind;
 
-/// Bladders in a chain.
+/// Number of bladders in a chain.
 const N: usize = 6;
-/// Resistance between the middles of neighbours: tube and two half bladders in series.
+/// Resistance between the centers of neighboring bladders: a tube and two half bladders in series.
 const R: f64 = BLADDER + TUBE;
-/// Pressure to start from [Pa].
+/// Initial pressure [Pa].
 const START: f64 = 1000.0;
 
 const GOAL: &str = "volume balance, tubes and bladders in series; every decay rate of the linearised network";
@@ -64,7 +64,7 @@ fn chain_of(ends: Value) -> Value {
     json!({"chains": [{"bladders": upper_row(), "ends": ends}]})
 }
 
-/// The inlet of bladder 1 at pressure zero behind a tube that makes up for the missing half bladder.
+/// Inlet of bladder 1 at pressure zero behind a tube, which is longer to replace the missing half bladder.
 fn open_chain() -> Value {
     let length = TUBE_LENGTH * (1.0 + 0.5 * BLADDER / TUBE);
     json!({
@@ -82,10 +82,10 @@ fn ring() -> Value {
     })
 }
 
-/// Modes that are asked for: more than the beam and the network have together.
+/// Number of requested modes: more than the beam and the network have together.
 const ALL: usize = 100;
 
-/// Decay rates `(4/RC) sin²(angle/2)`, the slowest first.
+/// Compares decay rates with `(4/RC) sin²(angle/2)`, the slowest first.
 fn rates(network: Value, angles: impl Iterator<Item = f64>) -> Result<Vec<Figure>> {
     let found = modes(&case(N, network, 1.0, 1.0), ALL)?;
     let mut rates: Vec<f64> = found

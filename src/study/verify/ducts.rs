@@ -1,4 +1,4 @@
-//! Permeabilities of cross-sections, from the power that a pressure drop puts into a tube of each.
+//! Permeabilities of cross-sections, from the input power of a tube under a pressure drop.
 
 use std::f64::consts::PI;
 
@@ -82,7 +82,7 @@ fn duct(name: &str, source: &'static str, section: Value, exact: f64, reason: &'
     )
 }
 
-/// Two junctions at given pressures with the tube between them.
+/// Permeability of the tube between two junctions at given pressures.
 fn permeability(section: &Value) -> Result<f64> {
     const DROP: f64 = 100.0;
     let network = json!({

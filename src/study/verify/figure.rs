@@ -1,4 +1,4 @@
-//! One number, computed and exact.
+//! Computed number with its exact value.
 
 use std::ops::RangeInclusive;
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fit::richardson;
 
-/// Whether an error is relative to the exact value.
+/// Measure of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -16,34 +16,34 @@ pub enum Measure {
     Absolute,
 }
 
-/// One number of a row.
+/// Number of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it is, with its unit: `tip angle [rad]`.
+    /// Name with unit: `tip angle [rad]`.
     pub quantity: String,
-    /// As computed, on the finest mesh where there are several.
+    /// Computed value, on the finest mesh if there are several.
     pub computed: f64,
     /// Exact value.
     pub exact: f64,
-    /// What the tolerances bound.
+    /// Measure of the error that the tolerances limit.
     pub measure: Measure,
-    /// Largest error accepted.
+    /// Largest accepted error.
     pub tolerance: f64,
-    /// Order in the mesh size observed between the two finer meshes.
+    /// Order of convergence in the mesh size, observed between the two finer meshes.
     pub order: Option<f64>,
-    /// Orders accepted.
+    /// Accepted orders.
     pub orders: RangeInclusive<f64>,
-    /// Error of the limit that the two finer meshes point to (Richardson), and the largest accepted.
+    /// Error of the limit extrapolated from the two finer meshes (Richardson), and the largest accepted one.
     pub limit: Option<(f64, f64)>,
-    /// Error that the meshes alone show, which is to cover the true one up to the round-off beside it.
+    /// Error estimated from the meshes alone, and the rounding error; the larger of both must cover the true error.
     pub estimate: Option<(f64, f64)>,
 }
 
-/// Orders accepted where second order is due.
+/// Accepted orders for second-order convergence.
 const SECOND_ORDER: RangeInclusive<f64> = 1.8..=2.2;
 
 impl Figure {
-    /// A number with a tolerance relative to its exact value.
+    /// Creates a number with a tolerance relative to its exact value.
     pub fn relative(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
         Self {
             quantity: quantity.into(),
@@ -58,7 +58,7 @@ impl Figure {
         }
     }
 
-    /// A number with a tolerance in its own unit.
+    /// Creates a number with a tolerance in its own unit.
     pub fn absolute(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
         Self {
             measure: Measure::Absolute,
@@ -66,7 +66,8 @@ impl Figure {
         }
     }
 
-    /// Three meshes, each twice as fine as the one before: second order is due, and the limit within `limit`.
+    /// Adds the values on three meshes, each twice as fine as the previous one. They must show second order, and an
+    /// error of the limit of at most `limit`.
     pub fn on_meshes(self, values: [f64; 3], limit: f64) -> Self {
         let [_, middle, fine] = values;
         let order = ((middle - self.exact) / (fine - self.exact)).abs().log2();
@@ -81,7 +82,7 @@ impl Figure {
         }
     }
 
-    /// Error, relative or absolute as [`Figure::measure`] says.
+    /// Returns the error, relative or absolute according to [`Figure::measure`].
     pub fn error(&self) -> f64 {
         let difference = (self.computed - self.exact).abs();
         match self.measure {
@@ -90,7 +91,7 @@ impl Figure {
         }
     }
 
-    /// Whether error, order, limit and estimate are as they should be. Not a number is not.
+    /// True if error, order, limit and estimate are acceptable; NaN is not.
     pub fn passed(&self) -> bool {
         self.error() <= self.tolerance
             && self.order.is_none_or(|order| self.orders.contains(&order))

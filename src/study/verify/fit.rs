@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-/// Limit `h -> 0` from values at `2h` and `h` whose error is of second order.
+/// Limit `h -> 0` from values at `2h` and `h` with a second-order error.
 pub fn richardson(coarse: f64, fine: f64) -> f64 {
     fine + (fine - coarse) / 3.0
 }
 
-/// Growth rate and angular frequency [1/s] of samples `interval` apart that are one exponentially growing or decaying
-/// oscillation, `x_{k+1} = a x_k + b x_{k-1}` with `a = 2 e^{σ Δ} cos(ω Δ)`, `b = -e^{2 σ Δ}` by least squares (Prony).
+/// Growth rate and angular frequency [1/s] of samples of an exponentially growing or decaying oscillation, `interval`
+/// apart. Fits `x_{k+1} = a x_k + b x_{k-1}` with `a = 2 e^{σ Δ} cos(ω Δ)`, `b = -e^{2 σ Δ}` by least squares (Prony).
 pub fn oscillation(samples: &[f64], interval: f64) -> (f64, f64) {
     let (mut uu, mut uv, mut vv, mut ux, mut vx) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for w in samples.windows(3) {
@@ -26,7 +26,7 @@ pub fn oscillation(samples: &[f64], interval: f64) -> (f64, f64) {
     (radius.ln() / interval, (0.5 * a / radius).acos() / interval)
 }
 
-/// Slope of the straight line through points by least squares.
+/// Slope of the least-squares line through points.
 pub fn slope(x: &[f64], y: &[f64]) -> f64 {
     let count = x.len() as f64;
     let (mx, my) = (x.iter().sum::<f64>() / count, y.iter().sum::<f64>() / count);
@@ -34,7 +34,7 @@ pub fn slope(x: &[f64], y: &[f64]) -> f64 {
     top / x.iter().map(|x| (x - mx) * (x - mx)).sum::<f64>()
 }
 
-/// Growth rate of the largest magnitude in consecutive spans of `span` samples; the first `skipped` spans are left out.
+/// Growth rate of the largest magnitude in consecutive spans of `span` samples, without the first `skipped` spans.
 pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usize) -> f64 {
     let (times, logs): (Vec<f64>, Vec<f64>) = samples
         .chunks_exact(span)
@@ -48,14 +48,14 @@ pub fn growth_of_spans(samples: &[f64], span: usize, interval: f64, skipped: usi
     slope(&times, &logs)
 }
 
-/// Mean under the weight `1 - cos`, which hardly sees an oscillation however its periods fit the samples.
+/// Mean under the weight `1 - cos`, which suppresses an oscillation even if its periods do not fit the samples.
 pub fn smooth_mean(samples: &[f64]) -> f64 {
     let count = samples.len() as f64;
     let weight = |k: usize| 1.0 - (TAU * (k as f64 + 0.5) / count).cos();
     samples.iter().enumerate().map(|(k, x)| weight(k) * x).sum::<f64>() / count
 }
 
-/// Lowest value of a smooth function from samples, by the parabola through the three around its minimum.
+/// Lowest value of a smooth function from samples, by the parabola through the three samples around the minimum.
 pub fn minimum(samples: &[f64]) -> f64 {
     let lowest = samples.windows(3).min_by(|a, b| a[1].total_cmp(&b[1]));
     let Some(&[a, b, c]) = lowest else { return f64::NAN };

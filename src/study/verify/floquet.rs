@@ -17,7 +17,7 @@ use crate::run::periodic::scene::fault;
 use crate::run::periodic::{Scene, shoot};
 
 const BETA: f64 = 1.875104068712;
-/// Multipliers looked at: without damping several modes stand beside the first on the unit circle.
+/// Number of multipliers computed: without damping, several modes lie on the unit circle besides the first.
 const COUNT: usize = 16;
 /// Modulation of the edges.
 const NARROW: f64 = 0.1;
@@ -63,7 +63,8 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// Multipliers of the first mode, largest first: two real ones, or one of a complex pair. Shaken at `ratio` of `2 ω1`.
+/// Multipliers of the first mode under shaking at `ratio` times `2 ω1`, largest first: two real ones, or one of a
+/// complex pair.
 fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Multiplier>> {
     let w = BETA * BETA;
     let omega = 2.0 * w * ratio;
@@ -93,7 +94,7 @@ pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
     Ok(found)
 }
 
-/// Half the trace of the first mode's map, plus one: 0 on the edges, negative in the tongue.
+/// Half the trace of the first mode's period map, plus one: 0 on the edges, negative in the tongue.
 fn above(cells: usize, ratio: f64) -> Result<f64> {
     let found = first(cells, ratio, (NARROW, 0.0))?;
     Ok(1.0
@@ -120,12 +121,12 @@ fn edge(cells: usize, side: f64) -> Result<f64> {
     Ok(b)
 }
 
-/// The same of Mathieu's equation: `1/x² = 1 ∓ q - q²/8 ± q³/64`, `q = ε/(2x²)`, by bisection.
+/// Edge of the tongue of Mathieu's equation: `1/x² = 1 ∓ q - q²/8 ± q³/64`, `q = ε/(2x²)`, by bisection.
 fn exact_edge(side: f64) -> f64 {
     let gap = |x: f64| {
         let a = 1.0 / (x * x);
         let q = 0.5 * a * NARROW;
-        // the lower edge of the frequency is the upper one of a
+        // the lower edge in frequency is the upper edge in a
         a - (1.0 - side * q - q * q / 8.0 + side * q * q * q / 64.0)
     };
     let (mut lo, mut hi) = (0.8, 1.2);

@@ -1,4 +1,4 @@
-//! Free bending vibrations: by the modes of the linearised beam, and one of them by small motion in time.
+//! Free bending vibrations: modes of the linearized beam, and one mode by small motion in time.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;
 use crate::run::modes::Mode;
 
-/// Samples a period, periods run.
+/// Samples per period, and periods of a run.
 const SAMPLES: usize = 24;
 const PERIODS: usize = 2;
 
@@ -74,7 +74,7 @@ fn transverse(cells: usize, mode: usize, tip: &Value) -> Result<f64> {
         .map_or(f64::NAN, |m| m.s.im))
 }
 
-/// The linearisation against the equations themselves.
+/// Compares the linearization with the nonlinear equations.
 fn in_time() -> Row {
     Row::new(
         "frequency-in-time",
@@ -96,7 +96,7 @@ fn in_time() -> Row {
     )
 }
 
-/// Angular frequency of the mode of a cantilever on a mesh, from a run [1/s].
+/// Angular frequency of a mode of a cantilever on a mesh, from a run [1/s].
 fn measured(cells: usize, beta: f64) -> Result<f64> {
     let interval = 2.0 * PI / (beta * beta) / SAMPLES as f64;
     let end = interval * (SAMPLES * PERIODS) as f64;
@@ -112,7 +112,7 @@ fn measured(cells: usize, beta: f64) -> Result<f64> {
     Ok(oscillation(&coordinate, interval).1)
 }
 
-/// Mode of a clamped-free beam, 2 at the tip but for its sign.
+/// Mode shape of a clamped-free beam; its absolute value at the tip is 2.
 pub fn free_shape(beta: f64, x: f64) -> f64 {
     let ratio = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
     let b = beta * x;

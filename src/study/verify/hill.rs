@@ -1,4 +1,5 @@
-//! The drained beam under axial shaking as a Hill system of several modes: what a single mode and first order leave out.
+//! The drained beam under axial shaking as a Hill system of several modes, with contributions that a single mode and
+//! first order omit.
 
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -23,16 +24,17 @@ const BETA: [f64; 6] = [
     14.137168391046,
     17.278759532088,
 ];
-/// Gauss points of a tenth of the beam.
+/// Gauss points and weights for a tenth of the beam.
 const GAUSS: [(f64, f64); 4] = [
     (-0.861136311594053, 0.347854845137454),
     (-0.339981043584856, 0.652145154862546),
     (0.339981043584856, 0.652145154862546),
     (0.861136311594053, 0.347854845137454),
 ];
-/// Steps of a period: the sixth mode of the published beam turns by 0.2 in each, and by 0.1 from stage to stage.
+/// Steps per period: the phase of the sixth mode of the published beam advances by 0.2 in each, and by 0.1 from stage
+/// to stage.
 const STEPS: u32 = 2400;
-/// Frequency of the shaking [Hz], that of the paper's Fig. 4.
+/// Frequency of the shaking [Hz], as in the paper's Fig. 4.
 const FREQUENCY: f64 = 18.0;
 
 /// All rows.
@@ -78,7 +80,8 @@ fn section() -> Result<(Section, f64)> {
     Ok((model.section, model.length))
 }
 
-/// Onset over the length on a mesh: the amplitude at which half the trace of the first mode's map is -1, by secants.
+/// Onset over the length on a mesh: the amplitude at which half the trace of the first mode's period map is -1, by the
+/// secant method.
 fn of_program(cells: usize) -> Result<f64> {
     let above = |amplitude: f64| -> Result<f64> {
         let found = bending(&case_of(amplitude, cells))?;
@@ -103,7 +106,7 @@ fn of_program(cells: usize) -> Result<f64> {
     Ok(b / length)
 }
 
-/// Onset over the length of one mode of a beam that does not stretch and has no rotary inertia: Mathieu's equation.
+/// Onset over the length for one mode of an inextensible beam without rotary inertia: Mathieu's equation.
 fn single() -> Result<f64> {
     let (section, length) = section()?;
     let stiff = Section {
@@ -114,13 +117,13 @@ fn single() -> Result<f64> {
     Ok(Hill::new(&(stiff, length), 1).onset())
 }
 
-/// Modes, slopes and curvatures at the quadrature's points.
+/// Slopes and curvatures of the modes at the quadrature points.
 struct Hill {
     section: Section,
     length: f64,
-    /// Points of `x/l` and their weights.
+    /// Points `x/l` and their weights.
     points: Vec<(f64, f64)>,
-    /// Slopes and curvatures, one column a mode.
+    /// Slopes and curvatures, one column per mode.
     slopes: DMatrix<f64>,
     curvatures: DMatrix<f64>,
     inverse_mass: DMatrix<f64>,
@@ -159,7 +162,7 @@ impl Hill {
         }
     }
 
-    /// `M⁻¹ K`, stiffness of small bending on the beam that the root's motion `U sin Ωt` stretches:
+    /// `M⁻¹ K`, the stiffness of small bending of the beam that the root's motion `U sin Ωt` stretches:
     ///
     /// ```text
     /// u = U s cos k(1-x)/cos k,  k = Ω l √(m/EA),  s = sin Ωt        λ = 1 + u'/l,  N = EA (λ - 1)

@@ -1,4 +1,4 @@
-//! A steady network is a network of resistors.
+//! A steady network as a network of resistors.
 
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
@@ -22,7 +22,7 @@ pub fn rows() -> Vec<Row> {
     )]
 }
 
-/// Nodes of the resistor network: middles of bladders 1 to 4, then two tees.
+/// Nodes of the resistor network: centers of bladders 1 to 4, then two tees.
 const NODES: usize = 6;
 const PRESSURES: [f64; 3] = [1000.0, -400.0, 150.0];
 const SOURCE: f64 = 2e-6;

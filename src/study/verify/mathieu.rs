@@ -16,7 +16,7 @@ use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 const BETA: f64 = 1.875104068712;
 /// `ε = κ1 A/(L ω1²)`.
 const MODULATION: f64 = 0.2;
-/// Samples a period of the base.
+/// Samples per period of the base motion.
 const SAMPLES: usize = 20;
 
 /// All rows.
@@ -59,7 +59,7 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-/// Growth rate of the tip's deflection when the base is shaken at `2 ω1 detuning` [1/s].
+/// Growth rate of the tip deflection if the base is shaken at `2 ω1 detuning` [1/s].
 fn growth(detuning: f64) -> Result<f64> {
     let first = BETA * BETA;
     let omega = 2.0 * first * detuning;
@@ -74,7 +74,7 @@ fn growth(detuning: f64) -> Result<f64> {
     );
     case["ends"]["root"] =
         json!({"clamped": {"u3_m": {"sine": {"amplitude": amplitude, "frequency_hz": omega / (2.0 * PI)}}}});
-    // The whole beam starts with the speed of the base, else the jump would send an axial wave.
+    // The whole beam starts with the velocity of the base; otherwise the velocity jump would excite an axial wave.
     case["start"]["u3_rate_m_s"] = json!(amplitude * omega);
     let tip = solve(&case)?.column("tip_u1");
     Ok(growth_of_spans(&tip, 4 * SAMPLES, interval, 3))

@@ -1,7 +1,7 @@
-//! Exact results of beam and network theory against what the program computes for them, through cases like any other.
+//! Exact results of beam and network theory, compared with the results of ordinary cases.
 //!
 //! ```text
-//! row          a problem with its source, goal and tolerance; names and how they are chosen
+//! row          a problem with its source, goal and tolerance; selection by name
 //! figure       one number of a row: computed, exact, error, observed order, verdict
 //! solve        a case from JSON to its samples
 //! scene        the beam of unit length, bending stiffness and mass that most problems use
@@ -12,8 +12,8 @@
 //! frequencies  free bending vibrations
 //! spin_up      Simo and Vu-Quoc's rotating arm
 //! mathieu      axial base acceleration
-//! floquet      the same from multipliers of the period map
-//! hill         the drained published beam shaken along, as six modes
+//! floquet      axial base acceleration, from multipliers of the period map
+//! hill         the drained published beam under axial shaking, with six modes
 //! wet          the nearly unloaded beam with bladders that the network problems use
 //! decay        relaxation of chains and rings, dissipation
 //! kirchhoff    a steady network as resistors
@@ -43,7 +43,7 @@ mod wet;
 pub use figure::{Figure, Measure};
 pub use row::{Row, choose};
 
-/// Every row, in the order in which they are told.
+/// Every row, in the order of the report.
 pub fn rows() -> Vec<Row> {
     let mut all = statics::rows();
     all.extend(buckling::rows());

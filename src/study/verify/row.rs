@@ -1,26 +1,26 @@
-//! Problems with a known answer.
+//! Problems with a known solution.
 
 use super::figure::Figure;
 use crate::error::{Error, Result};
 
-/// What computes the figures of a row.
+/// Function that computes the figures of a row.
 type Work = Box<dyn Fn() -> Result<Vec<Figure>> + Send + Sync>;
 
-/// A problem with a known answer.
+/// Problem with a known solution.
 pub struct Row {
     /// Name, lower case with dashes: `tip-load-5`.
     pub name: String,
-    /// Where the answer comes from.
+    /// Source of the solution.
     pub source: &'static str,
-    /// What it shows.
+    /// Property that it verifies.
     pub goal: &'static str,
-    /// Why the tolerance is what it is.
+    /// Reason for the tolerance.
     pub reason: &'static str,
     work: Work,
 }
 
 impl Row {
-    /// A row: its name, then source, goal and reason for the tolerance, then what computes it.
+    /// Creates a row from its name, its source, goal and reason for the tolerance, and the function that computes it.
     pub fn new(
         name: impl Into<String>,
         [source, goal, reason]: [&'static str; 3],
@@ -38,16 +38,16 @@ impl Row {
     /// Computes the row's figures.
     ///
     /// # Errors
-    /// When one of its runs fails.
+    /// One of its runs fails.
     pub fn figures(&self) -> Result<Vec<Figure>> {
         (self.work)()
     }
 }
 
-/// Rows whose name contains `part`.
+/// Returns the rows whose name contains `part`.
 ///
 /// # Errors
-/// [`Error::Usage`] with the nearest name when there is none.
+/// [`Error::Usage`] with the nearest name if there is none.
 pub fn choose(rows: Vec<Row>, part: &str) -> Result<Vec<Row>> {
     let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
     let chosen: Vec<Row> = rows.into_iter().filter(|row| row.name.contains(part)).collect();

@@ -1,4 +1,4 @@
-//! The beam that most problems use: length 1 m, EI 1 N m^2, 1 kg/m, so that computed numbers are dimensionless ones.
+//! The beam of most problems: length 1 m, EI 1 N m^2, 1 kg/m, so that computed numbers equal dimensionless ones.
 
 use serde_json::{Value, json};
 
@@ -10,10 +10,10 @@ pub fn unit_beam(axial_factor: f64) -> Value {
     })
 }
 
-/// A load path from 0 to `end` in time: without inertia of the solid every instant is an equilibrium. Loads and ends are
-/// still to be given. Newton's iteration is asked for much more than the error test: with IDA's own 0.33 what it leaves
-/// over is noise to the error test of these purely algebraic equations, which then holds the order at 1 with up to 300
-/// times as many steps.
+/// Load path from 0 to `end` in time: without inertia of the solid, every instant is an equilibrium. The caller sets
+/// loads and ends. The tolerance of Newton's iteration is much tighter than that of the error test. With IDA's own
+/// 0.33, the remaining error of the iteration is noise to the error test of these purely algebraic equations. The test
+/// then keeps the order at 1, with up to 300 times as many steps.
 pub fn load_path(beam: Value, cells: usize, end: f64, interval: f64) -> Value {
     json!({
         "name": "load-path", "beam": beam, "ends": {"root": "clamped", "tip": "free"},
@@ -24,13 +24,13 @@ pub fn load_path(beam: Value, cells: usize, end: f64, interval: f64) -> Value {
     })
 }
 
-/// Grows evenly: `rate t`.
+/// Linear growth: `rate t`.
 pub fn growing(rate: f64) -> Value {
     json!({"polynomial": {"coefficients": [0.0, rate]}})
 }
 
 /// Motion in time of the unit beam with an unextended axis, started with the transverse displacement `start`, a
-/// function of `x/L`. No rotary inertia. Ends are still to be given.
+/// function of `x/L`. No rotary inertia. The caller sets the ends.
 pub fn motion(cells: usize, start: impl Fn(f64) -> f64, end: f64, interval: f64) -> Value {
     let places: Vec<f64> = (0..=cells).map(|i| i as f64 / cells as f64).collect();
     let values: Vec<f64> = places.iter().map(|&x| SMALL * start(x)).collect();

@@ -1,4 +1,4 @@
-//! The cell of which coefficients of a section are computed: [`slcbeam_section::verify`].
+//! The cell from which coefficients of a section are computed: [`slcbeam_section::verify`].
 
 use slcbeam_section::verify::{self, Compare, Comparison, LEAST_ORDER, ROUND_OFF};
 

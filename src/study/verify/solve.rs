@@ -1,4 +1,4 @@
-//! A case from JSON to its samples.
+//! Solutions of cases given as JSON.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::run::modes::{self, Modes, Plan};
 use crate::run::record::{Column, Control, Memory};
 use crate::run::{dynamics, equilibrium};
 
-/// What a run recorded.
+/// Recorded data of a run.
 pub struct Solved {
     memory: Memory,
 }
@@ -18,7 +18,7 @@ pub struct Solved {
 /// Checks and runs a case.
 ///
 /// # Errors
-/// A case that is not valid, a solver that cannot go on.
+/// A case that is not valid, a solver that fails.
 pub fn solve(case: &Value) -> Result<Solved> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let mut memory = Memory::default();
@@ -44,17 +44,17 @@ pub fn modes(case: &Value, count: usize) -> Result<Modes> {
 }
 
 impl Solved {
-    /// A column of the history, empty when there is none of that name.
+    /// Returns a column of the history; empty if there is none of that name.
     pub fn column(&self, name: &str) -> Vec<f64> {
         self.memory.column(name).unwrap_or_default()
     }
 
-    /// Last value of a column; NaN when there is none.
+    /// Returns the last value of a column; NaN if there is none.
     pub fn last(&self, name: &str) -> f64 {
         self.column(name).last().copied().unwrap_or(f64::NAN)
     }
 
-    /// A field, one array a time; empty when there is none of that name.
+    /// Returns a field, one array per time; empty if there is none of that name.
     pub fn field(&self, name: &str) -> &[Vec<f64>] {
         self.memory.field(name).unwrap_or_default()
     }
@@ -69,7 +69,7 @@ pub struct Balanced {
 /// Checks a case and follows its equilibria from rest to `share` of the loads at the end of its run.
 ///
 /// # Errors
-/// A case that is not valid, a path that ends before.
+/// A case that is not valid, a path that ends early.
 pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let at_s = case.time.end_s;
@@ -88,13 +88,13 @@ pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
 }
 
 impl Balanced {
-    /// A quantity in the last state; NaN when there is none of that name.
+    /// Returns a quantity in the last state; NaN if there is none of that name.
     pub fn last(&self, name: &str) -> f64 {
         let column = self.columns.iter().position(|c| c.name == name);
         column.map_or(f64::NAN, |k| self.path.last().row[k])
     }
 
-    /// Share of the loads at which another path first crosses; NaN when none does.
+    /// Share of the loads at the first bifurcation; NaN if there is none.
     pub fn bifurcation(&self) -> f64 {
         let mut events = self.path.events.iter();
         events
@@ -103,7 +103,7 @@ impl Balanced {
     }
 }
 
-/// The same figures on three meshes of `cells`, `2 cells` and `4 cells`: for each its three values.
+/// Computes figures on three meshes of `cells`, `2 cells` and `4 cells`; returns the three values of each figure.
 pub fn on_three_meshes<const N: usize>(
     cells: usize,
     values: impl Fn(usize) -> Result<[f64; N]>,

@@ -53,8 +53,9 @@ fn angle() -> Value {
     ]})
 }
 
-/// Mean extension of the axis over the last 4 s, and largest lag of the tip in the frame that turns with the root [m].
-/// The length of the axis leaves out by how much the small vibration that remains shortens the distance of the tip.
+/// Mean extension of the axis over the last 4 s, and largest lag of the tip in the frame that rotates with the root
+/// [m]. The extension is that of the axis: it does not include the shortening of the tip's distance by the small
+/// remaining vibration.
 fn spin_up(cells: usize) -> Result<[f64; 2]> {
     // Square section: EA/EI = 12/h².
     let side = (12.0 * EI / EA).sqrt();

@@ -1,4 +1,4 @@
-//! Bladders on a beam that they do not bend: area depends on pressure alone, so the network stands by itself.
+//! Bladders on a beam that they do not bend: area depends on pressure alone, so the network is independent of the beam.
 
 use serde_json::{Value, json};
 
@@ -37,7 +37,7 @@ pub fn case(per_row: usize, network: Value, end: f64, interval: f64) -> Value {
     })
 }
 
-/// Start pressures of bladders `1..`.
+/// Initial pressures of bladders `1..`.
 pub fn pressures(values: impl Iterator<Item = f64>) -> Value {
     (1..)
         .zip(values)

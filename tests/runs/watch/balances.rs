@@ -1,9 +1,9 @@
-//! Balances can fail, and say so.
+//! Open balances are detected and reported.
 
 use super::common::{BEAM, finished, shipped, warning, written};
 
-/// Goal: a moment that is switched on at an end of a free beam does work on the half cell there, which is booked: the balance closes
-/// to the tolerance on every mesh. Tolerance: 100 rtol.
+/// Goal: a moment switched on at an end of a free beam does work on the half cell there, which the ledger counts: the balance closes to the
+/// tolerance on every mesh. Tolerance: 100 rtol.
 #[test]
 fn a_moment_switched_on_closes_the_balance() {
     for cells in [8, 16, 32] {
@@ -25,8 +25,8 @@ fn a_moment_switched_on_closes_the_balance() {
     }
 }
 
-/// Goal: a load that jumps on a beam without inertia does work in no time, which is booked. Tolerance: 1e-3 of the energy, for a
-/// deflection of a hundredth of the length, to whose square the way is curved.
+/// Goal: a load that jumps on a beam without inertia does instantaneous work, which the ledger counts. Tolerance: 1e-3 of the energy, for a
+/// deflection of a hundredth of the length; the path is curved to the square of it.
 #[test]
 fn a_load_that_jumps_without_inertia_closes_the_balance() {
     let jump = r#"/loads=[{"force_x_n_m": {"signal": {"ramp": {"to": 5, "start_s": 0.5, "duration_s": 0}}}}]"#;
@@ -41,7 +41,7 @@ fn a_load_that_jumps_without_inertia_closes_the_balance() {
     assert!(deflection > 5e-4, "{deflection}");
 }
 
-/// Goal: momentum that stays open is warned of, and not where it closes.
+/// Goal: an open momentum balance is warned of, a closed one is not.
 #[test]
 fn open_momentum_is_warned_of() {
     let with = |rtol: &str| finished(&shipped("spin-up", &[rtol]));
@@ -59,8 +59,8 @@ fn open_momentum_is_warned_of() {
     assert_eq!(warning(&with("/solver/rtol=1e-5"), "W008 balance of momentum"), None);
 }
 
-/// Goal: flow through a port is measured by the port's law beside what the network stores; at a tolerance of a tenth they differ and
-/// that is said, at the default of the cases they do not, however stiff the port.
+/// Goal: the flow through a port by the port's law is compared with the change of stored volume. At a tolerance of a tenth they differ,
+/// with a warning; at the default of the cases they agree, however stiff the port.
 #[test]
 fn flow_through_ports_is_measured_by_its_law() {
     let loose = finished(&shipped("tour-actuator", &["/solver/rtol=0.1"]));
@@ -74,7 +74,7 @@ fn flow_through_ports_is_measured_by_its_law() {
     }
 }
 
-/// Goal: reactions told by the half cell and by the section differ by the mesh's error, which falls with the square of the cell.
+/// Goal: reactions from the half cell and from the section differ by the mesh error, which falls with the square of the cell size.
 #[test]
 fn reactions_tell_the_mesh() {
     let with = |cells: u32| {
@@ -91,8 +91,8 @@ fn reactions_tell_the_mesh() {
     );
 }
 
-/// Goal: an end whose velocity jumps drives a beam whose sections resist turning: all balances close to the tolerance on every mesh, and what
-/// the end takes along is `m √y11` where cells are short beside `√y11`. Tolerances: 30 rtol; 3 %, the mesh's.
+/// Goal: an end whose velocity jumps drives a beam with rotary inertia: all balances close to the tolerance on every mesh. The mass that
+/// moves with the end is `m √y11` if cells are short compared with `√y11`. Tolerances: 30 rtol; 3 %, that of the mesh.
 #[test]
 fn an_end_whose_velocity_jumps_turns_the_sections_around() {
     let along = r#""u3_m": {"ramp": {"to": -5e-3, "start_s": 0.004, "duration_s": 0.05, "shape": "linear"}}"#;

@@ -1,4 +1,4 @@
-//! Cases from text and runs in memory.
+//! Cases from text, and runs in memory.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use slcbeam::run::dynamics::{self, Outcome};
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Status, Summary};
 
-/// A beam of 8 cells; root and time to be set.
+/// A beam of 8 cells; root and time are placeholders.
 pub const BEAM: &str = r#"{"name": "watched",
   "beam": {"length_m": 0.1, "height_m": 0.0216, "width_m": 0.05, "young_modulus_pa": 2e6, "density_kg_m3": 950,
            "damping": {"bending_time_s": 2e-3, "axial_time_s": 2e-3}},
@@ -40,14 +40,14 @@ pub fn shipped(name: &str, sets: &[&str]) -> Case {
     }
 }
 
-/// Runs a case, however it ends.
+/// Runs a case to any end, also a failure.
 pub fn ended(case: &Case) -> (Outcome, Memory) {
     let mut memory = Memory::default();
     let outcome = dynamics::run(case, &mut memory).expect("a recorder in memory does not fail");
     (outcome, memory)
 }
 
-/// Runs a case to its end.
+/// Runs a case that must finish.
 pub fn finished(case: &Case) -> Summary {
     let (outcome, _) = ended(case);
     let s = outcome.summary;
@@ -66,7 +66,7 @@ pub fn finished(case: &Case) -> Summary {
     s
 }
 
-/// The warning with a number, if a run has it.
+/// The warning with the given number, if the run has it.
 pub fn warning<'a>(summary: &'a Summary, id: &str) -> Option<&'a str> {
     summary.warnings.iter().map(String::as_str).find(|w| w.starts_with(id))
 }

@@ -1,4 +1,4 @@
-//! Energies of a made-up history: what of them the balance carries.
+//! Energies of a synthetic history: which of them the balance supports.
 
 use std::collections::BTreeMap;
 
@@ -54,8 +54,8 @@ fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
     (energies, quantities)
 }
 
-/// Goal: what is stored does not count as put in or lost, and an open balance is seen relative to the figures, not to what
-/// is stored: 1 J of 100 J stored, but a quarter of the 4 J put in.
+/// Goal: stored energy does not count as input or loss. An open balance is judged relative to the figures, not to the stored energy: 1 J of
+/// 100 J stored, but a quarter of the 4 J input.
 #[test]
 fn the_window_counts_what_was_spent() {
     let (energies, all) = followed(&[
@@ -73,7 +73,7 @@ fn the_window_counts_what_was_spent() {
     assert!(!words.contains("the energy put in over the run"), "{words}");
 }
 
-/// A quotient above one says whose energy it is.
+/// An efficiency above one names the origin of the energy.
 #[test]
 fn an_efficiency_above_one_is_explained() {
     let start = [0.0, 10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
@@ -85,7 +85,7 @@ fn an_efficiency_above_one_is_explained() {
     assert_eq!(energies.warning(&all), None);
 }
 
-/// Goal: an efficiency of energies that are the run's numerical error has no value, but its reason; a turbine that nothing drives.
+/// Goal: an efficiency whose energies are numerical error, here of an idle turbine, has a reason instead of a value.
 #[test]
 fn an_idle_turbine_has_no_efficiency() {
     let row = |sign: i64| json!((1..=10).map(|k| sign * k).collect::<Vec<i64>>());

@@ -1,8 +1,8 @@
-//! Growth is what outgrows its drive.
+//! Growth: motion that outgrows its drive.
 
 use super::common::{BEAM, finished, shipped, warning, written};
 
-/// Goal: a load that rises along a straight line, with and without inertia, is no instability; nor is pressure that spreads.
+/// Goal: neither a load that rises linearly, with and without inertia, nor spreading pressure is reported as an instability.
 #[test]
 fn a_ramp_is_no_growth() {
     let ramp = r#"/loads=[{"force_x_n_m": {"signal": {"ramp": {"to": 5, "duration_s": 1, "shape": "linear"}}}}]"#;
@@ -16,7 +16,7 @@ fn a_ramp_is_no_growth() {
     }
 }
 
-/// Goal: the motion in a Mathieu tongue is growth, and is said to be parametric.
+/// Goal: motion in a Mathieu tongue is reported as parametric growth.
 #[test]
 fn a_mathieu_tongue_is_growth() {
     let s = finished(&shipped("hard/mathieu", &[]));

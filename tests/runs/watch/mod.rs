@@ -1,4 +1,4 @@
-//! What a run watches on its way, not only at its output times: largest values, limits of the model, balances, growth.
+//! Quantities monitored between output times: extrema, limits of the model, balances, growth.
 
 mod balances;
 mod common;

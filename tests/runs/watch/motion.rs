@@ -1,12 +1,12 @@
-//! Largest values and means are those of the motion.
+//! Extrema and means are those of the motion, not of its samples.
 
 use super::common::{BEAM, finished, shipped, written};
 
 const DRIVE: &str =
     r#"/ends/root={"clamped": {"u1_m": {"sine": {"amplitude": 1e-3, "frequency_hz": 10, "ramp_cycles": 2}}}}"#;
 
-/// Goal: a thousand cycles with the output times of a run that names none, each of them at a zero of the drive, report the largest
-/// deflection that output times twenty a cycle see. Tolerance: 1e-3, that within which turning points are sought.
+/// Goal: in a thousand cycles with default output times, each at a zero of the drive, the largest deflection equals that of twenty output
+/// times per cycle. Tolerance: 1e-3, that of the search for turning points.
 #[test]
 fn a_thousand_cycles_between_output_times() {
     let long = finished(&written(BEAM, &[DRIVE, "/time/end_s=100"]));
@@ -27,7 +27,7 @@ fn a_thousand_cycles_between_output_times() {
     }
 }
 
-/// Goal: output times more often than steps, and as often as a hundredth of them, give the same figures; the root mean square is one
+/// Goal: output times more often than steps, and a hundred times less often, give the same figures; the root mean square is an integral
 /// over time. Tolerance: 2e-3.
 #[test]
 fn figures_do_not_depend_on_output_times() {
@@ -46,8 +46,8 @@ fn figures_do_not_depend_on_output_times() {
     }
 }
 
-/// Goal: the largest displacement lies between nodes: meshes of 24 and of 27 cells agree about it, whose nodes are elsewhere. Largest of
-/// nodes they differed by 1 %. Tolerance: 1e-3, what turning points are sought to.
+/// Goal: the largest displacement is found between nodes: meshes of 24 and of 27 cells, with different nodes, agree. The largest nodal
+/// values differed by 1 %. Tolerance: 1e-3, that of the search for turning points.
 #[test]
 fn the_largest_displacement_lies_between_nodes() {
     let with = |cells: usize| {
@@ -67,7 +67,7 @@ fn the_largest_displacement_lies_between_nodes() {
     }
 }
 
-/// Goal: the same for the largest pressure, whose cell changes.
+/// Goal: the largest pressure, whose cell changes, agrees in the same way.
 #[test]
 fn the_largest_pressure_lies_between_output_times() {
     let with = |interval: &str| {

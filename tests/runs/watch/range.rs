@@ -1,4 +1,4 @@
-//! Limits of the model are met at every step, and located within it.
+//! Validity limits of the model: checked at every step and located within it.
 
 use assert_cmd::Command;
 use slcbeam::error::Code;
@@ -6,13 +6,13 @@ use slcbeam::run::summary::Status;
 
 use super::common::{BEAM, EI, HALF, ended, finished, number_after, shipped, warning, written};
 
-/// An end moment [N m] that bends a beam to a fibre strain: `M = EI κ`, `κ = ε/(h/2)`.
+/// End moment [N m] that bends a beam to a given fiber strain: `M = EI κ`, `κ = ε/(h/2)`.
 fn moment(strain: f64) -> f64 {
     EI * strain / HALF
 }
 
-/// Goal: a bladder that closes between two output times is seen, where and when it does: the time found with outputs every
-/// millisecond is found with a single one, to 1e-6 s, and what was before is kept.
+/// Goal: the closing of a bladder between two output times is detected with place and time. Outputs every millisecond and a single output
+/// give the same time to 1e-6 s, and earlier results are kept.
 #[test]
 fn a_bladder_that_closes_between_output_times() {
     let at = |interval: &str| {
@@ -30,8 +30,8 @@ fn a_bladder_that_closes_between_output_times() {
     assert!((often - rarely).abs() < 1e-6, "{often} {rarely}");
 }
 
-/// Goal: strains above a half between two output times are warned of, with the time when that began: the moment that bends the beam
-/// is a sine whose zeros are the output times. Tolerance of the time: 2e-4 s, a hundredth of its sine; 1 % of the strain.
+/// Goal: strains above one half between two output times are warned of, with their first time. The bending moment is a sine with its zeros
+/// at the output times. Tolerance of the time: 2e-4 s, a hundredth of its sine; 1 % of the strain.
 #[test]
 fn strains_between_output_times() {
     let set = format!(
@@ -56,7 +56,7 @@ fn strains_between_output_times() {
     );
 }
 
-/// Goal: fast flow between two output times is warned of, as with many of them.
+/// Goal: fast flow between two output times gives the same warning as with many output times.
 #[test]
 fn fast_flow_between_output_times() {
     let with = |interval: &str| {
@@ -82,8 +82,8 @@ fn fast_flow_between_output_times() {
     assert!((rarely / often - 1.0).abs() < 0.02, "{often} {rarely}");
 }
 
-/// Goal: a beam that a slowly growing moment bends ends where the outer fibre's strain is one: at two thirds of the way to 1.5.
-/// Tolerance: strain that the tolerance leaves open, 1e-3.
+/// Goal: a run with a slowly growing moment ends where the strain of the outer fiber is one: at two thirds of the ramp to 1.5. Tolerance:
+/// error of the strain by the solver tolerance, 1e-3.
 #[test]
 fn a_strain_of_one_ends_the_run() {
     let set = format!(
@@ -104,8 +104,8 @@ fn a_strain_of_one_ends_the_run() {
     assert!((s.time_s - 2.0 / 3.0).abs() < 2e-2, "{} s", s.time_s);
 }
 
-/// Goal: a pump that fills bladders beyond the half section of their segment: `a_p p = l_seg h_s/2 - h_b w_b`, and one of a river's
-/// flow, which ends at once and with exit code 4.
+/// Goal: a pump that fills bladders beyond the half section of their segment ends the run: `a_p p = l_seg h_s/2 - h_b w_b`. A pump with the
+/// flow of a river ends it at once, with exit code 4.
 #[test]
 fn bladders_beyond_the_section_end_the_run() {
     let pump = "/network/chains/0/ends/0/pressure_pa/ramp/to=5e5";

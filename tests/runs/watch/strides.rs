@@ -1,4 +1,4 @@
-//! Steps are short where signals are fast, and nowhere else; and nothing fast is passed over.
+//! Steps are short only near fast signals, and no fast signal is missed.
 
 use super::common::{BEAM, finished, written};
 
@@ -12,8 +12,8 @@ fn sigmoid(amplitude: f64, steepness: f64, at: f64) -> String {
     format!(r#"{{"sigmoid": {{"amplitude": {amplitude}, "steepness_per_s": {steepness}, "midpoint_s": {at}}}}}"#)
 }
 
-/// Goal: a step within a ten-thousandth of a second costs its own steps and those of what follows, in a run of ten seconds as in one of a
-/// fifth of a second; as short as a 16th of its time scale all along, 10 s would take four million.
+/// Goal: a fast change within a ten-thousandth of a second costs only its own steps and those that follow, in a run of ten seconds as in
+/// one of a fifth of a second. Steps of a 16th of its time scale throughout would be four million in 10 s.
 #[test]
 fn a_steep_step_is_short_of_steps_for_itself_alone() {
     for method in METHODS {
@@ -29,8 +29,8 @@ fn a_steep_step_is_short_of_steps_for_itself_alone() {
     }
 }
 
-/// Goal: a pulse of 40 microseconds that comes when steps have become as long as they may is felt as one that comes at once; so is one
-/// that a spline draws. Tolerance: 1e-2 of what it does at rtol 1e-4, which is all that happens.
+/// Goal: a pulse of 40 microseconds after steps have reached their largest size has the same effect as one at the start, and so has a pulse
+/// drawn by a spline. Tolerance: 1e-2 of its effect at rtol 1e-4; nothing else happens.
 #[test]
 fn a_pulse_late_in_a_run_is_felt() {
     let pulse = |at: f64| {

@@ -1,10 +1,10 @@
-//! What happens in the window is told from its very beginning to its very end, whatever the output times.
+//! Figures of the window cover it from its exact beginning to its exact end, for any output times.
 
 use super::common::{BEAM, finished, shipped, warning, written};
 use slcbeam::discrete::System;
 
-/// Goal: increments, largest values, means and last values of a window that begins and ends between two output times, with no output
-/// in it at all, are those with a thousand. Tolerance: 1e-3, that within which turning points are sought.
+/// Goal: increments, extrema, means and last values of a window that begins and ends between two output times, without any output inside,
+/// agree with those of a thousand outputs. Tolerance: 1e-3, that of the search for turning points.
 fn alike(case: &str, window: &[&str], often: &str, rarely: &[&str]) {
     let with = |interval: &str| {
         let interval = format!("/time/output_interval_s={interval}");
@@ -44,7 +44,7 @@ fn harvest_in_a_window_without_outputs() {
     alike("wiring-2", &window, "1e-4", &["0.01", "0.04", "0.1"]);
 }
 
-/// Goal: derivatives of root mean squares in a window are those of the output times alone, and that is said.
+/// Goal: derivatives of root mean squares in a window use the output times only, and a message states it.
 #[test]
 fn derivatives_in_a_window_without_outputs_are_warned_of() {
     use slcbeam::case::parameter::Parameter;

@@ -1,4 +1,4 @@
-//! The beam through one-step methods: the same answers as IDA, the same bits after a checkpoint, balances that close.
+//! The beam with one-step methods: same answers as IDA, same bits after a checkpoint, closed balances.
 
 use std::path::Path;
 
@@ -21,8 +21,8 @@ fn run(case: &Case) -> (Memory, dynamics::Outcome) {
 
 const COARSE: [&str; 2] = ["/mesh/cells_per_segment=2", "/mesh/cells_per_bladder=1"];
 
-/// Two cases of the paper, impulsive starts included. Tolerance: both run at local errors of 1e-7 over some thousand
-/// steps; largest difference relative to the largest value, 2e-4, leaves room for the phase of fast waves.
+/// Goal: two cases of the paper, with impulsive starts. Tolerance: local errors of 1e-7 over some thousand steps; 2e-4 of the largest value
+/// leaves a margin for the phase of fast waves.
 #[test]
 fn answers_are_those_of_ida() {
     for (name, end) in [("wiring-2", "/time/end_s=0.05"), ("valves-open", "/time/end_s=0.05")] {
@@ -55,7 +55,7 @@ fn answers_are_those_of_ida() {
     }
 }
 
-/// A run that goes on from a checkpoint repeats the uninterrupted one bit for bit; its summary says how it was solved.
+/// Goal: a run continued from a checkpoint repeats the uninterrupted one bit for bit; its summary names the method.
 #[test]
 fn resumed_runs_repeat_uninterrupted_ones() {
     for method in ["trbdf2", "esdirk34", "esdirk46", "esdirk57"] {
@@ -86,8 +86,8 @@ fn resumed_runs_repeat_uninterrupted_ones() {
     }
 }
 
-/// What does not close in the ledger is the integrator's error: a thousandth of the tolerance leaves at most a fiftieth.
-/// Closed networks keep their volume at any tolerance: 1e-10 is the rounding of some thousand steps.
+/// Goal: residuals of the ledger are integration errors: a thousandth of the tolerance leaves at most a fiftieth. Closed networks keep
+/// their volume at any tolerance: 1e-10 is the rounding of some thousand steps.
 #[test]
 fn balances_close_with_the_tolerance() {
     for method in ["esdirk34", "esdirk46"] {

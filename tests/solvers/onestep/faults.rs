@@ -1,4 +1,4 @@
-//! Recoverable faults are recovered from, fatal ones come back word for word, panics go on.
+//! Recoverable faults are recovered from, fatal ones are returned verbatim, panics propagate.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -20,7 +20,7 @@ fn solve(residual: Residual) -> Result<OneStep<Plain>, Box<IntegrationError>> {
     Ok(one)
 }
 
-/// A fault that a shorter step avoids: states below the solution's own range are refused.
+/// Goal: recovers from a fault that a shorter step avoids: states below the solution's range are rejected.
 #[test]
 fn recoverable_faults_shorten_the_step() {
     let one = solve(|t, y, yp, f| {
@@ -38,7 +38,7 @@ fn recoverable_faults_shorten_the_step() {
     assert!(one.counters().newton_failures > 0);
 }
 
-/// A fault that no step avoids ends with its words, the time and the unknown.
+/// Goal: a fault that no step avoids ends the run with its message, the time and the unknown.
 #[test]
 fn persistent_faults_end_with_a_diagnosis() {
     let failure = solve(|t, y, yp, f| {
@@ -91,7 +91,7 @@ fn persistent_faults_end_with_a_diagnosis() {
     assert!(failure.worst.is_some_and(|w| w.name == "y1"));
 }
 
-/// A column without pivot is named: beyond t = 1 two equations are the same.
+/// Goal: a column without pivot is named: beyond t = 1 two equations are equal.
 #[test]
 fn singular_matrices_are_named() {
     let coupled = Plain::new(&[true, true], |t, y, yp, f| {
@@ -110,7 +110,7 @@ fn singular_matrices_are_named() {
     assert!(failure.to_string().contains("singular in the column of y"), "{failure}");
 }
 
-/// Fatal faults end at once, word for word; panics go on to the caller.
+/// Goal: fatal faults end the run at once, verbatim; panics propagate to the caller.
 #[test]
 fn fatal_faults_and_panics_are_passed_on() {
     let failure = solve(|t, y, yp, f| {

@@ -6,7 +6,7 @@ use slcbeam::onestep::{Method, OneStep, OneStepOptions};
 
 use crate::problems::{Plain, TRANSISTOR, beam, robertson, transistor, transistor_start, transistor_voltages};
 
-/// Steps of one size: every error is allowed, and Newton leaves 1e-13 of the weights.
+/// Options of fixed steps: every error is accepted, and Newton converges to 1e-13 of the weights.
 pub fn fixed(method: Method, step: f64) -> OneStepOptions {
     OneStepOptions {
         method,
@@ -32,7 +32,7 @@ pub fn run<D: Dae>(integrator: &mut OneStep<D>, end: f64) {
     while !integrator.step(end).unwrap().stopped {}
 }
 
-/// Index one and not linear, with the solution (sin t, cos t, sin t cos t).
+/// Nonlinear system of index one, with the solution (sin t, cos t, sin t cos t).
 pub fn circle() -> Plain {
     Plain::new(&[true, true, false], |_, y, yp, f| {
         let product = y[0] * y[1];
@@ -43,9 +43,9 @@ pub fn circle() -> Plain {
     })
 }
 
-/// Fixed steps: the error falls with the method's order, in differential and algebraic unknowns and in rates.
+/// Goal: with fixed steps, the error falls with the method's order, in differential and algebraic unknowns and in rates.
 ///
-/// Tolerance on the order: 0.35, since the steps are not yet asymptotically small where round-off does not yet show.
+/// Tolerance on the order: 0.35, since steps small enough to be asymptotic would show rounding errors.
 #[test]
 fn orders_are_those_of_the_methods() {
     for method in Method::ALL {
@@ -82,10 +82,10 @@ fn orders_are_those_of_the_methods() {
     }
 }
 
-/// `y' = -λ (y - cos t) - sin t` (Prothero & Robinson) with λ h = 1e5, started off the solution: one step forgets the
-/// start, as L-stability promises (`R ~ 1/(λ h)`), and rates do not blow up.
+/// `y' = -λ (y - cos t) - sin t` (Prothero & Robinson) with λ h = 1e5, started off the solution. Goal: one step damps the start, by
+/// L-stability (`R ~ 1/(λ h)`), and rates remain bounded.
 ///
-/// Tolerance: what is left of the start is some 1/(λ h), the error of the smooth solution some h²/λ.
+/// Tolerance: some 1/(λ h) of the start, and some h²/λ of the smooth solution.
 #[test]
 fn stiff_transients_are_forgotten() {
     for method in Method::ALL {
@@ -101,8 +101,8 @@ fn stiff_transients_are_forgotten() {
     }
 }
 
-/// Robertson's reaction over eleven decades. Source: IVP test set. Tolerance: local errors of 1e-7 over some hundred (order 2: thousand) steps,
-/// while concentrations fall by seven decades.
+/// Robertson's reaction over eleven decades. Source: IVP test set. Tolerance: local errors of 1e-7 over some hundred steps (order 2: a
+/// thousand), while concentrations fall by seven decades.
 #[test]
 fn robertson_reaches_published_values() {
     for method in Method::ALL {
@@ -116,8 +116,8 @@ fn robertson_reaches_published_values() {
     }
 }
 
-/// Transistor amplifier. Source: IVP test set. Goal: index one with exponentials, algebraic unknowns under error control.
-/// Tolerance: local errors of 1e-6 over some thousand steps, 1e-4 leaves room for growth; a tenth of the tolerance gains.
+/// Transistor amplifier. Source: IVP test set. Goal: index one with exponentials, algebraic unknowns under error control. Tolerance: local
+/// errors of 1e-6 over some thousand steps, 1e-4 with a margin for growth; a tenth of the tolerance is more accurate.
 #[test]
 fn transistor_amplifier_reaches_published_values() {
     let error = |method, tolerance: f64| {
@@ -135,8 +135,8 @@ fn transistor_amplifier_reaches_published_values() {
     }
 }
 
-/// Beam of 40 angles. Source: IVP test set (Hairer & Wanner). Goal: undamped waves, which must not hold the steps down.
-/// Tolerances as in `tests/solvers/sundials/published.rs`; order 4 has no more steps than order 2 there.
+/// Beam of 40 angles. Source: IVP test set (Hairer & Wanner). Goal: undamped waves do not limit the steps. Tolerances as in
+/// `tests/solvers/sundials/published.rs`; order 4 needs no more steps than order 2 there.
 #[test]
 fn beam_is_not_held_down_by_its_waves() {
     let angles = [-0.5792366591285007e-2, -0.1483595472463012, -0.1767201761075488];

@@ -1,4 +1,4 @@
-//! Simulations from one control instant to the next: energies over jumps of valves, ends of the model, switches of the case.
+//! Stepwise simulation: energies over jumps of valves, limits of the model, switches of the case.
 
 use std::path::Path;
 
@@ -33,8 +33,8 @@ fn value(sim: &Simulator, name: &str) -> f64 {
     sim.row()[place.expect("a column of the row")]
 }
 
-/// Goal: a valve that shuts, at once or nearly, loses what the fluid in its tube had of kinetic energy, which falls with the time that the
-/// flow takes to end, whatever the tolerance. Tolerance: the balance stays as open as steps of a pressure that rises leave it.
+/// Goal: a valve that closes, abruptly or nearly, dissipates the kinetic energy of the fluid in its tube. The loss falls with the closing
+/// time of the flow, at any tolerance. Tolerance: the balance is as open as steps of a rising pressure leave it.
 #[test]
 fn valves_that_shut_lose_no_energy_that_is_not_there() {
     let ramp = format!("{INLET}={{\"ramp\": {{\"to\": 2e4, \"duration_s\": 0.2}}}}");
@@ -58,7 +58,7 @@ fn valves_that_shut_lose_no_energy_that_is_not_there() {
     }
 }
 
-/// Goal: valves may shut at any time, again and again, with check valves and turbines too; the balance closes to a part of what came in.
+/// Goal: valves may close at any time and repeatedly, with check valves and turbines, too; the balance closes to a part of the input.
 #[test]
 fn valves_that_go_to_and_fro_are_followed() {
     let tank = "/network/tubes/0/opening";
@@ -86,8 +86,8 @@ fn valves_that_go_to_and_fro_are_followed() {
     }
 }
 
-/// Goal: a moment that jumps again and again does the work of its mean on a beam that follows at once; one side of the jump is not taken for
-/// the other. Tolerance: what is booked is exact where the answer is linear, and turns by a sixth of a radian are not quite.
+/// Goal: a moment that jumps repeatedly does the work of its mean on a beam without delay; the two sides of the jump are not confused.
+/// Tolerance: the ledger is exact for linear motion; rotations of a sixth of a radian are not quite linear.
 #[test]
 fn work_of_jumps_is_taken_from_both_sides() {
     let case = load(
@@ -108,7 +108,7 @@ fn work_of_jumps_is_taken_from_both_sides() {
     }
 }
 
-/// Goal: where the model ends is found within a step, so that it does not depend on how far each of them is asked to go, and the row is that there.
+/// Goal: the limit of the model is located within a step, independent of the requested durations, and the row is that of the limit.
 #[test]
 fn the_end_of_the_model_is_found_within_steps() {
     let case = load("hard/closing-bladder", &[]);
@@ -120,7 +120,7 @@ fn the_end_of_the_model_is_found_within_steps() {
         let told = ended.map(|error| error.to_string()).unwrap_or_default();
         assert!(told.contains("a bladder is closed"), "{told}");
         assert_eq!(sim.row()[0], sim.time());
-        // it stands there and goes no further
+        // the simulation remains there
         let beyond = sim.time() + 1e-3;
         assert!(go(&mut sim, beyond, &[]).is_err());
         ends.push(sim.time());
@@ -129,14 +129,15 @@ fn the_end_of_the_model_is_found_within_steps() {
     assert!(apart < 1e-4 * ends[0], "{ends:?}");
 }
 
-/// Goal: a row at an instant at which the case itself switches is that before, as in a history; what is set there takes part in the switch.
+/// Goal: a row at an instant at which the case itself switches is that before the switch, as in a history; inputs set there take part in
+/// the switch.
 #[test]
 fn rows_at_switches_are_those_before() {
     let jump = format!("{INLET}={{\"ramp\": {{\"to\": 2e4, \"start_s\": 0.05, \"duration_s\": 0}}}}");
     let case = load("tour-actuator", &[&jump, "/time/end_s=0.1"]);
     for shut in [1.0, 0.0] {
         let mut sim = simulator(&case, CHAIN, [0.0, 1.0]);
-        // five times 0.01 s is 0.05 s but for round-off
+        // five times 0.01 s is 0.05 s except for rounding errors
         let mut t = 0.0;
         for _ in 0..5 {
             t += 0.01;
@@ -159,7 +160,7 @@ fn rows_at_switches_are_those_before() {
     }
 }
 
-/// Goal: the mesh is judged by what inputs have done, not by how long the case could be simulated.
+/// Goal: the mesh is judged by the past inputs, not by the possible duration of the case.
 #[test]
 fn the_mesh_is_judged_by_what_inputs_did() {
     let told = |end: &str, period: f64, values: [f64; 2]| {
@@ -176,7 +177,7 @@ fn the_mesh_is_judged_by_what_inputs_did() {
     }
 }
 
-/// Goal: what is wrong with a range is told in its own words.
+/// Goal: an invalid range has its own message.
 #[test]
 fn ranges_are_refused_in_their_own_words() {
     let case = load("tour-actuator", &[]);
@@ -195,7 +196,7 @@ fn ranges_are_refused_in_their_own_words() {
     }
 }
 
-/// Goal: a state as bytes comes back as it was, and none of 300 with a flipped bit or a cut does.
+/// Goal: a state is restored exactly from its bytes; all of 300 bit flips and truncations are rejected.
 #[test]
 fn a_state_that_was_changed_is_refused() {
     let case = load("tour-actuator", &["/time/end_s=0.4", "/solver/method=\"esdirk46\""]);

@@ -1,4 +1,4 @@
-//! Steps, stops, what stands between them, restarts, requests that cannot be met.
+//! Steps, stops, interpolation, restarts, and impossible requests.
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::integrate::Absolute;
@@ -21,7 +21,7 @@ fn tight(method: Method) -> OneStepOptions {
     }
 }
 
-/// Stops are hit exactly and never passed, near and far, and one behind is refused.
+/// Goal: stops are hit exactly and never passed, near and far; a past one is rejected.
 ///
 /// Tolerance: time is compared by equality; the solution by local errors of 1e-8 over up to a thousand steps.
 #[test]
@@ -45,10 +45,10 @@ fn stop_times_are_hit_exactly() {
     }
 }
 
-/// Between the ends of a step values are of the third order or the method's, rates of the order less one, and both meet
-/// the ends; outside nothing is given.
+/// Goal: within a step, values are of third order or that of the method, rates of one order less, and both are continuous at the ends;
+/// outside there are none.
 ///
-/// Tolerance: halving the steps gains a factor 2^order, less a quarter.
+/// Tolerance: halving the steps improves the error by a factor 2^order, less a quarter.
 #[test]
 fn dense_output_is_of_third_order() {
     for method in [Method::Esdirk34, Method::Esdirk46, Method::Esdirk57] {
@@ -135,7 +135,7 @@ impl Dae for Swing {
     }
 }
 
-/// Integrals are of the method's order at the ends of steps, of the third within, and start at zero after a restart.
+/// Goal: integrals are of the method's order at the ends of steps, of third order within, and start at zero after a restart.
 ///
 /// Tolerances: the order less 0.4; within a step the error of Hermite's cubic, h⁴/384 times a fourth derivative of about 8.
 #[test]
@@ -168,7 +168,7 @@ fn integrals_are_carried_along() {
     }
 }
 
-/// A restart forgets everything: it goes on as a new integrator would, bit for bit, and counters go on.
+/// Goal: a restarted integrator continues as a new one would, bit for bit; counters continue.
 #[test]
 fn restarts_forget_the_past() {
     for method in Method::ALL {
@@ -189,7 +189,7 @@ fn restarts_forget_the_past() {
     }
 }
 
-/// Step limits are obeyed, and impossible requests are refused in words.
+/// Goal: step limits are respected, and impossible requests are rejected with a message.
 #[test]
 fn options_are_obeyed_or_refused() {
     let options = OneStepOptions {
@@ -220,7 +220,7 @@ fn options_are_obeyed_or_refused() {
     refuse(&[0.0; 3], OneStepOptions { max_step, ..usual() }, "largest step");
 }
 
-/// `y' = -1e19 (y - 1)`: relaxes in a time that no clock near 1 can tell.
+/// `y' = -1e19 (y - 1)`: relaxes faster than the resolution of time near 1.
 struct Instantly(Pattern);
 
 impl Dae for Instantly {
@@ -256,8 +256,8 @@ impl Dae for Instantly {
     }
 }
 
-/// A tenth of the tolerance off, at t = 1: rates of 1e10 1/s ask for a first step below the last digit of the time; it is
-/// taken at the shortest that time can tell, and L-stability does the rest. Found by random case 44. Tolerance: that of the method.
+/// Goal: a start a tenth of the tolerance off, at t = 1: rates of 1e10 1/s require a first step below the last digit of the time. The
+/// shortest representable step is used, and L-stability damps the error. Found by random case 44. Tolerance: that of the method.
 #[test]
 fn what_relaxes_faster_than_time_can_tell_is_no_obstacle() {
     for method in Method::ALL {

@@ -1,4 +1,4 @@
-//! Coefficients of the methods: conditions of order, form, stability.
+//! Coefficients of the methods: order conditions, form, stability.
 
 use slcbeam::onestep::tableau::{Method, STAGES, Tableau};
 
@@ -13,7 +13,7 @@ impl Tree {
     fn density(&self) -> f64 {
         self.size() as f64 * self.0.iter().map(Tree::density).product::<f64>()
     }
-    /// Elementary weight at every stage, without the root's own sum.
+    /// Elementary weight at every stage, without the sum of the root.
     fn weights(&self, t: &Tableau) -> [f64; STAGES] {
         let mut out = [1.0; STAGES];
         for branch in &self.0 {
@@ -26,7 +26,7 @@ impl Tree {
     }
 }
 
-/// All trees of one size; a branch list may come in several orders, which does no harm.
+/// All trees of one size; branch lists may repeat in several orders, which is harmless.
 fn trees(size: usize) -> Vec<Tree> {
     fn forests(size: usize) -> Vec<Vec<Tree>> {
         if size == 0 {
@@ -53,8 +53,8 @@ fn defect(t: &Tableau, b: &[f64; STAGES], order: usize) -> f64 {
     (1..=order).flat_map(trees).map(|tree| one(&tree)).fold(0.0, f64::max)
 }
 
-/// Butcher's order conditions. Source: Hairer, Nørsett & Wanner I, II.2. Tolerance: rounding of products of at most five
-/// sums of seven coefficients, the largest 2.5; and the next order is not reached.
+/// Goal: Butcher's order conditions hold, and those of the next order do not. Source: Hairer, Nørsett & Wanner I, II.2. Tolerance: rounding
+/// of products of at most five sums of seven coefficients, the largest 2.5.
 #[test]
 fn order_conditions_hold() {
     for method in Method::ALL {
@@ -68,7 +68,7 @@ fn order_conditions_hold() {
     }
 }
 
-/// Rows sum to their times, the form is the one the solver relies on, and the second stage is of second order.
+/// Goal: rows sum to their times, the form is as the solver requires, and the second stage is of second order.
 #[test]
 fn form_is_singly_diagonal_and_stiffly_accurate() {
     for method in Method::ALL {
@@ -89,8 +89,9 @@ fn form_is_singly_diagonal_and_stiffly_accurate() {
     }
 }
 
-/// Goal: `1 - |R(iω)|` goes with the power that [`Tableau::damping`] says, on which the leftover of Newton's iteration rests. Tolerance: 0.1 of the power
-/// between ω = 0.2 and 0.4, where rounding is below 1e-6 of it. At rtol 1e-4 and looser the leftover is 0.02, at 1e-6 less by `100^(damping/power - 1)`.
+/// Goal: `1 - |R(iω)|` follows the power [`Tableau::damping`], which determines the accepted remainder of Newton's iteration. Tolerance:
+/// 0.1 of the power between ω = 0.2 and 0.4, where rounding is below 1e-6 of it. At rtol 1e-4 and looser the remainder is 0.02, at 1e-6
+/// less by `100^(damping/power - 1)`.
 #[test]
 fn damping_goes_with_its_power() {
     for method in Method::ALL {

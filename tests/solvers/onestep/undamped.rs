@@ -1,4 +1,4 @@
-//! Long motion that nothing damps: energy, steps, rejections.
+//! Long undamped motion: energy, steps, rejections.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -8,10 +8,10 @@ use slcbeam::onestep::tableau::Method;
 use slcbeam::run::record::Memory;
 use slcbeam::run::{dynamics, summary::Status};
 
-/// First mode of a cantilever at eight cells' nodes [m], tip 1e-5 m: of the continuous beam.
+/// First mode of a continuous cantilever at the nodes of eight cells [m]; tip 1e-5 m.
 const CONTINUOUS: &str =
     "[0, 2.5893634e-7, 9.7285808e-7, 2.048379e-6, 3.3952311e-6, 4.929465e-6, 6.577473e-6, 8.2805824e-6, 1e-5]";
-/// The same of the mesh.
+/// First mode of the discrete beam at the same nodes [m].
 const DISCRETE: &str = "[0, 2.7030191956e-7, 9.8929692637e-7, 2.0656657939e-6, 3.410812361e-6, 4.9420336476e-6, 6.5864694025e-6, 8.2855887495e-6, 1e-5]";
 
 /// Angular frequency of this mode on the mesh [1/s], from `slcbeam modes`.
@@ -25,7 +25,7 @@ struct Released {
     gain: f64,
 }
 
-/// Releases the dry cantilever, on eight cells, from a shape.
+/// Releases the dry cantilever with eight cells from a shape.
 fn release(shape: &str, effects: &str, rtol: f64, end: f64) -> Released {
     let sets = [
         r#"/mesh={"segments":8,"cells_per_segment":1}"#.to_owned(),
@@ -54,8 +54,8 @@ fn release(shape: &str, effects: &str, rtol: f64, end: f64) -> Released {
     }
 }
 
-/// Goal: the leftover of Newton's iteration adds no energy to undamped motion, at any tolerance, whether the start excites one mode
-/// or all. Tolerance: rounding over some 1e4 steps.
+/// Goal: the remainder of Newton's iteration adds no energy to undamped motion, at any tolerance, for a start with one mode or all.
+/// Tolerance: rounding over some 1e4 steps.
 #[test]
 fn undamped_motion_gains_no_energy() {
     for (shape, effects) in [
@@ -76,10 +76,10 @@ fn undamped_motion_gains_no_energy() {
     }
 }
 
-/// Goal: one mode loses the energy that the method takes and no other: `1 - |R(i h ω)|²` a step. Steps follow the order: tenfold
-/// tolerance asks for `10^(1/4) = 1.8` times the steps, up to 2.5 where sizes below 1.5 times the last are not taken; none is rejected.
+/// Goal: one mode loses exactly the energy of the method's damping: `1 - |R(i h ω)|²` per step. Steps follow the order: a tenfold tolerance
+/// changes their number by `10^(1/4) = 1.8`, up to 2.5 since step sizes below 1.5 times the last are not used; none is rejected.
 ///
-/// Tolerance: 20 %, since the loss goes with the sixth power of the frequency, which is known to 0.5 %, and of the step.
+/// Tolerance: 20 %, since the loss is proportional to the sixth power of the step and of the frequency, which is known to 0.5 %.
 #[test]
 fn one_mode_loses_the_energy_that_the_method_takes() {
     let tableau = Method::Esdirk46.tableau();
@@ -116,8 +116,8 @@ fn one_mode_loses_the_energy_that_the_method_takes() {
     }
 }
 
-/// Goal: estimates of superposed oscillations fluctuate, and few steps are rejected for it. The axial waves that a start by `u1` alone
-/// excites move by 1e-8 of the length; steps do not resolve them to the tolerance of bending.
+/// Goal: error estimates of superposed oscillations fluctuate, but few steps are rejected because of it. A start by `u1` alone excites
+/// axial waves of 1e-8 of the length; steps do not resolve them to the tolerance of bending.
 #[test]
 fn superposed_waves_reject_few_steps() {
     for (what, shape, effects, rtol, end, most) in [

@@ -1,4 +1,4 @@
-//! Recoverable faults are recovered from, fatal ones come back word for word, panics go on.
+//! Recoverable faults are recovered from, fatal ones are returned verbatim, panics propagate.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -8,14 +8,14 @@ use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
 
-/// `y' = -y` with something that happens in the residual and the Jacobian.
+/// `y' = -y` with hooks in the residual and the Jacobian.
 struct Decay<R, J> {
     pattern: Pattern,
     residual: R,
     jacobian: J,
 }
 
-/// Decay with a residual that misbehaves.
+/// Decay with a faulty residual.
 fn decay<R, J>(residual: R, jacobian: J) -> Ida<Decay<R, J>>
 where
     R: FnMut(f64, f64) -> Result<f64, EvaluationError>,
@@ -77,7 +77,7 @@ where
     }
 }
 
-/// Residuals that are good for a number of calls and then `bad` for ever.
+/// Residuals that succeed a number of times, then always return `bad`.
 fn after(
     calls: u32,
     bad: impl Fn() -> Result<f64, EvaluationError>,
@@ -89,7 +89,7 @@ fn after(
     }
 }
 
-/// Steps to t = 1, at most a thousand of them.
+/// Integrates to t = 1 in at most a thousand steps.
 fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IntegrationError>> {
     for _ in 0..1000 {
         if ida.step(1.0)?.stopped {
@@ -99,7 +99,7 @@ fn to_one<D: Dae>(ida: &mut Ida<D>) -> Result<f64, Box<IntegrationError>> {
     panic!("more than a thousand steps");
 }
 
-/// Twelve evaluations that fail or give NaN on the way do not hinder the answer.
+/// Twelve evaluations that fail or return NaN do not affect the answer.
 ///
 /// Goal: `e⁻¹`, and failures counted. Tolerance: local 1e-5 over some hundred steps stays below 1e-3.
 #[test]
@@ -119,7 +119,7 @@ fn recoverable_faults_are_recovered_from() {
     assert!(ida.counters().newton_failures + ida.counters().residual_evaluations > 40);
 }
 
-/// A fault that no step cures ends the run with the last words of the equations and the time reached.
+/// Goal: a fault that no step cures ends the run with the last message of the equations and the time reached.
 #[test]
 fn persistent_recoverable_fault_is_told() {
     let torn = after(60, || Err(EvaluationError::Recoverable("the valve is torn".to_owned())));
@@ -129,7 +129,7 @@ fn persistent_recoverable_fault_is_told() {
     assert!(failure.time > 0.0 && failure.time < 1.0, "{failure:?}");
     assert!(failure.to_string().contains("however short the step"), "{failure}");
     assert_eq!(ida.time(), failure.time);
-    // the last good state stands
+    // the last good state remains
     assert!(
         (ida.y()[0] - (-failure.time).exp()).abs() < 1e-3,
         "{:?} {failure:?}",
@@ -137,7 +137,7 @@ fn persistent_recoverable_fault_is_told() {
     );
 }
 
-/// Values that are not finite name the equation.
+/// Goal: values that are not finite name the equation.
 #[test]
 fn values_that_are_not_finite_name_the_equation() {
     let mut ida = decay(after(60, || Ok(f64::INFINITY)), || Ok(1.0));
@@ -162,7 +162,7 @@ fn values_that_are_not_finite_name_the_equation() {
     );
 }
 
-/// A singular matrix names the unknown; it ends the run only after shorter steps were tried.
+/// Goal: a singular matrix names the unknown; it ends the run only after shorter steps were tried.
 #[test]
 fn singular_matrix_names_the_unknown() {
     let mut calls = 0;
@@ -180,7 +180,7 @@ fn singular_matrix_names_the_unknown() {
     assert!(ida.counters().factorizations >= 10);
 }
 
-/// A fatal fault comes back word for word, from the residual and from the Jacobian.
+/// Goal: a fatal fault is returned verbatim, from the residual and from the Jacobian.
 #[test]
 fn fatal_faults_come_back_word_for_word() {
     let words = "bladder 3: pressure below vacuum, α = 1.5";
@@ -201,7 +201,7 @@ fn fatal_faults_come_back_word_for_word() {
     assert_eq!(to_one(&mut ida).unwrap_err().to_string(), words);
 }
 
-/// A panic passes through the C code with its payload; the integrator can be dropped afterwards.
+/// Goal: a panic passes through the C code with its payload; the integrator can be dropped afterwards.
 #[test]
 fn panics_go_on_with_their_payload() {
     #[derive(Debug, PartialEq)]

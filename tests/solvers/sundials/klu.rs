@@ -1,16 +1,16 @@
-//! Factors and their guard.
+//! Factorization by KLU, and the guard of its pivots.
 
 use slcbeam::sparse::Pattern;
 use slcbeam::sparse::{Klu, KluError};
 
 use super::chance::Random;
 
-/// Dense 2 by 2.
+/// Dense pattern of a 2 by 2 matrix.
 fn small() -> Pattern {
     Pattern::from_columns(&[vec![0, 1], vec![0, 1]])
 }
 
-/// Pivots that were good for one matrix are useless for the next.
+/// Good pivots of one matrix may be useless for the next.
 ///
 /// Source: found with SUNDIALS' own KLU interface. Goal: without the guard x = (0, 2) and no complaint;
 /// with it x = (1, 2) and one refresh counted. Tolerance: rounding of a well-conditioned 2 by 2.
@@ -37,7 +37,7 @@ fn guard_sees_stale_pivots() {
     }
 }
 
-/// A row that stands alone becomes zero: growth of pivots does not see it, the guard does.
+/// Goal: an isolated row that becomes zero is detected by the guard; pivot growth misses it.
 #[test]
 fn a_block_of_one_row_that_vanishes_is_singular() {
     let mut klu = Klu::new(&Pattern::from_columns(&[vec![0], vec![1]])).unwrap();
@@ -46,7 +46,7 @@ fn a_block_of_one_row_that_vanishes_is_singular() {
     klu.factor(&[1.0, 2.0]).unwrap();
 }
 
-/// A singular matrix names its column, before and after good ones, and the next good one is factored again.
+/// A singular matrix names its column, before and after regular ones; the next regular one is factored again.
 ///
 /// Goal: numbers and structure that are singular; recovery. Tolerance: exact small numbers.
 #[test]
@@ -78,16 +78,16 @@ fn badly_scaled_rows_are_solved() {
     assert!((x[0] - 1.0).abs() < 3e-15 && (x[1] - 2.0).abs() < 3e-15, "{x:?}");
 }
 
-/// A solution by rows is KLU's own: with many blocks and what stands above them, with one, fresh factors or old pivots.
+/// Goal: a solution by rows equals KLU's own: with many blocks and entries above them, with one block, with fresh factors or old pivots.
 ///
-/// Goal: solve and solve_block agree, and find what the right-hand side was made of. Tolerance: rounding of dominant diagonals.
+/// Goal: solve and solve_block agree, and recover the known solution. Tolerance: rounding of dominant diagonals.
 #[test]
 fn rows_solve_as_klu_does() {
     let mut chance = Random(7);
     let mut blocks = [0, 0];
     for trial in 0..60 {
         let n = 1 + chance.below(30);
-        // above the diagonal alone every unknown is a block of its own; a few entries below join some
+        // with entries only above the diagonal, every unknown is a block; a few entries below join some
         let below = trial % 3 * n / 2;
         let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
         for k in 0..3 * n + below {

@@ -1,4 +1,4 @@
-//! The solver room alone: problems with published answers, the protocol of faults, the guard of the factors.
+//! The solver interface alone: problems with published answers, the protocol of faults, the guard of the factors.
 
 #[path = "../../common/chance.rs"]
 pub mod chance;

@@ -26,7 +26,7 @@ fn assert_close(values: &[f64], exact: &[f64], relative: f64) {
 /// Robertson's reaction over eleven decades of time.
 ///
 /// Source: IVP test set (t = 1e11) and SUNDIALS' idaRoberts (t = 4e10). Goal: stiff scales and an algebraic equation.
-/// Tolerance: local errors of 1e-9 relative add up over some thousand steps; 1e-6 leaves room for that.
+/// Tolerance: local errors of 1e-9 relative add up over some thousand steps; 1e-6 includes a margin.
 #[test]
 fn robertson_reaches_published_values() {
     let options = IdaOptions {
@@ -54,10 +54,10 @@ fn robertson_reaches_published_values() {
 
 /// Transistor amplifier over twenty periods of the input.
 ///
-/// Source: IVP test set (Rentrop, Roche & Steinebach). Goal: index 1 with exponential nonlinearities. Its algebraic
-/// voltages are rates of the differential ones, so their error is of one order less; left in the error test they cost
-/// more than ten times the steps. Tolerance: local errors of 5e-9, and 1e-9 V of the smallest voltage, 6 mV; errors of tolerances nearby are
-/// 1.5e-7 to 4e-7, and 1e-6 relative leaves room for what round-off makes of steps.
+/// Source: IVP test set (Rentrop, Roche & Steinebach). Goal: index 1 with exponential nonlinearities. Its algebraic voltages are rates of
+/// the differential ones, so their error is of one order less; in the error test they would cost more than ten times the steps. Tolerance:
+/// local errors of 5e-9, and 1e-9 V of the smallest voltage, 6 mV. Errors at similar tolerances are 1.5e-7 to 4e-7; 1e-6 relative leaves a
+/// margin for steps changed by rounding.
 #[test]
 fn transistor_amplifier_reaches_published_values() {
     let options = IdaOptions {
@@ -77,10 +77,9 @@ fn transistor_amplifier_reaches_published_values() {
 
 /// Beam of 40 angles under a force that follows sin² t until t = π, at t = 5.
 ///
-/// Source: IVP test set (Hairer & Wanner). Goal: undamped waves, for which order 2 needs hundreds of steps where higher
-/// orders need tens of thousands. Tolerance: local errors of 1e-5 over 750 steps add up to less than 7e-3, and a
-/// hundredth of the tolerance must cut errors more than tenfold (order 2 promises 100^(2/3) = 22); rates carry the
-/// waves and are less accurate.
+/// Source: IVP test set (Hairer & Wanner). Goal: undamped waves, for which order 2 needs hundreds of steps, higher orders tens of
+/// thousands. Tolerance: local errors of 1e-5 over 750 steps add up to less than 7e-3, and a hundredth of the tolerance must reduce errors
+/// more than tenfold (order 2 promises 100^(2/3) = 22); rates include the waves and are less accurate.
 #[test]
 fn beam_needs_few_steps_of_order_two() {
     let angles = [-0.5792366591285007e-2, -0.1483595472463012, -0.1767201761075488];

@@ -22,7 +22,7 @@ fn transistor_amplifier_starts_consistently() {
     }
 }
 
-/// A far start: `tan⁻¹(y) = 0`, for which undamped Newton diverges from |y| > 1.392.
+/// A remote start: `tan⁻¹(y) = 0`, for which undamped Newton diverges from |y| > 1.392.
 ///
 /// Source: Deuflhard, Newton Methods for Nonlinear Problems, example of damping. Tolerance: quadratic convergence.
 #[test]

@@ -1,4 +1,4 @@
-//! Steps, stops, interpolation, restarts and requests that cannot be met.
+//! Steps, stops, interpolation, restarts and impossible requests.
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::integrate::Absolute;
@@ -6,7 +6,7 @@ use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
 
-/// `q' = p, p' = -q, 0 = s - q p`: known for all times, one unknown algebraic.
+/// `q' = p, p' = -q, 0 = s - q p`: with a known solution, and one algebraic unknown.
 struct Pendulum {
     pattern: Pattern,
 }
@@ -64,13 +64,13 @@ fn tight() -> IdaOptions {
     }
 }
 
-/// Stops are hit exactly and never passed, near and far, and one behind is refused.
+/// Goal: stops are hit exactly and never passed, near and far; a past one is rejected.
 ///
 /// Tolerance: time is compared by equality; the solution by the accumulated local error, 1e-8 times some hundred steps.
 #[test]
 fn stop_times_are_hit_exactly() {
     let mut ida = pendulum(&tight());
-    // the last two differ by round-off only
+    // the last two differ only by rounding
     for stop in [1e-3, 0.1, 0.1 + 1e-9, 1.0 / 3.0, 2.0, 2.0 + 4e-16] {
         loop {
             let step = ida.step(stop).unwrap();
@@ -89,10 +89,10 @@ fn stop_times_are_hit_exactly() {
     assert!(ida.step(2.5).is_ok());
 }
 
-/// Within a step the polynomial gives values and derivatives; outside it refuses.
+/// Goal: within a step the polynomial gives values and derivatives; outside there is an error.
 ///
-/// Tolerance: at the end of the step it is the solution itself, so rounding; inside, the local error 1e-8 with
-/// slack for the derivative, which loses a factor 1/h.
+/// Tolerance: rounding at the end of the step, where it equals the solution; inside, the local error 1e-8 with a margin for the derivative,
+/// which loses a factor 1/h.
 #[test]
 fn interpolation_matches() {
     let mut ida = pendulum(&tight());
@@ -116,7 +116,7 @@ fn interpolation_matches() {
     }
 }
 
-/// Counters go on over restarts, which IDA itself sets to zero, and the equations are given back.
+/// Goal: counters continue over restarts, in which IDA resets them, and the equations are returned.
 #[test]
 fn counters_accumulate_over_restarts() {
     let mut ida = pendulum(&tight());
@@ -144,7 +144,7 @@ fn counters_accumulate_over_restarts() {
     assert_eq!(ida.into_dae().name(2), "s");
 }
 
-/// The same run twice is the same bit for bit.
+/// Goal: two equal runs agree bit for bit.
 #[test]
 fn runs_repeat_bit_for_bit() {
     let run = || {
@@ -155,7 +155,7 @@ fn runs_repeat_bit_for_bit() {
     assert_eq!(run(), run());
 }
 
-/// Order, step limits and the choice of tested unknowns are obeyed.
+/// Goal: order, step limits and the choice of tested unknowns are respected.
 #[test]
 fn options_are_obeyed() {
     let options = IdaOptions {
@@ -191,7 +191,7 @@ fn options_are_obeyed() {
     assert!(steps(some) < steps(all), "the algebraic unknown asks for most steps");
 }
 
-/// Requests that cannot be met are refused in words.
+/// Goal: impossible requests are rejected with a message.
 #[test]
 fn impossible_requests_are_refused() {
     let pattern = || Pattern::from_columns(&[vec![0, 1, 2], vec![0, 1, 2], vec![2]]);

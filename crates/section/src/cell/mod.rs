@@ -6,16 +6,16 @@
 //! strains       zz = e + kappa x           yy = g0 + g1 x                     no shear
 //! ```
 //!
-//! e is the stretch and kappa the curvature of the beam (positive: the +x fibre in tension); g0 and g1 are the uniform and the anticlastic
-//! strain across the width. They are free: the forces conjugate to them vanish but for the thrust of the fluid on the bladder's two ends.
-//! A bladder's volume over its length changes by
+//! e is the stretch and kappa the curvature of the beam (positive: the +x fibre in tension). g0 and g1 are the uniform
+//! and the anticlastic strain across the width. They are free: their conjugate forces vanish, except for the thrust of
+//! the fluid on the two ends of a bladder. A bladder's volume per length changes by
 //!
 //! ```text
 //! da = boundary integral of u . n + A (g0 + g1 x_c)                                              [L2]
 //! ```
 //!
-//! where the first term has the cavity's own macroscopic strain A (e + kappa x_c) in it, and pressure p does the work p da: it pushes on
-//! the walls and, through the ends, with p A at the centroid x_c. So the response is reciprocal by construction.
+//! The first term contains the cavity's macroscopic strain A (e + kappa x_c). Pressure p does the work p da: it acts on
+//! the walls, and through the ends with p A at the centroid x_c. The response is therefore reciprocal by construction.
 
 pub(crate) mod respond;
 mod shear;
@@ -29,23 +29,23 @@ use crate::permeability;
 
 pub use respond::{Kind, Response};
 
-/// What a triangle of the cell is a part of; each carries the place of its material in [Cell::materials].
+/// Part of the cell that contains a triangle, with the index of its material in [Cell::materials].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// Solid.
     Solid(usize),
-    /// The upper row's bladder; the material is what surrounds it.
+    /// The upper row's bladder, with the material around it.
     Upper(usize),
-    /// The lower row's bladder.
+    /// The lower row's bladder, with the material around it.
     Lower(usize),
 }
 
 /// A meshed unit cell.
 #[derive(Debug, Clone)]
 pub struct Cell {
-    /// Quadratic triangles, cavities included.
+    /// Quadratic triangles, including those of cavities.
     pub mesh: Quadratic<Part>,
-    /// The section's material, then those of the regions.
+    /// Material of the section, then those of the regions.
     pub materials: Vec<Material>,
     /// Pitch and height [m].
     pub size: [f64; 2],
@@ -65,7 +65,7 @@ pub fn bladders(section: &Section) -> [Option<Outline>; 2] {
     [upper, lower]
 }
 
-/// The coarsest mesh of a section's cell.
+/// Coarsest mesh of a section's cell.
 pub fn mesh(section: &Section, fineness: &Fineness) -> Result<Mesh<Part>, Error> {
     let (half_pitch, half) = (section.pitch_m / 2.0, section.height_m / 2.0);
     let rows = bladders(section);
@@ -103,11 +103,12 @@ pub fn mesh(section: &Section, fineness: &Fineness) -> Result<Mesh<Part>, Error>
     Ok(if mirrored { mesh.with_mirror(&other) } else { mesh })
 }
 
-/// Integrals over a cavity: area [m^2], area times height of its centroid [m^3], second moment about the mid-plane [m^4].
+/// Integrals over a cavity: area [m^2], area times height of the centroid [m^3], second moment about the mid-plane
+/// [m^4].
 pub type Moments = [f64; 3];
 
 impl Cell {
-    /// From a mesh of the section's cell.
+    /// Cell from a mesh of the section's cell.
     pub fn new(section: &Section, mesh: &Mesh<Part>) -> Self {
         let regions = section.regions.iter().map(|r| r.material);
         let materials = std::iter::once(section.material).chain(regions).collect();
@@ -123,7 +124,7 @@ impl Cell {
         triangle.map(|k| self.mesh.nodes[k])
     }
 
-    /// Moments of what `weight` selects and weighs.
+    /// Moments of the parts of the cell, weighted by `weight`.
     pub fn moments(&self, weight: &dyn Fn(Part) -> f64) -> Result<Moments, Error> {
         let mut sum = [0.0; 3];
         for (triangle, &part) in self.mesh.triangles.iter().zip(&self.mesh.parts) {
@@ -141,7 +142,7 @@ impl Cell {
         Ok(sum)
     }
 
-    /// Permeability q1 [m^4] of the bladders that `of` selects: see [permeability].
+    /// Permeability q1 [m^4] of the bladders selected by `of`: see [permeability].
     pub fn permeability(&self, of: &dyn Fn(Part) -> bool) -> Result<f64, Error> {
         let chosen: Vec<[usize; 6]> = self
             .mesh
@@ -155,7 +156,7 @@ impl Cell {
     }
 }
 
-/// The error of an element turned inside out.
+/// Error for a folded element.
 pub fn folded() -> Error {
     Error::Mesh("an element beside a curve is folded".to_owned())
 }

@@ -1,4 +1,4 @@
-//! The cell's condensed stiffness: the periodic part eliminated.
+//! Condensed stiffness of the cell, without the periodic part.
 //!
 //! ```text
 //! energy per width   1/2 w.Kw + w.Fq + 1/2 q.Mq - p.(Gw + Hq),    q = (e, kappa, g0, g1), p = (p_u, p_l)     [L3]
@@ -15,12 +15,12 @@ use crate::error::Error;
 use crate::sparse::Factor;
 use std::collections::HashMap;
 
-/// Which prism of the beam's width the cell stands for.
+/// Prism across the beam's width that the cell represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Where the bladders are.
+    /// Between the ends of the bladders.
     Hollow,
-    /// The side walls beyond their ends, where the same cell is solid.
+    /// Side walls beyond the ends of the bladders, where the cell is solid.
     Filled,
 }
 
@@ -34,15 +34,15 @@ pub struct Response {
     pub area_by_pressure: [[f64; 2]; 2],
     /// Moments of the cavities.
     pub cavities: [Moments; 2],
-    /// How far S and R were from symmetric before they were made so, relative.
+    /// Largest relative asymmetry of S and R before symmetrization.
     pub asymmetry: f64,
     /// Number of displacement unknowns.
     pub unknowns: usize,
     pub(crate) factor: Factor,
-    /// K^-1 of F's columns and of G's rows.
+    /// K^-1 applied to the columns of F and the rows of G.
     pub(crate) fields: Vec<Vec<f64>>,
     pub(crate) sides: Vec<Vec<f64>>,
-    /// Node to independent node; `usize::MAX` where there is no solid.
+    /// Independent node of each node; `usize::MAX` for nodes without solid.
     pub(crate) independent: Vec<usize>,
     pub(crate) elements: Vec<([usize; 6], Matrix)>,
 }
@@ -67,7 +67,7 @@ impl Response {
             let dofs = dofs(&triangle, &independent);
             for i in 0..12 {
                 for j in 0..12 {
-                    // The first two unknowns are held: the cell cannot drift.
+                    // The first two unknowns are fixed to prevent rigid-body translation.
                     if dofs[i] >= dofs[j] && dofs[j] >= 2 {
                         entries.push((dofs[i], dofs[j], k[i][j]));
                     }
@@ -137,7 +137,8 @@ impl Response {
         })
     }
 
-    /// (e, 1, g0, g1): strains of a unit curvature without force, lateral forces and pressure. The moment per width is S q over the pitch.
+    /// Strains (e, 1, g0, g1) of a unit curvature without axial force, lateral forces and pressure. The moment per
+    /// width is S q over the pitch.
     pub fn unit_curvature(&self) -> Result<[f64; 4], Error> {
         let s = &self.stiffness;
         let free = [0, 2, 3];
@@ -160,7 +161,7 @@ impl Response {
         Ok(out)
     }
 
-    /// Nodal displacements `[along, high]` of the periodic part at every node under q and p; zero where there is no solid.
+    /// Displacements `[along, high]` of the periodic part at every node for q and p; zero for nodes without solid.
     pub fn periodic_part(&self, q: [f64; 4], p: [f64; 2]) -> Vec<[f64; 2]> {
         let loads = [-q[0], -q[1], -q[2], -q[3], p[0], p[1]];
         let value = |dof: usize| loads.iter().zip(&self.fields).map(|(l, f)| l * f[dof]).sum::<f64>();
@@ -185,7 +186,7 @@ impl Part {
     }
 }
 
-/// The triangles that carry load, with their materials.
+/// Load-carrying triangles with their materials.
 pub(crate) fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6], usize)> {
     let material = move |part: Part| match (part, kind) {
         (Part::Solid(m), _) | (Part::Upper(m) | Part::Lower(m), Kind::Filled) => Some(m),
@@ -198,12 +199,12 @@ pub(crate) fn solids(cell: &Cell, kind: Kind) -> impl Iterator<Item = ([usize; 6
         .filter_map(move |(t, &p)| material(p).map(|m| (*t, m)))
 }
 
-/// The twelve unknowns of a triangle.
+/// Indices of the twelve unknowns of a triangle.
 pub(crate) fn dofs(triangle: &[usize; 6], independent: &[usize]) -> [usize; 12] {
     std::array::from_fn(|i| 2 * independent[triangle[i / 2]] + i % 2)
 }
 
-/// Numbers the nodes of the solid; a node on the right face takes the number of its fellow on the left.
+/// Numbers the nodes of the solid; nodes on the right face have the numbers of their partners on the left face.
 pub(crate) fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec<usize>, Error> {
     let [pitch, height] = cell.size;
     let nodes = &cell.mesh.nodes;
@@ -230,18 +231,18 @@ pub(crate) fn periodic(cell: &Cell, solid: &[([usize; 6], usize)]) -> Result<Vec
     Ok(independent)
 }
 
-/// Boundary integral of N_i n over a cavity's wall: its area's derivative by nodal displacements.
+/// Boundary integral of N_i n over a cavity's wall: derivative of its area by the nodal displacements.
 pub(crate) fn walls(cell: &Cell, independent: &[usize], n: usize, of: fn(Part) -> bool) -> Vec<f64> {
     let mut out = vec![0.0; n];
     for ([a, middle, b], _) in cavity_walls(cell, of) {
         let nodes = [a, b, middle].map(|k| cell.mesh.nodes[k]);
         for [t, w] in GAUSS {
-            // Shapes of the edge from the triangle's: L0 = 1 - t, L1 = t, L2 = 0.
+            // Shapes of an edge from those of the triangle: L0 = 1 - t, L1 = t, L2 = 0.
             let (s, ds) = shapes(t, 0.0);
             let shape = [s[0], s[1], s[3]];
             let slope = [ds[0][0], ds[1][0], ds[3][0]];
             let d: [f64; 2] = std::array::from_fn(|c| (0..3).map(|k| slope[k] * nodes[k][c]).sum());
-            // Counter-clockwise along (dz, dx): outwards is (dx, -dz).
+            // Counter-clockwise along (dz, dx): the outward normal is (dx, -dz).
             for (k, node) in [a, b, middle].into_iter().enumerate() {
                 out[2 * independent[node]] += w * shape[k] * d[1];
                 out[2 * independent[node] + 1] -= w * shape[k] * d[0];
@@ -251,7 +252,7 @@ pub(crate) fn walls(cell: &Cell, independent: &[usize], n: usize, of: fn(Part) -
     out
 }
 
-/// Edges (first, middle, last) of the chosen cavities' triangles beside solid ones, counter-clockwise about the cavity.
+/// Edges (first, middle, last) between the selected cavities and the solid, counter-clockwise about the cavity.
 pub(crate) fn cavity_walls(cell: &Cell, of: fn(Part) -> bool) -> Vec<([usize; 3], Part)> {
     let mut open: HashMap<usize, ([usize; 3], Part)> = HashMap::new();
     for (t, &part) in cell.mesh.triangles.iter().zip(&cell.mesh.parts) {

@@ -1,22 +1,22 @@
-//! The cell's stiffness in shear.
+//! Shear stiffness of the cell.
 //!
-//! A long beam under a constant transverse force V has a moment that grows along it: M' = -V. Per unit of growth of the curvature,
-//! kappa(z) = z about the cell's middle, its displacement is
+//! In a long beam under a constant transverse force V the moment varies along the beam: M' = -V. For a unit gradient of
+//! the curvature, kappa(z) = z from the middle of the cell, the displacement is
 //!
 //! ```text
 //! u = macroscopic part with strains z (e1 + x), z (g0 + g1 x)  +  z w1  +  v,     v periodic        [L5]
 //! ```
 //!
-//! with (e1, 1, g0, g1) and w1 the strains and the periodic part of a unit curvature without force: from one cell to the next the field
-//! grows by pitch times that of the unit curvature. v is in equilibrium when
+//! Here (e1, 1, g0, g1) and w1 are the strains and the periodic part of a unit curvature without force. From one cell
+//! to the next the field grows by pitch times that of the unit curvature. v is in equilibrium if
 //!
 //! ```text
 //! a(u, v*) = pitch * (forces of the unit curvature on the right face) . v*    for all periodic v*   [L6]
 //! ```
 //!
-//! and uniform strains are added that leave no mean force, moment and lateral forces over the cell. Shear strains from the lateral strain's
-//! growth along the beam are left out, as in plane stress. What the energy has beyond that of the moment is the shear's:
-//!
+//! Uniform strains are added so that the mean axial force, moment and lateral forces over the cell vanish. Shear
+//! strains by the gradient of the lateral strain along the beam are neglected, as in plane stress. The energy beyond
+//! that of the moment is the shear energy:
 //! ```text
 //! energy / pitch = EI pitch^2/24 + V^2 / 2 kGA,     V = EI  (per unit of width)                     [L7]
 //! ```

@@ -1,11 +1,11 @@
-//! The quadratic triangle: shapes, their derivatives, quadrature; and its matrices.
+//! Quadratic triangle: shape functions, derivatives, quadrature, matrices.
 
 pub mod poisson;
 pub mod solid;
 
 use crate::input::Point;
 
-/// Radon's rule of degree 5 on the unit triangle: (xi, eta, weight), weights sum to 1/2.
+/// Radon's rule of degree 5 on the unit triangle: (xi, eta, weight); weights sum to 1/2.
 pub const RADON: [[f64; 3]; 7] = {
     const A: f64 = 0.101_286_507_323_456_33;
     const B: f64 = 0.470_142_064_105_115_1;
@@ -22,26 +22,26 @@ pub const RADON: [[f64; 3]; 7] = {
     ]
 };
 
-/// Gauss's three points on [0, 1]: (t, weight).
+/// Three-point Gauss rule on [0, 1]: (t, weight).
 pub const GAUSS: [[f64; 2]; 3] = {
     const D: f64 = 0.387_298_334_620_741_7;
     [[0.5 - D, 5.0 / 18.0], [0.5, 4.0 / 9.0], [0.5 + D, 5.0 / 18.0]]
 };
 
-/// What an element knows at a quadrature point. The seventh shape is the bubble 27 L0 L1 L2.
+/// Values at a quadrature point of an element. The seventh shape function is the bubble 27 L0 L1 L2.
 #[derive(Debug, Clone, Copy)]
 pub struct Site {
-    /// The place `[along, high]` [m].
+    /// Position `[along, high]` [m].
     pub place: Point,
     /// Weight times area [m^2].
     pub weight: f64,
-    /// Six nodal shapes and the bubble.
+    /// Six nodal shape functions and the bubble.
     pub shapes: [f64; 7],
-    /// Their derivatives by along and high [1/m].
+    /// Their derivatives with respect to along and high [1/m].
     pub slopes: [[f64; 2]; 7],
 }
 
-/// Shapes and their derivatives by xi and eta.
+/// Shape functions and their derivatives with respect to xi and eta.
 pub fn shapes(xi: f64, eta: f64) -> ([f64; 7], [[f64; 2]; 7]) {
     let l = [1.0 - xi - eta, xi, eta];
     let dl = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
@@ -62,7 +62,7 @@ pub fn shapes(xi: f64, eta: f64) -> ([f64; 7], [[f64; 2]; 7]) {
     (n, dn)
 }
 
-/// The seven sites of an element. None when it is folded.
+/// The seven quadrature points of an element. None if it is folded.
 pub fn sites(nodes: &[Point; 6]) -> Option<[Site; 7]> {
     let mut all = [Site {
         place: [0.0; 2],

@@ -1,9 +1,9 @@
-//! Matrix of the Laplacian and load of a unit source on a quadratic triangle.
+//! Laplacian matrix and unit source load of a quadratic triangle.
 
 use super::sites;
 use crate::input::Point;
 
-/// Integrals of grad N_i . grad N_j and of N_i. None when the element is folded.
+/// Integrals of grad N_i . grad N_j and of N_i. None if the element is folded.
 pub fn matrix(nodes: &[Point; 6]) -> Option<([[f64; 6]; 6], [f64; 6])> {
     let (mut k, mut f) = ([[0.0; 6]; 6], [0.0; 6]);
     for site in sites(nodes)? {

@@ -1,15 +1,17 @@
-//! Stiffness of a solid element under generalised plane strain, free of volumetric locking.
+//! Stiffness of a solid element under generalized plane strain, without volumetric locking.
 //!
 //! ```text
 //! energy per width   W = integral of mu e:e + K/2 (P theta)^2          [S1]
 //!                    e = eps - theta/3 I,  theta = tr eps
 //! ```
 //!
-//! P projects the volume strain theta on the linear functions of the element: what remains when the pressure of the mixed form is taken
-//! linear in each element and eliminated there. Displacements are quadratic with a cubic bubble, also eliminated: the element of Crouzeix
-//! and Raviart (1973), which satisfies the inf-sup condition, so nothing locks as nu goes to 1/2, and the matrix stays positive definite.
+//! P projects the volume strain theta onto the linear functions of the element. This corresponds to a mixed form with
+//! linear discontinuous pressure, eliminated in each element. Displacements are quadratic with a cubic bubble, which is
+//! also eliminated. This element of Crouzeix and Raviart (1973) satisfies the inf-sup condition: it does not lock as nu
+//! approaches 1/2, and its matrix stays positive definite.
 //!
-//! Strains eps = (zz, xx, gamma_zx, yy): of the nodal displacements (along, high), of the bubble, and of eight uniform fields
+//! Strains eps = (zz, xx, gamma_zx, yy) are those of the nodal displacements (along, high), of the bubble, and of eight
+//! uniform fields
 //!
 //! ```text
 //! zz = e + kappa x,   yy = g0 + g1 x,   and the same four times z       [S2]
@@ -18,15 +20,15 @@
 use super::{Site, sites};
 use crate::input::{Material, Point};
 
-/// Rows: twelve nodal displacements (along, high by turns), then e, kappa, g0, g1 and the same times z.
+/// Rows: twelve nodal displacements (along and high alternate), then e, kappa, g0, g1 and the same times z.
 pub const ROWS: usize = 20;
-/// With the bubble's two.
+/// Rows with the two of the bubble.
 const ALL: usize = ROWS + 2;
 
 /// A symmetric matrix over the rows.
 pub type Matrix = [[f64; ROWS]; ROWS];
 
-/// Strains (zz, xx, gamma, yy) of every row at a site.
+/// Strains (zz, xx, gamma, yy) of every row at a quadrature point.
 fn strains(site: &Site) -> [[f64; 4]; ALL] {
     let mut b = [[0.0; 4]; ALL];
     let mut put = |row: usize, [dz, dx]: [f64; 2]| {
@@ -48,7 +50,7 @@ fn strains(site: &Site) -> [[f64; 4]; ALL] {
     b
 }
 
-/// Stiffness per unit of width [S1], the bubble eliminated. None when the element is folded.
+/// Stiffness per unit of width [S1], without the bubble. None if the element is folded.
 pub fn matrix(nodes: &[Point; 6], material: &Material) -> Option<Matrix> {
     let (mu, bulk) = (material.shear_modulus(), material.bulk_modulus());
     let sites = sites(nodes)?;
@@ -80,7 +82,7 @@ pub fn matrix(nodes: &[Point; 6], material: &Material) -> Option<Matrix> {
             for (v, l) in volume[i].iter_mut().zip(linear) {
                 *v += site.weight * l * theta;
             }
-            // 2 mu times the deviator, gamma counted once: it does work on gamma.
+            // 2 mu times the deviator. gamma counts once, since it is its own conjugate.
             let w = 2.0 * mu * site.weight;
             let s = [
                 w * (zz - theta / 3.0),
@@ -108,7 +110,7 @@ pub fn matrix(nodes: &[Point; 6], material: &Material) -> Option<Matrix> {
     Some(without_bubble(&k))
 }
 
-/// k - k_b K_bb^-1 k_b^T.
+/// Eliminates the bubble: k - k_b K_bb^-1 k_b^T.
 fn without_bubble(k: &[[f64; ALL]; ALL]) -> Matrix {
     let (p, q) = (ROWS, ROWS + 1);
     let det = k[p][p] * k[q][q] - k[p][q] * k[p][q];

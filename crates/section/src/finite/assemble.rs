@@ -1,13 +1,13 @@
-//! Energy, forces and stiffness of the whole cell at a state.
+//! Energy, forces and stiffness of the whole cell in a state.
 
 use super::element::{self, ROWS, answer};
 use super::face::{Carried, carry};
 use super::{FiniteCell, State, cavity};
 
-/// Unknowns of an element: twelve of w, the bubble's two, e, kappa, g0, g1.
+/// Unknowns of an element: twelve of w, two of the bubble, e, kappa, g0, g1.
 const ALL: usize = ROWS + 2;
 
-/// Points of Gauss-Legendre on [-1, 1], eight of them: (place, weight) of the positive half.
+/// Eight-point Gauss-Legendre rule on [-1, 1]: (point, weight) of the positive half.
 const LEGENDRE: [[f64; 2]; 4] = [
     [0.183_434_642_495_649_8, 0.362_683_783_378_362],
     [0.525_532_409_916_329, 0.313_706_645_877_887_3],
@@ -15,25 +15,26 @@ const LEGENDRE: [[f64; 2]; 4] = [
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_26],
 ];
 
-/// The cell's energy and its derivatives, per unit of the core's width.
+/// Energy of the cell and its derivatives, per unit of the core's width.
 pub(super) struct System {
     pub energy: f64,
-    /// By w, then by q.
+    /// Derivatives by w and by q.
     pub force: Vec<f64>,
     pub by_q: [f64; 4],
     /// Lower triangle of the stiffness over w.
     pub entries: Vec<(usize, usize, f64)>,
-    /// Columns over q.
+    /// Columns of the stiffness over q.
     pub border: Vec<Vec<f64>>,
     pub corner: [[f64; 4]; 4],
-    /// Volumes over rest length of both bladders, with derivatives by w and q; their curvature is in the stiffness.
+    /// Volumes of both bladders over their rest length, with derivatives by w and q. Their second derivatives are part
+    /// of the stiffness.
     pub areas: [f64; 2],
     pub area_by_w: [Vec<f64>; 2],
     pub area_by_q: [[f64; 4]; 2],
 }
 
 impl FiniteCell {
-    /// Assembles at a state and pressures. None where an element is turned inside out.
+    /// Assembles in a state under pressures. None if an element is inverted.
     pub(super) fn assemble(&self, state: &State, pressures: [f64; 2]) -> Option<System> {
         let n = state.w.len();
         let mut system = System {
@@ -105,7 +106,7 @@ impl FiniteCell {
         Some(system)
     }
 
-    /// Adds a wall's edge under pressure p: energy -p a.
+    /// Adds a wall edge under pressure p, with the energy -p a.
     fn press(&self, system: &mut System, state: &State, row: usize, edge: [usize; 3], p: f64) {
         let dofs = edge.map(|node| 2 * self.independent[node]);
         let place = |k: usize| {
@@ -133,7 +134,7 @@ impl FiniteCell {
         }
     }
 
-    /// Adds the side walls.
+    /// Adds the side walls as bars.
     fn bars(&self, system: &mut System, [e, kappa, ..]: [f64; 4]) -> Option<()> {
         if self.side == 0.0 {
             return Some(());
@@ -157,7 +158,7 @@ impl FiniteCell {
         Some(())
     }
 
-    /// Holds the mid-plane of the faces: its unknowns take no part.
+    /// Fixes the mid-plane node of the faces.
     fn hold(&self, system: &mut System) {
         let held = |k: usize| k == self.held || k == self.held + 1;
         system.entries.retain(|&(i, j, _)| !held(i) && !held(j));
@@ -170,7 +171,7 @@ impl FiniteCell {
     }
 }
 
-/// Force and stiffness over w, bubble and q from those over displacements: the chain rule through [F3].
+/// Force and stiffness over w, bubble and q, from those over displacements by the chain rule through [F3].
 fn carry_over(local: &element::Answer, faces: &[Option<Carried>; 6]) -> ([f64; ALL], [[f64; ALL]; ALL]) {
     // Rows: displacements, bubble, g0, g1. Columns: w, bubble, e, kappa, g0, g1.
     let mut t = [[0.0; ALL]; ROWS];

@@ -1,16 +1,17 @@
-//! Volume of a deformed bladder over its length at rest, and its derivatives.
+//! Volume of a deformed bladder over its rest length, with derivatives.
 //!
 //! ```text
 //! a = (1 + g0) A + g1 S,     A = boundary integral of (z dx - x dz)/2,    S = boundary integral of z x dx     [F4]
 //! ```
 //!
-//! over the deformed wall, counter-clockwise: A its area, S the area's first moment about the mid-plane. At small strain it is [L2].
+//! The integrals follow the deformed wall counter-clockwise. A is its area, S the area's first moment about the
+//! mid-plane. For small strains this is [L2].
 
 use crate::element::{GAUSS, shapes};
 
-/// Value and derivatives by an edge's six coordinates (z, x of first, middle, last), then g0, g1.
+/// Value and derivatives with respect to the six coordinates of an edge (z, x of first, middle, last), then g0, g1.
 pub struct Edge {
-    /// The edge's part of a.
+    /// Contribution of the edge to a.
     pub value: f64,
     /// Gradient.
     pub gradient: [f64; 8],
@@ -18,7 +19,7 @@ pub struct Edge {
     pub hessian: [[f64; 8]; 8],
 }
 
-/// An edge's part of [F4] at deformed positions of its first, middle and last node.
+/// Contribution of an edge to [F4] at deformed positions of its first, middle and last node.
 pub fn edge(nodes: [[f64; 2]; 3], g0: f64, g1: f64) -> Edge {
     let mut out = Edge {
         value: 0.0,
@@ -36,7 +37,7 @@ pub fn edge(nodes: [[f64; 2]; 3], g0: f64, g1: f64) -> Edge {
         out.gradient[6] += w * area;
         out.gradient[7] += w * first;
         for i in 0..3 {
-            // Derivatives of area and of first by z_i and x_i.
+            // Derivatives of area and first moment with respect to z_i and x_i.
             let a = [(n[i] * xt - x * d[i]) / 2.0, (z * d[i] - n[i] * zt) / 2.0];
             let f = [n[i] * x * xt, z * (n[i] * xt + x * d[i])];
             for k in 0..2 {

@@ -1,18 +1,18 @@
-//! The solid element at finite strain: force and stiffness, both from one energy.
+//! Solid element at finite strain: force and stiffness from one energy.
 //!
 //! ```text
 //! W = integral of mu shape(F) + K/2 (P theta)^2                                           [F2]
 //! F = 1 + grad u in the plane,    F_yy = 1 + g0 + g1 X,   X: height at rest
 //! ```
 //!
-//! P is the projection of [crate::element::solid]: at small strain the two elements are the same.
+//! P is the projection of [crate::element::solid]; for small strains the two elements are identical.
 
 use super::law::Law;
 use crate::element::sites;
 use crate::element::solid::inverse3;
 use crate::input::{Material, Point};
 
-/// Unknowns: twelve nodal displacements (along, high), the bubble's two, g0, g1.
+/// Unknowns: twelve nodal displacements (along, high), two of the bubble, g0, g1.
 pub const ROWS: usize = 16;
 
 /// Energy, force and stiffness of an element per unit of width.
@@ -25,7 +25,7 @@ pub struct Answer {
     pub stiffness: [[f64; ROWS]; ROWS],
 }
 
-/// Of an element at displacements u. None where it is folded.
+/// Evaluates an element at displacements u. None if it is folded.
 pub fn answer(nodes: &[Point; 6], material: &Material, law: &Law, u: &[f64; ROWS]) -> Option<Answer> {
     let (mu, bulk) = (material.shear_modulus(), material.bulk_modulus());
     let sites = sites(nodes)?;

@@ -1,4 +1,4 @@
-//! The section's energy beyond its quadratic part, as a polynomial: smooth, conservative whatever its error, and cheap.
+//! Polynomial for the section's energy beyond its quadratic part: smooth, conservative for any fit error, and cheap to evaluate.
 //!
 //! ```text
 //! Omega(e, kappa, p) = Omega_2 + P(z)      y = (e - l (p_u + p_l), kappa - c (p_u - p_l), p_u, p_l)                        [F6]
@@ -6,11 +6,11 @@
 //! z = (y_1/g_1, y_2/g_2, (p_u + p_l)/2 g_3, (p_u - p_l)/2 g_3),      g_i the largest of its limits
 //! ```
 //!
-//! Omega_2 is the quadratic part of [F5], l and c its strains by pressure; y are the strains by loads, and the pressures. The terms are those
-//! that a section whose rows mirror each other can have. P is the least-squares
-//! fit of first and second derivatives on rays of the ellipsoid that the limits span; its error is that of the first derivatives at
-//! states on the ellipsoid that the fit has not seen. The limits are as wide as the cell is stable and the fit good: each axis is
-//! followed to its end, or as far as a law of rubber means something, then all are drawn in together.
+//! Omega_2 is the quadratic part of [F5]; l and c are its strains by pressure. y contains the strains by loads, and the pressures. The
+//! terms are those of a section with mirrored rows. P is the least-squares fit of first and second derivatives on rays of the ellipsoid of
+//! the limits. Its error is that of the first derivatives at states on the ellipsoid outside the fit. The limits are the widest with a
+//! stable cell and a good fit: each axis is followed to its end, or to the validity limit of rubber laws. Then all axes are shortened
+//! together.
 
 use super::{Drive, FiniteCell, SectionState, State};
 use crate::cell::Cell;
@@ -23,29 +23,28 @@ use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{Builder, ScopedJoinHandle};
 
-/// Largest strain of the outer fibre that is looked for.
+/// Largest strain of the outer fibre.
 const LARGEST_STRAIN: f64 = 0.3;
-/// Largest area change over the area at rest, by the linear law.
+/// Largest relative area change, by the linear law.
 const LARGEST_SWELLING: f64 = 1.0;
-/// Largest pressure over Young's modulus that is looked for.
+/// Largest pressure over Young's modulus.
 const LARGEST_PRESSURE: f64 = 0.2;
-/// Poisson's ratio above which P is that of this one: solids nearer to incompressible take many more steps, and change P by up to 0.5 % of the
-/// quadratic part.
+/// Largest Poisson's ratio for P; solids closer to incompressible cost many more steps and change P by up to 0.5 % of the quadratic part.
 const NEARLY_INCOMPRESSIBLE: f64 = 0.49;
-/// Steps in which each axis is followed, longer and longer.
+/// Number of steps along each axis, of increasing length.
 const STEPS: u32 = 8;
-/// Parts of the axes that are tried as limits, one after the other where a state is not found or the fit too coarse.
+/// Fractions of the axes tried as limits, in turn, until all states are found and the fit is accurate.
 const PARTS: [f64; 6] = [0.75, 0.6, 0.45, 0.35, 0.25, 0.15];
-/// Radii of the rays, over the ellipsoid's.
+/// Radii of the fitted states over that of the ellipsoid.
 const RADII: [f64; 3] = [0.35, 0.7, 1.0];
-/// Error of the fit that is good enough to keep its degree, and the largest one that is taken.
+/// Fit error below which the degree is kept, and the largest accepted error.
 const GOOD: f64 = 2e-3;
 const TAKEN: f64 = 1e-2;
-/// Degrees that are tried.
+/// Degrees of the polynomial, in trial order.
 const DEGREES: std::ops::RangeInclusive<usize> = 4..=6;
-/// Difference of the rows that is round-off, or the mesh's.
+/// Relative difference of the rows attributed to rounding errors or the mesh.
 const ALIKE: f64 = 1e-3;
-/// Weight of second derivatives beside the first.
+/// Weight of second derivatives relative to first derivatives.
 const SECOND: f64 = 0.1;
 
 /// P of [F6].
@@ -62,7 +61,7 @@ pub struct StrainEnergy {
     pub error: f64,
 }
 
-/// Exponents k of [F6], those of the pressures outermost, each pair by its sum; the coefficients of one pair of pressures stand together.
+/// Exponents k of [F6], those of pressures outermost, pairs sorted by sum; coefficients of one pair of pressure exponents are adjacent.
 pub fn monomials(degree: usize) -> impl Iterator<Item = [usize; 4]> {
     let pairs = |most: usize| (0..=most).flat_map(|sum| (0..=sum).map(move |second| [sum - second, second]));
     pairs(degree).flat_map(move |[s, d]| {
@@ -71,7 +70,7 @@ pub fn monomials(degree: usize) -> impl Iterator<Item = [usize; 4]> {
     })
 }
 
-/// z by y, of which y_1, y_2 and both pressures are divided by g.
+/// Matrix of z by y; y_1, y_2 and both pressures are divided by g.
 fn sizes(g: [f64; 3]) -> [[f64; 4]; 4] {
     let p = 0.5 / g[2];
     [
@@ -83,7 +82,7 @@ fn sizes(g: [f64; 3]) -> [[f64; 4]; 4] {
 }
 
 impl Section {
-    /// P of the section under the laws of its materials; None where its material has none, or the rows do not mirror each other.
+    /// P of the section under the laws of its materials; None if its material has no law, or the rows are not mirror images.
     pub fn strain_energy(&self) -> Result<Option<StrainEnergy>, Error> {
         let Some(law) = self.material.law.filter(|_| self.bladders.lower != Row::None) else {
             return Ok(None);
@@ -105,7 +104,7 @@ impl Section {
     }
 }
 
-/// A state of the cell, and what it tells of P.
+/// A state of the cell with the derivatives of P.
 #[derive(Clone, Copy)]
 struct Sample {
     y: [f64; 4],
@@ -117,7 +116,7 @@ struct Sample {
 }
 
 impl Sample {
-    /// That of the cell turned upside down.
+    /// Sample of the cell mirrored at the mid-plane.
     fn mirrored(&self) -> Self {
         const IMAGE: [(usize, f64); 4] = [(0, 1.0), (1, -1.0), (3, 1.0), (2, 1.0)];
         let turn = |v: &[f64; 4]| IMAGE.map(|(i, sign)| sign * v[i]);
@@ -130,10 +129,10 @@ impl Sample {
     }
 }
 
-/// A cell with what it is at rest.
+/// A cell with its data at rest.
 struct Experiment<'a> {
     cell: &'a FiniteCell,
-    /// Whether the lower row is the upper one mirrored.
+    /// True if the lower row mirrors the upper one.
     mirrored: bool,
     height: f64,
     modulus: f64,
@@ -143,7 +142,7 @@ struct Experiment<'a> {
     areas: [f64; 2],
     /// Second derivatives of Omega at rest.
     tangent: [[f64; 4]; 4],
-    /// (e, kappa, p_u, p_l) by y.
+    /// Matrix of (e, kappa, p_u, p_l) by y.
     turn: [[f64; 4]; 4],
 }
 
@@ -168,14 +167,14 @@ impl<'a> Experiment<'a> {
         })
     }
 
-    /// Whether a row does to the section what the other does to its mirror image.
+    /// True if the linear response is mirror-symmetric.
     fn is_mirrored(&self) -> bool {
         let t = &self.tangent;
         let zero = |i: usize, j: usize, off: f64| off.abs() <= ALIKE * (t[i][i] * t[j][j]).abs().sqrt();
         zero(0, 1, t[0][1]) && zero(0, 2, t[0][2] - t[0][3]) && zero(1, 2, t[1][2] + t[1][3])
     }
 
-    /// The cell at y, from a state at `before`.
+    /// Equilibrium of the cell at y, from a state at `before`; None if not found or unstable.
     fn follow(&self, state: &mut State, before: [f64; 4], y: [f64; 4]) -> Option<SectionState> {
         let x = self.turn.map(|row| dense::dot(&row, &y));
         let drive = Drive::Strain([x[0], x[1]]);
@@ -202,7 +201,7 @@ impl<'a> Experiment<'a> {
         }
     }
 
-    /// How far each axis goes.
+    /// Ends of the stable part of each axis.
     fn axes(&self) -> [[f64; 2]; 4] {
         let swelling = |row: usize| match self.areas[row] {
             area if area > 0.0 => {
@@ -220,7 +219,7 @@ impl<'a> Experiment<'a> {
         std::array::from_fn(|k| [-1.0, 1.0].map(|sense| sense * self.reach(k, sense * most[k]).abs()))
     }
 
-    /// How far the cell is stable along an axis.
+    /// End of the stable part of one axis, up to `most`.
     fn reach(&self, axis: usize, most: f64) -> f64 {
         let (mut state, mut last) = (self.cell.rest(), [0.0; 4]);
         for step in 1..=STEPS {
@@ -234,7 +233,7 @@ impl<'a> Experiment<'a> {
         last[axis]
     }
 
-    /// States on rays of the ellipsoid, in their order. None where one is not found.
+    /// States on rays of the ellipsoid, in order. None if one is not found.
     fn states(&self, rays: &[[f64; 4]], radii: &[f64], limits: &[[f64; 2]; 4]) -> Option<Vec<Sample>> {
         let image = |ray: &[f64; 4]| [ray[0], -ray[1], ray[3], ray[2]];
         let spared = |ray: &[f64; 4]| self.mirrored && image(ray) < *ray && rays.contains(&image(ray));
@@ -256,7 +255,7 @@ impl<'a> Experiment<'a> {
             let parts = own.chunks(own.len().div_ceil(threads).max(1));
             let begin = |part| (part, Builder::new().spawn_scoped(scope, move || some(part)).ok());
             let running: Vec<_> = parts.map(begin).collect();
-            // this thread does what the system grants no thread for
+            // parts without a granted thread run in this one
             let join = |(part, thread): (_, Option<ScopedJoinHandle<'_, _>>)| match thread {
                 Some(thread) => thread.join().ok().flatten(),
                 None => some(part),
@@ -266,7 +265,7 @@ impl<'a> Experiment<'a> {
         all.map(|parts| parts.concat())
     }
 
-    /// States on one ray, each with its mirror image where that is known.
+    /// States on one ray, with their mirror images if the section is mirrored.
     fn on_ray(&self, ray: &[f64; 4], radii: &[f64], limits: &[[f64; 2]; 4]) -> Option<Vec<Sample>> {
         let (mut state, mut last) = (self.cell.rest(), [0.0; 4]);
         let mut samples = vec![];
@@ -280,7 +279,7 @@ impl<'a> Experiment<'a> {
         Some(samples)
     }
 
-    /// The widest fit that is good enough.
+    /// Accepted fit with the widest limits.
     fn fit(&self) -> Result<StrainEnergy, Error> {
         let axes = self.axes();
         for part in PARTS {
@@ -309,7 +308,7 @@ impl<'a> Experiment<'a> {
     }
 }
 
-/// Whether energy grows with strains and areas with pressures.
+/// True if the energy is convex in the strains, and areas grow with pressures.
 fn is_stable(tangent: &[[f64; 4]; 4]) -> bool {
     let positive = |i: usize, sense: f64| {
         let own = [sense * tangent[i][i], sense * tangent[i + 1][i + 1]];
@@ -319,7 +318,7 @@ fn is_stable(tangent: &[[f64; 4]; 4]) -> bool {
     positive(0, 1.0) && positive(2, -1.0)
 }
 
-/// P from states, and its error on others.
+/// Fits P to states, and determines its error at others.
 fn least_squares(
     seen: &[Sample],
     unseen: &[Sample],
@@ -333,7 +332,7 @@ fn least_squares(
     };
     let z_by_y = sizes([largest(&limits[..1]), largest(&limits[1..2]), largest(&limits[2..])]);
     let z = |sample: &Sample| z_by_y.map(|row| dense::dot(&row, &sample.y));
-    // Derivatives by y, those by z weighted by how z goes with y, each beside the largest that the quadratic part has.
+    // Derivatives by y from those by z, by the chain rule; each is weighted relative to the largest of the quadratic part.
     let size: [f64; 4] = std::array::from_fn(|i| seen.iter().map(|s| s.linear[i].abs()).fold(0.0, f64::max));
     let terms: Vec<[usize; 4]> = monomials(degree).collect();
     let by = |at: &[f64; 4], i: usize| -> Vec<f64> {
@@ -374,7 +373,7 @@ fn least_squares(
             }
         }
     }
-    // terms of bladders that are not there have no part in anything
+    // set coefficients of missing bladders to zero
     (0..n).for_each(|i| normal[i * n + i] += f64::from(normal[i * n + i] == 0.0));
     let coefficients_n = dense::positive(&mut normal, right).ok_or(Error::Singular)?;
     let off = |sample: &Sample| {
@@ -391,7 +390,7 @@ fn least_squares(
     })
 }
 
-/// Derivative of z^k by some of z.
+/// Derivative of z^k with respect to the variables in `by`.
 fn derivative(k: &[usize; 4], z: &[f64; 4], by: &[usize]) -> f64 {
     let (mut k, mut factor) = (*k, 1.0);
     for &i in by {
@@ -404,7 +403,7 @@ fn derivative(k: &[usize; 4], z: &[f64; 4], by: &[usize]) -> f64 {
     (0..4).map(|i| z[i].powi(k[i] as i32)).product::<f64>() * factor
 }
 
-/// Axes, diagonals of two axes and of all four: 48 directions, spread alike.
+/// 48 evenly spread directions: axes, diagonals of two axes and of all four.
 fn rays() -> Vec<[f64; 4]> {
     let mut rays: Vec<[f64; 4]> = (0..16)
         .map(|bits| std::array::from_fn(|k| if bits >> k & 1 == 1 { 0.5 } else { -0.5 }))

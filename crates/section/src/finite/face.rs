@@ -1,4 +1,4 @@
-//! How the two faces of the period move: as one shape, carried along a circular arc.
+//! Motion of the two faces of the period: one shape, carried along a circular arc.
 //!
 //! ```text
 //! phi(c, x) = Q(kappa c) s(x) + r,     c = -+ pitch/2                                            [F3]
@@ -6,31 +6,32 @@
 //! r = (1 + e) (sin(kappa c)/kappa, -(1 - cos(kappa c))/kappa)
 //! ```
 //!
-//! s = (0, x) + w is the face's shape in its own frame, w the same on both faces: the jump is a rigid turn by kappa pitch and a
-//! translation. Positive kappa stretches the +x fibre.
+//! s = (0, x) + w is the shape of the face in its own frame. w is equal on both faces: the jump is a rigid rotation by
+//! kappa pitch and a translation. Positive kappa stretches the +x fibre.
 
 /// Position of a face's node with its derivatives.
 pub struct Carried {
     /// phi.
     pub place: [f64; 2],
-    /// Q: derivative by s, `[row][column]`.
+    /// Q: derivative of phi by s, `[row][column]`.
     pub by_shape: [[f64; 2]; 2],
-    /// By e.
+    /// Derivative of phi by e.
     pub by_stretch: [f64; 2],
-    /// By kappa.
+    /// Derivative of phi by kappa.
     pub by_curvature: [f64; 2],
-    /// Of by_shape by kappa.
+    /// Derivative of `by_shape` by kappa.
     pub shape_curvature: [[f64; 2]; 2],
-    /// By e and kappa.
+    /// Mixed derivative of phi by e and kappa.
     pub stretch_curvature: [f64; 2],
-    /// By kappa twice.
+    /// Second derivative of phi by kappa.
     pub curvature_twice: [f64; 2],
 }
 
-/// Coefficients of sin(t)/t and (1 - cos t)/t by Taylor's series, with two derivatives: (value, first, second) each.
+/// sin(t)/t and (1 - cos t)/t by Taylor series, each with two derivatives: (value, first, second).
 fn arc(t: f64) -> [[f64; 3]; 2] {
     let mut out = [[0.0; 3]; 2];
-    // sin t/t = sum (-1)^k t^2k/(2k+1)!, (1 - cos t)/t = sum (-1)^k t^(2k+1)/(2k+2)!; 16 terms reach round-off for turns up to a circle.
+    // sin t/t = sum (-1)^k t^2k/(2k+1)!, (1 - cos t)/t = sum (-1)^k t^(2k+1)/(2k+2)!; 16 terms are exact to rounding up
+    // to a full circle.
     let mut factorial = 1.0;
     for k in 0..16 {
         let sign = if k % 2 == 0 { 1.0 } else { -1.0 };

@@ -1,4 +1,4 @@
-//! Numbers that carry their first and second derivatives by the five entries of the deformation gradient.
+//! Numbers with first and second derivatives by the five entries of the deformation gradient.
 
 use std::ops::{Add, Mul, Sub};
 
@@ -33,7 +33,7 @@ impl Jet {
         jet
     }
 
-    /// f(self) with f and its first two derivatives at the value.
+    /// f(self), from f and its first two derivatives at the value.
     pub fn chain(&self, [f, f1, f2]: [f64; 3]) -> Self {
         let mut out = Self::constant(f);
         for i in 0..N {
@@ -45,7 +45,7 @@ impl Jet {
         out
     }
 
-    /// self to a power; the value must be positive.
+    /// Power of self; the value must be positive.
     pub fn power(&self, p: f64) -> Self {
         let f = self.v.powf(p);
         self.chain([f, p * f / self.v, p * (p - 1.0) * f / (self.v * self.v)])

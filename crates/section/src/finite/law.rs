@@ -1,4 +1,4 @@
-//! Laws of a solid at finite strain, split into a change of shape and a change of volume.
+//! Finite-strain laws of a solid, split into shape and volume changes.
 //!
 //! ```text
 //! energy  W = shape(F) + K/2 theta^2,   small strains: 2 mu e:e / 2 and theta = tr eps                     [F1]
@@ -8,8 +8,9 @@
 //! Saint-Venant-Kirchhoff shape = mu (E:E - (tr E)^2/3)                                  theta = tr E
 //! ```
 //!
-//! I1b = I1 J^(-2/3), I2b = I2 J^(-4/3), E = (F^T F - 1)/2. Every law has the section's mu and K at small strain. The last is the linear
-//! law with geometric nonlinearity of the paper's finite elements (A.4); it softens without bound under compression.
+//! I1b = I1 J^(-2/3), I2b = I2 J^(-4/3), E = (F^T F - 1)/2. At small strain every law has the section's mu and K. The
+//! last law is that of the paper's finite elements (A.4): linear, with geometric nonlinearity. It softens without bound
+//! under compression.
 
 use super::jet::Jet;
 use schemars::JsonSchema;
@@ -38,7 +39,7 @@ pub enum Law {
 }
 
 impl Law {
-    /// Energy of shape over mu, and theta, of a deformation gradient (zz, zx, xz, xx, yy). None where J is not positive.
+    /// Shape energy over mu, and theta, for a deformation gradient (zz, zx, xz, xx, yy). None unless J is positive.
     pub fn at(&self, f: [f64; 5]) -> Option<[Jet; 2]> {
         let [a, b, c, d, y] = std::array::from_fn(|k| Jet::variable(k, f[k]));
         let plane = a * d - b * c;
@@ -70,10 +71,10 @@ impl Law {
         Some([shape, j - one])
     }
 
-    /// Energy density and its first two derivatives by the axial stretch of a bar pulled or pressed without lateral stress. None where no
-    /// lateral stretch balances it.
+    /// Energy density of a bar without lateral stress, and its first two derivatives by the axial stretch. None if no
+    /// lateral stretch is in equilibrium.
     pub fn bar(&self, mu: f64, bulk: f64, stretch: f64) -> Option<[f64; 3]> {
-        // Lateral stretch b, Newton from the small-strain value.
+        // Newton's iteration for the lateral stretch b, from the small-strain value.
         let nu = (3.0 * bulk - 2.0 * mu) / (2.0 * (3.0 * bulk + mu));
         let mut b = stretch.powf(-nu);
         for _ in 0..50 {

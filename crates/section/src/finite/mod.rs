@@ -1,18 +1,20 @@
-//! The unit cell at finite strain: an energy of the section over stretch, curvature and pressures.
+//! Unit cell at finite strain: energy of the section as a function of stretch, curvature and pressures.
 //!
 //! ```text
 //! Omega(e, kappa, p_u, p_l) = min over w, g0, g1 of  1/pitch (U_core + U_walls) - phi_b l_b sum of p (a - a_rest)     [F5]
 //! N = dOmega/de      M = dOmega/dkappa      phi_b l_b (a - a_rest) = -dOmega/dp
 //! ```
 //!
-//! per unit length of the beam. U_core is l_b times the energy [F2] of the cell whose faces are carried along an arc [F3]; w repeats from
-//! cell to cell in the frame that turns with the beam, so pressures follow the walls. The side walls are bars: every fibre at height x
-//! at rest has the uniaxial energy of the stretch 1 + e + kappa x (4 % more than a block's in bending at 27 % strain of the outer fibre,
-//! falling with its square). The stretch e is that of the material on the mid-plane of the face, where w is
-//! held. A force N on a curved beam needs a transverse load kappa N; the cell takes it at that point (4e-4 of the energy of a block at 5 %
-//! stretch and 27 % strain by bending).
+//! per unit length of the beam. U_core is l_b times the energy [F2] of the cell with its faces carried along an arc
+//! [F3]. w is periodic in the frame that rotates with the beam, so pressures follow the walls.
 //!
-//! Omega's Hessian is symmetric, and so is whatever is made from it.
+//! The side walls are bars: a fibre at rest height x has the uniaxial energy of the stretch 1 + e + kappa x. This is
+//! 4 % above the bending energy of a block at 27 % strain of the outer fibre; the error decreases with the square of
+//! the strain. The stretch e is that of the material on the mid-plane of the face, where w is fixed. A force N on a
+//! curved beam needs a transverse load kappa N, which acts on the cell at that point. Its effect is 4e-4 of the energy
+//! of a block at 5 % stretch and 27 % strain by bending.
+//!
+//! Omega's Hessian is symmetric, and so are all results derived from it.
 
 mod assemble;
 pub mod cavity;
@@ -33,16 +35,16 @@ use std::sync::OnceLock;
 pub use energy::StrainEnergy;
 pub use law::Law;
 
-/// What a section is driven by.
+/// Prescribed quantities of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
-    /// Stretch minus one and curvature [1/m] are given.
+    /// Stretch minus one, and curvature [1/m].
     Strain([f64; 2]),
-    /// Axial force [N] and moment [N m] are given.
+    /// Axial force [N] and moment [N m].
     Load([f64; 2]),
 }
 
-/// A section's state in equilibrium.
+/// Equilibrium state of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionState {
     /// Stretch minus one, and curvature [1/m].
@@ -55,24 +57,24 @@ pub struct SectionState {
     pub potential_n: f64,
     /// Axial force [N] and moment [N m].
     pub resultants: [f64; 2],
-    /// Change of the bladders' area [m^2]: of their volume over their length.
+    /// Area changes of the bladders [m^2]: volume changes over their length.
     pub areas_m2: [f64; 2],
     /// Second derivatives of Omega over (e, kappa, p_upper, p_lower).
     pub tangent: [[f64; 4]; 4],
-    /// Newton's iterations in all.
+    /// Total number of Newton iterations.
     pub iterations: usize,
 }
 
-/// A cell ready for finite strain. Forces are per unit of the core's width l_b.
+/// A cell prepared for finite strain. Forces are per unit of the core's width l_b.
 pub struct FiniteCell {
     cell: Cell,
     law: Law,
     /// Elements of the solid with their materials.
     solid: Vec<([usize; 6], usize)>,
     independent: Vec<usize>,
-    /// Place of a node's face along the beam, zero inside.
+    /// Position along the beam of a node on a face; zero for other nodes.
     face: Vec<f64>,
-    /// The two unknowns that are held.
+    /// First of the two fixed unknowns.
     held: usize,
     /// Wall edges (first, middle, last) of the upper and lower bladder.
     walls: [Vec<[usize; 3]>; 2],
@@ -82,11 +84,11 @@ pub struct FiniteCell {
     nodes: usize,
     /// Areas of the bladders at rest [m^2].
     areas: [f64; 2],
-    /// Of the stiffness, the same at all states.
+    /// Sparsity pattern of the stiffness, equal in all states.
     pattern: OnceLock<Pattern>,
 }
 
-/// Unknowns of a cell.
+/// State of a cell.
 #[derive(Debug, Clone)]
 pub struct State {
     /// Periodic displacements and bubbles.
@@ -96,7 +98,8 @@ pub struct State {
 }
 
 impl FiniteCell {
-    /// From a cell of the section. Regions need bladders as long as the beam is wide: a bar has one material.
+    /// Finite-strain cell from a cell of the section. With regions, bladders must be as long as the beam is wide, since
+    /// a bar has one material.
     pub fn new(section: &Section, cell: Cell, law: Law) -> Result<Self, Error> {
         let side = section.width_m / section.bladders.length_m - 1.0;
         if side > 0.0 && !section.regions.is_empty() {

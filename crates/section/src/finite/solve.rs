@@ -1,4 +1,4 @@
-//! Equilibrium of the cell by Newton's method, the load applied in steps that halve where it fails.
+//! Equilibrium of the cell by Newton's method, with load steps that are halved on failure.
 
 use super::assemble::System;
 use super::{Drive, FiniteCell, SectionState, State};
@@ -6,20 +6,21 @@ use crate::dense::{dot, solve};
 use crate::error::Error;
 use crate::sparse::Pattern;
 
-/// Steps shorter than this, over the pitch, end the iteration: it is quadratic, so the state is at round-off then.
+/// Step length over the pitch that ends the iteration. Convergence is quadratic, so the state is then exact to
+/// rounding.
 const SHORT: f64 = 1e-9;
-/// Iterations of one load step.
+/// Largest number of iterations in a load step.
 const ITERATIONS: usize = 12;
-/// Smallest step of the load.
+/// Smallest load step.
 const SMALLEST: f64 = 1.0 / 256.0;
 
-/// The system with w eliminated: over q and pressures as in [L4].
+/// System without w: over q and pressures as in [L4].
 struct Reduced {
     s: [[f64; 4]; 4],
-    /// Derivative of the areas by q at equilibrium of w.
+    /// Derivative of the areas by q, with w in equilibrium.
     t: [[f64; 4]; 2],
     r: [[f64; 2]; 2],
-    /// Residual by q with that of w eliminated.
+    /// Residual over q after elimination of w.
     rest: [f64; 4],
     fields: Vec<Vec<f64>>,
 }
@@ -48,13 +49,13 @@ fn reduce(cell: &FiniteCell, system: &System) -> Option<Reduced> {
 }
 
 impl FiniteCell {
-    /// The section's state under a drive and pressures, from rest.
+    /// Equilibrium of the section under a drive and pressures, from rest.
     pub fn equilibrium(&self, drive: Drive, pressures: [f64; 2]) -> Result<SectionState, Error> {
         self.follow(&mut self.rest(), [0.0; 2], drive, pressures)
     }
 
-    /// The section's state under a drive and pressures, from a state that was in equilibrium under other ones; `state` is moved there.
-    /// `before` are the pressures of that state.
+    /// Equilibrium of the section under a drive and pressures, from a `state` in equilibrium under the pressures
+    /// `before`. Updates `state`.
     pub fn follow(
         &self,
         state: &mut State,
@@ -96,7 +97,7 @@ impl FiniteCell {
         }
     }
 
-    /// Newton's iteration at a fixed load. None when it does not converge.
+    /// Newton's iteration at a fixed load. None if it does not converge.
     fn newton(&self, state: &mut State, target: Drive, pressures: [f64; 2], iterations: &mut usize) -> Option<()> {
         let [pitch, height] = self.cell.size;
         for _ in 0..ITERATIONS {
@@ -139,7 +140,7 @@ impl FiniteCell {
         None
     }
 
-    /// N and M of a state in equilibrium.
+    /// N and M of an equilibrium state.
     fn resultants(&self, state: &State, pressures: [f64; 2]) -> Option<[f64; 2]> {
         let system = self.assemble(state, pressures)?;
         let scale = self.width / self.cell.size[0];
@@ -152,7 +153,7 @@ impl FiniteCell {
         let rest = self.areas;
         let scale = self.width / self.cell.size[0];
         let areas = [system.areas[0] - rest[0], system.areas[1] - rest[1]];
-        // Over (e, kappa, p_u, p_l), g0 and g1 eliminated: Omega's Hessian is S, -T^T, -R.
+        // Over (e, kappa, p_u, p_l), without g0 and g1: Omega's Hessian is S, -T^T, -R.
         let (s, t, r) = (&reduced.s, &reduced.t, &reduced.r);
         let over = |i: usize, j: usize| match (i, j) {
             (0..2, 0..2) => s[i][j],

@@ -1,4 +1,4 @@
-//! The rules a section must keep, all at once.
+//! Check of all rules of a section at once.
 
 use super::meeting::{meeting, meeting_lines, overlap};
 use super::outline::Outline;
@@ -6,14 +6,14 @@ use super::rules::{MOST, Rules};
 use crate::error::Fault;
 use crate::input::{Row, Section};
 
-/// Sizes that a section may have [m].
+/// Range of sizes of a section [m].
 const SIZES: [f64; 2] = [1e-7, 100.0];
-/// Most of pitch and height over the other: a mesh of anything longer has no end.
+/// Largest ratio between pitch and height; more slender cells need too many triangles.
 const LONGEST: f64 = 50.0;
-/// A wall must be thicker than this part of the smallest outer size: thinner ones are zero for a mesh of single triangles across.
+/// Smallest wall thickness over the smallest outer size. Thinner walls are too thin for a mesh of single triangles.
 const THINNEST: f64 = 1e-3;
 
-/// Every rule the section breaks, in the order of its keys.
+/// Returns all violated rules of the section, in the order of its keys.
 pub fn check(section: &Section) -> Vec<Fault> {
     let mut rules = Rules { faults: Vec::new() };
     let sizes = [
@@ -108,16 +108,16 @@ pub fn check(section: &Section) -> Vec<Fault> {
     rules.faults
 }
 
-/// A number that was computed from others, without what binary fractions add to it.
+/// A computed number without the rounding error of its binary representation.
 fn rounded(number: f64) -> f64 {
     format!("{number:.8e}").parse().unwrap_or(number)
 }
 
-/// What lies outside, touches or overlaps.
+/// Checks for shapes that are outside, touch or overlap.
 fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], regions: &[(String, Outline)]) {
     let half = [section.pitch_m / 2.0, section.height_m / 2.0];
     let least = THINNEST * section.pitch_m.min(section.height_m);
-    // what mirrors the other row has its faults
+    // a mirrored row has the faults of the other row
     let mirrored = section.bladders.lower == Row::Mirrored;
     for (place, outline) in rows.iter().take(if mirrored { 1 } else { 2 }) {
         let chords = outline.chords();

@@ -7,16 +7,16 @@ use crate::input::Point;
 pub enum Curve {
     /// From one point to another.
     Line {
-        /// At t = 0.
+        /// Point at t = 0.
         from: Point,
-        /// At t = 1.
+        /// Point at t = 1.
         to: Point,
     },
     /// center + (radii_0 cos a, radii_1 sin a), a from `from` to `to`.
     Arc {
-        /// Centre.
+        /// Center.
         center: Point,
-        /// Half axes along and high.
+        /// Semi-axes along and high.
         radii: [f64; 2],
         /// Angle at t = 0 [rad].
         from: f64,
@@ -26,10 +26,10 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// The point at t.
+    /// Point at t.
     pub fn at(&self, t: f64) -> Point {
         match *self {
-            // Exact at both ends: neighbours must share them to the last bit.
+            // Exact at both ends: adjacent curves must share them bit for bit.
             Curve::Line { from, to } => [from[0] * (1.0 - t) + to[0] * t, from[1] * (1.0 - t) + to[1] * t],
             Curve::Arc {
                 center,
@@ -43,7 +43,7 @@ impl Curve {
         }
     }
 
-    /// Derivative by t.
+    /// Derivative with respect to t.
     pub fn slope(&self, t: f64) -> Point {
         match *self {
             Curve::Line { from, to } => [to[0] - from[0], to[1] - from[1]],
@@ -54,7 +54,7 @@ impl Curve {
         }
     }
 
-    /// Mirrored at the mid-plane, same t.
+    /// Mirror image about the mid-plane, with the same t.
     pub fn mirrored(&self) -> Self {
         match *self {
             Curve::Line { from, to } => Curve::Line {
@@ -75,7 +75,7 @@ impl Curve {
         }
     }
 
-    /// Number of straight chords that follow the curve closely enough to tell inside from outside.
+    /// Number of chords that approximate the curve well enough for inside-outside tests.
     pub fn chords(&self) -> usize {
         match *self {
             Curve::Line { .. } => 1,

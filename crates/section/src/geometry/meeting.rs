@@ -1,9 +1,9 @@
-//! Whether outlines cross, meet or overlap.
+//! Intersections, distances and overlaps of outlines.
 
 use super::outline::{Outline, distance, inside};
 use crate::input::Point;
 
-/// The first two sides of a polygon that meet where they should not.
+/// First two sides of a polygon that intersect or touch, other than adjacent sides at their corner.
 pub(super) fn crossing(points: &[Point]) -> Option<(usize, usize)> {
     let n = points.len();
     let side = |i: usize| (points[i], points[(i + 1) % n]);
@@ -15,7 +15,7 @@ pub(super) fn crossing(points: &[Point]) -> Option<(usize, usize)> {
         }
         let neighbours = j == i + 1 || (i == 0 && j == n - 1);
         if neighbours {
-            // Neighbours share a corner; they fault when one folds back on the other.
+            // Adjacent sides share a corner; they are at fault if one folds back onto the other.
             let (shared, p, q) = if j == i + 1 { (b, a, d) } else { (a, b, c) };
             let (u, v) = (
                 [p[0] - shared[0], p[1] - shared[1]],
@@ -35,7 +35,7 @@ pub(super) fn crossing(points: &[Point]) -> Option<(usize, usize)> {
     })
 }
 
-/// Whether two segments cross in their interiors.
+/// True if two segments cross in their interiors.
 pub(super) fn cross(a: Point, b: Point, c: Point, d: Point) -> bool {
     let turn = |p: Point, q: Point, r: Point| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
     turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
@@ -45,7 +45,7 @@ pub(super) fn sides(points: &[Point]) -> impl Iterator<Item = (Point, Point)> + 
     points.iter().copied().zip(points.iter().copied().cycle().skip(1))
 }
 
-/// Distance between two outlines' lines, 0 when they cross.
+/// Distance between the lines of two outlines; 0 if they cross.
 pub(super) fn meeting_lines(a: &Outline, b: &Outline) -> f64 {
     let (a, b) = (a.chords(), b.chords());
     let mut least = f64::MAX;
@@ -64,7 +64,7 @@ pub(super) fn meeting_lines(a: &Outline, b: &Outline) -> f64 {
     least
 }
 
-/// Distance between two outlines, 0 when they cross or one lies in the other.
+/// Distance between two outlines; 0 if they cross or one contains the other.
 pub(super) fn meeting(a: &Outline, b: &Outline) -> f64 {
     let (pa, pb) = (a.chords(), b.chords());
     if inside(&pa, pb[0]) || inside(&pb, pa[0]) {
@@ -74,7 +74,7 @@ pub(super) fn meeting(a: &Outline, b: &Outline) -> f64 {
     }
 }
 
-/// Whether two regions share more than a border.
+/// True if two regions share more than a border.
 pub(super) fn overlap(a: &Outline, b: &Outline, slack: f64) -> bool {
     let (pa, pb) = (a.chords(), b.chords());
     let deep = |p: Point, of: &[Point]| inside(of, p) && sides(of).all(|(q, r)| distance(p, q, r) > slack);
@@ -98,11 +98,12 @@ pub(super) fn overlap(a: &Outline, b: &Outline, slack: f64) -> bool {
     crossed || probes(&pa).into_iter().any(|p| deep(p, &pb)) || probes(&pb).into_iter().any(|p| deep(p, &pa))
 }
 
-/// A point inside a polygon: the middle of the longest stretch inside on the level line through its middle height.
+/// A point inside a polygon: the middle of an interior stretch of a horizontal line between two distinct corner
+/// heights.
 pub(super) fn within(points: &[Point]) -> Point {
     let mut heights: Vec<f64> = points.iter().map(|p| p[1]).collect();
     heights.sort_by(f64::total_cmp);
-    // Between two distinct heights: no corner lies on the line.
+    // No corner is on a line between two distinct heights.
     let gap = heights
         .windows(2)
         .max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));

@@ -1,4 +1,4 @@
-//! Outlines of bladders and regions, and the rules they must keep.
+//! Outlines of bladders and regions, and their rules.
 
 pub mod check;
 pub mod curve;

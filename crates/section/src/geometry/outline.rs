@@ -1,4 +1,4 @@
-//! Closed outlines, counter-clockwise, and what the checks and the mesher ask of them.
+//! Closed counter-clockwise outlines, with queries for checks and mesher.
 
 use super::curve::Curve;
 use crate::input::{Bladder, Point, RegionShape, Shape};
@@ -7,12 +7,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// A closed chain of curves, counter-clockwise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
-    /// Each begins where the one before ends.
+    /// Curves in order; each begins at the end of the previous one.
     pub curves: Vec<Curve>,
 }
 
 impl Outline {
-    /// Through these corners, turned counter-clockwise.
+    /// Polygon through these corners, oriented counter-clockwise.
     pub fn polygon(points: &[Point]) -> Self {
         let mut points = points.to_vec();
         if signed_area(&points) < 0.0 {
@@ -38,7 +38,7 @@ impl Outline {
         ])
     }
 
-    /// An ellipse about a centre, in four quarters.
+    /// An ellipse about a center, in four quarters.
     pub fn ellipse(center: Point, radii: [f64; 2]) -> Self {
         let quarter = |k: usize| Curve::Arc {
             center,
@@ -51,7 +51,7 @@ impl Outline {
         }
     }
 
-    /// A shape with its origin at a point.
+    /// A shape with its origin at `origin`.
     pub fn shape(shape: &Shape, origin: Point) -> Self {
         let [z, x] = origin;
         match shape {
@@ -68,12 +68,12 @@ impl Outline {
         }
     }
 
-    /// A bladder in its cell.
+    /// Outline of a bladder in its cell.
     pub fn bladder(bladder: &Bladder) -> Self {
         Self::shape(&bladder.shape, [0.0, bladder.center_m])
     }
 
-    /// A region in its cell of the given pitch.
+    /// Outline of a region in a cell of the given pitch.
     pub fn region(shape: &RegionShape, pitch: f64) -> Self {
         match shape {
             RegionShape::Layer { high_m } => Self::rectangle([-pitch / 2.0, pitch / 2.0], *high_m),
@@ -83,7 +83,7 @@ impl Outline {
         }
     }
 
-    /// Mirrored at the mid-plane, counter-clockwise again.
+    /// Mirror image about the mid-plane, oriented counter-clockwise.
     pub fn mirrored(&self) -> Self {
         let back = |c: &Curve| match c.mirrored() {
             Curve::Line { from, to } => Curve::Line { from: to, to: from },
@@ -104,7 +104,7 @@ impl Outline {
         }
     }
 
-    /// Corners of a polygon inscribed closely enough to tell inside from outside.
+    /// Corners of an inscribed polygon, accurate enough for inside-outside tests.
     pub fn chords(&self) -> Vec<Point> {
         let points = |c: &Curve| {
             let (c, n) = (*c, c.chords());
@@ -113,7 +113,7 @@ impl Outline {
         self.curves.iter().flat_map(points).collect()
     }
 
-    /// Corners with the angle by which the outline turns there [rad], left positive; smooth joints are left out.
+    /// Corners with the turning angle of the outline [rad], positive to the left; omits smooth joints.
     pub fn corners(&self) -> Vec<(Point, f64)> {
         let n = self.curves.len();
         let turn = |k: usize| {
@@ -157,7 +157,7 @@ fn rounded(origin: Point, a: f64, b: f64, fillet: f64) -> Outline {
     Outline { curves: all }
 }
 
-/// Area of a polygon, positive when counter-clockwise.
+/// Area of a polygon, positive if counter-clockwise.
 pub fn signed_area(points: &[Point]) -> f64 {
     let next = points.iter().cycle().skip(1);
     points
@@ -167,7 +167,7 @@ pub fn signed_area(points: &[Point]) -> f64 {
         .sum()
 }
 
-/// Whether a point lies inside a polygon.
+/// True if a point is inside a polygon.
 pub fn inside(polygon: &[Point], p: Point) -> bool {
     let next = polygon.iter().cycle().skip(1);
     let crosses = |(a, b): (&Point, &Point)| {
@@ -176,7 +176,7 @@ pub fn inside(polygon: &[Point], p: Point) -> bool {
     polygon.iter().zip(next).filter(|&pair| crosses(pair)).count() % 2 == 1
 }
 
-/// Distance of a point from a segment.
+/// Distance between a point and a segment.
 pub fn distance(p: Point, a: Point, b: Point) -> f64 {
     let d = [b[0] - a[0], b[1] - a[1]];
     let t = ((p[0] - a[0]) * d[0] + (p[1] - a[1]) * d[1]) / (d[0] * d[0] + d[1] * d[1]);

@@ -1,16 +1,16 @@
-//! The rules of single numbers, shapes and materials.
+//! Rules of single numbers, shapes and materials.
 
 use super::meeting::crossing;
 use super::outline::{Outline, signed_area};
 use crate::error::Fault;
 use crate::input::{Bladder, Material, Point, RegionShape, Shape};
 
-/// Moduli that a material may have [Pa].
+/// Range of Young's moduli [Pa].
 const MODULI: [f64; 2] = [1.0, 1e13];
-/// Corners of a polygon, and four times the regions, at most: work grows with their square.
+/// Largest number of polygon corners, and of four times the regions; the cost grows with their square.
 pub(super) const MOST: usize = 200;
 
-/// What is broken so far.
+/// Collects violated rules.
 pub(super) struct Rules {
     pub(super) faults: Vec<Fault>,
 }
@@ -31,7 +31,7 @@ impl Rules {
         good
     }
 
-    /// Of a number that is positive: whether it is one that can be meant.
+    /// Checks the plausible range of a positive number.
     pub(super) fn between(&mut self, place: &str, value: f64, [least, most]: [f64; 2], unit: &str) {
         if value > 0.0 && value.is_finite() && !(least..=most).contains(&value) {
             self.fault(

@@ -1,4 +1,4 @@
-//! Meshes of quadratic triangles that follow curved outlines, refined by halving every edge.
+//! Meshes of quadratic triangles on curved outlines, refined by halving every edge.
 
 pub mod plan;
 mod triangulate;
@@ -9,39 +9,39 @@ use std::collections::HashMap;
 
 pub use plan::{Domain, Fineness};
 
-/// Triangles between vertices; edges on arcs know their curve.
+/// Triangles between vertices; edges on arcs store their curve.
 #[derive(Debug, Clone)]
 pub struct Mesh<T> {
     /// Vertices `[along, high]`.
     pub points: Vec<Point>,
-    /// Counter-clockwise.
+    /// Triangles, counter-clockwise.
     pub triangles: Vec<[usize; 3]>,
-    /// What each triangle is a part of.
+    /// Part of the domain that contains each triangle.
     pub parts: Vec<T>,
     curves: HashMap<(usize, usize), (Curve, f64, f64)>,
 }
 
-/// Quadratic triangles: three vertices, then the middles of edges 01, 12, 20.
+/// Quadratic triangles: three vertices, then the midpoints of edges 01, 12, 20.
 #[derive(Debug, Clone)]
 pub struct Quadratic<T> {
-    /// Vertices, then middles of edges.
+    /// Vertices, then midpoints of edges.
     pub nodes: Vec<Point>,
     /// Six nodes each.
     pub triangles: Vec<[usize; 6]>,
-    /// What each triangle is a part of.
+    /// Part of the domain that contains each triangle.
     pub parts: Vec<T>,
 }
 
-/// Points with middles of edges, each triangle's three middles, and each edge's.
+/// Points with midpoints of edges, the three midpoints of each triangle, and the midpoint of each edge.
 type Middles = (Vec<Point>, Vec<[usize; 3]>, HashMap<(usize, usize), usize>);
 
-/// An edge's name: the smaller vertex first.
+/// Key of an edge: the smaller vertex first.
 fn edge(a: usize, b: usize) -> (usize, usize) {
     (a.min(b), a.max(b))
 }
 
 impl<T: Copy> Mesh<T> {
-    /// The middle of an edge on its curve.
+    /// Midpoint of an edge on its curve.
     fn middle(&self, a: usize, b: usize) -> Point {
         match self.curves.get(&edge(a, b)) {
             Some((curve, from, to)) => curve.at((from + to) / 2.0),
@@ -52,7 +52,7 @@ impl<T: Copy> Mesh<T> {
         }
     }
 
-    /// Points with middles of edges, and each triangle's three middles.
+    /// Points with midpoints of edges, and the midpoints of each triangle and edge.
     fn middles(&self) -> Middles {
         let mut points = self.points.clone();
         let mut found: HashMap<(usize, usize), usize> = HashMap::with_capacity(2 * self.triangles.len());
@@ -70,7 +70,7 @@ impl<T: Copy> Mesh<T> {
         (points, middles, found)
     }
 
-    /// Every triangle in four, new vertices on the curves.
+    /// Divides every triangle into four, with new vertices on the curves.
     pub fn refined(&self) -> Self {
         let (points, middles, found) = self.middles();
         let mut triangles = Vec::with_capacity(4 * self.triangles.len());
@@ -96,7 +96,7 @@ impl<T: Copy> Mesh<T> {
         }
     }
 
-    /// With nodes in the middles of edges.
+    /// Adds nodes at the midpoints of edges.
     pub fn quadratic(&self) -> Quadratic<T> {
         let (nodes, middles, _) = self.middles();
         let six = |(&[a, b, c], &[ab, bc, ca]): (&[usize; 3], &[usize; 3])| [a, b, c, ab, bc, ca];

@@ -1,24 +1,24 @@
-//! Where the mesh has its vertices on outlines: sizes, splitting, marching.
+//! Vertices of the mesh on outlines: mesh size, splitting, spacing.
 //!
-//! The wanted size at a point p is the least over sources i of s_i + g |p - p_i|: small at sharp corners, where stress is singular,
-//! on arcs, and where walls are thin, growing with distance.
+//! The mesh size at a point p is the minimum over sources i of s_i + g |p - p_i|. It is small at sharp corners, where
+//! stress is singular, on arcs, and at thin walls, and grows with distance.
 
 use crate::geometry::curve::Curve;
 use crate::geometry::outline::{Outline, distance};
 use crate::input::Point;
 
-/// What is meshed. The first outline bounds it, the others lie inside.
+/// Domain of a mesh. The first outline bounds it, the others are inside.
 #[derive(Debug, Clone)]
 pub struct Domain {
-    /// The outer boundary, then those inside it.
+    /// Outer boundary, then the outlines inside.
     pub outlines: Vec<Outline>,
-    /// Faces z = -+ this half pitch carry the same vertices.
+    /// Half pitch; the faces z = -+ half pitch have equal vertices.
     pub half_pitch: Option<f64>,
-    /// Only the half above the mid-plane is given; the mesh is mirrored.
+    /// True if only the half above the mid-plane is given; the mesh is mirrored.
     pub mirrored: bool,
 }
 
-/// How fine the coarsest mesh is.
+/// Fineness of the coarsest mesh.
 #[derive(Debug, Clone, Copy)]
 pub struct Fineness {
     /// Largest size relative to the smaller extent of the outer boundary.
@@ -45,12 +45,12 @@ impl Default for Fineness {
     }
 }
 
-/// A curve between two parameters, with its vertices' parameters from one end to the other.
+/// A curve with the parameters of its vertices.
 #[derive(Debug, Clone)]
 pub struct Piece {
     /// The curve.
     pub curve: Curve,
-    /// Parameters of its vertices, both ends included.
+    /// Parameters of its vertices in order, including both ends.
     pub at: Vec<f64>,
 }
 
@@ -76,7 +76,7 @@ fn smaller(outline: &Outline) -> f64 {
     a.min(b)
 }
 
-/// The wanted size everywhere.
+/// Mesh size as a function of position.
 pub struct Sizes {
     sources: Vec<Source>,
     growth: f64,
@@ -86,7 +86,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// At a point; the same at both faces of a period.
+    /// Mesh size at a point; equal on both faces of a period.
     pub fn at(&self, p: Point) -> f64 {
         let one = |p: Point| {
             let near = |s: &Source| s.size + self.growth * (p[0] - s.at[0]).hypot(p[1] - s.at[1]);
@@ -99,7 +99,7 @@ impl Sizes {
     }
 }
 
-/// All pieces of a domain with their vertices, and the sizes between them.
+/// All pieces of a domain with their vertices, and the mesh size.
 pub fn plan(domain: &Domain, fineness: &Fineness) -> (Vec<Piece>, Sizes) {
     let [a, b] = extents(&domain.outlines[0]);
     let outer = if domain.mirrored { a.min(2.0 * b) } else { a.min(b) };
@@ -117,7 +117,7 @@ pub fn plan(domain: &Domain, fineness: &Fineness) -> (Vec<Piece>, Sizes) {
     (pieces, sizes)
 }
 
-/// Relative size at a corner: the full refinement from a right angle on, less at blunter corners, whose singularity is weaker.
+/// Relative size at a corner: full refinement from a right angle on, less at blunter corners with weaker singularities.
 fn blunt(corner: f64, turn: f64) -> f64 {
     let sharp = (turn.abs() / std::f64::consts::FRAC_PI_2).min(1.0);
     corner.powf(sharp) * 0.2_f64.powf(1.0 - sharp)
@@ -148,7 +148,7 @@ fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
         for curve in &outline.curves {
             let n = 12;
             for at in (0..=n).map(|k| curve.at(f64::from(k) / f64::from(n))) {
-                // Outlines that share an edge are one wall, not a gap between two.
+                // Outlines with a common edge form one wall, not a gap.
                 let gap = |other: &Vec<Point>| {
                     let next = other.iter().cycle().skip(1);
                     let all = other.iter().zip(next).map(|(a, b)| distance(at, *a, *b));
@@ -172,14 +172,14 @@ fn sources(domain: &Domain, fineness: &Fineness) -> Vec<Source> {
     sources
 }
 
-/// Curves of all outlines, straight ones split where another ends on them, each once.
+/// Curves of all outlines without duplicates; straight ones are split where another curve ends on them.
 fn split(domain: &Domain) -> Vec<Curve> {
     let curves: Vec<Curve> = domain.outlines.iter().flat_map(|o| o.curves.iter().copied()).collect();
     let mut ends: Vec<Point> = curves.iter().flat_map(|c| [c.at(0.0), c.at(1.0)]).collect();
     let scale = smaller(&domain.outlines[0]);
     let near = |a: f64, b: f64| (a - b).abs() < 1e-9 * scale;
     if let Some(half) = domain.half_pitch {
-        // The mid-plane on the faces: there the stretch of the beam is measured at finite strain.
+        // The mid-plane on the faces: there the finite-strain cell measures the stretch of the beam.
         ends.push([half, 0.0]);
         let faced: Vec<Point> = ends
             .iter()
@@ -194,7 +194,7 @@ fn split(domain: &Domain) -> Vec<Curve> {
             all.push(curve);
             continue;
         };
-        // Low to high, left to right: both faces of a period, and both sides of a shared edge, march the same way.
+        // Bottom to top, left to right: both faces of a period, and both sides of a common edge, get equal vertices.
         let (from, to) = if (from[1], from[0]) < (to[1], to[0]) && !near(from[1], to[1])
             || near(from[1], to[1]) && from[0] < to[0]
         {
@@ -231,7 +231,7 @@ fn split(domain: &Domain) -> Vec<Curve> {
     all
 }
 
-/// Vertices at equal steps of the integral of ds / size.
+/// Vertices at equal increments of the integral of ds / size.
 fn march(curve: Curve, size: &dyn Fn(Point) -> f64, arc: f64) -> Piece {
     let n = 200;
     let mut sum = vec![0.0; n + 1];
@@ -244,7 +244,7 @@ fn march(curve: Curve, size: &dyn Fn(Point) -> f64, arc: f64) -> Piece {
         Curve::Line { .. } => 1,
         Curve::Arc { from, to, .. } => ((to - from).abs() / arc - 1e-9).ceil() as usize,
     };
-    // A curve a tenth longer than a whole number of steps is not worth another one.
+    // An excess of a tenth of a step does not justify another step.
     let steps = ((sum[n] - 0.1).ceil() as usize).max(least).max(1);
     let place = |k: usize| {
         if k == 0 || k == steps {

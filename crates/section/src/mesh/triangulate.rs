@@ -1,6 +1,7 @@
-//! The coarsest mesh: a constrained Delaunay triangulation of the planned vertices, by the crate spade, filled by Ruppert's rule: the
-//! circumcentre of a triangle too large or too flat becomes a vertex. Outlines are not split, since both faces of a period must keep the
-//! same vertices; a circumcentre inside the circle over an edge of an outline is left out instead.
+//! The coarsest mesh: a constrained Delaunay triangulation of the planned vertices by the crate spade, refined by
+//! Ruppert's rule. The circumcenter of a triangle that is too large or too flat becomes a vertex. Outlines are not
+//! split, since both faces of a period must have equal vertices. Circumcenters inside the diametral circle of an
+//! outline edge are skipped instead.
 
 use super::plan::{Domain, Fineness, Sizes, plan};
 use super::{Mesh, edge};
@@ -10,20 +11,21 @@ use crate::input::Point;
 use spade::{ConstrainedDelaunayTriangulation, InsertionError, Point2, Triangulation};
 use std::collections::HashMap;
 
-/// Triangles smaller than this part of the largest size squared lie between vertices of one straight side.
+/// Area over the square of the largest size below which a triangle is degenerate, between vertices of one straight
+/// side.
 const NOTHING: f64 = 1e-12;
 
-/// Circumradius over the wanted size: 0.58 for equilateral triangles of that size.
+/// Largest circumradius over the mesh size; equilateral triangles of this size have 0.58.
 const LARGE: f64 = 0.65;
-/// Circumradius over the shortest side: 1 for a smallest angle of 30 degrees, 1.15 for 26.
+/// Largest circumradius over the shortest side: 1 for a smallest angle of 30 degrees, 1.15 for 26.
 const FLAT: f64 = 1.15;
-/// Rounds of filling; a dozen is usual.
+/// Largest number of refinement rounds; a dozen is usual.
 const ROUNDS: usize = 60;
 
 type Triangulated = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
-/// Adds vertices until every triangle has the wanted size and shape, or its circumcentre is too close to an outline. Coordinates of the
-/// triangulation are relative to the largest size.
+/// Adds vertices until every triangle has the required size and shape, or its circumcenter is too close to an outline.
+/// Coordinates in the triangulation are relative to the largest size.
 fn fill(cdt: &mut Triangulated, outlines: &[[Point; 2]], sizes: &Sizes) -> Result<(), InsertionError> {
     let circles: Vec<(Point, f64)> = outlines
         .iter()
@@ -78,7 +80,7 @@ fn apart(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Centre and radius of the circle through three points; None when they lie on a line.
+/// Center and radius of the circle through three points; None if they are collinear.
 fn circumcircle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
     let d = 2.0 * (u[0] * v[1] - u[1] * v[0]);
@@ -91,7 +93,7 @@ fn circumcircle([a, b, c]: [Point; 3]) -> Option<(Point, f64)> {
 }
 
 impl<T: Copy> Mesh<T> {
-    /// Meshes a domain; `part` says what lies at a point, none: nothing.
+    /// Meshes a domain; `part` returns the part at a point, None outside.
     pub fn new(domain: &Domain, fineness: &Fineness, part: &dyn Fn(Point) -> Option<T>) -> Result<Self, Error> {
         let failed = |what: &str| Error::Mesh(what.to_owned());
         let (pieces, sizes) = plan(domain, fineness);
@@ -161,7 +163,7 @@ impl<T: Copy> Mesh<T> {
         Ok(mesh)
     }
 
-    /// The mesh with its mirror image below the mid-plane; `other` names the part that mirrors one.
+    /// Adds the mirror image below the mid-plane; `other` returns the mirrored part.
     pub fn with_mirror(mut self, other: &dyn Fn(T) -> T) -> Self {
         let scale = self.points.iter().fold(0.0_f64, |m, p| m.max(p[1]));
         let mut image = Vec::with_capacity(self.points.len());

@@ -1,8 +1,9 @@
-//! The cell of Matia and Gat's honeycomb, beside the coefficients they print (A.4.1, A.4.2).
+//! The cell of Matia and Gat's honeycomb, compared with their printed coefficients (A.4.1, A.4.2).
 //!
-//! The paper gives the bladder's size, 7.8 mm square and 46 mm long, and the beam's; it does not give the bladder's height above the
-//! mid-plane, its fillets, or Poisson's ratio. Its bladders' walls allow a centre between 3.9 and 6.9 mm. Its plus and minus compliances
-//! are secants of large loads; a linear cell has one number between them.
+//! The paper gives the size of the bladders, 7.8 mm square and 46 mm long, and of the beam. It does not give the height
+//! of the bladders above the mid-plane, their fillets, or Poisson's ratio. The wall thickness allows a center between
+//! 3.9 and 6.9 mm. The paper's plus and minus compliances are secants at large loads; a linear cell has a single value
+//! in between.
 
 mod secants;
 
@@ -15,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use secants::{Experiment, Secants};
 
-/// What the paper prints: a value, or a range between its plus and minus secants.
+/// A printed coefficient: a value, or a range between its plus and minus secants.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Printed {
     /// Name of the number, as in [Numbers].
@@ -24,7 +25,7 @@ pub struct Printed {
     pub low: f64,
     /// Largest printed value.
     pub high: f64,
-    /// Whether a cell can be expected to meet it.
+    /// True if a cell can be expected to reproduce it.
     pub fitted: bool,
 }
 
@@ -80,37 +81,37 @@ pub const PRINTED: [Printed; 8] = [
     },
 ];
 
-/// One variant of the cell.
+/// A variant of the cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Variant {
     /// Poisson's ratio.
     pub poisson_ratio: f64,
     /// Fillet of the square [m].
     pub fillet_m: f64,
-    /// Height of its centre above the mid-plane [m].
+    /// Height of the square's center above the mid-plane [m].
     pub center_m: f64,
     /// Values in the order of [PRINTED].
     pub computed: [f64; 8],
-    /// Root mean square of ln(computed / printed) over those fitted; of a range, its geometric mean is what is printed.
+    /// Root mean square of ln(computed / printed) over the fitted coefficients; a range counts as its geometric mean.
     pub misfit: f64,
 }
 
-/// The table.
+/// Comparison of variants with the printed coefficients.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PaperTable {
     /// All variants.
     pub variants: Vec<Variant>,
-    /// Place of the one with the smallest misfit.
+    /// Index of the variant with the smallest misfit.
     pub best: usize,
-    /// Values of that one in three dimensions, the first seven of [PRINTED].
+    /// Values of the best variant in three dimensions: the first seven of [PRINTED].
     pub spatial: [f64; 7],
-    /// Radius of a round tube with the printed q1c = 6.72e-13 m^4 [m]: the paper's is 1 mm.
+    /// Radius of a round tube with the printed q1c = 6.72e-13 m^4 [m]; the paper's radius is 1 mm.
     pub tube_radius_m: f64,
-    /// Side of a square bladder with the printed q1b = 1.55e-12 m^4 [m]: the paper's is 7.8 mm.
+    /// Side of a square bladder with the printed q1b = 1.55e-12 m^4 [m]; the paper's side is 7.8 mm.
     pub square_side_m: f64,
 }
 
-/// The paper's section with a square of these fillets, at this height.
+/// The paper's section with square bladders of this fillet at this height.
 pub fn section(poisson_ratio: f64, fillet_m: f64, center_m: f64) -> Section {
     let shape = Shape::RoundedRectangle {
         along_m: 0.0078,
@@ -150,7 +151,7 @@ fn values(n: &Numbers) -> [f64; 8] {
     ]
 }
 
-/// The first seven of [PRINTED] from a compliance [K1] to [K3] of mirrored rows.
+/// The first seven of [PRINTED] from the compliance of a section with mirrored rows, [K1] to [K3].
 fn spread(section: &Section, c: &[[f64; 4]; 4]) -> [f64; 7] {
     let (e, w, h) = (section.material.young_modulus_pa, section.width_m, section.height_m);
     let length = section.bladders.length_m;
@@ -168,7 +169,7 @@ fn spread(section: &Section, c: &[[f64; 4]; 4]) -> [f64; 7] {
     ]
 }
 
-/// Computes the table over these ratios, fillets and heights.
+/// Computes the comparison for all combinations of ratios, fillets and heights.
 pub fn paper_table(ratios: &[f64], fillets_m: &[f64], centers_m: &[f64]) -> Result<PaperTable, Error> {
     let options = Options {
         meshes: 2,
@@ -204,7 +205,7 @@ pub fn paper_table(ratios: &[f64], fillets_m: &[f64], centers_m: &[f64]) -> Resu
     let chosen = &variants[best];
     let section = section(chosen.poisson_ratio, chosen.fillet_m, chosen.center_m);
     let spatial = spread(&section, &section.three_dimensional()?.compliance);
-    // q1 goes with the fourth power of a shape's size.
+    // q1 is proportional to the fourth power of a shape's size.
     let unit = |shape| permeability(&Channel::Open(shape)).map(|q| q.value);
     let square = unit(Shape::RoundedRectangle {
         along_m: 1.0,

@@ -1,8 +1,9 @@
-//! The paper's plus and minus compliances as what they are: secants of a cell at finite strain.
+//! The paper's plus and minus compliances as secants of a cell at finite strain.
 //!
-//! The paper's finite elements hold "geometric nonlinearity yet limiting for a Hookean linear elastic material": Saint-Venant and
-//! Kirchhoff's law. Under it a bladder closes more easily than it opens, as printed; a neo-Hookean solid has it the other way about in
-//! extension and is nearly symmetric in bending. The asymmetry is one of the law, not of the structure.
+//! The paper's finite elements have "geometric nonlinearity yet limiting for a Hookean linear elastic material": the
+//! Saint-Venant-Kirchhoff law. With this law a bladder closes more easily than it opens, as printed. A neo-Hookean
+//! solid shows the opposite in extension, and near symmetry in bending. The asymmetry is a property of the law, not of
+//! the structure.
 
 use super::section;
 use crate::cell::Cell;
@@ -21,17 +22,17 @@ pub struct Secants {
     pub opening: f64,
     /// Area per load of the bladder that closes; the paper's "plus".
     pub closing: f64,
-    /// Load per strain under the load that opens, as a factor of the full section's: f_e or f_i.
+    /// Load per strain under the opening load, relative to the full section: f_e or f_i.
     pub stiffness_factor: f64,
 }
 
-/// Cell of the paper under a law, meshed once.
+/// The paper's cell under a law, meshed once.
 pub struct Experiment {
     cell: FiniteCell,
 }
 
 impl Experiment {
-    /// With squares of this fillet at this height.
+    /// Cell with square bladders of this fillet at this height.
     pub fn new(poisson_ratio: f64, fillet_m: f64, center_m: f64, law: Law) -> Result<Self, Error> {
         let section = section(poisson_ratio, fillet_m, center_m);
         let meshes = section.meshes(&Options {
@@ -47,7 +48,7 @@ impl Experiment {
         self.cell.equilibrium(Drive::Load([force, moment]), [0.0; 2])
     }
 
-    /// Under plus and minus an axial force.
+    /// Secants under axial forces of both signs.
     pub fn force(&self, load: f64) -> Result<Secants, Error> {
         let (pulled, pressed) = (self.under(load, 0.0)?, self.under(-load, 0.0)?);
         let [opening, closing] = [pulled.areas_m2[0] / load, -pressed.areas_m2[0] / load];
@@ -59,12 +60,12 @@ impl Experiment {
         })
     }
 
-    /// f_e as a secant under a pull.
+    /// f_e as a secant under tension.
     pub fn extension(&self, load: f64) -> Result<f64, Error> {
         Ok(load / self.under(load, 0.0)?.strain[0] / (2e6 * 0.05 * 0.0216))
     }
 
-    /// Under a moment: the upper row opens, the lower one closes.
+    /// Secants under a moment: the upper row opens, the lower one closes.
     pub fn moment(&self, load: f64) -> Result<Secants, Error> {
         let bent = self.under(0.0, load)?;
         let [opening, closing] = [bent.areas_m2[0] / load, -bent.areas_m2[1] / load];

@@ -1,18 +1,18 @@
-//! A prism over a quadratic triangle: stiffness free of volumetric locking.
+//! A prism over a quadratic triangle, with stiffness free of volumetric locking.
 //!
-//! Displacements are the triangle's six shapes times three quadratic ones across the width, and the triangle's bubble times the middle one.
-//! The volume strain is projected on the linear functions 1, z, x, y of the element: face fluxes of the quadratic shapes hold its mean, the
-//! bubble its slope. Energy as in [S1].
+//! Displacements are products of the triangle's six shape functions and three quadratic ones across the width, plus the
+//! triangle's bubble times the middle one. The volume strain is projected onto the linear functions 1, z, x, y of the
+//! element. The quadratic shapes control its mean by face fluxes, the bubble its slope. The energy is that of [S1].
 
 use crate::element::sites;
 use crate::input::{Material, Point};
 
-/// Nodal displacements (along, high, across) of eighteen nodes, the six of the lower plane first; then e and kappa.
+/// Displacements (along, high, across) of eighteen nodes, the six of the lower plane first; then e and kappa.
 pub const ROWS: usize = 56;
-/// With the bubble's three.
+/// Rows with the three of the bubble.
 const ALL: usize = ROWS + 3;
 
-/// Gauss's three points across: (t, weight, shapes, slopes) on [0, 1].
+/// Three-point Gauss rule across the width: (t, weight, shapes, slopes) on [0, 1].
 fn across() -> [(f64, f64, [f64; 3], [f64; 3]); 3] {
     crate::element::GAUSS.map(|[t, w]| {
         let shapes = [(1.0 - t) * (1.0 - 2.0 * t), 4.0 * t * (1.0 - t), t * (2.0 * t - 1.0)];
@@ -20,7 +20,7 @@ fn across() -> [(f64, f64, [f64; 3], [f64; 3]); 3] {
     })
 }
 
-/// Stiffness of the prism of this thickness over a triangle, lower triangle of a `ROWS` by `ROWS` matrix by rows. None when folded.
+/// Stiffness of a prism over a triangle: rows of the lower triangle of a `ROWS` by `ROWS` matrix. None if folded.
 pub fn matrix(nodes: &[Point; 6], thickness: f64, material: &Material) -> Option<Vec<[f64; ROWS]>> {
     let (mu, bulk) = (material.shear_modulus(), material.bulk_modulus());
     let sites = sites(nodes)?;
@@ -34,7 +34,7 @@ pub fn matrix(nodes: &[Point; 6], thickness: f64, material: &Material) -> Option
         for (t, w, n, d) in across() {
             let weight = site.weight * w * thickness;
             let mut b = [[0.0; 6]; ALL];
-            // Strains zz, xx, yy, zx, xy, yz of a shape with these slopes.
+            // Strains zz, xx, yy, zx, xy, yz of a shape function with these slopes.
             let mut put = |row: usize, [z, x, y]: [f64; 3]| {
                 b[row] = [z, 0.0, 0.0, x, 0.0, y];
                 b[row + 1] = [0.0, x, 0.0, z, y, 0.0];
@@ -90,7 +90,7 @@ pub fn matrix(nodes: &[Point; 6], thickness: f64, material: &Material) -> Option
             k[i][j] += (0..4).map(|a| p[a] * volume[j][a]).sum::<f64>();
         }
     }
-    // The bubble eliminated: its rows are the last three, full to the left.
+    // Eliminate the bubble: its rows are the last three, filled to the left of the diagonal.
     let block = std::array::from_fn(|a| std::array::from_fn(|b| k[ROWS + a.max(b)][ROWS + a.min(b)]));
     let inverse = crate::element::solid::inverse3(&block);
     let out = (0..ROWS).map(|i| {

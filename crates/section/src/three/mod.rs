@@ -1,14 +1,14 @@
-//! The unit cell in three dimensions: half of the beam's width, bladder, its end and side wall in one body.
+//! The unit cell in three dimensions: half of the beam's width with bladder, its end and side wall.
 //!
 //! ```text
 //! u = macroscopic part of stretch and curvature + w,   w periodic along the beam,   u_y = 0 on the plane of symmetry y = 0     [D1]
 //! ```
 //!
-//! All sides are free. A bladder reaches to y = l_b/2; beyond it the same cross-section is solid. Pressure acts on its walls and on its
-//! end, so that a = volume / l_b. Beside the plane cell this one has the restraint of the ends, the bending of the side walls outwards,
-//! and lateral strains that core and side walls share.
+//! All sides are free. A bladder extends to y = l_b/2; beyond it the cross-section is solid. Pressure acts on its walls
+//! and its end, so a = volume / l_b. In addition to the plane cell, this cell includes the restraint by the ends, the
+//! outward bending of the side walls, and common lateral strains of core and side walls.
 //!
-//! The mesh is the plane cell's times layers across the width.
+//! The mesh consists of layers of the plane cell's mesh across the width.
 
 mod element;
 
@@ -24,30 +24,33 @@ use crate::mesh::Fineness;
 use crate::sparse::Factor;
 use element::{ROWS, matrix};
 
-/// Entries smaller than this part of the root of the product of their diagonal entries are compared with that.
+/// Limit of the relative size of entries, over the geometric mean of their diagonal entries. Smaller entries are
+/// compared with this limit.
 pub const SMALL: f64 = 0.01;
 
-/// Compliance by the cell in three dimensions.
+/// Compliance from the cell in three dimensions.
 #[derive(Debug, Clone)]
 pub struct Spatial {
-    /// As that of the plane cell, on the finer mesh.
+    /// Compliance as of the plane cell, on the finer mesh.
     pub compliance: [[f64; 4]; 4],
-    /// Difference from the coarser mesh, each entry over the root of the product of its diagonal entries.
+    /// Difference from the coarser mesh over the geometric mean of the diagonal entries.
     pub errors: [[f64; 4]; 4],
-    /// The plane cell's compliance less this one, over this one's magnitude; entries below [SMALL] count as that.
+    /// Difference of the plane cell's compliance over the magnitude of this one; entries below [SMALL] count as
+    /// [SMALL].
     pub plane_off: [[f64; 4]; 4],
-    /// Displacement unknowns of the finer mesh.
+    /// Number of displacement unknowns of the finer mesh.
     pub unknowns: usize,
 }
 
 impl Section {
-    /// Compliance of the three-dimensional cell, from two meshes. The section needs side walls: bladders shorter than its width.
+    /// Compliance of the three-dimensional cell from two meshes. Requires side walls: bladders shorter than the section
+    /// is wide.
     pub fn three_dimensional(&self) -> Result<Spatial, Error> {
         let mesh = self.meshes(&Options::default())?.pop().ok_or(Error::Singular)?;
         self.beside(&Level::new(self, &Cell::new(self, &mesh))?)
     }
 
-    /// The same beside the finest level of the plane cell.
+    /// Compliance of the three-dimensional cell, compared with the finest level of the plane cell.
     pub(crate) fn beside(&self, plane: &Level) -> Result<Spatial, Error> {
         let coarse = Fineness {
             largest: 0.5,
@@ -78,7 +81,7 @@ impl Section {
         })
     }
 
-    /// Compliance and number of unknowns on one mesh, with this many layers along half a bladder.
+    /// Compliance and number of unknowns on one mesh, with `layers` layers along half a bladder.
     pub fn spatial(&self, fineness: &Fineness, layers: usize) -> Result<([[f64; 4]; 4], usize), Error> {
         let options = Options {
             fineness: *fineness,
@@ -97,7 +100,8 @@ impl Section {
     }
 }
 
-/// Planes between layers: along the bladder they thicken threefold away from its end; how many lie in it.
+/// Planes between layers, and the number of layers in the bladder. There the thickness grows threefold per layer away
+/// from the end.
 fn across(end: f64, half: f64, layers: usize) -> (Vec<f64>, usize) {
     let sum: f64 = (0..layers).map(|k| 3.0_f64.powi(k as i32)).sum();
     let mut planes = vec![end];
@@ -111,11 +115,11 @@ fn across(end: f64, half: f64, layers: usize) -> (Vec<f64>, usize) {
     (planes, layers)
 }
 
-/// The plane cell spread across half the width.
+/// The plane cell extruded over half the width.
 struct Spread {
     cell: Cell,
     planes: Vec<f64>,
-    /// Layers along the bladder.
+    /// Number of layers along the bladder.
     hollow: usize,
 }
 
@@ -138,7 +142,7 @@ impl Spread {
             .collect();
         let flat = periodic(&self.cell, &all)?;
         let levels = 2 * (self.planes.len() - 1) + 1;
-        // Numbers of (node, plane) that some solid uses, three unknowns each.
+        // Number all (node, plane) pairs of the solid, three unknowns each.
         let count = flat.iter().filter(|&&k| k != usize::MAX).max().map_or(0, |m| m + 1);
         let mut number = vec![usize::MAX; count * levels];
         let layers = self.planes.len() - 1;
@@ -162,7 +166,7 @@ impl Spread {
         }
         let n = 3 * next;
         let dof = |node: usize, level: usize, c: usize| 3 * number[flat[node] * levels + level] + c;
-        // Held: across on the plane of symmetry; one node there along and high.
+        // Fixed: across on the plane of symmetry; along and high at one node there.
         let mut held = vec![false; n];
         for k in 0..count {
             if number[k * levels] != usize::MAX {
@@ -199,7 +203,7 @@ impl Spread {
                         let column = of(j);
                         if !held[row] && !held[column] {
                             entries.push((row.max(column), row.min(column), k[i][j]));
-                            // Two nodes that are one across the period: the mirror entry falls on the same place.
+                            // If two nodes coincide across the period, the mirror entry is at the same position.
                             if row == column && i != j {
                                 entries.push((row, column, k[i][j]));
                             }
@@ -245,7 +249,7 @@ impl Spread {
         ))
     }
 
-    /// Integral of u . n over a bladder's walls and end.
+    /// Integral of u . n over the walls and the end of a bladder.
     fn press(
         &self,
         side: &mut [f64],
@@ -260,7 +264,7 @@ impl Spread {
                 let tangent: [f64; 2] = std::array::from_fn(|c| (0..3).map(|k| d[k] * nodes[k][c]).sum());
                 for layer in 0..self.hollow {
                     let thickness = self.planes[layer + 1] - self.planes[layer];
-                    // Integrals of the three quadratic shapes: Simpson's weights.
+                    // Integrals of the three quadratic shapes (Simpson's weights).
                     for (j, share) in [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0].into_iter().enumerate() {
                         for k in 0..3 {
                             let f = w * n[k] * share * thickness;

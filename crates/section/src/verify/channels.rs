@@ -1,4 +1,4 @@
-//! Permeability of channels with closed forms.
+//! Comparison: permeability of channels with closed forms.
 
 use super::Comparison;
 use crate::error::Error;
@@ -6,7 +6,7 @@ use crate::input::Shape;
 use crate::permeability::{Channel, levels};
 use std::f64::consts::PI;
 
-/// q1 = a b^3/12 [1 - 192 b/(pi^5 a) sum over odd n of tanh(n pi a/2b)/n^5]; the series falls with n^-5.
+/// q1 = a b^3/12 [1 - 192 b/(pi^5 a) sum over odd n of tanh(n pi a/2b)/n^5]; terms decrease with n^-5.
 fn rectangle(a: f64, b: f64) -> f64 {
     let sum: f64 = (0..200)
         .map(|k| f64::from(2 * k + 1))
@@ -15,7 +15,7 @@ fn rectangle(a: f64, b: f64) -> f64 {
     a * b.powi(3) / 12.0 * (1.0 - 192.0 * b / (PI.powi(5) * a) * sum)
 }
 
-/// Channels of six outlines.
+/// Compares channels of six outlines.
 pub fn compare() -> Result<Vec<Comparison>, Error> {
     let sharp = |along_m, high_m| {
         Channel::Open(Shape::RoundedRectangle {

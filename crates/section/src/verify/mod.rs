@@ -1,4 +1,4 @@
-//! Exact results, beside what the crate computes on successive meshes.
+//! Comparison of computed values on successive meshes with exact results.
 
 mod channels;
 mod prisms;
@@ -16,36 +16,36 @@ use crate::input::Material;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One exact result.
+/// Comparison with one exact result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Comparison {
-    /// What is compared, with its unit.
+    /// Compared quantity, with its unit.
     pub name: String,
-    /// Where the exact value is from.
+    /// Source of the exact value.
     pub source: String,
-    /// The exact value.
+    /// Exact value.
     pub exact: f64,
-    /// Computed on successive meshes, the coarsest first.
+    /// Computed values on successive meshes, coarsest first.
     pub computed: Vec<f64>,
-    /// Observed order of the last two errors; None where they are round-off or change sign.
+    /// Observed order of the last two errors; None if they are rounding errors or change sign.
     pub order: Option<f64>,
-    /// Largest error accepted.
+    /// Largest accepted error.
     pub tolerance: f64,
 }
 
-/// Relative errors below this are round-off: the condition number of a cell near incompressibility times 1e-16.
+/// Relative errors below this are rounding errors: the condition number of a nearly incompressible cell times 1e-16.
 pub const ROUND_OFF: f64 = 1e-10;
-/// Largest error of what three coarse meshes only approach: the target of every coefficient.
+/// Largest error of values that three coarse meshes only approximate: the accuracy goal of every coefficient.
 pub const APPROACHED: f64 = 1e-3;
-/// Least observed order: energies of quadratic elements converge with the fourth, on coarse meshes with a little less.
+/// Smallest accepted order: energies of quadratic elements converge with fourth order, slightly less on coarse meshes.
 pub const LEAST_ORDER: f64 = 3.3;
 
 impl Comparison {
-    /// Of a value on successive meshes with an exact one.
+    /// Compares values on successive meshes with an exact one.
     pub fn new(name: impl Into<String>, source: &str, exact: f64, computed: Vec<f64>) -> Self {
         let scale = if exact == 0.0 { 1.0 } else { exact.abs() };
         let errors: Vec<f64> = computed.iter().map(|c| (c - exact) / scale).collect();
-        // Errors that change sign on their way show no order.
+        // Errors that change sign determine no order.
         let one_sided = errors.iter().all(|e| e * errors[0] > 0.0);
         let last = errors.last_chunk::<2>().filter(|e| one_sided && e[1].abs() > ROUND_OFF);
         let order = last.map(|[a, b]| (a / b).log2());
@@ -59,7 +59,7 @@ impl Comparison {
         }
     }
 
-    /// Of a field that the elements hold exactly.
+    /// Comparison for a field that the elements represent exactly.
     fn held_exactly(self) -> Self {
         self.within(ROUND_OFF)
     }
@@ -68,7 +68,7 @@ impl Comparison {
         Self { tolerance, ..self }
     }
 
-    /// Relative error on the finest mesh; absolute where the exact value is zero.
+    /// Relative error on the finest mesh; absolute if the exact value is zero.
     pub fn error(&self) -> f64 {
         let scale = if self.exact == 0.0 { 1.0 } else { self.exact.abs() };
         self.computed
@@ -76,13 +76,13 @@ impl Comparison {
             .map_or(f64::NAN, |c| (c - self.exact).abs() / scale)
     }
 
-    /// The error that the meshes alone show; None where values are exact up to round-off, which no mesh shows.
+    /// Error estimated from the meshes; None for values that are exact up to rounding errors.
     pub fn estimate(&self) -> Option<f64> {
         (self.tolerance == APPROACHED).then(|| estimate::estimate(&self.computed, estimate::SMOOTH).relative_error)
     }
 }
 
-/// A material of any density.
+/// Material of an arbitrary density.
 fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
     Material {
         young_modulus_pa,
@@ -92,7 +92,7 @@ fn material(young_modulus_pa: f64, poisson_ratio: f64) -> Material {
     }
 }
 
-/// What computes the comparisons of one subject.
+/// Function that computes the comparisons of one subject.
 pub type Compare = fn() -> Result<Vec<Comparison>, Error>;
 
 const ALL: [Compare; 7] = [
@@ -105,7 +105,7 @@ const ALL: [Compare; 7] = [
     symmetry,
 ];
 
-/// All comparisons.
+/// Returns all comparisons.
 pub fn verify() -> Result<Vec<Comparison>, Error> {
     ALL.iter().try_fold(vec![], |mut all, compare| {
         all.extend(compare()?);

@@ -1,4 +1,5 @@
-//! Sections without bladders: extension, bending with its anticlastic curvature, and shear of one material and of layers.
+//! Comparison: sections without bladders. Extension, bending with anticlastic curvature, and shear, of one material and
+//! of layers.
 
 use super::{Comparison, material};
 use crate::cell::{Cell, Kind, Response};
@@ -29,7 +30,7 @@ fn solid(nu: f64) -> Section {
     }
 }
 
-/// Layers from these heights, the last one up to the top, of these moduli.
+/// Layers as (lower height, Young's modulus); the last one extends to the top.
 struct Layers(Vec<(f64, f64)>);
 
 impl Layers {
@@ -46,7 +47,7 @@ impl Layers {
             .sum()
     }
 
-    /// kGA of layers of the same nu: shear stress from equilibrium, its energy by Simpson's rule on a fine grid.
+    /// kGA of layers of equal nu: shear stress from equilibrium, its energy by Simpson's rule on a fine grid.
     fn shear(&self, nu: f64) -> f64 {
         let neutral = self.moment(1) / self.moment(0);
         let ei = self.moment(2) - neutral * self.moment(1);
@@ -102,7 +103,7 @@ fn compare_one(name: &str, section: &Section, layers: &Layers, nu: f64) -> Resul
     Ok(rows)
 }
 
-/// Prisms of one material and of layers.
+/// Compares prisms of one material and of layers.
 pub fn layers() -> Result<Vec<Comparison>, Error> {
     let bottom = -HEIGHT / 2.0;
     let mut rows = Vec::new();
@@ -122,7 +123,7 @@ pub fn layers() -> Result<Vec<Comparison>, Error> {
         shape: RegionShape::Layer { high_m },
         material: material(e, nu),
     };
-    // A stiff skin on both sides of a soft core: a hollow rectangle filled.
+    // Stiff skins on both sides of a soft core.
     let (nu, skin, core) = (0.4, 0.002, 2e4);
     let sandwich = Layers(vec![(bottom, YOUNG), (bottom + skin, core), (-bottom - skin, YOUNG)]);
     let filled = Section {
@@ -137,7 +138,7 @@ pub fn layers() -> Result<Vec<Comparison>, Error> {
         ..solid(nu)
     };
     rows.extend(compare_one("stiff sheet below", &sheet, &two, nu)?);
-    // Side walls solve the filled cell when there are regions.
+    // With regions, the side walls use the filled cell.
     let half = Section {
         bladders: Bladders {
             length_m: 0.4 * WIDTH,
@@ -150,7 +151,7 @@ pub fn layers() -> Result<Vec<Comparison>, Error> {
     Ok(rows)
 }
 
-/// Regions of the same material change the mesh, nothing else.
+/// Patch test: regions of equal material change only the mesh.
 pub fn patches() -> Result<Vec<Comparison>, Error> {
     let nu = 0.49;
     let same = |shape| Region {
@@ -198,7 +199,7 @@ pub fn patches() -> Result<Vec<Comparison>, Error> {
     ])
 }
 
-/// Blocks at finite strain.
+/// Compares blocks at finite strain.
 pub fn finite_strain() -> Result<Vec<Comparison>, Error> {
     let mut rows = Vec::new();
     let section = solid(0.49);
@@ -230,7 +231,7 @@ pub fn finite_strain() -> Result<Vec<Comparison>, Error> {
     Ok(rows)
 }
 
-/// A block with side walls, in three dimensions.
+/// Compares a block with side walls in three dimensions.
 pub fn three_dimensions() -> Result<Vec<Comparison>, Error> {
     let section = Section {
         bladders: Bladders {

@@ -1,11 +1,11 @@
-//! What every passive section obeys: its compliance is symmetric (Maxwell and Betti) and positive definite.
+//! Comparison: the compliance of a passive section is symmetric (Maxwell and Betti) and positive definite.
 
 use super::{Comparison, material};
 use crate::coefficients::Options;
 use crate::error::Error;
 use crate::input::{Bladder, Bladders, Region, RegionShape, Row, Section, Shape};
 
-/// Symmetry that reciprocity is held to.
+/// Largest accepted asymmetry.
 const RECIPROCAL: f64 = 1e-12;
 
 fn bladder(center_m: f64, shape: Shape) -> Row {
@@ -28,7 +28,7 @@ fn section(nu: f64, upper: Row, lower: Row) -> Section {
     }
 }
 
-/// Sections of all kinds of outline, alike and unlike in their halves.
+/// Sections with all kinds of outlines, with equal and with different halves.
 fn sections() -> Vec<(&'static str, Section)> {
     let circle = || bladder(0.0052, Shape::Circle { radius_m: 0.0028 });
     let square = |fillet_m| {
@@ -66,7 +66,7 @@ fn sections() -> Vec<(&'static str, Section)> {
     ]
 }
 
-/// Pivots of Gauss's elimination that are not positive: as many as there are eigenvalues that are not (Sylvester).
+/// Number of non-positive pivots of Gaussian elimination, equal to that of non-positive eigenvalues (Sylvester).
 fn not_positive(mut a: [[f64; 4]; 4]) -> usize {
     for k in 0..4 {
         for i in k + 1..4 {
@@ -77,7 +77,7 @@ fn not_positive(mut a: [[f64; 4]; 4]) -> usize {
     (0..4).filter(|&k| a[k][k].is_nan() || a[k][k] <= 0.0).count()
 }
 
-/// Sections of six outlines.
+/// Compares sections of six outlines.
 pub fn compare() -> Result<Vec<Comparison>, Error> {
     let mut rows = vec![];
     for (name, section) in sections() {
@@ -85,7 +85,7 @@ pub fn compare() -> Result<Vec<Comparison>, Error> {
         let asymmetry = levels.iter().map(|l| l.asymmetry).collect();
         let counts = levels.iter().map(|l| {
             let mut c = l.compliance;
-            // A row without bladders has no area: its load does no work.
+            // A row without bladders has no area, and its pressure does no work.
             (2..4)
                 .filter(|&k| l.cavities[k - 2][0] == 0.0)
                 .for_each(|k| c[k][k] = 1.0);

@@ -1,7 +1,7 @@
-//! A thick-walled tube across the beam: Lame's solution in plane strain and with closed ends.
+//! Comparison: a thick-walled tube across the beam. Lame's solution in plane strain and with closed ends.
 //!
-//! The tube stands in a cell as long as its diameter, so that the two faces of the period are one node each; the cell's stretch is free.
-//! That holds the tube against turning and loads it with nothing.
+//! The cell is as long as the tube's diameter, so each face of the period is a single node. The cell's stretch is free.
+//! This prevents rotation of the tube without loading it.
 
 use super::{Comparison, material};
 use crate::cell::respond::walls;
@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 const INNER: f64 = 2e-3;
 const OUTER: f64 = 5e-3;
 
-/// Tubes up to a Poisson's ratio of 0.4999.
+/// Compares tubes up to a Poisson's ratio of 0.4999.
 pub fn compare() -> Result<Vec<Comparison>, Error> {
     let mut rows = Vec::new();
     for nu in [0.3, 0.49, 0.4999] {
@@ -59,12 +59,12 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
             response.area_by_pressure[0][0],
         );
         computed[0].push(r + t[0] * t[0] / s[0][0]);
-        // Outside: the solid's whole boundary, less its inside turned outwards.
+        // Outside: the whole boundary of the solid, less its inner boundary.
         let mut outside = walls(&cell, &response.independent, response.unknowns, |p| {
             matches!(p, Part::Solid(_))
         });
         outside.iter_mut().zip(&response.sides[4]).for_each(|(o, i)| *o += i);
-        // The held node moves with the faces: see the stretch below. Its own force is the reaction, zero in sum.
+        // The fixed node moves with the faces: see the stretch below. Its force is the reaction, zero in sum.
         outside[0] = 0.0;
         outside[1] = 0.0;
         let macroscopic = OUTER * OUTER * PI - dot(&outside, &response.fields[0]);
@@ -76,7 +76,7 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
     let (a, b) = (INNER * INNER, OUTER * OUTER);
     let bore = 2.0 * PI * a * (1.0 + nu) / young / (b - a);
     let axial = (1.0 - 2.0 * nu) / young * a / (b - a);
-    // With closed ends: plane strain's, and the axial strain's own: the bore narrows by nu times it.
+    // With closed ends, plane strain plus the axial strain: the bore narrows by nu times it.
     let closed = bore * ((1.0 - 2.0 * nu) * a + b) + PI * a * (1.0 - 2.0 * nu) * axial;
     let exact = [
         bore * ((1.0 - 2.0 * nu) * a + b),
@@ -92,7 +92,8 @@ fn tube(nu: f64) -> Result<Vec<Comparison>, Error> {
     ];
     let row = |((name, exact), computed): ((&str, f64), Vec<f64>)| {
         let row = Comparison::new(format!("{name}, nu {nu}"), "Lame", exact, computed);
-        // The sum of strains loses (1 - 2 nu): 1e-16 over 2e-4 times the condition of the cell, a million at nu 0.4999.
+        // Cancellation loses the factor 1 - 2 nu: 1e-16 over 2e-4, times the condition number of the cell, 1e6 at nu
+        // 0.4999.
         let lost = nu > 0.499 && name.starts_with("axial strain");
         if lost { row.within(1e-6) } else { row }
     };

@@ -1,4 +1,4 @@
-//! Sections that several tests use.
+//! Sections common to several tests.
 #![allow(dead_code)]
 
 use slcbeam_section::cell::Cell;
@@ -15,7 +15,7 @@ pub fn paper(nu: f64, fillet_m: f64) -> Section {
     with_shapes(nu, Some((0.0049, shape)), None)
 }
 
-/// The paper's outer sizes with these bladders; no lower one: mirrored.
+/// Section of the paper's outer sizes with these bladders; without a lower one, the upper is mirrored.
 pub fn with_shapes(nu: f64, upper: Option<(f64, Shape)>, lower: Option<(f64, Shape)>) -> Section {
     let row = |given: Option<(f64, Shape)>, none| {
         given.map_or(none, |(center_m, shape)| Row::Bladder(Bladder { center_m, shape }))
@@ -40,7 +40,7 @@ pub fn with_shapes(nu: f64, upper: Option<(f64, Shape)>, lower: Option<(f64, Sha
     }
 }
 
-/// The cell on the finest of so many meshes.
+/// Cell on the finest of `meshes` meshes.
 pub fn finest(section: &Section, meshes: usize) -> Cell {
     let options = Options {
         meshes,

@@ -1,11 +1,11 @@
-//! What compression of the fluid stores over what walls store.
+//! Storage by compression of the fluid relative to storage by walls.
 
 use super::Scene;
 use super::tubes::FASTEST;
 use crate::model::{Compression, Wet};
 
 impl Scene<'_> {
-    /// The larger share of compression in storage, of bladders and where tubes end.
+    /// Largest share of compression in storage, of bladders and at tube ends.
     pub fn compression_of_fluid(&self) -> f64 {
         self.wet.map_or(0.0, |wet| {
             self.compression_in_bladders(wet)
@@ -13,10 +13,10 @@ impl Scene<'_> {
         })
     }
 
-    /// `A_0 r'/(r a_p)`, at most: what compression stores over what the walls of bladders do; over the whole run where it changes the
-    /// stiffness of what vibrates.
+    /// Largest `A_0 r'/(r a_p)`: storage by compression over storage by bladder walls. Grows with the length of the run
+    /// where it changes the stiffness of a vibration.
     fn compression_in_bladders(&self, wet: &Wet) -> f64 {
-        // whether or not the whole model has it, which takes inertia in tubes instead
+        // also where the full model omits compression
         let fluid = self.case.fluid.as_ref();
         let compression = fluid.and_then(|fluid| Compression::new(fluid, wet.area_at_rest));
         let stored = compression.map_or(0.0, |compression| compression.compliance(-self.scales.pressure));
@@ -25,8 +25,9 @@ impl Scene<'_> {
         share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
 
-    /// Share of compression in what stores at a vessel or where tubes with inertia alone meet, at most, times the departure from rest that the
-    /// scene causes at the frequency of the fluid there, `1/√(I C)`; in a vessel also its own fluid over its walls, at any frequency.
+    /// Largest share of compression in the storage at a vessel, or at a junction of tubes with inertia. It is
+    /// multiplied by the response of the flow there at its natural frequency `1/√(I C)`. For a vessel, the ratio of its
+    /// fluid's storage to that of its walls counts at any frequency.
     fn compression_where_tubes_end(&self, wet: &Wet) -> f64 {
         let fluid = self.case.fluid.as_ref();
         let Some(compression) = fluid.and_then(|fluid| Compression::new(fluid, 1.0)) else {

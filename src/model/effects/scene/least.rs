@@ -1,9 +1,11 @@
-//! What the loads do to the beam at the least: numbers that may stand in a denominator.
+//! Lower bounds of the response to loads, for use in denominators.
 //!
-//! The linear drained beam at rest under the loads of some instants, those at which each of them is largest: what is reached at one
-//! instant is reached. A beam that follows its loads up to a part `h` of them, stiffened by sealed bladders and by tension (in parts of
-//! its buckling load), does at least `(1 - h)/(1 + stiffening)` of it. Nothing is known, and zero is said, where ends are moved, loads are couples along the beam, the
-//! beam departs from its loads by half, or a load is too narrow for the integrals here.
+//! Model: the linear drained beam at rest, under the loads at the instants of each signal's maximum. A beam departs
+//! from its static response by at most a fraction `h`. Sealed bladders and tension (as a fraction of the buckling load)
+//! stiffen it. Its response is at least `(1 - h)/(1 + stiffening)` of the static one.
+//!
+//! The bound is zero if ends are moved, loads are couples along the beam, the departure `h` is 0.5 or more, or a load
+//! is too narrow for the quadrature.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,31 +15,31 @@ use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 
 const ELEMENTS: usize = 32;
-/// Instants, at most.
+/// Largest number of instants.
 const INSTANTS: usize = 12;
-/// Gauss' places and weights in [0, 1].
+/// Gauss points and weights in [0, 1].
 const GAUSS: [(f64, f64); 3] = [
     (0.112_701_665_379_258_3, 5.0 / 18.0),
     (0.5, 4.0 / 9.0),
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
-/// Discretisation is a small part of this.
+/// Safety factor; discretization errors are far smaller than its margin.
 const MARGIN: f64 = 0.9;
 
-/// Lower bounds of largest magnitudes over the run.
+/// Lower bounds of the largest magnitudes over the run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Least {
-    /// How much bending draws the beam in, `∫ φ²/2` [m].
+    /// Shortening by bending, `∫ φ²/2` [m].
     pub drawn_in: f64,
     /// Bending moment [N m].
     pub moment: f64,
-    /// Stretch along the whole beam [m].
+    /// Stretch of the whole beam [m].
     pub stretch: f64,
     /// Normal force [N].
     pub force: f64,
 }
 
-/// What one signal of unit size does: deflections and slopes at nodes, normal forces in elements.
+/// Static response to a unit signal: deflections and slopes at nodes, normal forces in elements.
 struct Unit<'a> {
     signal: &'a Signal,
     across: DVector<f64>,
@@ -45,7 +47,7 @@ struct Unit<'a> {
 }
 
 impl Least {
-    /// Of a scene.
+    /// Lower bounds for a scene.
     pub fn of(scene: &Scene) -> Self {
         let (across, along) = (Self::across(scene), Self::along(scene));
         let (h, w) = (scene.bending_inertia(), scene.axial_waves());
@@ -63,7 +65,7 @@ impl Least {
         }
     }
 
-    /// Draw-in and moment.
+    /// Shortening by bending, and moment.
     fn across(scene: &Scene) -> [f64; 2] {
         let still = scene.ends.iter().all(|e| {
             let across = matches!(&e.transverse, Translation::Displacement(s) if !s.is_zero());
@@ -131,7 +133,7 @@ impl Least {
     }
 }
 
-/// The most of two measures over the instants at which a signal is largest.
+/// Largest values of two measures over the instants at which a signal has its maximum.
 fn most(scene: &Scene, units: &[Unit], measure: impl Fn(&[f64], usize) -> f64) -> [f64; 2] {
     let end = scene.case.time.end_s;
     let mut found = [0.0_f64; 2];
@@ -145,8 +147,7 @@ fn most(scene: &Scene, units: &[Unit], measure: impl Fn(&[f64], usize) -> f64) -
     found
 }
 
-/// Forces of a profile on elements, with their first moments about the left node over the element's length; none where the profile
-/// is too narrow for them.
+/// Nodal forces and moments of a profile on each element; none where the profile is too narrow for the quadrature.
 fn forces(profile: &crate::functions::Profile, length: f64) -> Option<Vec<[f64; 4]>> {
     let h = 1.0 / ELEMENTS as f64;
     let mut amount = 0.0;
@@ -175,7 +176,7 @@ fn forces(profile: &crate::functions::Profile, length: f64) -> Option<Vec<[f64; 
     (amount <= 1.1 * whole && whole <= 1.3 * amount).then_some(all)
 }
 
-/// Unit answers of the bent beam.
+/// Unit responses of the bending beam.
 fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
     let n = 2 * ELEMENTS + 2;
     let h = scene.case.beam.length_m / ELEMENTS as f64;
@@ -251,11 +252,11 @@ fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
     Some(units)
 }
 
-/// Unit answers of the stretched beam, held at its root or tip.
+/// Unit responses of the stretching beam, held at its root or its tip.
 fn stretched<'a>(scene: &'a Scene, root: bool) -> Option<Vec<Unit<'a>>> {
     let mut units = vec![];
     let mut add = |signal: &'a Signal, parts: [f64; ELEMENTS]| {
-        // what acts on the side that is free
+        // sum of the forces between the element and the free end
         let along = std::array::from_fn(|i| {
             if root {
                 0.5 * parts[i] + parts[i + 1..].iter().sum::<f64>()

@@ -1,5 +1,4 @@
-//! What the scene does to the beam, in the numbers by which effects are left out: each estimates the relative error that
-//! leaving one out makes.
+//! Estimates of the relative error caused by omitting each effect, from the loads and motions of a case (its scene).
 
 mod compression;
 mod least;
@@ -25,7 +24,7 @@ use pace::Pace;
 use stability::SAFE_COMPRESSION;
 use tubes::Tubes;
 
-/// A scene, before anything is left out.
+/// The scene of a case, with all effects.
 pub struct Scene<'a> {
     case: &'a Case,
     section: &'a Section,
@@ -36,17 +35,17 @@ pub struct Scene<'a> {
     around: Option<Surroundings>,
     scales: Scales,
     drive: Drive,
-    /// First bending frequency of the drained beam [1/s]; where it shears, no more than that (Dunkerley).
+    /// First bending frequency of the drained beam [1/s]; with shear, a lower bound (Dunkerley).
     bending: f64,
-    /// The square of that without shear over its own.
+    /// Square of the ratio of the bending frequency without shear to that with shear.
     softened: f64,
     /// First axial frequency [1/s].
     axial: f64,
-    /// Least buckling load that the ends allow, with shear by Engesser [N].
+    /// Lowest buckling load of the ends, with shear by Engesser [N].
     buckling: f64,
-    /// Of the motions along that ends prescribe.
+    /// Paces of axial motions prescribed at ends.
     driven_along: Vec<Pace>,
-    /// Of all other signals.
+    /// Paces of all other signals.
     others: Vec<Pace>,
     instability: OnceCell<Option<String>>,
     least: OnceCell<Least>,
@@ -54,7 +53,7 @@ pub struct Scene<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// Of a case; `wet` with every effect.
+    /// Scene of a case; `wet` contains every effect.
     pub fn new(case: &'a Case, section: &'a Section, wet: Option<&'a Wet>) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mass = section.mass_per_length;
@@ -135,14 +134,14 @@ impl<'a> Scene<'a> {
         );
     }
 
-    /// Whether the beam begins bent, stretched, moving, or with bladders under pressure.
+    /// True if the beam starts bent, stretched or moving, or with bladders under pressure.
     fn begins_displaced(&self) -> bool {
         let s = &self.case.start;
         let given = [&s.u1_m, &s.u3_m, &s.u1_rate_m_s, &s.u3_rate_m_s];
         given.iter().any(|profile| profile.is_some()) || self.begins_pressed(true)
     }
 
-    /// Whether an end moves otherwise than at rest, which acts on the beam by its inertia.
+    /// True if an end moves, which loads the beam by inertia.
     pub fn driven(&self) -> bool {
         let moves = |motion: &Translation| matches!(motion, Translation::Displacement(s) if !s.is_constant());
         let turns = |turn: &Rotation| matches!(turn, Rotation::Slope(s) if !s.is_constant());
@@ -150,7 +149,7 @@ impl<'a> Scene<'a> {
         self.ends.iter().any(driven)
     }
 
-    /// The sum of [`Pace::inertia_ratio`] of all that acts; 1 where the beam begins displaced.
+    /// Sum of [`Pace::inertia_ratio`] over all signals; 1 where the beam starts displaced.
     fn inertia_ratio(&self, omega: f64) -> f64 {
         self.inertia_ratio_of(self.others.iter().chain(&self.driven_along), omega)
     }
@@ -162,26 +161,27 @@ impl<'a> Scene<'a> {
         paces.map(|pace| pace.inertia_ratio(omega)).sum()
     }
 
-    /// Free bending vibrations and the inertia of forced ones, relative to the static deflection.
+    /// Inertia of free and forced bending vibrations relative to the static deflection.
     pub fn bending_inertia(&self) -> f64 {
-        // compression makes the beam slower; beyond this it is unstable anyway
+        // compression lowers the frequency; beyond this limit the beam counts as unstable
         let slower = (1.0 - self.pressed().min(SAFE_COMPRESSION)).sqrt();
         self.inertia_ratio(self.bending * slower)
     }
 
-    /// Axial waves, relative to the stretch without them; a driven end acts by its acceleration, which must begin smoothly.
+    /// Axial waves relative to the stretch without them. A driven end acts by its acceleration, which must start
+    /// smoothly.
     pub fn axial_waves(&self) -> f64 {
         let waves = self.driven_along.iter().map(|pace| pace.waves(self.axial));
         waves.fold(self.inertia_ratio_of(self.others.iter(), self.axial), f64::max)
     }
 
-    /// `(u1/l_s)²`: how much bending shortens the beam.
+    /// `(u1/l_s)²`: relative shortening by bending.
     pub fn shortening(&self) -> f64 {
         (self.scales.transverse / self.case.beam.length_m).powi(2)
     }
 
-    /// `φ²`, of the largest angle that a cantilever of this deflection or under these moments has at rest, up to three times as
-    /// large where something comes suddenly; infinite where nothing keeps the beam from turning.
+    /// `φ²` of the largest angle of a cantilever at rest with this deflection or these moments. Sudden loads enlarge
+    /// the angle up to threefold. Infinite where the ends do not prevent rotation.
     pub fn rotation(&self) -> f64 {
         let across = |e: &ResolvedEnd| matches!(e.transverse, Translation::Displacement(_));
         let turned = |e: &ResolvedEnd| matches!(e.rotation, Rotation::Slope(_));
@@ -200,12 +200,12 @@ impl<'a> Scene<'a> {
         (angle * (1.0 + self.inertia_ratio(self.bending).min(2.0)) + begins + d.slope).powi(2)
     }
 
-    /// What the loads do at the least.
+    /// Lower bounds of the response to loads.
     fn least(&self) -> &Least {
         self.least.get_or_init(|| Least::of(self))
     }
 
-    /// Whether a bladder begins with pressures that differ along it.
+    /// True if the initial pressure varies along a bladder.
     pub fn uneven_start(&self) -> bool {
         self.case
             .start
@@ -214,30 +214,30 @@ impl<'a> Scene<'a> {
             .any(|start| !start.pressure_pa.is_uniform())
     }
 
-    /// Largest normal force, of either sign, over the buckling load.
+    /// Largest magnitude of the normal force over the buckling load.
     pub fn normal_force(&self) -> f64 {
         self.largest_force() / self.buckling
     }
 
-    /// Of either sign; twice what acts at rest where it comes suddenly [N].
+    /// Largest magnitude of the normal force; up to twice the static value for sudden loads [N].
     fn largest_force(&self) -> f64 {
         self.scales.force * (1.0 + self.inertia_ratio_of(self.others.iter(), self.axial).min(1.0))
     }
 
-    /// Stretch at the most over how much bending draws the beam in at the least.
+    /// Upper bound of the stretch over the lower bound of the shortening by bending.
     pub fn stretch(&self) -> f64 {
         self.largest_force() * self.case.beam.length_m / self.section.axial_stiffness / self.least().drawn_in
     }
 
-    /// How much bending draws the beam in at the most over the stretch at the least; 0 where nothing bends it.
+    /// Upper bound of the shortening by bending over the lower bound of the stretch; 0 without bending.
     pub fn drawn_in(&self) -> f64 {
         let l = self.case.beam.length_m;
-        // that of a slope which is the largest angle everywhere
+        // shortening if the slope is the largest angle everywhere
         let most = 0.5 * self.rotation() * l;
         if most > 0.0 { most / self.least().stretch } else { 0.0 }
     }
 
-    /// Whether the ends hold the beam without its inertia.
+    /// True if the ends support the beam without its inertia.
     pub fn held(&self) -> bool {
         let across = |e: &ResolvedEnd| matches!(e.transverse, Translation::Displacement(_));
         let turned = |e: &ResolvedEnd| matches!(e.rotation, Rotation::Slope(_));
@@ -246,7 +246,7 @@ impl<'a> Scene<'a> {
         (clamped || self.ends.iter().all(across)) && self.ends.iter().any(along)
     }
 
-    /// Whether upper and lower row are each other's mirror image: tubes, ports, start.
+    /// True if upper and lower row are mirror images, with tubes, ports and start.
     pub fn mirrored(&self) -> bool {
         let Some(wet) = self.wet else { return true };
         let network = &wet.network;
@@ -255,7 +255,7 @@ impl<'a> Scene<'a> {
         let plain = plain && !network.links.iter().any(oriented);
         let quiet_start = self.case.start.pressures.is_empty();
         let other = |bladder: usize| (bladder + wet.per_row) % (2 * wet.per_row);
-        // a link by what it does: its ends in any order, whatever way a bladder is passed
+        // key of a link that ignores the order of its two nodes
         let seen = |link: &Link, mirror: bool| {
             let end = |node: Node| match node {
                 Node::Cell { bladder, end } => {
@@ -287,7 +287,8 @@ impl<'a> Scene<'a> {
         plain && quiet_start && steady && fixed && sorted(false) == sorted(true)
     }
 
-    /// Whether fluid comes from or does work outside: ports of other than no pressure, sources, turbines.
+    /// True if fluid exchanges energy with the outside: ports with pressure, sources, turbines, pumps, charged
+    /// accumulators.
     pub fn fed(&self) -> bool {
         self.network().is_some_and(|n| {
             let pressed = |signal: &Signal| {
@@ -301,7 +302,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Part of a bladder's volume that its fastest neighbours take in the whole run: bounded by the sum of conductances.
+    /// Fraction of a bladder's volume that its neighbors receive over the whole run, bounded by the sum of
+    /// conductances.
     pub fn leakage(&self) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
         let mut most = vec![0.0; 2 * wet.per_row];
@@ -320,17 +322,18 @@ impl<'a> Scene<'a> {
         wet.bladder_length / wet.network.bladder_mobility
     }
 
-    /// Least and largest area that a bladder stores per pressure at the scene's pressures [m^2/Pa].
+    /// Smallest and largest area stored per pressure at the scene's pressures [m^2/Pa].
     pub(super) fn compliances(&self, wet: &Wet) -> [f64; 2] {
         [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure))
     }
 
-    /// A frequency of the beam with the stiffness that it has at once, where the solid relaxes [1/s].
+    /// A frequency of the beam with its instantaneous stiffness if the solid relaxes [1/s].
     fn at_once(&self, frequency: f64) -> f64 {
         frequency * self.section.stiffening.sqrt()
     }
 
-    /// Moment and force that pressure causes, over those of the loads at the least; over the whole run where vibrations are damped by it.
+    /// Moment and force by pressure over the lower bounds of those by loads, times the phase of the first mode over the
+    /// run, since they damp vibrations.
     pub fn strains_of_pressure(&self) -> [f64; 2] {
         let Some(wet) = self.wet else { return [0.0; 2] };
         if wet.network.pumped() {
@@ -349,8 +352,8 @@ impl<'a> Scene<'a> {
         [over(moment, by_loads), over(force, along)]
     }
 
-    /// Bound of the section's energy beyond its quadratic part over that, at the sizes that the scene expects of stretch, curvature and
-    /// pressure: of all states with no more of each. Three times as large bendings where something comes suddenly.
+    /// Bound of the section's energy beyond its quadratic part over the quadratic energy. It covers all states up to
+    /// the expected stretch, curvature and pressure. Sudden loads enlarge curvature and pressure up to threefold.
     pub fn strain_energy(&self) -> f64 {
         let law = self.wet.and_then(|wet| Some((wet, wet.strain_energy.as_ref()?)));
         let Some((wet, law)) = law else { return 0.0 };

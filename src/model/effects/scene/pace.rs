@@ -1,18 +1,19 @@
-//! How fast a signal asks for what it asks.
+//! Pace of a signal: its excitation of vibrations relative to its size.
 
 use crate::functions::Signal;
 use crate::functions::bounds::Excitation;
 
-/// How a signal excites vibrations over the run, relative to its size.
+/// Excitation of vibrations by a signal over the run, relative to its size.
 pub struct Pace {
-    /// Lower bounds of the largest value and of the largest acceleration: they stand in denominators.
+    /// Lower bounds of the largest value and the largest acceleration, for use in denominators.
     size: f64,
     acceleration: f64,
     excitation: Excitation,
 }
 
 impl Pace {
-    /// Of a signal until `end` [s], with the value that the beam is at rest with before; none where it is zero all along.
+    /// Pace of a signal until `end` [s]; `held` is its value while the beam is at rest before the run. None for a
+    /// signal that is always zero.
     pub fn of(signal: &Signal, end: f64, held: f64) -> Option<Self> {
         let reached = signal.reaches(end);
         let size = reached.value.max(held.abs());
@@ -26,14 +27,14 @@ impl Pace {
         })
     }
 
-    /// How far something of an angular frequency `ω` [1/s] or more departs, at most, from what this does to it at rest, relative to
-    /// the most that this does.
+    /// Upper bound of the deviation from the static response for vibrations of angular frequency `ω` [1/s] or more,
+    /// relative to the largest static response.
     pub fn inertia_ratio(&self, omega: f64) -> f64 {
         self.excitation.above(omega) / self.size
     }
 
-    /// Waves of the angular frequency `ω` [1/s] or more that a motion of this pace excites by its acceleration, at most, relative to
-    /// what the acceleration does without them.
+    /// Upper bound of the waves of angular frequency `ω` [1/s] or more excited by the acceleration of a motion,
+    /// relative to the quasi-static effect of the acceleration.
     pub fn waves(&self, omega: f64) -> f64 {
         match self.excitation.waves_above(omega) {
             0.0 => 0.0,
@@ -41,7 +42,7 @@ impl Pace {
         }
     }
 
-    /// Whether a sine in it may be in resonance with an angular frequency of `ω` [1/s] or more.
+    /// True if a sine in the signal may be in resonance with an angular frequency of `ω` [1/s] or more.
     pub fn resonates(&self, omega: f64) -> bool {
         self.excitation.resonates(omega)
     }

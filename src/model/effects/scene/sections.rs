@@ -1,28 +1,28 @@
-//! Sections that turn: rotary inertia and shear, of which the second bending mode decides.
+//! Rotation of sections: rotary inertia and shear, estimated with the second bending mode.
 
 use super::Scene;
 
 impl Scene<'_> {
-    /// Second bending frequency [1/s], and its wavenumber [1/m].
+    /// Second bending frequency [1/s] and wavenumber [1/m].
     fn second_mode(&self) -> (f64, f64) {
         let k = 4.694_091_132_974 / self.case.beam.length_m;
         let stiffness = self.section.bending_stiffness / self.section.mass_per_length;
         (k * k * stiffness.sqrt(), k)
     }
 
-    /// Whether something acts suddenly enough to excite bending waves of every length.
+    /// True if loads act suddenly enough to excite bending waves of all lengths.
     pub fn sudden(&self, tolerance: f64) -> bool {
         self.inertia_ratio(self.second_mode().0) >= tolerance
     }
 
-    /// `y11 k²/2 (1 + ω T)`, the phase that rotary inertia changes a vibration of the second bending mode by in the whole run.
+    /// `y11 k²/2 (1 + ω T)`: phase change of the second bending mode by rotary inertia over the whole run.
     pub fn rotary(&self) -> f64 {
         let (omega, k) = self.second_mode();
         0.5 * self.section.gyration_radius_squared * k * k * (1.0 + omega * self.case.time.end_s)
     }
 
-    /// `EI k²/(kGA) (1 + r ω T/2)`, what shear adds to a deflection in the shape of the second bending mode, and the phase that it changes
-    /// its vibration by in the whole run, r the part of the deflection that vibrates.
+    /// `EI k²/(kGA) (1 + r ω T/2)` for the second bending mode: the deflection added by shear, and the phase change of
+    /// its vibration over the whole run. r is the vibrating fraction of the deflection.
     pub fn shear(&self) -> f64 {
         let (omega, k) = self.second_mode();
         let softer = self.section.bending_stiffness * k * k / self.section.shear_stiffness;

@@ -1,4 +1,4 @@
-//! What may make the beam bend more than its loads tell: buckling, flutter, parametric excitation, resonance.
+//! Instabilities that may bend the beam more than its loads: buckling, flutter, parametric excitation, resonance.
 
 use std::f64::consts::PI;
 
@@ -11,23 +11,23 @@ use crate::model::Attachment;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::model::loads::LoadKind;
 
-/// Force beyond which, as a part of the buckling load, nothing that bends is left out.
+/// Force over the buckling load above which all bending effects are kept.
 pub const SAFE_COMPRESSION: f64 = 0.3;
 
-/// Ratio of neighbouring stiffnesses, drained and sealed, with shear and without, at which growth is looked for: tongues are told with more
-/// margin in frequency than between two of these.
+/// Largest ratio of neighboring stiffnesses (from drained to sealed, without and with shear) in the search for growth.
+/// The frequency margins of the search exceed the frequency step of this ratio.
 const FINER: f64 = 1.2;
 
 impl Scene<'_> {
-    /// Largest compression over the buckling load: from loads and end forces by their signs, from shaking, from waves of a start at
-    /// once, from what both ends hold, and from how a bent beam draws its end in and swings.
+    /// Largest compression over the buckling load. It includes loads and end forces with their signs, base motion,
+    /// waves from a sudden start, the reaction between two held ends, and the swing of the bent beam.
     pub fn compression(&self) -> f64 {
         let (m, transverse) = (self.section.mass_per_length, self.scales.transverse);
         let swing = transverse * self.bending * self.bending_inertia().min(1.0);
         self.pressed() + 0.5 * m * swing * swing / self.buckling
     }
 
-    /// The same without how a bent beam swings. What comes suddenly presses up to twice as much.
+    /// [`Self::compression`] without the swing of the bent beam. Sudden loads count up to twice.
     pub fn pressed(&self) -> f64 {
         let (l, section, d) = (self.case.beam.length_m, self.section, &self.drive);
         let [root, tip] = [0, 1].map(|k| matches!(self.ends[k].axial, Translation::Displacement(_)));
@@ -67,8 +67,8 @@ impl Scene<'_> {
         force / self.buckling
     }
 
-    /// What speaks against leaving out how the beam bends, if anything does: buckling, follower loads, parametric excitation,
-    /// resonance, a coupling that gives energy.
+    /// Reason to keep bending effects, if any: buckling, follower loads, parametric excitation, or a coupling that
+    /// releases energy.
     pub fn unstable(&self) -> Option<String> {
         self.instability.get_or_init(|| self.instability()).clone()
     }
@@ -106,7 +106,8 @@ impl Scene<'_> {
         (excess > 0.5).then(|| format!("pressure feeds {} of a bending moment back", significant(excess, 2)))
     }
 
-    /// Whether shaking along the beam may make it bend: Mathieu's equation, with margin in size, frequency and stiffness.
+    /// Reason to keep bending effects under axial base motion: Mathieu's equation, with margins in amplitude, frequency
+    /// and stiffness.
     fn tongue(&self, signal: &Signal) -> Option<String> {
         let Signal::Sine(sine) = signal else {
             return Some("it is shaken along, by more than a sine".into());
@@ -131,8 +132,8 @@ impl Scene<'_> {
         None
     }
 
-    /// How much forces along that pulsate near twice the bending frequency or parts of it may grow bending in the whole run, as an
-    /// exponent: `P/(4 P_cr) ω1 T` of Mathieu's equation at its worst; none where it is below one.
+    /// Growth exponent of bending over the whole run under axial forces that pulsate near twice the bending frequency
+    /// or its subharmonics: the worst case `P/(4 P_cr) ω1 T` of Mathieu's equation. None below one.
     fn pulsates(&self) -> Option<f64> {
         let end = self.case.time.end_s;
         let mut swing = 0.0;
@@ -159,7 +160,7 @@ impl Scene<'_> {
         (growth > 1.0).then_some(growth)
     }
 
-    /// How much sealed bladders stiffen bending and stretch.
+    /// Relative stiffening of bending and stretch by sealed bladders.
     pub fn stiffenings(&self) -> [f64; 2] {
         let along = self.wet.map_or(0.0, |wet| {
             let area = &wet.area;
@@ -169,7 +170,7 @@ impl Scene<'_> {
         [self.stiffening(), along]
     }
 
-    /// `2 EI φ_b l_b am²/a_p`, how much sealed bladders stiffen the beam.
+    /// `2 EI φ_b l_b am²/a_p`: relative stiffening of bending by sealed bladders.
     fn stiffening(&self) -> f64 {
         self.wet.map_or(0.0, |wet| {
             let area = &wet.area;
@@ -178,7 +179,7 @@ impl Scene<'_> {
         })
     }
 
-    /// Whether a drive comes near the first bending frequency, which then swings up to more than the loads alone tell.
+    /// True if a signal acts near or above the first bending frequency, where the response exceeds the static one.
     pub fn resonant(&self) -> bool {
         let mut near = false;
         self.signals(|signal| {

@@ -1,22 +1,22 @@
-//! Fluid that moves by itself: stored pressure that a start releases, and flow that passes through a network.
+//! Free flow: stored pressure released at the start, and flow through a network.
 
 use super::Scene;
 use crate::model::network::{AccumulatorLaw, Node, PressurePort};
 use crate::model::{Network, Wet};
 
-/// What a component of the network stores, and whether flow passes through it.
+/// Storage of a network component, and its through flow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Circuit {
-    /// Least volume that one of its bladders and vessels takes in per pressure [m^3/Pa]; 0 where it has none.
+    /// Smallest compliance of its bladders and vessels [m^3/Pa]; 0 without any.
     pub least: f64,
-    /// Largest one [m^3/Pa].
+    /// Largest compliance [m^3/Pa].
     pub most: f64,
-    /// True if its bladders do not bound its flows: vessels, pumps or ports of different pressures drive them too.
+    /// True if bladders do not bound the flows: vessels, pumps or ports of different pressures also drive them.
     pub through: bool,
 }
 
 impl Circuit {
-    /// Of a tube from port to port.
+    /// Circuit of a tube between two ports.
     pub const BETWEEN_PORTS: Self = Self {
         least: 0.0,
         most: 0.0,
@@ -25,8 +25,8 @@ impl Circuit {
 }
 
 impl Scene<'_> {
-    /// True if the run begins with pressure in bladders or accumulators that no equilibrium balances; of accumulators, only of those
-    /// joined to bladders where that is asked.
+    /// True if the run begins with unbalanced pressure in bladders or accumulators. If `bladders` is true, only
+    /// accumulators joined to bladders count.
     pub(super) fn begins_pressed(&self, bladders: bool) -> bool {
         if self.case.start.equilibrium.is_some() {
             return false;
@@ -39,8 +39,8 @@ impl Scene<'_> {
         !self.case.start.pressures.is_empty() || self.network().is_some_and(charged)
     }
 
-    /// Departure of flow of an angular frequency of `ω` [1/s] or more from a slow change, at most, relative to what drives it; 1 where stored
-    /// pressure is released.
+    /// Upper bound of the deviation of flow from a slow change, for angular frequencies of `ω` [1/s] or more, relative
+    /// to its drive. 1 if stored pressure is released.
     pub(super) fn departure_of_flow(&self, omega: f64) -> f64 {
         let signals = self.inertia_ratio(omega);
         if self.begins_pressed(false) {
@@ -50,12 +50,12 @@ impl Scene<'_> {
         }
     }
 
-    /// Least volume that a vessel's walls take in per pressure, of the scene's pressures [m^3/Pa].
+    /// Smallest compliance of a vessel's walls at the scene's pressures [m^3/Pa].
     pub(super) fn stiffest(&self, law: &AccumulatorLaw) -> f64 {
         law.compliance(self.scales.pressure).min(law.compliance(0.0))
     }
 
-    /// Every component of the network.
+    /// Returns the circuits of all network components.
     pub(super) fn circuits(&self, wet: &Wet) -> Vec<Circuit> {
         let network = &wet.network;
         let none = Circuit {

@@ -1,4 +1,4 @@
-//! What flow is late by: along bladders by friction and inertia, and in tubes by inertia, unsteady friction and losses.
+//! Delay of flow: along bladders by friction and inertia, in tubes by inertia, unsteady friction and losses.
 
 use std::f64::consts::PI;
 
@@ -8,27 +8,27 @@ use crate::case::schema::BladderEnd;
 use crate::model::Wet;
 use crate::model::network::{Link, LinkKind, Node};
 
-/// The largest of all tubes; none where there are no tubes.
+/// Largest values over all tubes; zero without tubes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Tubes {
     /// `ω I/R`: inertia over resistance.
     pub inertia: f64,
-    /// `Wo⁴/1152`, `Wo² = ω r²/ν`: error that Poiseuille's profile makes of the impedance, to first order (Womersley 1955).
+    /// `Wo⁴/1152`, `Wo² = ω r²/ν`: first-order error of the impedance with Poiseuille's profile (Womersley 1955).
     pub memory: f64,
-    /// `Δp_loss(q)/(R q)`, at the largest flow that is expected.
+    /// `Δp_loss(q)/(R q)` at the largest expected flow.
     pub losses: f64,
 }
 
-/// Angular frequency beyond which nothing is faster: of a tube beside which nothing stores [1/s].
+/// Bound of angular frequencies, for tubes without storage next to them [1/s].
 pub(super) const FASTEST: f64 = 1e100;
 
-/// Margin of flows: resonance and what comes at once make them larger than what acts at rest.
+/// Safety factor for flows: resonance and sudden changes enlarge them.
 const MARGIN: f64 = 3.0;
 
 impl Scene<'_> {
-    /// `τ ω`, `τ = a_p l_b² μ/(π² q1b)` a bladder's own time and ω of the fastest motion that is asked for. Of a vibration whose part
-    /// in the motion is i and whose stiffness is fluid to the part χ it is `τ ω (1 + χ i ω T)`: what flows along bladders damps it
-    /// over the whole run T.
+    /// `τ ω`, with a bladder's time constant `τ = a_p l_b² μ/(π² q1b)` and the highest frequency ω of the drive. A
+    /// vibration with the amplitude share i and the fluid's stiffness share χ gives `τ ω (1 + χ i ω T)`: flow along
+    /// bladders damps it over the whole run T.
     pub fn lag_along_bladders(&self, tolerance: f64) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
         let emptying = 1.0
@@ -39,8 +39,9 @@ impl Scene<'_> {
             / (PI * PI * wet.network.bladder_mobility)
     }
 
-    /// Inertia of the fluid along bladders over what takes up its flow. A bladder that is fed at one end has `(ω/ω_s)²`, `ω_s = (π/2)/√(I C)`, I and C
-    /// those of its whole length; a row of n bladders, through which flow passes, at most n² of that, and no more than `ω I/R` of the tubes between them.
+    /// Inertia of the fluid along bladders over the storage that receives its flow. A bladder fed at one end has
+    /// `(ω/ω_s)²`, `ω_s = (π/2)/√(I C)`; I and C are those of its whole length. A row of n bladders in series has at
+    /// most n² times that, and at most `ω I/R` of the tubes between them.
     pub fn sloshing(&self, tolerance: f64) -> f64 {
         let Some(wet) = self.wet else { return 0.0 };
         let Some(along) = &wet.network.along_bladders else {
@@ -66,7 +67,7 @@ impl Scene<'_> {
         relaxing.max(self.at_the_fastest(wet, tolerance, of))
     }
 
-    /// `Wo⁴/1152` of bladders, times what their inertia does.
+    /// `Wo⁴/1152` of bladders times their sloshing number.
     pub fn memory_of_bladders(&self, tolerance: f64) -> f64 {
         let along = self
             .wet
@@ -77,13 +78,13 @@ impl Scene<'_> {
         })
     }
 
-    /// Least resistance of what lies between bladders [Pa s/m^3].
+    /// Smallest resistance between bladders [Pa s/m^3].
     fn least_resistance_between(wet: &Wet) -> f64 {
         let between = wet.network.links.iter().filter(|link| link.kind != LinkKind::Opening);
         between.map(|link| link.resistance).fold(f64::INFINITY, f64::min)
     }
 
-    /// Bladders that flow may pass one after the other: all of a component with one that is joined at both ends.
+    /// Largest number of bladders in series: all bladders of a component in which a bladder is joined at both ends.
     fn most_in_a_row(&self, wet: &Wet) -> f64 {
         let network = &wet.network;
         let mut joined = vec![[false; 2]; network.component_of_bladder.len()];
@@ -103,12 +104,13 @@ impl Scene<'_> {
         rows.map(|(count, _)| count).fold(0.0, f64::max)
     }
 
-    /// ω of the fastest motion that is asked for, with ω (1 + χ i ω T) of vibrations [1/s].
+    /// Highest angular frequency of the drive; vibrations count as ω (1 + χ i ω T) [1/s].
     fn fastest(&self, wet: &Wet, tolerance: f64) -> f64 {
         self.at_the_fastest(wet, tolerance, |rate| rate)
     }
 
-    /// The largest that something that grows with ω is at any motion that is asked for, times (1 + χ i ω T) of vibrations.
+    /// Largest value of an increasing function of ω over all motions; that of vibrations is multiplied by (1 + χ i
+    /// ω T).
     fn at_the_fastest(&self, wet: &Wet, tolerance: f64, of: impl Fn(f64) -> f64) -> f64 {
         let end = self.case.time.end_s;
         let mut most = 0.0_f64;
@@ -130,11 +132,11 @@ impl Scene<'_> {
         most
     }
 
-    /// Parts χ of curvature and stretch that the pressure of sealed bladders takes back, at most: `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p`
-    /// and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
+    /// Upper bounds of the shares χ of curvature and stretch that the pressure of sealed bladders opposes:
+    /// `EI (∂α_p/∂p_u - ∂α_p/∂p_d) A_M'/a_p` and `EA (∂λ_p/∂p_u + ∂λ_p/∂p_d) A_N'/a_p`.
     pub(super) fn stiffness_of_fluid(&self, wet: &Wet) -> [f64; 2] {
         let (area, coupling) = (&wet.area, &wet.coupling);
-        // far from a kink on either side of it, where slopes are steepest
+        // far from the kink on both sides, where slopes are largest
         let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
         let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
         let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
@@ -145,8 +147,8 @@ impl Scene<'_> {
         ]
     }
 
-    /// What tubes do at the fastest motion, and the fastest relaxation of a bladder into one where that is excited; by tolerance since
-    /// vibrations below it do not count.
+    /// Numbers of tubes at the highest frequency, which includes the relaxation of a bladder through a tube if it is
+    /// excited. Vibrations below the tolerance do not count.
     pub fn tubes(&self, tolerance: f64) -> Tubes {
         *self.tubes.get_or_init(|| {
             let Some(wet) = self.wet else { return Tubes::default() };
@@ -172,7 +174,7 @@ impl Scene<'_> {
         };
         let resistance = link.resistance;
         let relaxation = 1.0 / (resistance * circuit.least);
-        // the slowest swing of it against what stores: what comes in that time excites it
+        // lowest natural frequency with the storage; changes within its period excite it
         let swing = 1.0 / (tube.steady_inertance() * circuit.most).sqrt();
         let rate = if self.departure_of_flow(relaxation.min(swing).min(FASTEST)) > tolerance {
             fastest.max(relaxation)
@@ -195,7 +197,7 @@ impl Scene<'_> {
 
 impl Tubes {
     fn larger(self, other: Self) -> Self {
-        // NaN, where something is unknown, stays
+        // NaN marks an unknown value and is kept
         let larger = |a: f64, b: f64| if b > a || b.is_nan() { b } else { a };
         Self {
             inertia: larger(self.inertia, other.inertia),

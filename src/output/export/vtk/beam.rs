@@ -1,11 +1,10 @@
-//! The beam's surface: its rectangular section swept along the deformed curve, with windows through which one sees the
-//! bladders.
+//! Surface of the beam: its rectangular section swept along the deformed curve, with windows that show the bladders.
 
 use super::curve::{Curve, Section};
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 
-/// Fields of the beam at an instant; vectors as axial and transverse parts.
+/// Fields of the beam at an instant; vectors have an axial and a transverse part.
 pub(super) struct Fields<'a> {
     /// Displacement at the nodes [m].
     pub u: [&'a [f64]; 2],
@@ -19,7 +18,7 @@ pub(super) struct Fields<'a> {
     pub force: &'a [f64],
 }
 
-/// The surface. Data of points are those of their section's centre, data of quadrilaterals those of the beam's cell.
+/// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell.
 pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fields: &Fields) -> Surface {
     let heights = cutout.heights();
     let m = heights.len();
@@ -38,7 +37,7 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fiel
     let mut cells = vec![];
     for (k, pair) in sections.windows(2).enumerate() {
         let open = cutout.beside_bladder(pair[0].theta, pair[1].theta);
-        // Sides are divided at the rows' edges; a row is every second strip.
+        // The sides are divided at the edges of the rows; every second strip is a row.
         for i in (0..m - 1).filter(|i| !(open && i % 2 == 1)) {
             out.quads
                 .push([at(k, 1, i), at(k + 1, 1, i), at(k + 1, 1, i + 1), at(k, 1, i + 1)]);
@@ -93,7 +92,7 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fiel
     out
 }
 
-/// Walls of the windows, from the beam's sides in to the bladders' ends; `owned` hears between which coordinates each lies.
+/// Walls of the windows, from the beam's sides to the bladders' ends. Calls `owned` with the coordinates between which each wall lies.
 fn reveals(
     out: &mut Surface,
     cutout: &Cutout,

@@ -9,11 +9,11 @@ use crate::model::Wet;
 /// A bladder and its fluid cells.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Bladder {
-    /// `R j`.
+    /// Label `R j`: positive in the upper row, negative in the lower.
     pub label: i64,
     /// Number of the network it belongs to, from 1.
     pub network: i32,
-    /// First of its cells in the recorded fields, which run from inlet to outlet.
+    /// Index of its first cell in the recorded fields, which run from inlet to outlet.
     pub first: usize,
     /// Side on which its inlet is: -1 or 1 along the width.
     pub inlet: f64,
@@ -29,7 +29,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// `labels`: the bladder of each recorded cell. Along a chain inlets change sides, so that tubes join neighbours.
+    /// Arranges the bladders; `labels` is the bladder of each recorded cell. Inlets alternate sides along a chain: tubes join neighbors.
     pub fn new(wet: &Wet, labels: &[f64]) -> Self {
         let cells = labels.iter().take_while(|l| **l == labels[0]).count().max(1);
         let bladders = labels.iter().enumerate().step_by(cells).filter_map(|(first, &label)| {
@@ -90,7 +90,7 @@ pub(super) fn surface(
     out
 }
 
-/// One box: points and quadrilaterals; `owned` hears the fluid cell of each.
+/// Adds points and quadrilaterals of one box. Calls `owned` with the fluid cell of each quadrilateral.
 fn shape(
     out: &mut Surface,
     cutout: &Cutout,
@@ -104,7 +104,7 @@ fn shape(
         true => cutout.row,
         false => [-cutout.row[1], -cutout.row[0]],
     };
-    // Slices from one side of the beam to the other, whichever side the inlet is on: so all faces look outwards.
+    // Slices run from one side of the beam to the other, on whichever side the inlet is. All faces then point outwards.
     for section in along {
         for slice in 0..=cells {
             let across = cutout.half_across * (2.0 * slice as f64 / cells as f64 - 1.0);

@@ -1,8 +1,8 @@
-//! The reference curve of an instant: where a section is, and how it is turned.
+//! Reference curve at an instant: position and slope of each section.
 
 use std::f64::consts::{PI, TAU};
 
-/// A cross-section: position of its centre (x, z) [m] and slope angle.
+/// A cross-section: position of its center (x, z) [m] and slope angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Section {
     /// Material coordinate [m].
@@ -30,9 +30,8 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// From displacements [m] and curvature [1/m] at the nodes, and the angles of sections of cells that shear, none of
-    /// others: the angle of an inner node is the mean of its two neighbouring cells', that of an end follows from the
-    /// curvature there, `kappa = -phi'`.
+    /// Computes the curve from displacements [m], curvature [1/m] at the nodes, and section angles of cells with shear (`sections`, else
+    /// empty). The angle of an inner node is the mean over its two cells. At an end it follows from the curvature there, `kappa = -phi'`.
     pub fn new(theta: &[f64], u1: &[f64], u3: &[f64], curvature: &[f64], sections: &[f64]) -> Self {
         let mut nodes: Vec<Section> = theta
             .iter()
@@ -47,7 +46,7 @@ impl Curve {
         let mut cells: Vec<f64> = sections.to_vec();
         for pair in nodes.windows(2).skip(cells.len()) {
             let direction = (pair[1].x - pair[0].x).atan2(pair[1].z - pair[0].z);
-            // Counted over full turns: a strip may be rolled up.
+            // Unwrapped beyond full turns: a strip may be rolled up.
             let turned = |last: f64| last + (direction - last + PI).rem_euclid(TAU) - PI;
             cells.push(cells.last().map_or(direction, |&last| turned(last)));
         }
@@ -65,7 +64,7 @@ impl Curve {
         Self { nodes }
     }
 
-    /// Sections at material coordinates [m], straight between nodes.
+    /// Sections at material coordinates [m], linear between nodes.
     pub fn sections(&self, theta: &[f64]) -> Vec<Section> {
         theta.iter().map(|&t| self.at(t)).collect()
     }
@@ -84,7 +83,7 @@ impl Curve {
         }
     }
 
-    /// A field of the nodes at a material coordinate; at a node the very number.
+    /// Interpolates a field of the nodes at a material coordinate; exact at a node.
     pub fn interpolate(&self, theta: f64, field: &[f64]) -> f64 {
         let next = self.nodes.partition_point(|s| s.theta < theta).min(field.len() - 1);
         let (k, n) = (next.saturating_sub(1), next);
@@ -95,7 +94,7 @@ impl Curve {
         field[k] + (field[n] - field[k]) * (theta - a) / (b - a)
     }
 
-    /// Cell in which the middle between two coordinates lies.
+    /// Cell that contains the midpoint of two coordinates.
     pub fn cell(&self, from: f64, to: f64) -> usize {
         let middle = 0.5 * (from + to);
         let next = self.nodes.partition_point(|s| s.theta < middle);
@@ -107,7 +106,7 @@ impl Curve {
 mod tests {
     use super::Curve;
 
-    /// Goal: sections that shear stand as they are, others across the line.
+    /// Goal: sections with shear keep their given angles; others are perpendicular to the line.
     #[test]
     fn sections_that_shear_keep_their_angles() {
         let (theta, rises, still) = ([0.0, 1.0, 2.0], [0.0, 0.1, 0.2], [0.0; 3]);

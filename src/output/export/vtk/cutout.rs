@@ -1,8 +1,8 @@
-//! Where the bladders lie in the beam: two rows, walls of equal thickness above, between and below them.
+//! Positions of the bladders in the beam: two rows, with walls of equal thickness above, between and below them.
 
 use crate::case::Case;
 
-/// Sizes of the beam and of what is cutout in it.
+/// Dimensions of the beam and of its cutouts.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Cutout {
     /// Half the beam's height `h_s` [m].
@@ -11,16 +11,16 @@ pub(super) struct Cutout {
     pub half_width: f64,
     /// Half a bladder's length `l_b` across the width, at most the beam's [m].
     pub half_across: f64,
-    /// Lower and upper edge of the upper row; the lower one mirrors it [m].
+    /// Lower and upper edge of the upper row [m]; the lower row mirrors it.
     pub row: [f64; 2],
-    /// Start and end of each segment's bladders along the beam [m]; none in a dry beam.
+    /// Start and end of each segment's bladders along the beam [m]; empty for a dry beam.
     pub windows: Vec<[f64; 2]>,
     /// Length of the beam [m].
     pub length: f64,
 }
 
 impl Cutout {
-    /// Of a case. The paper prints sizes of bladders, not their places: they are set in the middle of their segments.
+    /// Cutout of a case. The paper gives sizes of bladders, not positions; bladders are centered in their segments.
     pub fn new(case: &Case) -> Self {
         let (beam, bladders) = (&case.beam, case.bladders.as_ref());
         let half_height = 0.5 * beam.height_m;
@@ -44,9 +44,9 @@ impl Cutout {
         }
     }
 
-    /// Nodes and edges of windows, ascending.
+    /// Coordinates of nodes and window edges, ascending.
     pub fn stations(&self, nodes: &[f64]) -> Vec<f64> {
-        // An edge that misses a node by round-off only is that node.
+        // An edge that differs from a node only by round-off is that node.
         let apart = 1e-9 * self.length;
         let edges = self.windows.iter().flatten().copied();
         let mut all: Vec<f64> = nodes.to_vec();
@@ -56,7 +56,7 @@ impl Cutout {
         all
     }
 
-    /// Whether the stretch between two stations lies beside a bladder.
+    /// True if the interval between two stations lies beside a bladder.
     pub fn beside_bladder(&self, from: f64, to: f64) -> bool {
         let middle = 0.5 * (from + to);
         self.windows.iter().any(|w| w[0] < middle && middle < w[1])

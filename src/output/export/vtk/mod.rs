@@ -1,16 +1,16 @@
-//! `vtk/NAME.pvd`, a `.vtm` an instant and a `.vtp` a part of each: what ParaView opens as a film of blocks with names.
+//! `vtk/NAME.pvd`, with one `.vtm` per instant and one `.vtp` per part of it: ParaView opens them as an animation of named blocks.
 //!
 //! ```text
 //! surface   points, quadrilaterals, lines and their data, as VTK's XML
-//! curve     the reference curve of an instant: where a section is and how it is turned
-//! cutout    rows and windows: where the bladders lie in the beam
-//! beam      the beam's surface, open where one looks into the bladders
+//! curve     the reference curve at an instant: position and slope of each section
+//! cutout    rows and windows: positions of the bladders in the beam
+//! beam      the beam's surface, open beside the bladders
 //! bladders  the bladders as boxes that move with their segments
 //! tubes     tubes and turbines as lines
 //! ```
 //!
-//! VTK's axes: X along the straight beam (the model's z), Y the deflection (the model's x), Z across the width. Seen as
-//! ParaView first shows it, the beam lies on its side and bends up and down.
+//! VTK's axes: X along the straight beam (the model's z), Y the deflection (the model's x), Z across the width. In ParaView's initial view
+//! the beam lies on its side and bends up and down.
 
 mod beam;
 mod bladders;
@@ -36,15 +36,15 @@ use curve::Curve;
 use cutout::Cutout;
 use surface::Surface;
 
-/// What is drawn, each a file an instant.
+/// Parts of the drawing, each one file per instant.
 const PARTS: [&str; 3] = ["beam", "bladders", "tubes"];
-/// What the names of files begin with that join the parts of an instant.
+/// Prefix of the files that join the parts of an instant.
 const JOINED: &str = "scene";
 
-/// Share of an axis by which two are the same, written by programs that round differently.
+/// Difference, relative to the size of an axis, below which two axes are equal: programs round differently.
 const SAME: f64 = 1e-9;
 
-/// Writes `dir/vtk`; older files of the same kind there go first. Returns the path of the `.pvd`.
+/// Writes `dir/vtk` in place of older files of the same kind. Returns the files written, with the path of the `.pvd`.
 pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
     fits(case, from)?;
     let staged = Staged::new(dir, VTK)?;
@@ -69,20 +69,20 @@ pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> R
     }
     let text = xml("Collection", &sets);
     written.count(put(&staged.path(&collection), text.as_bytes())?);
-    // films of another choice of instants would mix with this one
+    // older files of other instants would mix with these
     let of = |name: &str, part: &str, ending: &str| name.starts_with(&format!("{part}-")) && name.ends_with(ending);
     staged.place(|name| PARTS.iter().any(|part| of(name, part, ".vtp")) || of(name, JOINED, ".vtm"))?;
     Ok(written)
 }
 
-/// A file of a type that lists others.
+/// A file of type `kind` that lists other files.
 fn xml(kind: &str, sets: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"{kind}\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <{kind}>\n{sets}  </{kind}>\n</VTKFile>\n"
     )
 }
 
-/// That the arrays are those of the case: what is drawn is looked up in both.
+/// Checks that the arrays belong to the case: the drawing uses both.
 fn fits(case: &Case, from: &Recording) -> Result<()> {
     let header = Observer::header(case, &System::new(case)?);
     let path = Path::new(&from.label).join(FIELDS);
@@ -112,7 +112,7 @@ fn put(path: &Path, bytes: &[u8]) -> Result<u64> {
     Ok(bytes.len() as u64)
 }
 
-/// What does not move: sizes, windows, which bladder is where, which tube joins what.
+/// Data that do not move: sizes, windows, positions of bladders, ends of tubes.
 struct Scene<'a> {
     from: &'a Recording,
     cutout: Cutout,
@@ -138,7 +138,7 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The parts at an instant, in the order of [`PARTS`]; a dry beam has the first alone.
+    /// Parts at an instant, in the order of [`PARTS`]; a dry beam has only the first.
     fn at(&self, instant: usize) -> Vec<Surface> {
         let row = |name: &str| self.from.field(name).map_or(&[][..], |f| f.row(instant));
         let theta = self.from.axis("theta_node_m").unwrap_or_default();

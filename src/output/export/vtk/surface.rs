@@ -1,7 +1,7 @@
-//! Points, quadrilaterals, lines and their data, as an XML file of VTK with its arrays appended as raw bytes.
+//! Points, quadrilaterals and lines with data, as an XML file of VTK with appended raw arrays.
 //!
-//! The format is VTK's "PolyData" (`.vtp`, version 1.0): a header that names each array and its place, then `_` and the
-//! arrays, each after its size as a `UInt64`, all little-endian.
+//! The format is VTK's "PolyData" (`.vtp`, version 1.0): a header with the name and offset of each array, then `_` and the arrays. Each
+//! array follows its size as a `UInt64`; all numbers are little-endian.
 
 use std::fmt::Write as _;
 
@@ -16,7 +16,7 @@ pub(super) enum Values {
     Whole(Vec<i32>),
 }
 
-/// An array of data; `components` names each number of a point or cell, none where there is one.
+/// An array of data. `components` names the numbers of a point or cell; it is empty for a scalar.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Data {
     /// Name with unit.
@@ -28,7 +28,7 @@ pub(super) struct Data {
 }
 
 impl Data {
-    /// One double a point or cell.
+    /// One double per point or cell.
     pub fn scalar(name: &'static str, values: Vec<f64>) -> Self {
         Self {
             name,
@@ -37,7 +37,7 @@ impl Data {
         }
     }
 
-    /// One integer a point or cell.
+    /// One integer per point or cell.
     pub fn number(name: &'static str, values: Vec<i32>) -> Self {
         Self {
             name,
@@ -56,7 +56,7 @@ impl Data {
     }
 }
 
-/// Quadrilaterals and lines on points; lines come first in the data of cells, as VTK wants.
+/// Quadrilaterals and lines on points. In the data of cells lines precede, as VTK requires.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Surface {
     /// Positions [m].
@@ -71,7 +71,7 @@ pub(super) struct Surface {
     pub of_cells: Vec<Data>,
 }
 
-/// Appended arrays and what the header says of them.
+/// Appended arrays; the header stores their offsets.
 #[derive(Default)]
 struct Appended {
     bytes: Vec<u8>,
@@ -116,7 +116,7 @@ impl Appended {
 }
 
 impl Surface {
-    /// The file, for the time `t` [s].
+    /// Content of the file for the time `t` [s].
     pub fn file(&self, t: f64) -> Vec<u8> {
         let mut appended = Appended::default();
         let points = Values::Double(self.points.iter().flatten().copied().collect());

@@ -1,4 +1,4 @@
-//! Tubes and turbines as lines beside the beam: half ellipses as long as the tube where both ends are on one side.
+//! Tubes and turbines as lines beside the beam: half ellipses with the length of the tube if both ends are on one side.
 
 use std::f64::consts::PI;
 
@@ -12,23 +12,23 @@ use crate::case::wiring::bladder_index;
 use crate::model::Wet;
 use crate::model::network::{LinkKind, Node};
 
-/// Points of a line.
+/// Number of points of a line.
 const POINTS: usize = 13;
 
-/// A place that moves with the beam: material coordinate, height and distance across from the reference curve [m].
+/// A place fixed to the beam: material coordinate, height and distance across from the reference curve [m].
 type Place = [f64; 3];
 
 /// A line between two places.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tube {
     line: Vec<Place>,
-    /// Recorded fluid cells at its ends, none at a junction or port.
+    /// Recorded fluid cells at its ends; none at a junction or port.
     cells: Vec<usize>,
     network: i32,
     turbine: bool,
 }
 
-/// All tubes and turbines of a network, rectified ones included. What ends nowhere near a bladder is left out.
+/// All tubes and turbines of a network, including rectified ones. Omits a link with an end that is neither at a bladder nor joined to one.
 pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Vec<Tube> {
     let network = &wet.network;
     let drawn = |kind: &LinkKind| !matches!(kind, LinkKind::Opening);
@@ -42,7 +42,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
     let mouth = |node: Node| mouth(node, wet, cutout, layout);
     let place = |node: Node| {
         mouth(node).map(|m| m.0).or_else(|| {
-            // A junction or port lies outside of the mouths that it is joined to.
+            // A junction or port lies outside the mouths to which it is joined.
             let others = joints
                 .iter()
                 .filter_map(|(a, b, _)| (*a == node).then_some(*b).or((*b == node).then_some(*a)));
@@ -64,7 +64,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
     joints.iter().filter(|j| drawn(&j.2)).filter_map(tube).collect()
 }
 
-/// Where a bladder's end meets the beam's side, and its outermost fluid cell.
+/// Place at which a bladder's end meets the beam's side, and the outermost fluid cell there.
 fn mouth(node: Node, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Place, usize)> {
     let Node::Cell { bladder, end } = node else { return None };
     let owner = layout
@@ -80,7 +80,7 @@ fn mouth(node: Node, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Pla
     Some(([0.5 * (window[0] + window[1]), height, side * cutout.half_width], cell))
 }
 
-/// From one place to the other: bulging out of the beam's side as far as the tube is long, straight between two sides.
+/// Points from one place to another. On one side of the beam the line bulges outwards to the tube's length; between sides it is straight.
 fn arc(from: Place, to: Place, length: f64) -> Vec<Place> {
     let distance = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
     let half = 0.5 * distance;
@@ -103,7 +103,7 @@ fn arc(from: Place, to: Place, length: f64) -> Vec<Place> {
     (0..POINTS).map(point).collect()
 }
 
-/// The lines; the pressure of each is the mean over the fluid cells that it joins [Pa].
+/// Lines of the tubes. The pressure of a line is the mean over the fluid cells that it joins [Pa].
 pub(super) fn lines(tubes: &[Tube], curve: &Curve, pressure: &[f64]) -> Surface {
     let mut out = Surface::default();
     for tube in tubes {

@@ -1,4 +1,4 @@
-//! Every figure over two varied numbers, as colours.
+//! Map of every figure over two varied numbers, in colors.
 
 use std::slice;
 
@@ -7,11 +7,11 @@ use crate::output::plot::colour::{of_value, scale};
 use crate::output::plot::extent;
 use crate::output::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, PictureSeries};
 
-/// Every figure over the first two varied numbers, as colours; `None` when there is nothing to draw.
+/// Draws every figure over the first two varied numbers, in colors; `None` if there is nothing to draw.
 pub fn over_two(data: &Drawn) -> Option<String> {
     let [x, y, ..] = &data.varied[..] else { return None };
     let (columns, lines) = (x.places(), y.places());
-    // cells touch where the designs are a grid, and are small where they are not
+    // cells touch if the designs form a grid; otherwise they are small
     let grid = (columns.len() * lines.len()) as f64 <= 1.5 * data.designs.len() as f64;
     let axis = |one: &Numbers, places: &[f64]| {
         let (lo, hi) = (*places.first()?, *places.last()?);
@@ -62,7 +62,7 @@ pub fn over_two(data: &Drawn) -> Option<String> {
     .svg()
 }
 
-/// Between places in their order: half way to the neighbours, and as far beyond the first and the last.
+/// Edges between sorted places: halfway to each neighbor, and equally far beyond the first and the last place.
 pub(super) fn edges(places: &[f64]) -> Vec<f64> {
     let [first, .., last] = places else {
         return places.iter().flat_map(|at| [at - 0.5, at + 0.5]).collect();

@@ -1,4 +1,4 @@
-//! Pictures of many designs: curves along one number, a map over two.
+//! Pictures of many designs: curves along one number, maps over two.
 
 mod map;
 
@@ -16,43 +16,43 @@ pub use map::over_two;
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers {
-    /// Its name in files: a JSON pointer or a figure.
+    /// Name in files: a JSON pointer or a figure.
     pub name: String,
-    /// Its name beside an axis, without unit.
+    /// Name beside an axis, without unit.
     pub label: String,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
-    /// Whether its axis is logarithmic.
+    /// True if its axis is logarithmic.
     pub logarithmic: bool,
-    /// Values, not finite where there is none.
+    /// Values; not finite if absent.
     pub values: Vec<f64>,
 }
 
-/// All that is shown; every list is as long as there are designs.
+/// Data of the pictures. Each list of numbers has one entry per drawn design.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drawn {
     /// Name of the case.
     pub case: String,
-    /// Numbers of the designs.
+    /// Numbers of the drawn designs.
     pub designs: Vec<usize>,
-    /// What is varied.
+    /// Varied numbers.
     pub varied: Vec<Numbers>,
-    /// What came out.
+    /// Figures.
     pub figures: Vec<Numbers>,
-    /// To which curve a design belongs.
+    /// Index of the curve of each design.
     pub curve: Vec<usize>,
-    /// What the curves are.
+    /// Names of the curves.
     pub curves: Vec<String>,
-    /// Whether designs of a curve follow each other.
+    /// True if the designs of a curve are joined by lines.
     pub joined: bool,
-    /// Neighbours whose modes are not joined.
+    /// Neighboring designs whose modes are not joined.
     pub apart: Vec<Exchange>,
-    /// Designs that there are; of very many a part is drawn, spread over them.
+    /// Number of all designs. Of very many only a part is drawn, spread over all.
     pub of: usize,
 }
 
 impl Drawn {
-    /// Whether a figure is that of one mode in the first of two designs and of another in the second.
+    /// True if a figure belongs to one mode in the first of two designs and to another mode in the second.
     fn parted(&self, figure: &str, designs: [usize; 2]) -> bool {
         let mode = figure.split_once('.').and_then(|(name, _)| name.strip_prefix("mode_"));
         let mode: Option<usize> = mode.and_then(|number| number.parse().ok());
@@ -61,7 +61,7 @@ impl Drawn {
         mode.is_some_and(|mode| all.any(|found| found.all.contains(&mode)))
     }
 
-    /// A series that stands for a design. Where there are few it says its numbers and leads to its row.
+    /// Links the series of a design to its row, and shows its numbers under the pointer, if there are few designs.
     fn linked(&self, n: usize, figures: &[Numbers], series: PictureSeries) -> PictureSeries {
         let said = |one: &Numbers| {
             let unit = if one.unit.is_empty() { "1" } else { &one.unit };
@@ -78,7 +78,7 @@ impl Drawn {
         PictureSeries { link, ..series }
     }
 
-    /// What stands below the title.
+    /// Text below the title.
     fn about(&self, what: &str) -> String {
         match self.designs.len() {
             all if all == self.of => what.into(),
@@ -91,9 +91,9 @@ impl Drawn {
     }
 }
 
-/// Points that say what they are at most: words are some 300 bytes each, and a page leaves pictures that are too large to their files.
+/// Largest number of points with text under the pointer. A text has some 300 bytes, and a page does not embed pictures that are too large.
 const SAID: usize = 1000;
-/// Curves told apart by colours.
+/// Largest number of curves named in the legend.
 const TOLD: usize = 8;
 
 impl Numbers {
@@ -101,7 +101,7 @@ impl Numbers {
         if self.logarithmic { x.log10() } else { x }
     }
 
-    /// Value of a place on the axis.
+    /// Value at a position on the axis.
     fn raised(&self, at: f64) -> f64 {
         if self.logarithmic { 10_f64.powf(at) } else { at }
     }
@@ -110,7 +110,7 @@ impl Numbers {
         self.values.iter().map(|&x| self.shown(x)).collect()
     }
 
-    /// Where values lie on the axis, each once, ascending.
+    /// Positions of the values on the axis, each once, ascending.
     fn places(&self) -> Vec<f64> {
         let mut all = self.on_axis();
         all.retain(|at| at.is_finite());
@@ -119,7 +119,7 @@ impl Numbers {
         all
     }
 
-    /// The axis; none where there is no value.
+    /// The axis; `None` if there is no value.
     fn axis(&self, name: &str, ticks: usize) -> Option<PictureAxis> {
         extent(self.on_axis().into_iter())?;
         let axis = PictureAxis::new(name, &*self.unit, ticks).logarithmic(self.logarithmic);
@@ -127,7 +127,7 @@ impl Numbers {
     }
 }
 
-/// A panel a figure along the first varied number; `None` when there is nothing to draw.
+/// Draws one panel per figure along the first varied number; `None` if there is nothing to draw.
 pub fn along(data: &Drawn) -> Option<String> {
     let along = data.varied.first()?;
     let x = along.axis(&along.label, 7)?;
@@ -149,7 +149,7 @@ pub fn along(data: &Drawn) -> Option<String> {
     Picture::stacked(data.case.clone(), about, panels).svg()
 }
 
-/// Lines through the designs of each curve, in pieces between which modes are not joined; named where there are several.
+/// Lines through the designs of each curve, interrupted where modes are not joined. Several curves have names.
 fn curves(data: &Drawn, along: &Numbers, figure: &Numbers) -> Vec<PictureSeries> {
     let mut series = vec![];
     for (curve, name) in data.curves.iter().enumerate() {
@@ -182,7 +182,7 @@ mod tests {
     use super::map::{around, edges};
     use super::*;
 
-    /// Goal: a picture says how many designs it leaves out; without a figure that differs there is none.
+    /// Goal: a picture states how many designs it omits; without a figure there is no picture.
     #[test]
     fn pictures_say_what_they_leave_out() {
         let numbers = |name: &str, values: [f64; 2]| Numbers {
@@ -216,7 +216,7 @@ mod tests {
         }
         assert_eq!(edges(&[11.0, 12.3, 14.0]), [10.35, 11.65, 13.15, 14.85]);
         assert_eq!(around(&[0.0, 1.0, 3.0], 1.0), (0.5, 2.0));
-        // so many would be more than a page takes
+        // so many links would be too large for a page
         let many = Drawn {
             designs: (0..=SAID).collect(),
             varied: data

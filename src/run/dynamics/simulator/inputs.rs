@@ -1,4 +1,4 @@
-//! Signals of a case that are set from outside.
+//! Inputs: signals of a case that are set from outside.
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
@@ -14,29 +14,29 @@ use crate::run::method::{self, Options};
 /// A signal of the case that is set from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// Its JSON pointer.
+    /// JSON pointer of the signal.
     pub pointer: String,
-    /// Smallest and largest value that it may be given, in the unit of its key. What the scene calls for, and the sizes of unknowns,
+    /// Smallest and largest value, in the unit of the signal's key. The effects that the model includes, and the scales of unknowns,
     /// follow from them.
     pub range: [f64; 2],
 }
 
-/// An input as it stands.
+/// An input and its present value.
 #[derive(Clone, Debug)]
 pub(super) struct Held {
-    /// Which.
+    /// The input.
     pub input: Input,
-    /// Its value.
+    /// Value of the input.
     pub value: f64,
-    /// Signals of the system that it is, in the order in which they are visited.
+    /// Indices of the system's signals that it sets, in the order in which they are visited.
     pub places: Vec<usize>,
-    /// Whether it is the opening of valves.
+    /// True if it is the opening of valves.
     pub opens: bool,
-    /// What it has been through.
+    /// Record of its oscillations.
     pub swings: Swings,
 }
 
-/// What tells a case and its inputs from others.
+/// Hash that identifies a case and its inputs.
 pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
     let mut hasher = DefaultHasher::new();
     serde_json::to_string(&case.resolved())
@@ -49,8 +49,8 @@ pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
     format!("{:016x}", hasher.finish())
 }
 
-/// The case with signals that go through the whole of their ranges in place of its inputs, by which the model is chosen; its system, and where in
-/// it each of them acts.
+/// Returns the case with signals that span the whole ranges of its inputs in their place, by which the model is chosen. Also returns
+/// its system, and the inputs with the places at which they act.
 pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<Held>)> {
     let all = case::controls(case);
     let mut held: Vec<Held> = vec![];
@@ -90,7 +90,7 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
                 "{range} hold the value with which the case begins, {value}"
             )));
         }
-        // goes through all of its range within the run, and is like no other signal
+        // spans its range within the run, and differs from all other signals
         let end = case.time.end_s;
         let times = [0.0, 0.3 * end, 0.6 * end, end * (1.0 + 1e-3 * (k + 1) as f64)];
         sets.push(format!(
@@ -128,7 +128,7 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
     Ok((marked, system, held))
 }
 
-/// Of values that the case cannot have, in the words of their range: what was set in its place nobody has written.
+/// Converts an error about values of a substituted signal to one about the range of its input, which the user gave.
 fn of_range(error: Error, held: &[Held]) -> Error {
     let Error::Case(fault) = &error else { return error };
     let told = fault.violations.iter().find_map(|violation| {
@@ -145,7 +145,7 @@ fn of_range(error: Error, held: &[Held]) -> Error {
     told.map_or(error, Error::Usage)
 }
 
-/// Those of the one-step method that the case asks for, else of ESDIRK46: it needs no past.
+/// Options of the one-step method that the case requests, else of ESDIRK46, which needs no history.
 pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<OneStepOptions> {
     let mut case = case.clone();
     if case.solver.method == Method::Auto && method::choose(&case, system).one_step.is_none() {
@@ -159,7 +159,7 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
     }
 }
 
-/// Values within their ranges, as many as there are inputs.
+/// Checks that there is one value for each input, within its range.
 pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
     if values.len() != held.len() {
         return Err(Error::Usage(format!(

@@ -1,4 +1,4 @@
-//! A run from one control instant to the next, with inputs that are held in between: for learning and control.
+//! Simulation from one control instant to the next, with constant inputs in between: for learning and control.
 
 mod inputs;
 mod snapshot;
@@ -31,15 +31,15 @@ use crate::run::record::{Column, Control, Unrecorded};
 use crate::run::schedule::{self, Stop};
 use crate::run::strides::Strides;
 
-/// Error of consistent values behind a jump of inputs, as a part of the relative tolerance: rates count by a step's length of them.
+/// Tolerance of consistent values after a jump of inputs, over the relative tolerance; rates count times the length of a step.
 const CONSISTENT: f64 = 0.1;
 
-/// A case that is simulated piece by piece, by a one-step method: what came before an instant, besides the state, does not matter after it.
+/// A case that is simulated piece by piece with a one-step method. After an instant only the state matters, not its history.
 pub struct Simulator {
-    /// What tells case and inputs from others.
+    /// Hash that identifies case and inputs.
     of: String,
     case: Box<Case>,
-    /// What there is to know of the case on any mesh.
+    /// Warnings of the case that are valid on any mesh.
     known: Vec<String>,
     held: Vec<Held>,
     solver: OneStep<BeamDae>,
@@ -61,11 +61,11 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    /// A case at its start; inputs begin with the values that the case gives them there.
+    /// Creates the simulator of a case at its start; inputs begin with the values in the case.
     ///
     /// # Errors
-    /// [`Error::Usage`] for an input that is no signal of the case, or one that must not jump; those of [`System::new`](crate::discrete::System::new); a start that cannot be
-    /// found.
+    /// [`Error::Usage`] for an input that is not a signal of the case, or that must not jump; those of
+    /// [`System::new`](crate::discrete::System::new); a start that cannot be found.
     pub fn new(case: &Case, inputs: &[Input]) -> Result<Self> {
         let of = inputs::mark(case, inputs);
         let (case, mut system, held) = inputs::taken(case, inputs)?;
@@ -126,17 +126,17 @@ impl Simulator {
         self.solver.time()
     }
 
-    /// The time at which the case ends [s].
+    /// End time of the case [s].
     pub fn end(&self) -> f64 {
         self.end
     }
 
-    /// What [`Simulator::row`] has, column by column.
+    /// Columns of [`Simulator::row`].
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The history's columns at the present time, in their units.
+    /// Values of the history's columns at the present time, in their units.
     pub fn row(&self) -> &[f64] {
         self.observer.row().values()
     }
@@ -146,7 +146,7 @@ impl Simulator {
         self.held.iter().map(|one| one.value)
     }
 
-    /// Accepted steps so far, those since which a state was restored included.
+    /// Number of accepted steps so far, including those undone by a restored state.
     pub fn steps(&self) -> u64 {
         self.solver.steps()
     }
@@ -156,7 +156,8 @@ impl Simulator {
         self.spent
     }
 
-    /// What to know of the case, with inputs that go through their ranges, and of what has been simulated: of the mesh with inputs as they have been.
+    /// Warnings of the case, for inputs that span their ranges, and of the simulation so far; those of the mesh for inputs
+    /// as they were.
     pub fn warnings(&self) -> Vec<String> {
         let mut system = self.solver.dae().system().clone();
         for one in &self.held {
@@ -168,12 +169,12 @@ impl Simulator {
         all
     }
 
-    /// Gives the inputs these values from now on and simulates until a time [s]. `ask` is asked after every step whether to go on; where it says
-    /// no, that is where the simulation stands.
+    /// Sets the inputs and simulates until time `until` [s]. `ask` decides after every step if the simulation continues; if not, it
+    /// remains at that time.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a time or values that cannot be; [`Error::Solver`] where the simulation cannot go on: it then stands where it
-    /// last could, and [`Simulator::restore`] leads back.
+    /// [`Error::Usage`] for an invalid time or invalid values; [`Error::Solver`] if the simulation fails. It then remains at its last
+    /// valid time, and [`Simulator::restore`] returns to an earlier state.
     pub fn step(&mut self, until: f64, values: &[f64], ask: &mut dyn FnMut() -> Control) -> Result<()> {
         let (t, mut clock) = (self.time(), Instant::now());
         if !(until > t && until <= self.end * (1.0 + 1e-12)) {
@@ -195,7 +196,7 @@ impl Simulator {
         done
     }
 
-    /// A time [s], or that of a stop of the case from which round-off alone keeps it.
+    /// Returns the time [s], or that of a stop of the case if they differ by round-off alone.
     fn at_stop(&self, until: f64) -> f64 {
         let near = |stop: &&Stop| (stop.t - until).abs() <= 1e-12 * until && stop.t > self.time();
         let ahead = self.stops[self.next..].iter();
@@ -203,12 +204,12 @@ impl Simulator {
         ahead.find(near).map_or(until, |stop| stop.t)
     }
 
-    /// Whether the simulation stands at a stop that it has not passed: its row is that before, as in a history.
+    /// True if the simulation is at a stop that it has not passed: its row is that before the stop, as in a history.
     fn stands_at_stop(&self) -> bool {
         self.next + 1 < self.stops.len() && self.time() >= self.stops[self.next].t
     }
 
-    /// An instant in the smooth interval that leads to a time [s], which no stop has ended.
+    /// An instant in the smooth interval that ends at time `t` [s].
     fn behind(&self, t: f64) -> f64 {
         let last = self.next.checked_sub(1).map_or(0.0, |k| self.stops[k].t);
         if last < t {
@@ -218,7 +219,7 @@ impl Simulator {
         }
     }
 
-    /// An instant in the smooth interval in which the simulation stands.
+    /// An instant in the present smooth interval.
     fn inside(&self) -> f64 {
         let t = self.time();
         if self.stands_at_stop() {
@@ -228,7 +229,7 @@ impl Simulator {
         }
     }
 
-    /// Inputs jump to other values at the present time, and with them whatever the case itself switches there.
+    /// Changes the inputs at the present time by jumps, together with everything that the case itself switches there.
     fn set(&mut self, values: &[f64]) -> Result<()> {
         let t = self.time();
         self.leave_stretch()?;
@@ -257,18 +258,18 @@ impl Simulator {
             one.value = *value;
             dae.put_signal(&one.places, &Signal::Constant(*value));
         }
-        // inputs that change often change little: factors and steps that do not do are given up by the integrator
+        // frequent changes of inputs are small: factors and step size are kept, and the integrator discards them if they fail
         let size = self.solver.size();
         let restarted = self.solver.go_on(t, &self.state, &self.rates);
         restarted.map_err(|failure| solver(fault(&failure)))?;
-        // but flow through a valve that shuts ends within nanoseconds, and what is lost there is lost in the first of a long step's stages
+        // but flow through a closing valve ends within nanoseconds, and its dissipation falls into the first stage of a long step
         if !valves {
             self.solver.propose(size);
         }
         self.enter()
     }
 
-    /// Passes the stop at which the simulation stands.
+    /// Passes the stop that the simulation has reached.
     fn pass(&mut self) -> Result<()> {
         let Stop { t, switches, .. } = self.stops[self.next];
         self.leave_stretch()?;
@@ -284,7 +285,7 @@ impl Simulator {
         self.enter()
     }
 
-    /// Steps until a time, past whatever the case itself switches on the way.
+    /// Steps until time `until` [s], past all switches of the case on the way.
     fn advance(&mut self, until: f64, ask: &mut dyn FnMut() -> Control) -> Result<()> {
         let (mut pace, mut steps) = (Pace::new(self.time()), 0);
         let mut clock = Instant::now();
@@ -315,7 +316,7 @@ impl Simulator {
         Ok(())
     }
 
-    /// State, rates and integrals at a time within the last step [s].
+    /// Reads state, rates and integrals at a time within the last step [s].
     fn read(&mut self, t: f64) -> Result<()> {
         let read = if t == self.solver.time() {
             self.state.copy_from_slice(self.solver.y());
@@ -336,14 +337,14 @@ impl Simulator {
         read.map_err(|failure| solver(fault(&failure)))
     }
 
-    /// Integrals up to the present time are carried over a restart.
+    /// Stores the integrals up to the present time, for a restart.
     fn leave_stretch(&mut self) -> Result<()> {
         self.read(self.time())?;
         self.carried.copy_from_slice(&self.integrals);
         Ok(())
     }
 
-    /// A consistent state behind a jump of signals at the present time, with what is done in no time.
+    /// Computes a consistent state after a jump of signals at the present time, and adds the works of the jump.
     fn switch(&mut self, t: f64) -> Result<()> {
         let ahead = self.inside();
         let values = [&mut self.state[..], &mut self.rates];
@@ -351,7 +352,7 @@ impl Simulator {
         switch(self.solver.dae_mut(), start, [t, ahead], values, &mut self.carried).map_err(solver)
     }
 
-    /// Looks at the beginning of a smooth stretch.
+    /// Observes the start of a smooth interval.
     fn enter(&mut self) -> Result<()> {
         let t = self.time();
         self.integrals.copy_from_slice(&self.carried);
@@ -362,7 +363,7 @@ impl Simulator {
         }
     }
 
-    /// The history's columns at the present time.
+    /// Samples the history's columns at the present time.
     fn sample(&mut self) -> Result<()> {
         let t = self.time();
         self.read(t)?;

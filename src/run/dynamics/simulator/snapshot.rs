@@ -1,4 +1,4 @@
-//! States from which a simulator goes on.
+//! States from which a simulator resumes.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::functions::Signal;
 use crate::run::observe::Observed;
 
-/// Everything from which a [`Simulator`] of the same case and inputs goes on bit for bit.
+/// Data from which a [`Simulator`] of the same case and inputs resumes bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Simulated time [s].
@@ -18,7 +18,7 @@ pub struct Snapshot {
     pub values: Vec<f64>,
     of: String,
     next: usize,
-    /// The step to try next [s]; 0 leaves it to the state.
+    /// Step size to try next [s]; if 0, it follows from the state.
     #[serde(default)]
     size: f64,
     y: Vec<f64>,
@@ -33,16 +33,16 @@ impl Snapshot {
     /// The state as text: a checksum of eight hexadecimal digits, and JSON.
     ///
     /// # Errors
-    /// A number of it has no JSON.
+    /// A number cannot be represented in JSON.
     pub fn to_bytes(&self) -> serde_json::Result<Vec<u8>> {
         let json = serde_json::to_vec(self)?;
         Ok([format!("{:08x}", crc32fast::hash(&json)).into_bytes(), json].concat())
     }
 
-    /// The state of a text.
+    /// Reads the state from a text.
     ///
     /// # Errors
-    /// [`Error::Usage`]: it was changed, cut short, or is no state.
+    /// [`Error::Usage`] if the text was changed, truncated, or is not a state.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
         let wrong = |why: &str| Error::Usage(format!("no state of a simulator: {why}"));
         let (sum, json) = bytes.split_at_checked(8).ok_or_else(|| wrong("it is cut short"))?;
@@ -54,11 +54,11 @@ impl Snapshot {
 }
 
 impl Simulator {
-    /// The present state. The simulator goes on from it as one that restores it does, bit for bit: it forgets what
-    /// it knows besides.
+    /// Returns the present state. From it the simulator continues bit for bit like one that restores it, since all other memory is
+    /// discarded.
     ///
     /// # Errors
-    /// The integrator's.
+    /// Those of the integrator.
     pub fn save(&mut self) -> Result<Snapshot> {
         self.read(self.time())?;
         let snapshot = Snapshot {
@@ -77,7 +77,7 @@ impl Simulator {
         Ok(snapshot)
     }
 
-    /// Goes back, or on, to a state that a simulator of the same case and inputs was in.
+    /// Sets the simulator to a state, earlier or later, of a simulator of the same case and inputs.
     ///
     /// # Errors
     /// [`Error::Usage`] for a state of another case.

@@ -1,25 +1,25 @@
-//! How inputs have gone to and fro, by which the mesh behind them is judged.
+//! Oscillations of inputs, by which the mesh is assessed.
 
 use serde::{Deserialize, Serialize};
 
 use crate::functions::signals::{Signal, Sine};
 
-/// Part of the largest value by which an input that turns has gone to and fro.
+/// Least change between two reversals that counts as an oscillation, over the largest value.
 const SWING: f64 = 0.5;
 
-/// What an input has been through.
+/// Record of the oscillations of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Swings {
-    /// Its largest value, by size.
+    /// Value of largest magnitude.
     largest: f64,
-    /// When it began to go up, or down [s], from which value, and whether it goes up.
+    /// Start of the present rise or fall: time [s], value, and true for a rise.
     turned: Option<(f64, f64, bool)>,
-    /// Shortest time in which it went one way and turned [s].
+    /// Shortest time between two reversals [s].
     shortest: Option<f64>,
 }
 
 impl Swings {
-    /// Of an input that begins with a value.
+    /// Record of an input that begins with a value.
     pub fn of(value: f64) -> Self {
         Self {
             largest: value,
@@ -27,7 +27,7 @@ impl Swings {
         }
     }
 
-    /// Takes a jump at a time [s] between two values.
+    /// Adds a jump at a time [s] between two values.
     pub fn jump(&mut self, t: f64, [from, to]: [f64; 2]) {
         let up = to > from;
         if from == to || self.turned.is_some_and(|(.., went_up)| went_up == up) {
@@ -49,7 +49,7 @@ impl Swings {
         }
     }
 
-    /// A signal that is as large, and as fast where it went to and fro.
+    /// A signal with the same largest value and, if the input oscillated, with its shortest period.
     pub fn like(&self) -> Signal {
         match self.shortest {
             None => Signal::Constant(self.largest),

@@ -1,11 +1,11 @@
-//! Looks at accepted steps as a run does, and ends where the model is left.
+//! Observes accepted steps as in a run, and ends where a validity limit is exceeded.
 
 use super::{Simulator, beyond, fault, narrow, solver};
 use crate::error::Result;
 
 impl Simulator {
-    /// Looks at the end of an accepted step from a time [s], and inside wherever the model may have been left; where it was, that is where the simulation then
-    /// stands.
+    /// Observes the end of an accepted step from time `from` [s], and possible extrema inside. If a validity limit is exceeded, the
+    /// simulation remains at that time.
     pub(super) fn watch(&mut self, from: f64, t: f64) -> Result<()> {
         self.read(t)?;
         let dae = self.solver.dae_mut();
@@ -25,7 +25,7 @@ impl Simulator {
         Ok(())
     }
 
-    /// Ends where the model was left, between a time at which it held and one at which it did not [s].
+    /// Ends at the time [s] at which a validity limit is exceeded, between a time within the limits and one beyond.
     fn leave(&mut self, between: [f64; 2], what: String) -> Result<()> {
         let (t, what) = narrow(between, what, |t| {
             self.read(t)?;

@@ -1,7 +1,9 @@
 //! The pages: every command on them runs, every link leads somewhere.
 //!
-//! Source: README.md, CHANGELOG.md, CONTRIBUTING.md, docs, cases/README.md. Goal: what a reader types works. Commands run in the order of their page, in an empty
-//! folder with the cases beside it; those that measure for minutes get seconds, maps four points, sweeps three.
+//! Source: README.md, CHANGELOG.md, CONTRIBUTING.md, docs, cases/README.md. Commands run in the order of their page, in an empty folder
+//! with the cases beside it. Long measurements get seconds, maps four points, sweeps three.
+
+mod writing;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -28,13 +30,12 @@ fn pages() -> Vec<PathBuf> {
     all
 }
 
-/// Lines of a page that a reader types: those of shell blocks, those behind `$ ` in transcripts, and what stands in backquotes and
-/// names a case that is there.
+/// Commands of a page: lines of shell blocks, lines behind `$ ` in transcripts, and backquoted commands with a shipped case.
 fn commands(page: &str) -> Vec<String> {
     let mut found = vec![];
     let mut block: Option<&str> = None;
     let (mut rest, mut prose) = (String::new(), String::new());
-    let told = |prose: &mut String, found: &mut Vec<String>| {
+    let collect = |prose: &mut String, found: &mut Vec<String>| {
         let text = std::mem::take(prose);
         let marked = text.split('`').skip(1).step_by(2);
         found.extend(
@@ -46,7 +47,7 @@ fn commands(page: &str) -> Vec<String> {
     for line in page.lines() {
         let line = line.trim_end();
         if let Some(kind) = line.trim_start().strip_prefix("```") {
-            told(&mut prose, &mut found);
+            collect(&mut prose, &mut found);
             block = if block.is_some() { None } else { Some(kind) };
             continue;
         }
@@ -65,7 +66,7 @@ fn commands(page: &str) -> Vec<String> {
             None => found.push(std::mem::take(&mut rest) + typed),
         }
     }
-    told(&mut prose, &mut found);
+    collect(&mut prose, &mut found);
     found.retain(|line| !line.trim().is_empty() && !placeholder(line));
     found
 }

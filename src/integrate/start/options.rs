@@ -1,13 +1,13 @@
-//! What a consistent start is asked for, and what is told of it.
+//! Settings, result and error of a consistent start.
 
 use std::fmt;
 
 /// Settings of [`super::consistent_start`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartOptions {
-    /// Correction, relative to 1 + |unknown|, below which the values count as consistent.
+    /// Correction, relative to 1 + |unknown|, below which the values are consistent.
     pub tolerance: f64,
-    /// Newton steps allowed.
+    /// Maximum number of Newton steps.
     pub max_iterations: u16,
     /// Smallest damping factor.
     pub smallest_damping: f64,
@@ -23,27 +23,27 @@ impl Default for StartOptions {
     }
 }
 
-/// How consistent values were found.
+/// Result of a consistent start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Start {
-    /// Newton steps.
+    /// Number of Newton steps.
     pub iterations: u16,
-    /// Residuals evaluated.
+    /// Number of residual evaluations.
     pub residual_evaluations: u64,
-    /// Last correction, largest relative to 1 + |unknown|.
+    /// Last correction: the largest relative to 1 + |unknown|.
     pub correction: f64,
-    /// Largest residual left.
+    /// Largest remaining residual.
     pub residual: f64,
 }
 
-/// Why no consistent values were found.
+/// Error of a consistent start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StartError {
-    /// What happened.
+    /// Description of the failure.
     pub what: String,
-    /// Unknown that is worst, by position and name.
+    /// Unknown with the largest error, by index and name.
     pub worst: Option<(usize, String)>,
-    /// Newton steps done.
+    /// Number of Newton steps done.
     pub iterations: u16,
 }
 
