@@ -153,7 +153,7 @@ pub fn at(pointer: &str, text: &str) -> Option<Here> {
             .map(|one| format!("{} {unit}", number_of(*one)))
             .collect();
         return Some(Here::Not(format!(
-            "{} may be {}: write the one that is meant",
+            "{} is ambiguous: {}. Write the intended number",
             short(text.trim()),
             all.join(" or ")
         )));
@@ -162,11 +162,11 @@ pub fn at(pointer: &str, text: &str) -> Option<Here> {
     if pointer.ends_with("/temperature_c") && ["°C", "degC", "C"].contains(&unit) {
         return Some(same("°C".into()));
     }
-    Some(match units::told_by(pointer) {
+    Some(match units::suffix_of_pointer(pointer) {
         Suffix::Known(_, of) => match size(unit, of.si) {
             Ok(scale) => Here::Number(number_of(number * scale / of.scale), of.name.into()),
             Err(Some(_)) => Here::Not(format!(
-                "{} is no unit of what is wanted here, which is in {}",
+                "{} is a unit of another quantity; the number here is in {}",
                 short(unit),
                 of.name
             )),
@@ -184,12 +184,12 @@ pub fn at(pointer: &str, text: &str) -> Option<Here> {
             same(unit.into())
         }
         Suffix::Unknown(_, end) => Here::Not(format!(
-            "the number here is in the unit that the key ends with, {end}, which {} is not",
+            "the number here is in {end}, the unit at the end of the key, not in {}",
             short(unit)
         )),
         Suffix::None => match size(unit, "1") {
             Ok(scale) => Here::Number(number_of(number * scale), "1".into()),
-            Err(_) => Here::Not(format!("what is wanted here has no unit, and {} is one", short(unit))),
+            Err(_) => Here::Not(format!("the number here has no unit, but {} is given", short(unit))),
         },
     })
 }
@@ -211,14 +211,14 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
     if spec.len() > 20 * LONGEST {
         return None;
     }
-    let mut told = vec![];
+    let mut readings = vec![];
     let mut new = String::new();
     let mut before = "";
     for part in spec.split_inclusive([',', ':']) {
         let own = part.trim_end_matches([',', ':']);
         if let Some(joined) = thousands(before, own) {
             return Some(format!(
-                "commas stand between values here: write {joined} if {}{} is one number",
+                "commas separate values here: write {joined} if {}{} is one number",
                 before.trim(),
                 own.trim()
             ));
@@ -228,13 +228,13 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
             None => new += part,
             Some(Here::Not(why)) => return Some(why),
             Some(Here::Number(number, _)) => {
-                told.push(format!("{} is {number} here", own.trim()));
+                readings.push(format!("{} is {number} here", own.trim()));
                 new += &number;
                 new += &part[own.len()..];
             }
         }
     }
-    (!told.is_empty()).then(|| format!("{}: {option} '{pointer}={new}'", told.join(", ")))
+    (!readings.is_empty()).then(|| format!("{}: {option} '{pointer}={new}'", readings.join(", ")))
 }
 
 /// Joins two parts that a thousands comma has separated, such as `60,` and `000 Pa`.
@@ -252,7 +252,7 @@ mod tests {
 
     /// Goal: an ambiguous thousands comma is reported instead of read as a decimal comma.
     #[test]
-    fn commas_between_thousands_are_told() {
+    fn commas_between_thousands_are_reported() {
         let pointer = "/network/chains/0/ends/0/pressure_pa";
         let Some(Here::Not(what)) = at(pointer, "60,000 Pa") else {
             panic!("no number")
@@ -263,10 +263,10 @@ mod tests {
             Some(Here::Number("1.234567e6".into(), "Pa".into()))
         );
         assert_eq!(at("/beam/young_modulus_pa", "1,5e6"), None);
-        let told = rewritten("--vary", pointer, "60,000 Pa").expect("a remedy");
-        assert!(told.contains("write 60000 Pa if 60,000 Pa is one number"), "{told}");
-        let told = rewritten("--vary", pointer, "20,000 Pa:80,000 Pa").expect("a remedy");
-        assert!(told.contains("20000 Pa"), "{told}");
+        let text = rewritten("--vary", pointer, "60,000 Pa").expect("a remedy");
+        assert!(text.contains("write 60000 Pa if 60,000 Pa is one number"), "{text}");
+        let text = rewritten("--vary", pointer, "20,000 Pa:80,000 Pa").expect("a remedy");
+        assert!(text.contains("20000 Pa"), "{text}");
     }
 
     #[test]

@@ -48,7 +48,7 @@ impl JsonSchema for Effects {
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let choices = generator.subschema_for::<EffectChoices>();
         json_schema!({ "anyOf": [
-            { "type": "string", "const": "auto", "description": "The program chooses and says why." },
+            { "type": "string", "const": "auto", "description": "The program chooses and reports the reasons." },
             { "type": "string", "const": "full", "description": "Everything the case describes." },
             choices
         ]})

@@ -17,7 +17,7 @@ pub(super) fn overfull(pointer: &str, count: u64, most: u64) -> Violation {
     let fault =
         Violation::new(Code::Count, pointer, format!("an array of {count} entries")).allowed(format!("at most {most}"));
     if pointer.ends_with("/sum") || pointer.ends_with("/product") {
-        return fault.hint("a table says what many terms add up to");
+        return fault.hint("give a table of the result in place of many terms");
     }
     fault
 }
@@ -28,7 +28,7 @@ pub(super) fn check(value: &Value, faults: &mut Violations) {
     if count > MOST_TERMS {
         let what = format!("sums and products of {count} terms in all");
         let fault = Violation::new(Code::Count, "", what).allowed(format!("at most {MOST_TERMS} in a case"));
-        faults.push_overfull(fault.hint("a table says what many terms add up to"));
+        faults.push_overfull(fault.hint("give a table of the result in place of many terms"));
     }
 }
 

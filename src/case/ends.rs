@@ -221,7 +221,7 @@ impl<'de> Visitor<'de> for EndReader {
         };
         if let Some((key, _)) = given.given().find(|(key, _)| !keys.contains(key)) {
             return Err(A::Error::custom(format!(
-                "`{name}` takes {}, not {key}",
+                "`{name}` accepts {}, not {key}",
                 keys.join(", ")
             )));
         }

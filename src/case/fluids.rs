@@ -220,7 +220,7 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
 }
 
 /// Reports an unused temperature, in a case `own` whose fluid has no name.
-pub(super) fn tell_unnamed(own: &Value, faults: &mut Violations) {
+pub(super) fn report_unnamed(own: &Value, faults: &mut Violations) {
     if own.pointer(TEMPERATURE).is_some_and(|given| !given.is_null()) {
         let what = "a temperature of a fluid without a name";
         let hint = "name the fluid by \"preset\", or leave it out: density and viscosity are given";
@@ -230,14 +230,14 @@ pub(super) fn tell_unnamed(own: &Value, faults: &mut Violations) {
 
 impl Brought {
     /// Reports a temperature outside the range of the formulas.
-    pub(super) fn tell(&self, faults: &mut Violations) {
+    pub(super) fn report(&self, faults: &mut Violations) {
         let Some(fluid) = self.fluid.filter(|_| !faults.any_below("/fluid")) else {
             return;
         };
         let [low, high] = fluid.range_c();
         if !(low..=high).contains(&self.temperature_c) {
             let what = format!(
-                "the formulas of {} do not hold at {} C",
+                "the formulas of {} are not valid at {} C",
                 fluid.name(),
                 self.temperature_c
             );

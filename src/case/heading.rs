@@ -72,11 +72,11 @@ impl Heading {
             let unknown = visible(&unknown);
             return Err(match self.bracketed {
                 true => format!(
-                    "the unit [{unknown}] of the column {heading} is not known; for {what} there are {}",
+                    "the unit [{unknown}] of the column {heading} is not known; units of {what} are {}",
                     known()
                 ),
                 false => format!(
-                    "the unit {unknown} at the end of {heading} is not known; for {what} there are {}, written as in {}",
+                    "the unit {unknown} at the end of {heading} is not known; units of {what} are {}, written as in {}",
                     known(),
                     remedy()
                 ),
@@ -143,7 +143,7 @@ mod tests {
             (
                 "tip_in",
                 "m",
-                "the unit in at the end of tip_in is not known; for it there are m, cm, mm, um",
+                "the unit in at the end of tip_in is not known; units of it are m, cm, mm, um",
             ),
             ("tip [in]", "m", "the unit [in] of the column tip [in] is not known"),
             ("p_inhg", "Pa", "the unit inhg at the end"),

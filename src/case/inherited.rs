@@ -38,8 +38,8 @@ pub fn warnings(case: &Case) -> Vec<String> {
             None => groups.push(vec![law]),
         }
     }
-    let told = groups.iter().filter_map(|laws| warning(case, &resolved, laws));
-    told.chain(plane_cell(case)).chain(cross_term(case)).collect()
+    let warnings = groups.iter().filter_map(|laws| warning(case, &resolved, laws));
+    warnings.chain(plane_cell(case)).chain(cross_term(case)).collect()
 }
 
 /// Warning about varied or differentiated numbers that change the shape of the section on their own.
@@ -67,8 +67,8 @@ pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) 
     names.dedup();
     (!names.is_empty()).then(|| {
         Code::Inherited.warning(format!(
-            "coefficients of another shape of section: {} changes the shape to which {} belong. {EXACT} Give the section by its geometry \
-             in /section, or take what is found as an estimate.",
+            "coefficients of another shape of section: {} changes the shape to which {} belong. {EXACT} Give the \
+             section by its geometry in /section, or use the result as an estimate.",
             shaping.join(", "),
             names.join(", ")
         ))
@@ -113,7 +113,7 @@ fn cross_term(case: &Case) -> Option<String> {
 /// paper and others.
 const ENDS: f64 = 0.5;
 /// Relative reduction above which a warning is issued.
-const TOLD: f64 = 0.05;
+const WARNING_LIMIT: f64 = 0.05;
 
 fn plane_cell(case: &Case) -> Option<String> {
     let bladders = case.bladders.as_ref()?;
@@ -127,11 +127,12 @@ fn plane_cell(case: &Case) -> Option<String> {
     // without side walls the ends are open
     let of_plane = areas.into_iter().any(plane) && bladders.length_m < case.beam.width_m;
     let off = ENDS * bladders.height_m.max(bladders.width_m) / bladders.length_m;
-    (of_plane && off > TOLD).then(|| {
+    (of_plane && off > WARNING_LIMIT).then(|| {
         Code::PlaneCell.warning(format!(
-            "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too large; \
-             \"three_d\": true in /section",
-            100.0 * off
+            "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too \
+             large (limit {:.0} %). Set \"three_d\": true in /section",
+            100.0 * off,
+            100.0 * WARNING_LIMIT
         ))
     })
 }
@@ -188,7 +189,7 @@ fn of_cell(case: &Case, inherited: &[Coefficient]) -> Option<String> {
             let all: Vec<String> = all.into_iter().flatten().collect();
             format!("{} gives {}", cell.assumed, all.join(", "))
         }
-        Err(why) => format!("{} gives nothing to compare with: {why}", cell.assumed),
+        Err(why) => format!("{} is not available for comparison: {why}", cell.assumed),
     })
 }
 

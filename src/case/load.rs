@@ -55,7 +55,7 @@ pub fn text(path: &Path) -> Result<String> {
             let what = match (there.is_dir(), path.join("case.json")) {
                 (true, own) if own.is_file() => format!("it is a folder; its case is {}", own.display()),
                 (true, _) => "it is a folder".into(),
-                (false, _) => "it is no file with an end; a case on standard input is named -".into(),
+                (false, _) => "it is not a regular file; use - for a case on standard input".into(),
             };
             return Err(unreadable(std::io::Error::new(std::io::ErrorKind::InvalidInput, what)));
         }
@@ -107,8 +107,15 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
             .is_some_and(|x| ["csv", "tsv", "txt", "dat"].iter().any(|y| x.eq_ignore_ascii_case(y)));
         return Err(source.error(match table {
             true => vec![
-                Violation::new(Code::Text, "", "this is no case, which is a JSON object; it seems to be a table")
-                    .hint("a table stands behind the case or the result: slcbeam fit CASE.json DATA.csv, slcbeam compare RUN DATA.csv"),
+                Violation::new(
+                    Code::Text,
+                    "",
+                    "this seems to be a table, not a case; a case is a JSON object",
+                )
+                .hint(
+                    "give a table after the case or the result: slcbeam fit CASE.json DATA.csv, slcbeam compare RUN \
+                     DATA.csv",
+                ),
             ],
             false => violations,
         }));
@@ -135,14 +142,16 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
     let mut given = given(&own, &value, section.as_ref(), &steps);
     given.scale(&mut value);
     // Invalid numbers have their fault already; `null` replaces them.
-    let told = violations.iter().map(|v| v.pointer.clone());
-    let told: Vec<String> = told.filter(|p| value.pointer(p).is_some_and(Value::is_null)).collect();
+    let invalid = violations.iter().map(|v| v.pointer.clone());
+    let invalid: Vec<String> = invalid
+        .filter(|p| value.pointer(p).is_some_and(Value::is_null))
+        .collect();
 
     let mut faults = Violations::default();
-    told.iter().for_each(|pointer| faults.doubt(pointer));
+    invalid.iter().for_each(|pointer| faults.doubt(pointer));
     section.iter().for_each(|section| section.doubt(&own, &mut faults));
     validate::validate(&value, &own, &schema_json::CASE, &mut faults);
-    faults.drop_below(&told);
+    faults.drop_below(&invalid);
     // `null` from the command line removes an optional value.
     let cleared = source.sets.iter().map(|set| set.pointer.clone());
     let cleared: Vec<String> = cleared
@@ -157,10 +166,10 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
         true => build(value.clone(), base, &mut faults, violations.is_empty()),
         false => None,
     };
-    section.iter().for_each(|section| section.tell(&own, &mut faults));
+    section.iter().for_each(|section| section.report(&own, &mut faults));
     match &fluid {
-        Some(fluid) => fluid.tell(&mut faults),
-        None => fluids::tell_unnamed(&own, &mut faults),
+        Some(fluid) => fluid.report(&mut faults),
+        None => fluids::report_unnamed(&own, &mut faults),
     }
     let case = case.map(|case| Case {
         origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref(), given),
@@ -278,7 +287,7 @@ fn result(value: &Value, path: &Path) -> Option<Violation> {
     Some(match own.is_file() {
         true => fault.hint(format!("its case is {}", own.display())),
         false => {
-            fault.hint("a case has \"ends\", \"time\" and what is simulated; `slcbeam new` writes one to start from")
+            fault.hint("a case has \"ends\", \"time\" and a beam or a preset; `slcbeam new` writes a starting case")
         }
     })
 }

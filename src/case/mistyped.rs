@@ -18,10 +18,10 @@ const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
 fn one_number(pointer: &str) -> String {
     let part = pointer.split('/').nth(1).unwrap_or_default();
     match UNIFORM.contains(&part) {
-        true => "one number is wanted: beam, bladders and fluid are the same all along, so take a mean value; a load may change along the beam \
-                 by its \"profile\""
+        true => "expected one number: beam, bladders and fluid are uniform along the beam, so use a mean value; a \
+                 load may vary along the beam by its \"profile\""
             .to_owned(),
-        false => "one number is wanted, without brackets".to_owned(),
+        false => "expected one number, without brackets".to_owned(),
     }
 }
 
@@ -62,7 +62,7 @@ pub fn hint(pointer: &str, value: &Value, schema: &Value, branches: &[&Value]) -
             if let [one] = &items[..]
                 && one.is_number()
             {
-                return Some(format!("a single number stands without brackets: write {one}"));
+                return Some(format!("a single number has no brackets: write {one}"));
             }
             if items.len() > 1 && kinds("object") {
                 return Some(

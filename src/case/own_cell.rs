@@ -127,8 +127,8 @@ mod tests {
             .expect("solved")
             .numbers
             .area_per_pressure_m2_per_pa;
-        let told = stiff.coefficient("/bladders/area_per_pressure_m2_per_pa");
-        let told = told.expect("solved").expect("one of the cell's");
-        assert!((told / own - 1.0).abs() < 1e-9, "{told} {own}");
+        let value = stiff.coefficient("/bladders/area_per_pressure_m2_per_pa");
+        let value = value.expect("solved").expect("one of the cell's");
+        assert!((value / own - 1.0).abs() < 1e-9, "{value} {own}");
     }
 }

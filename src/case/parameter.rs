@@ -68,7 +68,7 @@ impl Parameter {
     pub fn find_as(option: &str, case: &Case, pointer: &str) -> Result<Self> {
         let found = Self::number(option, case, pointer)?;
         if found.value == 0.0 {
-            let what = "it is 0, which gives no size to differ by; set it to a small value";
+            let what = "it is 0, which gives no scale for a finite difference; set it to a small value";
             return Err(Error::Usage(format!("{option} {pointer}: {what}")));
         }
         Ok(found)
@@ -83,24 +83,32 @@ impl Parameter {
         let resolved = written_out(case);
         let part = pointer.split('/').nth(1).unwrap_or_default();
         if pointer.starts_with("/section/") {
-            return usage("the numbers of a section are no parameters of the model; its coefficients are".into());
+            return usage(
+                "the numbers of a section are not parameters of the model; use the coefficients computed from it"
+                    .into(),
+            );
         }
         if pointer.starts_with('/') && resolved.get(part).is_some() && !PARTS.contains(&part) {
             return usage(format!(
-                "/{part} is not a part of the model; parameters stand under /{}",
+                "/{part} is not a part of the model; parameters are under /{}",
                 PARTS.join(", /")
             ));
         }
         let stiffness = case.origins.get("/beam/axial_stiffness_factor");
         if section::SIZES.contains(&pointer) && matches!(stiffness, Some(Origin::Section { .. })) {
-            return usage("the section has it: coefficients that are computed from it would not follow".into());
+            return usage(
+                "the section defines it, and the coefficients computed from the section would not change with it"
+                    .into(),
+            );
         }
         let density = case.origins.get("/fluid/density_kg_m3");
         if pointer == "/fluid/ambient_pressure_pa"
             && matches!(density, Some(Origin::Fluid(..)))
             && case.fluid.as_ref().is_some_and(|fluid| fluid.kind == FluidKind::Gas)
         {
-            return usage("the density of a gas by name goes with it and would not follow; give density_kg_m3".into());
+            return usage(
+                "the density of a gas by name depends on it but would not change with it; give density_kg_m3".into(),
+            );
         }
         match resolved.pointer(pointer) {
             Some(Value::Number(number)) if number.is_f64() => {
@@ -108,15 +116,15 @@ impl Parameter {
                 let pointer = pointer.to_owned();
                 Ok(Self { pointer, value })
             }
-            Some(Value::Number(_)) => usage("a count is not differentiated by".into()),
-            Some(_) => usage("no number stands there".into()),
+            Some(Value::Number(_)) => usage("a count has no derivative".into()),
+            Some(_) => usage("there is no number at this pointer".into()),
             None => {
                 let mut all = vec![];
                 numbers(&resolved, String::new(), &mut all);
                 all.retain(|p| PARTS.contains(&p.split('/').nth(1).unwrap_or_default()));
                 let meant = nearest(pointer, all.iter().map(String::as_str));
                 let meant = meant.map_or(String::new(), |p| format!("; nearest is {p}"));
-                usage(format!("the case has nothing there{meant}"))
+                usage(format!("the case has no value at this pointer{meant}"))
             }
         }
     }

@@ -13,7 +13,7 @@ use rustix::fs::OFlags;
 /// It cannot be opened, or is a folder, a pipe or a device.
 fn open_regular(path: &Path) -> io::Result<File> {
     if !fs::metadata(path)?.is_file() {
-        return Err(endless("it is no file with an end"));
+        return Err(endless("it is not a regular file"));
     }
     OpenOptions::new()
         .read(true)
@@ -28,7 +28,9 @@ fn open_regular(path: &Path) -> io::Result<File> {
 pub fn open(path: &Path) -> io::Result<File> {
     let mut file = open_regular(path)?;
     if file.metadata()?.len() == 0 && file.read(&mut [0])? > 0 {
-        return Err(endless("it claims to be empty and is not: it is no file with an end"));
+        return Err(endless(
+            "it is not a regular file: its size is 0 bytes, but it has content",
+        ));
     }
     file.rewind()?;
     Ok(file)

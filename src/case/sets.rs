@@ -69,19 +69,19 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
     match &misread::loose(json.trim())[..] {
         [one] => {
             let rule = match *one == json.trim().replacen(',', ".", 1) {
-                true => "decimals stand behind a point",
-                false => "nothing stands between digits but a point before decimals",
+                true => "write decimals with a point",
+                false => "write digits without separators, and decimals with a point",
             };
             return format!("{rule}: --set '{pointer}={one}'");
         }
         [one, other] => {
             let json = json.trim();
-            return format!("{json} may be --set '{pointer}={one}' or --set '{pointer}={other}'");
+            return format!("{json} is ambiguous: --set '{pointer}={one}' or --set '{pointer}={other}'");
         }
         _ => {}
     }
     if let Some((_, joined)) = misread::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
-        return format!("{why}; nothing stands between digits: --set '{pointer}={joined}'");
+        return format!("{why}; write digits without separators: --set '{pointer}={joined}'");
     }
     // a word without quotes is a text; other faults have their own remedy
     let text = "text needs double quotes";
@@ -137,11 +137,11 @@ fn insert(value: &mut Value, pointer: &str, given: Value) -> std::result::Result
                 let Some(index) = index.filter(|i| *i < count || token == "-") else {
                     let there = match count {
                         0 => "an empty array".to_owned(),
-                        1 => "an array of 1, 0".to_owned(),
-                        _ => format!("an array of {count}, 0 to {}", count - 1),
+                        1 => "an array of 1 entry, index 0".to_owned(),
+                        _ => format!("an array of {count} entries, indices 0 to {}", count - 1),
                     };
                     return Err(format!(
-                        "{here} is {there}; `{token}` is none of these: {here}/- adds one"
+                        "{here} is {there}; `{token}` is not an index of it. {here}/- adds an entry"
                     ));
                 };
                 if index == count {

@@ -27,19 +27,19 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         .strip_suffix("_g")
         .and_then(|stem| nearest(&format!("{stem}_m_s2"), of("m_s2")))
     {
-        let hint = told(&meant, value, GRAVITY, "g");
+        let hint = conversion(&meant, value, GRAVITY, "g");
         return Some((meant, hint));
     }
     let turning = key == "omega" || key.starts_with("omega_") || key.ends_with("_rad_s");
     let mut frequency = known.clone().filter(|name| turning && *name == "frequency_hz");
     if let Some(meant) = frequency.next() {
-        return Some((meant.to_owned(), told(meant, value, 1.0 / TAU, "rad/s")));
+        return Some((meant.to_owned(), conversion(meant, value, 1.0 / TAU, "rad/s")));
     }
     if let Some(meant) = key
         .strip_suffix("_cst")
         .and_then(|stem| nearest(&format!("{stem}_pa_s"), of("pa_s")))
     {
-        let hint = "cSt is of a viscosity over the density: times 1e-6 and density_kg_m3 it is in Pa s";
+        let hint = "cSt is a unit of kinematic viscosity: multiply by 1e-6 and density_kg_m3 to obtain Pa s";
         return Some((meant, hint.to_owned()));
     }
     let of_table = [None, Some("N/m")].into_iter().find_map(|si| {
@@ -56,7 +56,7 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         })?;
         // the same unit is no mistake
         (unit.scale != 1.0).then(|| {
-            let hint = told(&meant, value, unit.scale, unit.name);
+            let hint = conversion(&meant, value, unit.scale, unit.name);
             (meant, hint)
         })
     });
@@ -70,13 +70,13 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
         };
         let end = Unit { si, name: si, scale }.key();
         let meant = nearest(&format!("{stem}_{end}"), of(&end))?;
-        let hint = told(&meant, value, scale, word);
+        let hint = conversion(&meant, value, scale, word);
         Some((meant, hint))
     })
 }
 
 /// Text for a key: the number in its unit, or the factor of its numbers.
-fn told(meant: &str, value: &Value, size: f64, name: &str) -> String {
+fn conversion(meant: &str, value: &Value, size: f64, name: &str) -> String {
     match value.as_f64() {
         Some(number) => format!(
             "write \"{meant}\": {}, which is {number} {name}",

@@ -119,19 +119,19 @@ const MEANT: &[(&str, &[&str])] = &[
 const ELSEWHERE: &[(&str, &str)] = &[
     (
         "frequency",
-        "slcbeam modes tells natural frequencies, docs/modes.md; what a drive does near them, docs/frequency-response.md",
+        "slcbeam modes computes natural frequencies, docs/modes.md; response to a drive near them: docs/frequency-response.md",
     ),
     ("eigenvalue", "slcbeam modes, docs/modes.md"),
     ("eigenfrequency", "slcbeam modes, docs/modes.md"),
     ("resonance", "slcbeam modes and docs/frequency-response.md"),
-    ("damping", "slcbeam modes tells damping ratios, docs/modes.md"),
+    ("damping", "slcbeam modes computes damping ratios, docs/modes.md"),
     (
         "buckling",
-        "slcbeam equilibrium follows loads to where a state gives way, docs/equilibrium.md",
+        "slcbeam equilibrium follows loads to a critical point, docs/equilibrium.md",
     ),
     (
         "stability",
-        "docs/stability.md; of cycles slcbeam floquet, docs/stability-maps.md",
+        "docs/stability.md; for cycles slcbeam floquet, docs/stability-maps.md",
     ),
     ("multiplier", "slcbeam floquet, docs/stability-maps.md"),
     ("uncertainty", "--uncertain of a command, docs/uncertainty.md"),
@@ -149,7 +149,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("optimization", "slcbeam optimize, docs/optimize.md"),
     (
         "harvest",
-        "turbines; slcbeam periodic tells energy and power of a cycle, docs/tour-harvester.md",
+        "turbines; slcbeam periodic computes energy and power of a cycle, docs/tour-harvester.md",
     ),
     (
         "convergence",
@@ -202,27 +202,29 @@ const SYMBOLS: &[(&str, &[&str])] = &[
 const INSTEAD: &[(&[&str], &str)] = &[
     (
         &["poisson_ratio", "poissons_ratio", "poisson", "nu"],
-        "a beam takes no Poisson's ratio: /beam/shear_stiffness_n has the shear, and a section by its geometry takes it, /section/material/poisson_ratio",
+        "a beam has no Poisson's ratio: /beam/shear_stiffness_n gives the shear stiffness; a section by its geometry \
+         has /section/material/poisson_ratio",
     ),
     (
         &["dt", "time_step", "timestep", "step_size", "delta_t"],
-        "steps follow from the tolerance, /solver/rtol; /time/output_interval_s says how often is written, and /solver/max_step_s is the longest step",
+        "steps follow from the tolerance, /solver/rtol; /time/output_interval_s is the interval of output, and /solver/max_step_s is the longest step",
     ),
     (
         &["damping_ratio", "zeta", "xi", "damping_factor"],
-        "damping is a time: of a ratio zeta of the mode at f Hz /beam/damping/bending_time_s is zeta/(pi f)",
+        "damping is a time: for a damping ratio zeta of the mode at f Hz, /beam/damping/bending_time_s is zeta/(pi f)",
     ),
     (
         &["rayleigh_alpha", "alpha", "mass_damping"],
-        "damping by the mass is drag along the beam: alpha times the mass per length, /beam/damping/drag_n_s_m2",
+        "mass-proportional damping is a drag: /beam/damping/drag_n_s_m2 is alpha times the mass per length",
     ),
     (
         &["rayleigh_beta", "beta", "stiffness_damping"],
-        "damping by the stiffness is a time, /beam/damping/bending_time_s and axial_time_s: beta itself",
+        "stiffness-proportional damping is a time: /beam/damping/bending_time_s and axial_time_s are beta",
     ),
     (
         &["shear_modulus", "g_modulus"],
-        "a case has shear by /beam/shear_stiffness_n, of a full rectangle 5/6 of its area times the shear modulus",
+        "/beam/shear_stiffness_n gives the shear stiffness: for a full rectangle, 5/6 of its area times the shear \
+         modulus",
     ),
     (
         &["second_moment", "second_moment_of_area", "area_moment"],
@@ -238,7 +240,8 @@ const INSTEAD: &[(&[&str], &str)] = &[
     ),
     (
         &["beams", "rods"],
-        "a case has one beam, /beam: give each beam a case of its own; what another body does to it is a load, an end or an attachment",
+        "a case has one beam, /beam: give each beam a case of its own; model another body as a load, an end or an \
+         attachment",
     ),
     (
         &[
@@ -251,8 +254,8 @@ const INSTEAD: &[(&[&str], &str)] = &[
             "sections",
             "stations",
         ],
-        "a beam is uniform, with one section and one material all along: take mean values; \
-         /attachments add masses and springs at places, and a load may change along the beam by its profile",
+        "a beam is uniform, with one section and one material: use mean values; /attachments add masses and springs \
+         at places, and a load may vary along the beam by its profile",
     ),
     (
         &["atol", "abstol", "absolute_tolerance"],

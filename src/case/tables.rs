@@ -63,7 +63,11 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         ));
     };
     if table.contains_key("times_s") || table.contains_key("values") {
-        let fault = Violation::new(Code::Table, child(pointer, "csv"), "points given here and in a file");
+        let fault = Violation::new(
+            Code::Table,
+            child(pointer, "csv"),
+            "points are given both here and in a file",
+        );
         return Err(Box::new(fault.hint("keep \"times_s\" and \"values\", or \"csv\"")));
     }
     let wanted = text("checksum");
@@ -100,8 +104,8 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
         .clone();
     if Heading::are_numbers(headings.iter()) {
         let line = headings.iter().collect::<Vec<_>>().join(",");
-        let what = format!("{name}: numbers where headings are wanted: {}", short(&line));
-        let hint = "name the columns in the first line, such as t_s,pressure_kpa: else the first point would be lost";
+        let what = format!("{name}: numbers in place of headings: {}", short(&line));
+        let hint = "name the columns in the first line, such as t_s,pressure_kpa; otherwise the first point is lost";
         return Err(Box::new(at("csv", what).hint(hint)));
     }
     let column = |key: &str, default: usize| -> Read<usize> {
@@ -154,7 +158,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
                     format!("{name}, line {line}: \"{}\" is not a number", shown(cell)),
                 );
                 match cell.contains(',') {
-                    true => Box::new(fault.hint("decimals stand behind a point")),
+                    true => Box::new(fault.hint("write decimals with a point")),
                     false => fault,
                 }
             })?;
@@ -164,10 +168,10 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     if let Some(wanted) = wanted {
         let found = checksum(&times, &values);
         if found != wanted {
-            let what = format!("{name} holds other points: their checksum is {found}, not {wanted}");
+            let what = format!("{name} contains other points: their checksum is {found}, not {wanted}");
             let fault = Violation::new(Code::Table, child(pointer, "checksum"), what);
             return Err(Box::new(
-                fault.hint("if the points are as they should be, leave \"checksum\" out"),
+                fault.hint("if the points are correct, leave \"checksum\" out"),
             ));
         }
     }

@@ -185,8 +185,8 @@ fn ends(unit: Unit) -> impl Iterator<Item = String> {
 
 /// All endings, computed once: a case may have very many keys without a unit.
 static ENDS: LazyLock<Vec<(Unit, String)>> = LazyLock::new(|| {
-    let told = all().filter(|unit| !["1", "l", "g", "h"].contains(&unit.name));
-    told.flat_map(|unit| ends(unit).map(move |end| (unit, end))).collect()
+    let units = all().filter(|unit| !["1", "l", "g", "h"].contains(&unit.name));
+    units.flat_map(|unit| ends(unit).map(move |end| (unit, end))).collect()
 });
 
 /// Unit at the end of a name.
@@ -259,7 +259,7 @@ pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
 }
 
 /// Unit of the numbers below a JSON pointer, from its keys.
-pub fn told_by(pointer: &str) -> Suffix<'_> {
+pub fn suffix_of_pointer(pointer: &str) -> Suffix<'_> {
     let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
     let mut ends = pointer.rsplit('/').map(|key| {
         let si = per_length(key).then_some("N/m");
@@ -270,7 +270,7 @@ pub fn told_by(pointer: &str) -> Suffix<'_> {
 
 /// Unit of the numbers below a JSON pointer, if its keys give a known one.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
-    match told_by(pointer) {
+    match suffix_of_pointer(pointer) {
         Suffix::Known(_, unit) => Some(unit),
         Suffix::Unknown(..) | Suffix::None => None,
     }
@@ -281,7 +281,7 @@ mod tests {
     use super::{Suffix, bracketed, of_pointer, suffix, suffixed};
 
     #[test]
-    fn headings_tell_their_units() {
+    fn headings_have_units_at_their_ends() {
         for (name, rest, unit, scale) in [
             ("angle_deg", "angle", "rad", std::f64::consts::PI / 180.0),
             ("tip_u1_m", "tip_u1", "m", 1.0),

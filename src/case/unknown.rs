@@ -120,10 +120,7 @@ impl<'a> Known<'a> {
             .collect();
         match places.is_empty() {
             true => Meant::default(),
-            false => Meant::elsewhere(format!(
-                "what has to do with it: {}",
-                places[..places.len().min(MOST)].join(", ")
-            )),
+            false => Meant::elsewhere(format!("related keys: {}", places[..places.len().min(MOST)].join(", "))),
         }
     }
 
@@ -152,7 +149,7 @@ impl<'a> Known<'a> {
         if let [key] = &keys[..] {
             return Meant::one(key.clone(), None);
         }
-        let told = keys.iter().map(|key| {
+        let descriptions = keys.iter().map(|key| {
             if let Some(direction) = direction(key) {
                 return format!("\"{key}\" ({direction})");
             }
@@ -162,7 +159,7 @@ impl<'a> Known<'a> {
             let meaning = meaning.split(['.', ';']).next().unwrap_or_default();
             format!("\"{key}\" ({meaning})")
         });
-        let hint = format!("either {}", told.collect::<Vec<_>>().join(" or "));
+        let hint = format!("either {}", descriptions.collect::<Vec<_>>().join(" or "));
         Meant {
             keys,
             nearest: None,
@@ -198,7 +195,7 @@ pub fn whole(name: &str) -> String {
 }
 
 fn belongs(homes: &[&str]) -> String {
-    let told = homes[..homes.len().min(MOST)].join(", ");
+    let places = homes[..homes.len().min(MOST)].join(", ");
     match homes {
         [one] => {
             let around = one.rsplit_once('/').map_or("", |(around, _)| around);
@@ -207,8 +204,8 @@ fn belongs(homes: &[&str]) -> String {
                 _ => format!("it belongs to {around}: {one}"),
             }
         }
-        _ if homes.len() > MOST => format!("it belongs elsewhere: {told} and others"),
-        _ => format!("it belongs elsewhere: {told}"),
+        _ if homes.len() > MOST => format!("it belongs elsewhere: {places} and others"),
+        _ => format!("it belongs elsewhere: {places}"),
     }
 }
 

@@ -114,7 +114,7 @@ impl<'a> Walk<'a> {
         let mut fault = Violation::new(Code::Kind, pointer, format!("found {}", found_text(text)));
         let tags: Vec<&str> = all.iter().filter_map(|b| tag(b)).collect();
         if tags.contains(&text) {
-            fault.what = format!("\"{text}\" needs more than its name");
+            fault.what = format!("\"{text}\" requires values besides its name");
             fault.hint = Some(format!("write {{\"{text}\": ...}}"));
         } else if !words.is_empty() {
             fault.code = Code::Name;
@@ -152,7 +152,7 @@ impl<'a> Walk<'a> {
         let Some(key) = single else {
             let what = match members.len() {
                 0 => "an empty object".to_owned(),
-                count => format!("{count} keys where one names the form"),
+                count => format!("{count} keys, but exactly one key names the form"),
             };
             self.faults
                 .push_at_key(Violation::new(Code::Kind, pointer, what).allowed(allowed));
@@ -285,8 +285,8 @@ fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String>
         "fixed" | "built-in" | "encastre" if words.contains(&"clamped") => Some("it is called \"clamped\"".into()),
         "hinged" | "simply supported" if words.contains(&"pinned") => Some("it is called \"pinned\"".into()),
         "none" | "off" | "uncoupled" if words.contains(&"reciprocal") => Some(
-            "a beam without coupling has the effects off: \"effects\": {\"pressure_to_curvature\": \"off\", \"pressure_to_stretch\": \"off\", \
-             \"moment_to_area\": \"off\", \"force_to_area\": \"off\"}"
+            "to uncouple the beam, switch these effects off: \"effects\": {\"pressure_to_curvature\": \"off\", \
+             \"pressure_to_stretch\": \"off\", \"moment_to_area\": \"off\", \"force_to_area\": \"off\"}"
                 .into(),
         ),
         _ => None,

@@ -167,7 +167,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         size::bytes(disk),
         free.filter(|free| disk > *free)
             .map_or_else(String::new, |free| format!(
-                ", more than the {} that are free here",
+                ", more than the {} of free space here",
                 size::bytes(free)
             ))
     );

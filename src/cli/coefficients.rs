@@ -25,7 +25,7 @@ pub struct CoefficientsArguments {
     /// Solve the cell in three dimensions too, and say how far the plane one is off
     #[arg(long)]
     pub three_d: bool,
-    /// How long it may take.
+    /// Limit of wall time.
     #[command(flatten)]
     pub wall: WallArguments,
     /// Print JSON
@@ -108,7 +108,8 @@ fn of_energy(energy: StrainEnergy) -> String {
     let rows = names.into_iter().zip(energy.limits);
     let rows = rows.map(|(name, [low, high])| [name.to_owned(), significant(low, 4), significant(high, 4)]);
     format!(
-        "\nenergy at finite strain beyond the quadratic one: degree {}, error of its slopes {:.0e}, known within the ellipsoid of\n\n{}",
+        "\nenergy at finite strain beyond the quadratic part: degree {}, error of its slopes {:.0e}, valid within the \
+         ellipsoid of\n\n{}",
         energy.degree,
         energy.error,
         table("< | from | to", rows)
@@ -125,11 +126,11 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
         all["strain_energy"] = value(&|| serde_json::to_value(energy))?;
     }
     if let Some(spatial) = spatial {
-        let told = rows(found).into_iter().filter_map(|row| {
+        let in_three_d = rows(found).into_iter().filter_map(|row| {
             let (off, value) = in_space(&row, &found.numbers, spatial)?;
             Some((row.key.to_owned(), json!({"value": value, "plane_off": off})))
         });
-        all["three_d"] = told.collect::<Map<_, _>>().into();
+        all["three_d"] = in_three_d.collect::<Map<_, _>>().into();
         all["three_d"]["compliance"] = json!(spatial.compliance);
         all["three_d"]["errors"] = json!(spatial.errors);
         all["three_d"]["unknowns"] = json!(spatial.unknowns);
@@ -151,11 +152,11 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
             format!("{:.0e}", row.error),
         ];
         if let Some(spatial) = spatial {
-            let told = in_space(row, &found.numbers, spatial);
-            let told = told.map_or(["-".into(), "-".into()], |(off, value)| {
+            let pair = in_space(row, &found.numbers, spatial);
+            let cells = pair.map_or(["-".into(), "-".into()], |(off, value)| {
                 [significant(value, 4), format!("{:+.1} %", 100.0 * off)]
             });
-            line.extend(told);
+            line.extend(cells);
         }
         lines.push(line);
     }

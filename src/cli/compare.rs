@@ -58,7 +58,12 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         None => 0,
         Some(one) => match asked.results.iter().position(|own| same(own, one)) {
             Some(place) => place,
-            None => return usage(format!("--with {}: it is none of the folders", one.display())),
+            None => {
+                return usage(format!(
+                    "--with {}: it is not one of the compared folders",
+                    one.display()
+                ));
+            }
         },
     };
     let all = asked
@@ -71,7 +76,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         if picture(path) {
             let [one] = found.comparisons.as_slice() else {
                 return Err(Error::Usage(format!(
-                    "--out {}: a picture is of two; name a folder for a page of all",
+                    "--out {}: a picture shows two results only; name a folder for a page of all results",
                     path.display()
                 )));
             };
@@ -82,7 +87,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         } else {
             let place = report::compared(path, &all, reference, &found)?.path;
             if !asked.json {
-                terminal::tell(&format!("page: {}", place.display()));
+                terminal::print_line(&format!("page: {}", place.display()));
             }
             Ok(())
         }
@@ -208,7 +213,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
         } else {
             let place = report::over_data(path, &text, &found)?.path;
             if !asked.json {
-                terminal::tell(&format!("page: {}", place.display()));
+                terminal::print_line(&format!("page: {}", place.display()));
             }
             Ok(())
         }
@@ -241,7 +246,7 @@ fn table(found: &Comparison) -> String {
         let _ = writeln!(text, "{remark}\n");
     }
     if !found.physics.is_empty() {
-        text += "the two are not the same problem; their difference is no error of either\n";
+        text += "the two cases differ in physics; their difference is not an error of either\n";
         changes(&mut text, &found.physics);
     }
     if !found.numerics.is_empty() {

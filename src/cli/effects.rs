@@ -54,7 +54,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
         let (table, sentence) = (files::table(&found, &shown), files::sentence(&found));
         format!("{table}\n{sentence}\n{said}")
     };
-    super::tell(asked.json, folder.dir(), written, || files::json(&found), words)?;
+    super::print_result(asked.json, folder.dir(), written, || files::json(&found), words)?;
     Ok(ExitCode::from(if found.full.summary.is_none() { 4 } else { 0 }))
 }
 
@@ -66,15 +66,15 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
     };
     let wanted: Effects = serde_json::from_value(recommended.effects.clone()).unwrap_or_default();
     if case.effects == wanted {
-        return Ok(format!("{} says so already", path.display()));
+        return Ok(format!("{} already has these effects", path.display()));
     }
     let now = case::text(path).unwrap_or_default();
     if now != case.source.text {
-        let what = "changed while its effects were looked for; nothing is written";
+        let what = "changed during the search for its effects; nothing is written";
         return Err(Error::Usage(format!("{} {what}", path.display())));
     }
     let text = case::rewrite(&case.source.text, "effects", &recommended.effects)
-        .ok_or_else(|| Error::Usage(format!("{} is no JSON object", path.display())))?;
+        .ok_or_else(|| Error::Usage(format!("{} is not a JSON object", path.display())))?;
     let again = case::parse(&text, path, path.parent().unwrap_or(path), &[])?;
     System::new(&again)?;
     replace(path, &text)?;
@@ -88,6 +88,6 @@ fn show(shown: &Shown, event: &Event) {
         bar.set_message(format!("{} · {spent}", event.what));
         bar.tick();
     } else if shown.lines && !event.what.ends_with("again") {
-        terminal::tell(&format!("{}; {spent}", event.what));
+        terminal::print_line(&format!("{}; {spent}", event.what));
     }
 }

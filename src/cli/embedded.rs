@@ -56,10 +56,10 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
     request.listen();
     let done = act(&arguments.command, Instant::now());
     halt::deaf();
-    let told = ASKED.take().map(|asked| asked.answer).unwrap_or_default();
+    let answer = ASKED.take().map(|asked| asked.answer).unwrap_or_default();
     done.map(|_| Answer {
         interrupted: request.was_seen(),
-        ..told
+        ..answer
     })
 }
 

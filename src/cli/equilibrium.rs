@@ -34,8 +34,9 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
                 ..Options::at(at_s)
             };
     if !(usual && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain is about the equilibrium under the loads at the end: it does not go with --at, --via, --load-factor, \
-                    --keep-branch or --accuracy; loads of another instant are those of --set /time/end_s=SECONDS";
+        let what = "--uncertain applies to the equilibrium under the loads at the end of the run: it cannot be \
+                    combined with --at, --via, --load-factor, --keep-branch or --accuracy. For the loads of another \
+                    instant, use --set /time/end_s=SECONDS";
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(
@@ -113,7 +114,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         || files::words(&found) + &uncertainty.as_ref().map_or(String::new(), spread::words),
     );
     if asked.json || !path.states.is_empty() {
-        super::tell(asked.json, folder.dir(), written, text, words)?;
+        super::print_result(asked.json, folder.dir(), written, text, words)?;
     }
     match path.fault {
         None => Ok(ExitCode::SUCCESS),
@@ -129,7 +130,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
 fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<Options> {
     if !(asked.load_factor.is_finite() && asked.load_factor != 0.0 && at_s.is_finite()) {
         return Err(Error::Usage(
-            "--load-factor must be a number that is not 0, --at one in seconds".into(),
+            "--load-factor must be a number other than 0, and --at a number of seconds".into(),
         ));
     }
     if asked.points == 0 {
@@ -154,7 +155,8 @@ fn via(text: &str, end: f64) -> Result<Vec<f64>> {
     let all: Option<Vec<f64>> = text.split(',').map(instant).collect();
     all.ok_or_else(|| {
         Error::Usage(format!(
-            "--via {text}: instants in seconds, one or more with commas between, none after the end of the run at {end} s"
+            "--via {text}: expected one or more instants in seconds, separated by commas, none after the end of the \
+             run at {end} s"
         ))
     })
 }

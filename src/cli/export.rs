@@ -87,7 +87,8 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     let elsewhere = fs::canonicalize(out).ok() != fs::canonicalize(&asked.dir).ok();
     if let Some(kind) = Kind::within(out).filter(|_| elsewhere) {
         return Err(Error::Usage(format!(
-            "--out {}: it holds the result of `slcbeam {}`, beside which these files would pass for its own; name another folder",
+            "--out {}: it contains the result of `slcbeam {}`, and these files would seem to belong to that result; \
+             name another folder",
             out.display(),
             kind.command()
         )));
@@ -108,8 +109,8 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
             (name.to_string(), about)
         });
         let formats: serde_json::Map<_, _> = formats.collect();
-        let told = json!({"from_s": first, "to_s": last, "instants": times.len(), "formats": formats});
-        super::print(&format!("{told:#}\n"))?;
+        let summary = json!({"from_s": first, "to_s": last, "instants": times.len(), "formats": formats});
+        super::print(&format!("{summary:#}\n"))?;
     } else {
         let mut text = format!(
             "{} from {} s to {} s\n",
@@ -136,7 +137,7 @@ const MOST_STATES: usize = 4000;
 fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<ExitCode> {
     if file.exists() && !asked.force {
         return Err(Error::Usage(format!(
-            "--state-space {}: the file is there already and is not written over; give another one, or --force",
+            "--state-space {}: the file exists and is not overwritten; name another file, or use --force",
             file.display()
         )));
     }

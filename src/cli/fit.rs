@@ -36,7 +36,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     );
     journal::begin(&problem.evaluations, &folder, ("fit", &case, &settings))?;
     let bar = line::line(asked.result.quiet);
-    let tell = |count: usize, squares: f64| {
+    let show = |count: usize, squares: f64| {
         bar.set_message(format!(
             "{}, sum of squares {}",
             counted(count as u64, "simulation"),
@@ -45,7 +45,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
         bar.tick();
     };
     let name = asked.data.display().to_string();
-    let found = study::fit(&problem, &wanted, (&name, table.crc32), &stop, &tell);
+    let found = study::fit(&problem, &wanted, (&name, table.crc32), &stop, &show);
     bar.finish_and_clear();
     let mut found = journal::outcome(found, &folder, stop())?;
     found.fit.left_alone = study::left_alone(&table, &wanted);
@@ -53,7 +53,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let written = journal::end(&problem.evaluations, &folder, found.fit.interrupted, written);
     let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));
-    super::tell(asked.json, folder.dir(), written, text, words)?;
+    super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -65,11 +65,11 @@ fn wanted(asked: &FitArguments) -> Result<Asked> {
         .collect::<Result<Vec<_>>>()?;
     match asked.command {
         Some(FittedThrough::Equilibrium) if drives.is_empty() => {
-            let what = "--command equilibrium: --drive COLUMN=POINTER says which number of the case every row sets";
+            let what = "--command equilibrium needs --drive COLUMN=POINTER: the number of the case that every row sets";
             return Err(Error::Usage(what.into()));
         }
         Some(FittedThrough::Run) if !drives.is_empty() => {
-            let what = "--drive: rows of a run are instants of one case; what rows set is for --command equilibrium";
+            let what = "--drive: rows of a run are instants of one case; use --drive with --command equilibrium only";
             return Err(Error::Usage(what.into()));
         }
         _ => {}
@@ -97,7 +97,7 @@ fn noise(text: &str) -> Result<(String, f64)> {
     match parts {
         Some((name, Ok(sigma))) if !name.is_empty() => Ok((name.into(), sigma)),
         _ => Err(Error::Usage(format!(
-            "--noise '{text}': a column and a standard deviation above 0 are wanted, such as angle_deg=0.2"
+            "--noise '{text}': expected a column and a standard deviation above 0, such as angle_deg=0.2"
         ))),
     }
 }

@@ -33,7 +33,9 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
     scene::system(case)?;
     match &asked.map.map {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
-            "--uncertain goes with one cycle, not with a --map; at a point of it: slcbeam floquet CASE --set .. --uncertain ..".into(),
+            "--uncertain applies to one cycle, not to a --map. For a point of the map, use slcbeam floquet CASE --set \
+             .. --uncertain .."
+                .into(),
         )),
         Some(parameters) => map(asked, case, parameters),
         None => one(asked, case),
@@ -42,11 +44,12 @@ pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
 
 fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     if asked.count == 0 {
-        return Err(Error::Usage("--count 0: at least one multiplier".into()));
+        return Err(Error::Usage("--count 0: expected at least 1".into()));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     if (accuracy.is_some() || asked.period.is_some()) && !asked.uncertain.uncertain.is_empty() {
-        let what = "--uncertain goes with neither --accuracy nor --period; the mesh and tolerance that an accuracy led to stand in floquet.json";
+        let what = "--uncertain cannot be combined with --accuracy or --period. After a run with --accuracy, \
+                    floquet.json contains its mesh and tolerance";
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(
@@ -67,11 +70,11 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let scene = Scene::new(case, asked.period)?.heeding(&stop);
     scene.held(&case.name)?;
     let bar = line::line(asked.result.quiet);
-    bar.set_message("looking for the cycle");
+    bar.set_message("searching for the cycle");
     let mut cycle = interrupt::before_a_cycle(shoot(&scene, None).map_err(fault), &stop)?;
-    bar.set_message("carrying disturbances over the period");
+    bar.set_message("integrating disturbances over one period");
     let found = floquet::multipliers(&scene, &mut cycle, asked.count);
-    bar.set_message("the same on other meshes");
+    bar.set_message("repeating on other meshes");
     let accuracy = refined.as_ref().map(|(_, accuracy)| accuracy.clone());
     let judge = || {
         let mut of = |case: &Case| refine::numbers::of_growth(case, asked.period, asked.count, &stop);
@@ -106,7 +109,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         ))
         .and(report::complete(&folder, case));
     let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
-    super::tell(asked.json, folder.dir(), written, text, words)?;
+    super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -133,7 +136,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let written = written.and(report::complete(&folder, case));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::map_words(&found) + &warnings(&found.warnings);
-    super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
+    super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::SUCCESS)
 }
 

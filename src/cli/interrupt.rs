@@ -166,7 +166,7 @@ fn end_unless_answered(halt: &Halt, mut again: impl FnMut() -> Option<i32>, (why
         if halt.is_answered() {
             spent = cpu_time();
         } else if cpu_time().saturating_sub(spent) > PATIENCE {
-            terminal::tell(&format!("slcbeam: {why}; what had not been written yet is lost"));
+            terminal::print_line(&format!("slcbeam: {why}; results not yet written are lost"));
             low_level::exit(code);
         }
     }
@@ -202,7 +202,7 @@ pub fn late() -> bool {
 /// Final exit code of a command, from its own code or error and from the request that has stopped it. Prints a message if the clock has.
 pub fn ended(with: std::result::Result<ExitCode, &Error>) -> ExitCode {
     if late() {
-        terminal::tell(&format!("slcbeam: {LATE_WORDS}"));
+        terminal::print_line(&format!("slcbeam: {LATE_WORDS}"));
     }
     code().unwrap_or_else(|| match with {
         Ok(code) => code,
@@ -214,6 +214,6 @@ pub fn ended(with: std::result::Result<ExitCode, &Error>) -> ExitCode {
 /// Catches the signal of a file size limit. The limit is then reported as an error of writing, with the name of the file, and does not end
 /// the program.
 pub fn outlive_limits() {
-    let told = Arc::new(AtomicBool::new(false));
-    let _ = raise::register(signal_hook::consts::SIGXFSZ, told);
+    let caught = Arc::new(AtomicBool::new(false));
+    let _ = raise::register(signal_hook::consts::SIGXFSZ, caught);
 }

@@ -13,7 +13,7 @@ use crate::study::evaluations::Evaluations;
 /// The journal cannot be read.
 pub fn begin(evaluations: &Evaluations, folder: &ResultFolder, of: (&str, &Case, &str)) -> Result<()> {
     if let Some(damage) = files::begin(evaluations, folder, of)? {
-        terminal::tell(&format!("slcbeam: {damage}. They are computed again."));
+        terminal::print_line(&format!("slcbeam: {damage}. They are computed again."));
     }
     Ok(())
 }
@@ -35,20 +35,20 @@ pub fn end(evaluations: &Evaluations, folder: &ResultFolder, stopped: bool, writ
     let (counts, path) = (evaluations.counts(), files::path(folder));
     let all = counts.read + counts.stored;
     if counts.read > 0 {
-        terminal::tell(&format!(
+        terminal::print_line(&format!(
             "slcbeam: resumed: {} of {all} evaluations read from {}",
             counts.read,
             path.display()
         ));
     }
     if let Some(fault) = evaluations.fault() {
-        terminal::tell(&format!("slcbeam: {fault}. Evaluations after it are not kept."));
+        terminal::print_line(&format!("slcbeam: {fault}. Evaluations after it are not kept."));
     }
     match (stopped, &written) {
         // inside another program, the answer reports it
         (true, _) if all == 0 || embedded::stop().is_some() => {}
-        (true, _) => terminal::tell(&format!(
-            "slcbeam: stopped; the same command goes on after {all} evaluations, which {} holds",
+        (true, _) => terminal::print_line(&format!(
+            "slcbeam: stopped after {all} evaluations, stored in {}; the same command resumes from them",
             path.display()
         )),
         (false, Ok(())) => files::remove(folder)?,

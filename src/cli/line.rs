@@ -57,7 +57,7 @@ impl Drop for Shown {
 /// Parser of the name of a file or folder to write, which messages, pages and scripts show as it is.
 pub fn output_path() -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(|path| match path.to_string_lossy().contains(char::is_control) {
-        true => Err("a name of output holds no control characters, such as ends of lines and tabs"),
+        true => Err("an output name must not contain control characters, such as line breaks and tabs"),
         false => Ok(path),
     })
 }
@@ -68,7 +68,7 @@ pub fn duration(text: &str) -> std::result::Result<f64, String> {
     if seconds >= 0.0 {
         Ok(seconds.min(1e9))
     } else {
-        Err("a number of seconds, 0 or more, is wanted".into())
+        Err("expected a number of seconds, 0 or more".into())
     }
 }
 
@@ -85,26 +85,26 @@ fn number(key: &str, text: &str, wanted: &str) -> std::result::Result<f64, Strin
 
 /// An instant [s], optionally with a unit.
 pub fn instant(text: &str) -> std::result::Result<f64, String> {
-    number("/time/end_s", text, "a number of seconds is wanted")
+    number("/time/end_s", text, "expected a number of seconds")
 }
 
 /// A frequency [Hz], optionally with a unit.
 pub fn frequency(text: &str) -> std::result::Result<f64, String> {
-    number("/frequency_hz", text, "a number of Hz is wanted")
+    number("/frequency_hz", text, "expected a frequency in Hz")
 }
 
 /// A fraction, as a number or in percent.
 pub fn ratio(text: &str) -> std::result::Result<f64, String> {
-    number("/solver/rtol", text, "a number such as 0.01, or 1%, is wanted")
+    number("/solver/rtol", text, "expected a number such as 0.01, or 1%")
 }
 
 /// A whole number, 0 or more.
 pub fn count(text: &str) -> std::result::Result<usize, String> {
     let read = |_| match text.trim().parse::<f64>() {
         Ok(number) if number.fract() == 0.0 && (0.0..1e15).contains(&number) => {
-            format!("a whole number is wanted: {number}")
+            format!("expected a whole number: {number}")
         }
-        _ => "a whole number is wanted, 0 or more".to_owned(),
+        _ => "expected a whole number, 0 or more".to_owned(),
     };
     text.trim().parse().map_err(read)
 }
@@ -143,6 +143,6 @@ pub fn accuracy(asked: f64) -> Result<f64> {
         return Ok(asked);
     }
     Err(Error::Usage(format!(
-        "--accuracy {asked}: a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
+        "--accuracy {asked}: expected a relative error from 1e-6 to 0.5, such as 0.01 for one per cent"
     )))
 }

@@ -24,7 +24,7 @@ use crate::study::measure::{Estimate, Experiment, Measured, Options, SIGNIFICANT
 pub struct MeasureArguments {
     /// Table (CSV) with units in its header, such as `pressure [kPa],volume [ml]`
     pub data: PathBuf,
-    /// What was measured: the first was set, the second followed; of flow-pressure the pressure was set
+    /// Measured quantities: the first was set, the second followed; of flow-pressure the pressure was set
     #[arg(long = "as", value_name = "EXPERIMENT", value_parser = PossibleValuesParser::new(Experiment::ALL.map(Experiment::name)))]
     pub experiment: String,
     /// The case whose sizes, modulus and fluid are those of the specimen
@@ -103,9 +103,9 @@ fn estimate(of: &Estimate) -> Value {
 fn in_json(found: &Measured) -> Value {
     let [_, y] = found.experiment.columns();
     let coefficients = found.coefficients.iter().map(|one| {
-        let mut told = estimate(&one.estimate);
-        told["unit"] = json!(one.unit);
-        (one.pointer.to_owned(), told)
+        let mut object = estimate(&one.estimate);
+        object["unit"] = json!(one.unit);
+        (one.pointer.to_owned(), object)
     });
     json!({
         "experiment": found.experiment.name(), "points": found.points.x.len(), "degrees_of_freedom": found.fit.freedom,
@@ -157,7 +157,13 @@ fn in_words(found: &Measured) -> String {
             significant(p, 2)
         }
     };
-    let verdict = |p: f64| if p < SIGNIFICANT { "told" } else { "not told" };
+    let verdict = |p: f64| {
+        if p < SIGNIFICANT {
+            "significantly different"
+        } else {
+            "not significantly different"
+        }
+    };
     let mut text = format!(
         "{}: {}, {} over {}; residuals of {} {}, R² {}\n\n{}\n",
         found.experiment.name(),
@@ -174,17 +180,17 @@ fn in_words(found: &Measured) -> String {
     }
     if let Some(sides) = &found.sides {
         let [above, below] = [sides.above, sides.below].map(|side| significant(side.value, 5));
-        let told = verdict(sides.chance);
+        let verdict = verdict(sides.chance);
         text += &format!(
-            "slopes above zero, {above}, and below, {below}, {told} apart (p {})\n",
+            "slopes above zero, {above}, and below, {below}, are {verdict} (p {})\n",
             chance(sides.chance)
         );
     }
-    let told = [found.cubic_chance, found.sides.map(|s| s.chance)]
+    let chances = [found.cubic_chance, found.sides.map(|s| s.chance)]
         .into_iter()
         .flatten();
-    if told.fold(1.0, f64::min) < SIGNIFICANT {
-        text += "the data are no straight line: take smaller loads, or --cubic for the slope at zero\n";
+    if chances.fold(1.0, f64::min) < SIGNIFICANT {
+        text += "the data do not follow a straight line: use smaller loads, or --cubic for the slope at zero\n";
     }
     text + &format!("\nin the case:\n{:#}\n", keys(found))
 }

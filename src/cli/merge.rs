@@ -28,7 +28,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     let dir = asked.place.folder(&plan.case, Kind::Designs);
     if let Some(part) = asked.parts.iter().find(|part| same(part, &dir)) {
         return Err(Error::Usage(format!(
-            "--out {}: {} is one of the shards, whose rows would be written over; name another folder",
+            "--out {}: {} is one of the shards, whose rows would be overwritten; name another folder",
             dir.display(),
             part.display()
         )));
@@ -39,7 +39,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         Some(there) => {
             if let Some(why) = plan.difference(&there) {
                 return Err(Error::Usage(format!(
-                    "{} holds another sweep: {why}; name another folder with --out, or take this one with --force",
+                    "{} contains another sweep: {why}; name another folder with --out, or use this one with --force",
                     dir.display()
                 )));
             }
@@ -48,30 +48,30 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
     }
     let (survey, damage) = parts::join(&all, &folder, &plan)?;
     for one in damage {
-        terminal::tell(&format!("slcbeam: {one}."));
+        terminal::print_line(&format!("slcbeam: {one}."));
     }
-    let told = files::summarize(&plan, &survey)?;
-    let written = files::write(&folder, &plan, &survey, &told, asked.lean);
+    let summary = files::summarize(&plan, &survey)?;
+    let written = files::write(&folder, &plan, &survey, &summary, asked.lean);
     let written = written.and_then(|()| match asked.lean {
         true => Ok(()),
         false => report::write(&dir, None).map(|_| ()),
     });
-    super::tell(
+    super::print_result(
         asked.json,
         &dir,
         written,
-        || results::text(&told),
-        || words::words(&told, &survey).unwrap_or_default(),
+        || results::text(&summary),
+        || words::words(&summary, &survey).unwrap_or_default(),
     )?;
     let lost = parts::lost(&all, &plan, &survey, &dir);
     for one in &lost {
         let what = match (one.shard, &one.dir) {
             (None, _) => "the sweep".into(),
-            (Some(shard), None) => format!("shard {}, of which no folder was given,", shard.words()),
+            (Some(shard), None) => format!("shard {} (no folder given)", shard.words()),
             (Some(shard), Some(dir)) => format!("shard {} in {}", shard.words(), dir.display()),
         };
-        terminal::tell(&format!(
-            "slcbeam: {what} lacks {}, the first of them {}; this computes what is missing:\n  {}",
+        terminal::print_line(&format!(
+            "slcbeam: {what} lacks {}, the first of them {}; to compute them:\n  {}",
             words::several(one.designs),
             one.first,
             one.command

@@ -190,7 +190,7 @@ fn print(text: &str) -> Result<()> {
 ///
 /// # Errors
 /// The fault of writing, or that of printing.
-fn tell(
+fn print_result(
     json: bool,
     dir: &Path,
     written: Result<()>,

@@ -25,7 +25,9 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if asked.map.map.is_some() {
         if !asked.uncertain.uncertain.is_empty() {
             return Err(Error::Usage(
-                "--uncertain is about single modes, not about a --map; at a point of it: slcbeam floquet CASE --set .. --uncertain ..".into(),
+                "--uncertain applies to single modes, not to a --map. For a point of the map, use slcbeam floquet \
+                 CASE --set .. --uncertain .."
+                    .into(),
             ));
         }
         return super::floquet::floquet(&FloquetArguments {
@@ -45,7 +47,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let system = System::new(&case)?;
     let own = (asked.at, asked.near, asked.accuracy) == (None, None, None);
     if !(own || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain is about the lowest modes that swing about the start: it does not go with --at, --near or --accuracy";
+        let what = "--uncertain applies to the lowest oscillating modes about the start: it cannot be combined with \
+                    --at, --near or --accuracy";
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(
@@ -58,7 +61,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     let mut folder = asked.result.place.claim(&case, Kind::Modes)?;
     asked.result.wall.flag();
     if !asked.result.quiet {
-        terminal::tell(&format!("modes of {}", case.name));
+        terminal::print_line(&format!("modes of {}", case.name));
     }
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
@@ -107,7 +110,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{}\n{}\n{spread}", files::table(&report), report.sentences())
     };
-    super::tell(asked.json, folder.dir(), written, json, words)?;
+    super::print_result(asked.json, folder.dir(), written, json, words)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -117,17 +120,14 @@ const MOST: usize = 1000;
 fn plan(asked: &ModesArguments) -> Result<Plan> {
     let usage = |what: String| Err(Error::Usage(what));
     if !(1..=MOST).contains(&asked.count) {
-        return usage(format!(
-            "--count {}: from 1 to {MOST} modes can be asked for",
-            asked.count
-        ));
+        return usage(format!("--count {}: expected from 1 to {MOST} modes", asked.count));
     }
     let near_hz = asked.near.unwrap_or(0.0);
     if !(near_hz.is_finite() && near_hz >= 0.0) {
-        return usage(format!("--near {near_hz}: a frequency [Hz] is 0 or more"));
+        return usage(format!("--near {near_hz}: expected a frequency of 0 Hz or more"));
     }
     if let Some(at) = asked.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
-        return usage(format!("--at {at}: a time [s] is 0 or more"));
+        return usage(format!("--at {at}: expected a time of 0 s or more"));
     }
     Ok(Plan {
         count: asked.count,

@@ -16,7 +16,7 @@ const SCHEMA: &str = "slcbeam.schema.json";
 /// `new`.
 #[derive(Debug, Args)]
 pub struct NewArguments {
-    /// What to begin with
+    /// Kind of the starting case
     pub kind: Kind,
     /// The file; the case is named like it [default: <kind>.json]
     #[arg(value_parser = super::line::output_path())]
@@ -32,7 +32,7 @@ pub struct NewArguments {
     pub json: bool,
 }
 
-/// What one can begin with: the cases of the tours.
+/// Starting cases: those of the tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
     /// Bladders joined in a wiring of your own, in a beam that is shaken
@@ -41,7 +41,7 @@ pub enum Kind {
     Actuator,
     /// Two rows of bladders with a turbine between them, under a swinging load
     Harvester,
-    /// Sealed bladders whose pressures tell where something presses
+    /// Sealed bladders whose pressures determine place and size of a load
     Sensor,
     /// A dry beam that is let go
     Beam,
@@ -112,7 +112,7 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     let of = asked.of.unwrap_or(SectionKind::Honeycomb);
     if asked.of.is_some() && asked.kind != Kind::Section {
         return Err(Error::Usage(format!(
-            "--of says which section: slcbeam new section --of NAME, not new {named}"
+            "--of chooses a section, for `new section` only: write slcbeam new section --of NAME, not new {named}"
         )));
     }
     let text = asked.kind.text(of);
@@ -126,7 +126,7 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         .unwrap_or_default();
     if path.exists() && !asked.force {
         return Err(Error::Usage(format!(
-            "{} is there already and is not written over; give another file, slcbeam new {named} FILE, or --force",
+            "{} exists and is not overwritten; name another file, slcbeam new {named} FILE, or use --force",
             path.display()
         )));
     }
@@ -140,7 +140,8 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         super::print(&match asked.json {
             true => format!("{:#}\n", json!({"section": path})),
             false => format!(
-                "wrote {quoted}, a section with one row: it has coefficients but makes no case\nnext: slcbeam coefficients {quoted}\n"
+                "wrote {quoted}, a section with one row: its coefficients can be computed, but no case can contain \
+                 it\nnext: slcbeam coefficients {quoted}\n"
             ),
         })?;
         return Ok(ExitCode::SUCCESS);

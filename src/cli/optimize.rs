@@ -49,7 +49,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     journal::begin(&evaluations, &folder, ("optimize", &case, &settings))?;
     let flag = asked.result.wall.flag();
     let bar = line::line(asked.result.quiet);
-    let tell = |count: usize, best: Option<f64>| {
+    let show = |count: usize, best: Option<f64>| {
         let best = best.map_or("none within the limits yet".into(), |best| {
             format!("best {figure} {}", significant(best, 5))
         });
@@ -57,7 +57,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
         bar.tick();
     };
     let stop = || interrupt::raised(&flag);
-    let found = study::optimise(&candidates, &wanted, &stop, &tell);
+    let found = study::optimise(&candidates, &wanted, &stop, &show);
     bar.finish_and_clear();
     let stopped = stop();
     let found = journal::outcome(found, &folder, stopped)?;
@@ -66,7 +66,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let written = journal::end(&evaluations, &folder, stopped, written);
     let optimum = &found.optimum;
     let (text, words) = (|| results::text(optimum), || files::words(optimum));
-    super::tell(asked.json, folder.dir(), written, text, words)?;
+    super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(match optimum.beyond_limits() {
         true => ExitCode::from(NOTHING_HOLDS),
         false => ExitCode::SUCCESS,
@@ -79,7 +79,8 @@ fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Resul
     let wirings = asked.crossovers.map(|most| crossings(case, most));
     let sets: Vec<_> = lists.chain(wirings).collect::<Result<_>>()?;
     if wanted.spans.is_empty() && sets.is_empty() {
-        let what = "nothing to seek: --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or --choose, --crossovers";
+        let what = "no number to vary: give --vary POINTER=LOW:HIGH, such as /network/permeability_factor=0.01:1, or \
+                    --choose, --crossovers";
         return Err(Error::Usage(what.into()));
     }
     let mut all = combinations(sets)?;

@@ -38,10 +38,11 @@ const MOST_VALUES: usize = 10_000;
 pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
     match &asked.sweep {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
-            "--uncertain goes with one cycle, not with --sweep; samples of it: slcbeam sweep CASE --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64"
+            "--uncertain applies to one cycle, not to --sweep. For samples of cycles, use slcbeam sweep CASE \
+             --command periodic --vary POINTER=normal:MEAN:SD --design sobol:64"
                 .into(),
         )),
-        Some(_) if asked.periods != 1 => Err(Error::Usage("--periods goes with one cycle, not with --sweep".into())),
+        Some(_) if asked.periods != 1 => Err(Error::Usage("--periods applies to one cycle, not to --sweep".into())),
         Some(text) => sweep(asked, text),
         None => one(asked),
     }
@@ -56,7 +57,7 @@ fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
 fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let case = load(asked, None)?;
     if !(asked.periods == 1 && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
-        let what = "--uncertain goes with neither --periods nor --accuracy";
+        let what = "--uncertain cannot be combined with --periods or --accuracy";
         return Err(Error::Usage(what.into()));
     }
     let uncertain = Uncertain::new(
@@ -74,7 +75,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let out = result.dir().to_path_buf();
     let stop = asked.result.wall.stop();
     let bar = line::line(asked.result.quiet);
-    bar.set_message("looking for the cycle");
+    bar.set_message("searching for the cycle");
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
     let asked_for = accuracy
         .map(|accuracy| {
@@ -108,7 +109,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let short = outcome.summary.accuracy.as_ref().and_then(refine::warning);
     let ended = outcome.summary.status == Status::Finished;
     let meshes = if outcome.summary.accuracy.is_none() && ended {
-        bar.set_message("the same on other meshes");
+        bar.set_message("repeating on other meshes");
         let mut here = refine::numbers::of_summary(&case, &outcome.summary)?;
         here.extend(refine::numbers::of_stability(&found));
         let mut of = |case: &Case| refine::numbers::of_cycle_and_multipliers(case, asked.periods, COUNT, &stop);
@@ -121,7 +122,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
     let finished = recorder.finish(&outcome.summary);
-    let mut told = Cycle {
+    let mut document = Cycle {
         case: case.name.clone(),
         cycle: cycle.search,
         periods,
@@ -134,16 +135,18 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     };
     let finished = finished.and_then(|finished| {
         outcome.summary.tables_crc32.clone_from(&finished.tables_crc32);
-        finished.folder().write(files::CYCLE, results::text(&told).as_bytes())?;
+        finished
+            .folder()
+            .write(files::CYCLE, results::text(&document).as_bytes())?;
         Ok(finished)
     });
     let uncertainty = match ended {
         true => uncertain::compute(uncertain.as_ref(), finished.as_ref().ok().map(Finished::folder))?,
         false => None,
     };
-    told.bands = uncertain::bands(uncertainty.as_ref());
-    outcome.summary.bands.clone_from(&told.bands);
-    let text = || results::text(&told);
+    document.bands = uncertain::bands(uncertainty.as_ref());
+    outcome.summary.bands.clone_from(&document.bands);
+    let text = || results::text(&document);
     let written = finished.and_then(|finished| {
         let summed = || summary::to_json(&outcome.summary);
         let with_bands: [(&str, &dyn Fn() -> String); 2] = [(SUMMARY, &summed), (files::CYCLE, &text)];
@@ -152,13 +155,15 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         finished.close().map(|_| ())
     });
     let words = || {
-        let figures = files::figures(&outcome.summary, told.floquet.period_s, &|name| told.error(name));
-        let (search, words) = (files::search(&told.cycle), stability::words(&told));
+        let figures = files::figures(&outcome.summary, document.floquet.period_s, &|name| {
+            document.error(name)
+        });
+        let (search, words) = (files::search(&document.cycle), stability::words(&document));
         let slopes = files::slopes(&outcome.summary);
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{words}\n{figures}{slopes}{search}{spread}")
     };
-    super::tell(asked.json, &out, written, text, words)?;
+    super::print_result(asked.json, &out, written, text, words)?;
     Ok(terminal::exit_code(outcome.fault.as_ref()))
 }
 
@@ -189,7 +194,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let written = written.and(report::complete(&folder, &first));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let words = || files::words(&found) + &warnings(&found.warnings);
-    super::tell(asked.json, folder.dir(), written, || results::text(&found), words)?;
+    super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }
 
@@ -197,8 +202,8 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
 fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     let wrong = || {
         Error::Usage(format!(
-            "--sweep {text}: a pointer, its range, upwards or downwards, and how many values, such as /network/permeability_factor=0.01:1:25:log; at most \
-             {MOST_VALUES} values, logarithms of values > 0 alone"
+            "--sweep {text}: expected a pointer, an ascending or descending range and a number of values, such as \
+             /network/permeability_factor=0.01:1:25:log; at most {MOST_VALUES} values, and log for values > 0 only"
         ))
     };
     let (pointer, rest) = text.rsplit_once('=').ok_or_else(wrong)?;

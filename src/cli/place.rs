@@ -45,7 +45,7 @@ impl PlaceArguments {
         let dir = self.folder(&case.name, kind);
         if overwritten(&dir, case, kind) {
             return Err(Error::Usage(format!(
-                "--out {}: the case itself, {}, would be written over; name another folder",
+                "--out {}: the case itself, {}, would be overwritten; name another folder",
                 dir.display(),
                 case.source.path.display()
             )));
@@ -55,13 +55,13 @@ impl PlaceArguments {
         if let Some(other) = other_origin(&dir, case).filter(|_| !self.force && Kind::within(&dir) == Some(kind)) {
             if self.out.is_none() {
                 let why = format!(
-                    "it holds the result of another case file, {other}, of the same name \"{}\"; give this case a name of its own, name \
-                     another folder with --out, or take this one with --force",
+                    "it contains the result of another case file, {other}, with the same name \"{}\"; give this case \
+                     a name of its own, name another folder with --out, or use this one with --force",
                     case.name
                 );
                 return Err(fault("use", &dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
             }
-            terminal::tell(&format!("slcbeam: {} held the result of {other}", dir.display()));
+            terminal::print_line(&format!("slcbeam: {} contained the result of {other}", dir.display()));
         }
         Ok(ResultFolder::claim(&dir, kind, self.force)?.of(case))
     }

@@ -111,7 +111,7 @@ impl Watcher {
                 bar.set_message(text);
                 bar.set_position((share * FULL as f64) as u64);
             }
-            Place::Lines => terminal::tell(&format!("{}: {text}", percent(share))),
+            Place::Lines => terminal::print_line(&format!("{}: {text}", percent(share))),
         }
     }
 }
@@ -201,9 +201,9 @@ mod tests {
             t += if k <= 100 { 0.0001 } else { 0.001 };
             left.update(0.1 * f64::from(k), t);
         }
-        let told = left.left(&progress(t)).expect("an estimate");
+        let seconds = left.left(&progress(t)).expect("an estimate");
         let truth = (1.0 - t) / 0.01;
-        assert!((told / truth - 1.0).abs() < 0.1, "{told} against {truth}");
+        assert!((seconds / truth - 1.0).abs() < 0.1, "{seconds} against {truth}");
     }
 
     #[test]

@@ -61,13 +61,13 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let mut folder = asked.result.place.claim(&case, Kind::Response)?;
     asked.result.wall.flag();
     if !asked.result.quiet {
-        terminal::tell(&format!("response of {}", case.name));
+        terminal::print_line(&format!("response of {}", case.name));
     }
     let found = respond(&case, &request, linear)?;
     let answer = answer(&case.name, &request, &found)?;
     let written = files::write(&mut folder, &answer).map(|_| ());
     let written = written.and(report::complete(&folder, &case));
-    super::tell(
+    super::print_result(
         asked.json,
         folder.dir(),
         written,
@@ -81,15 +81,12 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
     let usage = |what: String| Err(Error::Usage(what));
     if !(asked.from > 0.0 && asked.from <= asked.to && asked.to.is_finite()) {
         return usage(format!(
-            "--from {} --to {}: two frequencies [Hz] are wanted, the first above 0 and not above the second",
+            "--from {} --to {}: expected two frequencies [Hz], the first above 0 and not above the second",
             asked.from, asked.to
         ));
     }
     if !(2..=MOST).contains(&asked.points) {
-        return usage(format!(
-            "--points {}: from 2 to {MOST} frequencies can be asked for",
-            asked.points
-        ));
+        return usage(format!("--points {}: expected 2 to {MOST} frequencies", asked.points));
     }
     let mut outputs: Vec<String> = vec![];
     for name in &asked.output {
@@ -109,7 +106,7 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
 fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
     let mut curves = found.curves.iter().map(curve);
     let Some(first) = curves.next() else {
-        return Err(Error::Usage("--output: at least one is wanted".into()));
+        return Err(Error::Usage("--output: expected at least one".into()));
     };
     let about = &found.response.about;
     let mut warnings = cautions(found.growing, about.moving());
@@ -152,13 +149,14 @@ pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
     let mut warnings = vec![];
     if growing > 0 {
         warnings.push(Code::Growth.warning(format!(
-            "{} with a positive real part: small motions grow, and the response is not that of a steady state",
+            "{} with a positive real part: small motions grow. The response is not that of a steady state",
             counted(growing as u64, "pole")
         )));
     }
     if moving {
         warnings.push(Code::NotAtRest.warning(
-            "the state is no equilibrium: it would change at once. Use --at SECONDS for the equilibrium under the loads of an instant.",
+            "the state is not an equilibrium: the beam would start to move. Use --at SECONDS for the equilibrium \
+             under the loads of an instant.",
         ));
     }
     warnings

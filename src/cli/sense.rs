@@ -26,13 +26,13 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let measured = asked.pressures.as_ref().map(|path| Measured::read(path, case));
     let measured = measured.transpose()?;
     if question.noise_pa.is_some() && measured.as_ref().is_some_and(|one| one.deviations.is_some()) {
-        let what =
-            "--noise: the measurements have columns with the deviation of each pressure; leave out one of the two";
+        let what = "--noise: the measurements contain columns with the standard deviation of each pressure; leave out \
+                    one of the two";
         return Err(Error::Usage(what.into()));
     }
     let mut folder = asked.result.place.claim(case, Kind::Sense)?;
     let bar = line::line(asked.result.quiet);
-    bar.set_message("looking for the loads");
+    bar.set_message("searching for the loads");
     bar.tick();
     let flag = asked.result.wall.flag();
     let found = find(case, measured.as_ref(), &question, &|| interrupt::raised(&flag));
@@ -45,7 +45,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     }
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, case));
-    super::tell(
+    super::print_result(
         asked.json,
         folder.dir(),
         written,
@@ -82,7 +82,7 @@ fn again(asked: &SenseArguments) -> String {
 fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
     if let Some(noise) = asked.noise.filter(|noise| !(1e-6..=1e9).contains(noise)) {
         return Err(Error::Usage(format!(
-            "--noise {noise}: a standard deviation in Pa, from 1e-6 to 1e9"
+            "--noise {noise}: expected a standard deviation in Pa, from 1e-6 to 1e9"
         )));
     }
     let at_s = asked.at.unwrap_or(end_s);
@@ -114,12 +114,14 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
     let profile = loads.iter().any(|load| matches!(load, Basis::Profile(_)));
     if let (Smoothing::Fixed(deviation), true) = (smoothing, asked.dynamic) {
         return Err(Error::Usage(format!(
-            "--smoothing {deviation}: a number is that of a profile at rest; with --dynamic there are likelihood, discrepancy and off"
+            "--smoothing {deviation}: a number applies to a profile at rest only; with --dynamic, use likelihood, \
+             discrepancy or off"
         )));
     }
     if let Some(how) = asked.smoothing.as_ref().filter(|_| !profile && !asked.dynamic) {
         return Err(Error::Usage(format!(
-            "--smoothing {how}: only a profile, or a load over time, is smooth, and none is looked for; ask for one (--load profile:10, --dynamic), or leave --smoothing out"
+            "--smoothing {how}: smoothing applies to a profile or to a load over time, and neither is requested. \
+             Request one (--load profile:10, --dynamic), or leave --smoothing out"
         )));
     }
     Ok(Asked {

@@ -33,7 +33,7 @@ pub fn load_with(path: &Path, sets: &[String], parameters: usize) -> Result<Case
 /// Reads and checks a case as `load_with`, with arguments that are varied after those of the case, as [`case::parse_varied`] reads them.
 pub fn load_varied(path: &Path, [sets, varied]: [&[String]; 2], parameters: usize) -> Result<Case> {
     if path == Path::new("-") && std::io::stdin().is_terminal() {
-        terminal::tell("slcbeam: reading a case from standard input; Ctrl-D ends it");
+        terminal::print_line("slcbeam: reading a case from standard input; Ctrl-D ends it");
     }
     let beside = path.parent().unwrap_or(Path::new(""));
     let case = case::parse_varied(&case::text(path)?, path, beside, sets, varied)?;
@@ -50,14 +50,14 @@ pub fn fits(case: &Case, parameters: usize, at_once: usize) -> Result<()> {
     needs.memory *= at_once as f64;
     if let Some(there) = machine::memory().filter(|there| needs.memory > *there) {
         let what = format!(
-            "some {:.3e} unknowns need about {} of memory; {} are there",
+            "{:.3e} unknowns need about {} of memory, but {} are available",
             needs.unknowns,
             bytes(needs.memory),
             bytes(there)
         );
         let hint = match at_once {
-            1 => "fewer cells per segment, per bladder, or segments",
-            _ => "fewer designs at once, --jobs, or fewer cells per segment or per bladder",
+            1 => "use fewer cells per segment, fewer cells per bladder, or fewer segments",
+            _ => "use fewer designs at once, --jobs, or fewer cells per segment or per bladder",
         };
         let fault = Violation::new(Code::Range, "/mesh", what).hint(hint);
         return Err(case.source.fault(vec![fault]));
@@ -70,7 +70,7 @@ pub fn holds_companion(case: &Case, parameters: usize) -> bool {
     let needed = Needs::of(case, parameters).memory + 2.0 * Needs::of(case, 0).memory;
     let held = machine::memory().is_none_or(|there| needed <= there);
     if !held {
-        terminal::tell(&format!(
+        terminal::print_line(&format!(
             "slcbeam: no error bars: a companion run needs {} of memory in all",
             bytes(needed)
         ));
@@ -92,19 +92,19 @@ pub fn run_fits(case: &Case, system: &System, parameters: usize, out: &Path) -> 
     if let Some(free) = machine::free(out).filter(|free| disk.all() > *free) {
         let key = if disk.history > disk.fields { "output" } else { "fields" };
         let what = format!(
-            "the files of this run need about {}; {} are free where they go",
+            "the files of this run need about {}, but {} are free on the disk of the result folder",
             bytes(disk.all()),
             bytes(free)
         );
         let fault = Violation::new(Code::Range, format!("/time/{key}_interval_s"), what);
-        let fault = fault.hint("a longer interval, or another folder with --out");
+        let fault = fault.hint("use a longer interval, or another folder with --out");
         return Err(case.source.fault(vec![fault]));
     }
     let needs = Needs::of(case, parameters);
     if needs.set_up_s > LONG_S {
-        terminal::tell(&format!(
-            "slcbeam: {} unknowns take some {} to set up; neither Ctrl-C nor --max-wall is looked at before (a second Ctrl-C \
-             ends at once)",
+        terminal::print_line(&format!(
+            "slcbeam: the set-up of {} unknowns takes about {}; Ctrl-C and --max-wall act only after it (a second \
+             Ctrl-C ends the program at once)",
             system.layout.len,
             duration(needs.set_up_s)
         ));

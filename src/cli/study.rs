@@ -53,7 +53,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
         let notes: String = found.notes.iter().map(|n| format!("note: {n}\n")).collect();
         format!("{}\n{notes}{}\n", files::table(&found), files::sentence(&found))
     };
-    super::tell(asked.json, folder.dir(), written, || files::json(&found), words)?;
+    super::print_result(asked.json, folder.dir(), written, || files::json(&found), words)?;
     Ok(ExitCode::from(if found.references.is_empty() { 4 } else { 0 }))
 }
 
@@ -74,7 +74,11 @@ pub fn seconds(text: &str) -> Result<f64> {
         .ok()
         .map(|n| n * factor)
         .filter(|s| s.is_finite() && *s > 0.0);
-    value.ok_or_else(|| Error::Usage(format!("--budget {text}: a time above zero, such as 120s or 2m")))
+    value.ok_or_else(|| {
+        Error::Usage(format!(
+            "--budget {text}: expected a time above zero, such as 120s or 2m"
+        ))
+    })
 }
 
 /// A bar on a terminal, a line per mesh and method elsewhere.
@@ -120,7 +124,7 @@ impl Progress {
             if *last != now {
                 *last = now;
                 let (done, of) = (event.done, event.of);
-                terminal::tell(&format!(
+                terminal::print_line(&format!(
                     "{done}/{of}: {what}{}, {}{expected} each or more; {spent}",
                     counted(s.cells as u64, "cell"),
                     s.scheme

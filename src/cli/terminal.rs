@@ -25,12 +25,12 @@ pub fn width() -> usize {
 }
 
 /// Writes a line to standard error, with terminal control sequences made visible; ignores failures of writing.
-pub fn tell(line: &str) {
-    tell_painted(&visible(line));
+pub fn print_line(line: &str) {
+    print_painted_line(&visible(line));
 }
 
 /// Writes text with the program's own colors, in which foreign control sequences are already visible.
-fn tell_painted(line: &str) {
+fn print_painted_line(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }
 
@@ -41,16 +41,16 @@ pub fn report(error: &Error) {
     }
     let colour = std::io::stderr().is_terminal() && wants_colour();
     match error {
-        Error::Case(fault) => tell_painted(case::render(fault, colour, width()).trim_end_matches('\n')),
-        Error::Solver(fault) => tell(&diagnosis(fault)),
-        other => tell(&format!("slcbeam: {other} (slcbeam explain {})", other.code().id())),
+        Error::Case(fault) => print_painted_line(case::render(fault, colour, width()).trim_end_matches('\n')),
+        Error::Solver(fault) => print_line(&diagnosis(fault)),
+        other => print_line(&format!("slcbeam: {other} (slcbeam explain {})", other.code().id())),
     }
 }
 
 /// Exit code of a result that is written in any case; prints the reason if the computation ended early.
 pub fn exit_code(fault: Option<&SolverError>) -> ExitCode {
     fault.map_or(ExitCode::SUCCESS, |fault| {
-        tell(&diagnosis(fault));
+        print_line(&diagnosis(fault));
         ExitCode::from(4)
     })
 }
@@ -61,6 +61,6 @@ pub fn answer(answer: &clap::Error) {
     if *visible(&text) == text {
         let _ = answer.print();
     } else {
-        tell(text.trim_end());
+        print_line(text.trim_end());
     }
 }

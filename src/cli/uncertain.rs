@@ -104,9 +104,9 @@ impl Uncertain {
             return Ok(());
         };
         let values: Vec<Value> = self.plan.values(number).into_iter().map(Value::from).collect();
-        terminal::tell(&format!(
-            "slcbeam: sample {number} of {} ({}) cannot be computed, so that the distribution reaches where the model does not; \
-             nothing was begun",
+        terminal::print_line(&format!(
+            "slcbeam: sample {number} of {} ({}) cannot be computed: the distribution extends beyond the range of the \
+             model. No sample was started",
             all.len(),
             pairs(&self.plan.pointers(), &values)
         ));
@@ -227,7 +227,7 @@ pub fn compute(asked: Option<&Uncertain>, folder: Option<&ResultFolder>) -> Resu
         journal::end(&asked.evaluations, folder, found.is_none(), Ok(()))?;
     }
     if found.is_none() {
-        terminal::tell("slcbeam: interrupted; there is no uncertainty");
+        terminal::print_line("slcbeam: interrupted; no uncertainty was computed");
     }
     Ok(found)
 }

@@ -44,7 +44,7 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         .collect();
     bar.finish_and_clear();
     if rows.len() < count {
-        terminal::tell(&format!("slcbeam: interrupted after {} of {count} results", rows.len()));
+        terminal::print_line(&format!("slcbeam: interrupted after {} of {count} results", rows.len()));
     }
     super::print(&if asked.json {
         format!("{:#}\n", rows.iter().map(results::value).collect::<Value>())
@@ -78,8 +78,9 @@ fn table(rows: &[Row]) -> String {
         }
     }
     let mut text = columns::table(HEADINGS, lines);
-    text += "\nerror: r relative, a absolute; order: observed in the mesh size between the two finest of three meshes;\n\
-             limit: error of the limit to which they point (Richardson); estimate: error that the meshes alone show\n\nsources\n";
+    text += "\nerror: r relative, a absolute; order: observed in the mesh size between the two finest of three \
+             meshes;\nlimit: error of the Richardson extrapolation; estimate: error estimated from the meshes \
+             alone\n\nsources\n";
     for row in rows {
         let _ = writeln!(
             text,
@@ -125,7 +126,7 @@ mod tests {
 
     /// Goal: rows that miss their tolerance, fail to run or compute nothing end the command with 4, and the table names them.
     #[test]
-    fn what_fails_is_told() {
+    fn failures_are_reported() {
         let good = || row(Ok(vec![Figure::relative("x", 1.0, 1.0, 1e-9)]));
         assert_eq!(exit_code(&[good()]), 0);
         let missed = row(Ok(vec![Figure::relative("x", 1.1, 1.0, 1e-9)]));

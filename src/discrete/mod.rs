@@ -191,7 +191,7 @@ impl System {
             directions.join(" and ")
         );
         let fault = Violation::new(Code::Together, "/start/equilibrium", what);
-        Some(fault.hint("hold an end in /ends or attach a spring to ground; or leave the equilibrium out, and the straight beam is let go"))
+        Some(fault.hint("hold an end in /ends or attach a spring to ground; or omit the equilibrium, so that the beam starts straight"))
     }
 
     /// Error if a port prescribes the flow into a junction of tubes with inertia alone: the tubes' flow would have to jump with it.
@@ -202,7 +202,7 @@ impl System {
             .as_ref()
             .filter(|wet| self.model.effects.has(Effect::TubeInertia) && wet.compression.is_none())?;
         let name = &wet.network.fed_junction()?.name;
-        let what = format!("the flow of port \"{name}\" enters a junction where only tubes with inertia meet");
+        let what = format!("the flow of port \"{name}\" enters a junction of tubes with inertia only");
         let fault = Violation::new(Code::Effect, "/effects/tube_inertia", what);
         Some(fault.hint("put the port at a bladder's end, or leave tube_inertia off"))
     }

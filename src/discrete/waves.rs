@@ -25,14 +25,14 @@ pub fn refusal(case: &Case, system: &System) -> Option<Violation> {
             Code::Range,
             "/solver/max_order",
             format!(
-                "BDF of order {order} is unstable for the waves of this scene, whose least damping ratio is {}: \
-                 steps become tiny or rates become garbage",
+                "BDF of order {order} is unstable for the waves of this scene: smallest damping ratio {} (limit {ENOUGH}). \
+                 Steps become very small, or rates wrong",
                 significant(ratio, 2)
             ),
         )
         .allowed("\"auto\", 1, 2, or 5 for errors below about 1e-5")
         .hint(format!(
-            "use \"auto\"; to see what happens, force it with {{\"forced\": {order}}}"
+            "use \"auto\", or force the order with {{\"forced\": {order}}}"
         ))
     })
 }

@@ -45,7 +45,7 @@ impl IntegrationError {
     pub(crate) fn request(message: String, time: f64) -> Box<Self> {
         Box::new(Self {
             code: 0,
-            meaning: "the request cannot be met",
+            meaning: "invalid request",
             fatal: None,
             message,
             time,
@@ -76,7 +76,7 @@ impl fmt::Display for IntegrationError {
         if let Some(worst) = &self.worst {
             write!(
                 f,
-                "; worst is {} at {:.1e} times its tolerance",
+                "; worst unknown: {}, error {:.1e} times its tolerance",
                 worst.name, worst.ratio
             )?;
         }

@@ -14,15 +14,17 @@ pub(crate) fn admit<D: Dae>(
 ) -> Result<Lu, String> {
     let n = dae.len();
     if n == 0 || dae.pattern().columns() != n || dae.differential().len() != n {
-        return Err(format!("{n} unknowns do not fit the pattern or the kinds of unknowns"));
+        return Err(format!(
+            "the pattern or the kinds of unknowns do not match the {n} unknowns"
+        ));
     }
     let [y, yp] = values.map(<[f64]>::len);
     if y != n || yp != n {
-        return Err(format!("{y} values and {yp} derivatives stand for {n} unknowns"));
+        return Err(format!("{y} values and {yp} derivatives were given for {n} unknowns"));
     }
     options?;
     analyse(dae.pattern()).map_err(|fault| match fault {
-        KluError::Singular { column } => format!("no equation can be solved for {}", dae.name(column)),
+        KluError::Singular { column } => format!("no equation determines {}", dae.name(column)),
         KluError::Package { status } => format!("KLU cannot analyse the pattern (status {status})"),
     })
 }
@@ -31,7 +33,7 @@ pub(crate) fn admit<D: Dae>(
 pub(crate) fn reached(time: f64, stop: f64) -> Result<bool, Box<IntegrationError>> {
     let round_off = 100.0 * f64::EPSILON * (time.abs() + stop.abs());
     if stop.is_nan() || stop < time - round_off {
-        let message = format!("the stop time {stop:e} s lies behind");
+        let message = format!("the stop time {stop:e} s lies behind the current time {time:e} s");
         return Err(IntegrationError::request(message, time));
     }
     Ok(stop - time <= round_off)

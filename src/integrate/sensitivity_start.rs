@@ -63,7 +63,7 @@ pub fn consistent_sensitivities<D: Dae>(
 
 fn no_factors<D: Dae>(dae: &D, fault: KluError) -> String {
     match fault {
-        KluError::Singular { column } => format!("no equation is left to determine {}", dae.name(column)),
-        KluError::Package { status } => format!("KLU cannot go on (status {status})"),
+        KluError::Singular { column } => format!("no remaining equation determines {}", dae.name(column)),
+        KluError::Package { status } => format!("KLU failed (status {status})"),
     }
 }

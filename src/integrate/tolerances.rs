@@ -21,7 +21,10 @@ impl Absolute {
                 return Err(format!("the absolute tolerance must be positive, it is {value}"));
             }
             Absolute::Each(values) if values.len() != n => {
-                return Err(format!("{} absolute tolerances stand for {n} unknowns", values.len()));
+                return Err(format!(
+                    "{} absolute tolerances were given for {n} unknowns",
+                    values.len()
+                ));
             }
             Absolute::Each(values) => {
                 if let Some(i) = values.iter().position(|&value| !positive(value)) {

@@ -64,7 +64,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
             value,
             wanted: "0 or more, below 1",
             good: (0.0..1.0).contains(&value),
-            consequence: "the closing slope must be the larger one".into(),
+            consequence: "the closing slope must be at least the opening slope".into(),
         });
     }
     for (name, value, what) in [
@@ -87,7 +87,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
                 wanted: "above 1",
                 good: value > 1.0,
                 consequence: format!(
-                    "the sealed {what} stiffness is negative: the coupling is not passive and any state grows"
+                    "the {what} stiffness with sealed bladders is negative. The coupling is not passive, and any state grows"
                 ),
             });
         }
@@ -107,8 +107,8 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
         wanted: "1 within 10 %",
         good: (0.9..=1.1).contains(&value),
         consequence: format!(
-            "pressure and {what} do not share one potential: over a periodic cycle {what} returns {value:.4} times the \
-             work that the fluid takes, so energies and efficiencies are wrong by that factor"
+            "pressure and {what} do not share one potential ({what} returns {value:.4} times the work of the fluid over \
+             a cycle)"
         ),
     }
 }
@@ -122,10 +122,15 @@ fn not_reciprocal(findings: &[&Finding]) -> Option<String> {
         .collect();
     let consequences: Vec<&str> = findings.iter().map(|f| f.consequence.as_str()).collect();
     Some(first.code.warning(format!(
-        "coupling: {}, wanted {}: {}",
+        "coupling: {} (required: {}): {}. Energies and efficiencies are wrong by {}. Use \"reciprocal\"",
         numbers.join(" and "),
         first.wanted,
-        format_args!("{}; use \"reciprocal\"", consequences.join(", and "))
+        consequences.join(", and "),
+        if findings.len() > 1 {
+            "these factors"
+        } else {
+            "this factor"
+        }
     )))
 }
 
@@ -154,7 +159,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
             value,
             wanted: "above 0",
             good: value > 0.0,
-            consequence: "the published law has no unique solution: the equations lose index one".into(),
+            consequence: "the published law has no unique solution, so the state is undetermined".into(),
         });
     }
 }
@@ -201,11 +206,11 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
         code: Code::CouplingLaw,
         name,
         value,
-        wanted: "above the pressures expected",
+        wanted: "above the expected pressures",
         good: value > expected,
         consequence: format!(
-            "expected p_u + p_d is {}: the kinked potential loses convexity there and the \
-                 equations lose index one; widen bladders/kink_width (now {}) or use \"reciprocal\"",
+            "the expected p_u + p_d is {}. The kinked potential is not convex there, and the state is not unique. \
+             Widen /bladders/kink_width (now {}), or use \"reciprocal\"",
             quantity(expected, "Pa", 4),
             significant(bladders.kink_width, 2)
         ),
@@ -228,7 +233,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
             Violation::new(
                 Code::Slopes,
                 "/bladders/coupling",
-                format!("the kinked potential is {}: {}", f.name, significant(f.value, 4)),
+                format!("the kinked potential is only {}: {}", f.name, significant(f.value, 4)),
             )
             .allowed(f.wanted)
             .hint(f.consequence)
@@ -240,7 +245,7 @@ pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
 pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> Vec<String> {
     let mut all = lasting(case, model, numbers);
     if !model.effects.has(Effect::TubeLosses) {
-        let what = "flow in the tubes may not be creeping";
+        let what = "Flow in the tubes may not be creeping";
         all.extend(over(
             numbers,
             Code::FastFlow,
@@ -252,9 +257,9 @@ pub fn warnings(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> 
     all.extend(over(
         numbers,
         Code::Strain,
-        ["largest_strain_estimate", "the strain expected"],
+        ["largest_strain_estimate", "the expected strain"],
         0.5,
-        "local strains may not be small",
+        "Linear elasticity may not be valid locally",
     ));
     all
 }
@@ -269,7 +274,7 @@ fn over(
 ) -> Option<String> {
     let value = numbers.get(name).filter(|value| **value > limit)?;
     Some(code.warning(format!(
-        "range of the model: {words} is {}, above {limit}: {what}",
+        "range of the model: {words} is {} (limit {limit}). {what}",
         significant(*value, 3)
     )))
 }
@@ -285,7 +290,8 @@ pub fn derivatives(case: &Case) -> Option<String> {
     let within = case.time.window() / case.time.output_interval();
     (within < OUTPUTS_A_WINDOW).then(|| {
         Code::FewOutputs.warning(format!(
-            "output: {within:.1} output times in the window: derivatives of its root mean squares are computed from these"
+            "output: {within:.1} output times in the window ({OUTPUTS_A_WINDOW} are needed). Only these enter the derivatives of its root mean \
+             squares. Reduce /time/output_interval_s"
         ))
     })
 }
@@ -308,13 +314,13 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
     all.extend(inherited::warnings(case));
     for (at, by) in overshoots(case) {
         all.push(Code::Overshoot.warning(format!(
-            "{at}: the spline swings beyond the points of its table by {:.0} % of the range of their values; \"interpolation\": \"monotone\" or \
-             \"linear\" stays within them",
+            "{at}: the spline overshoots the points of its table by {:.0} % of the range of their values. Use \"interpolation\": \"monotone\" \
+             or \"linear\", which stay within the points",
             (100.0 * by).max(1.0)
         )));
     }
     if !model.effects.has(Effect::TubeInertia) {
-        let what = "oscillating flow in the tubes is not creeping; their inertia is left out";
+        let what = "Oscillating flow in the tubes is not creeping, but the model leaves out its inertia";
         all.extend(over(
             numbers,
             Code::FastFlow,
@@ -329,7 +335,8 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {
             all.push(Code::FewOutputs.warning(format!(
-                "output: {outputs:.1} output times in a period of the drive at {} Hz: histories and fields as written miss its peaks",
+                "output: {outputs:.1} output times in a period of the drive at {} Hz ({OUTPUTS_A_PERIOD} are needed). Written histories and fields \
+                 miss its peaks. Reduce /time/output_interval_s",
                 digits(f)
             )));
         }
@@ -339,8 +346,9 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         && bound.max(rate) > 0.0
     {
         all.push(Code::Mathieu.warning(format!(
-            "the root's axial motion lies inside a Mathieu tongue of the first bending mode, or at its edge: any deflection may \
-             grow with up to {:.3} 1/s (first mode, undamped, bladders drained; {rate:.3} 1/s without stretch of the axis)",
+            "the root's axial motion lies inside a Mathieu tongue of the first bending mode, or at its edge. Any deflection may \
+             grow at up to {:.3} 1/s (first mode, undamped, drained bladders; {rate:.3} 1/s for an inextensible axis). Compute the stability \
+             with `slcbeam floquet`",
             bound.max(rate)
         )));
     }
@@ -348,7 +356,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         && slender < if model.effects.has(Effect::Shear) { 2.0 } else { 4.0 }
     {
         all.push(Code::Stocky.warning(format!(
-            "range of the model: length over height is {slender:.2}; a rod model wants 5 or more, one that shears 2"
+            "range of the model: length over height is {slender:.2} (a rod model needs 5, one with shear 2). Results are estimates"
         )));
     }
     all
@@ -363,13 +371,14 @@ fn stream(model: &Model) -> Vec<String> {
     let mut all = vec![];
     if !along.is_zero() && around.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
         all.push(Code::PartOfStream.warning(
-            "a stream along the beam: what the flow carries along it is left out, half of the force that moves with the beam at first order; \
-             growth, flutter and damping by the stream are not to be judged by this model",
+            "a stream along the beam: the model leaves out half of its first-order force on the moving beam. Growth, flutter and damping by the \
+             stream are not reliable",
         ));
     }
     if around.drag == 0.0 && !across.is_zero() {
         all.push(Code::PartOfStream.warning(
-            "a stream across the beam without drag (/surroundings/drag_coefficient is 0): nothing but its acceleration acts on the beam",
+            "a stream across the beam without drag (/surroundings/drag_coefficient is 0): only its acceleration acts on the beam. Give a coefficient \
+             (2 for a plate)",
         ));
     }
     all

@@ -227,25 +227,25 @@ impl Hammer {
         };
         let needed = RESOLVES * self.l / (self.c * self.stops);
         let consequence = match (self.compressed, needed <= MOST_PARTS) {
-            (false, _) => "No fluid is compressed in this model: pressures at the valve are those of a rigid column and grow as it shuts faster. Give \
+            (false, _) => "The model has no compressible fluid, so pressures at the valve grow without limit as it shuts faster. Give \
                            /fluid/bulk_modulus_pa (water: 2.2e9)"
                 .into(),
             (true, true) => format!(
-                "The wave is not resolved by {} of tube: pressures at the valve overshoot by up to a half. Split the tubes in front of it by \
+                "The wave is not resolved by {} of tube: pressures at the valve overshoot by up to 50 %. Split the tubes in front of the valve by \
                  junctions into {} parts of equal length",
                 counted(self.parts as u64, "part"),
                 needed.ceil()
             ),
             (true, false) => format!(
-                "The wave is not resolved by {} of tube, nor by {MOST_PARTS}: pressures at the valve overshoot by up to a half. Take this value, \
-                 or let the valve stop the flow in {} or more and split the tubes in front of it into {MOST_PARTS} parts",
+                "The wave is not resolved by {} of tube, nor by {MOST_PARTS}: pressures at the valve overshoot by up to 50 %. Use the rise of this \
+                 message. Or stop the flow in {} or more, and split the tubes in front of the valve into {MOST_PARTS} parts",
                 counted(self.parts as u64, "part"),
                 quantity(RESOLVES * self.l / (self.c * MOST_PARTS), "s", 2)
             ),
         };
         format!(
-            "water hammer: the valve of tube {tube} shuts in {} and stops the flow in {} (limit {}, the return of a pressure wave, 2 l/c with l = {}, \
-             c = {}). By Joukowsky the pressure rises by up to {} (rho c v, v = {}, {when}). {consequence}",
+            "water hammer: the valve of tube {tube} shuts in {} and stops the flow in {} (limit {}, the return time 2 l/c of a pressure wave, l = {}, \
+             c = {}). By Joukowsky, the pressure rises by up to {} (rho c v, v = {}, {when}). {consequence}",
             quantity(self.shuts, "s", 3),
             quantity(self.stops, "s", 3),
             quantity(2.0 * self.l / self.c, "s", 3),

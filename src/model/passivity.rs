@@ -99,28 +99,30 @@ impl Passivity {
             Coupling::Reciprocal { .. } => "reciprocal",
         };
         let least = format!(
-            "the least work any load does is {:.4} of that without coupling",
+            "the smallest work of a load is {:.4} of its work without coupling",
             self.least
         );
         let [m, n, upper, lower] = self.direction;
         let size = |value: f64, unit: &str| quantity(value, unit, 4);
         let worst = format!(
-            "by M {}, N {}, p_u {}, p_d {}",
+            "at M {}, N {}, p_u {}, p_d {}",
             size(m, "N m"),
             size(n, "N"),
             size(upper, "Pa"),
             size(lower, "Pa")
         );
         match (self.least > 0.0, self.reciprocal()) {
-            (true, true) => format!(
-                "the {name} coupling is passive, no loads and pressures get more out of it than they put in: {least}, {worst}"
-            ),
+            (true, true) => {
+                format!("the {name} coupling is passive: no cycle of loads and pressures gains work; {least}, {worst}")
+            }
             (true, false) => format!(
-                "the {name} coupling is not passive: it lacks reciprocity (defect {:.3}), so closed cycles of load and pressure gain or \
+                "the {name} coupling is not passive: it is not reciprocal (defect {:.3}), so closed cycles of load and pressure gain or \
                  lose work; {least}, {worst}",
                 self.defect
             ),
-            (false, _) => format!("the {name} coupling is not passive: {least}, {worst}; sealed bladders make it grow"),
+            (false, _) => {
+                format!("the {name} coupling is not passive: {least}, {worst}; motion with sealed bladders grows")
+            }
         }
     }
 }

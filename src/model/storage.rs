@@ -67,13 +67,13 @@ impl LumpedNetwork {
         let links = part.links.iter().map(|&link| &network.links[link]);
         for link in links.filter(|link| !link.is_shut()) {
             if matches!(link.kind, LinkKind::Turbine(_)) {
-                return Err("a turbine needs them".into());
+                return Err("a turbine needs pressure differences".into());
             }
             if link.check_valve.is_some() {
-                return Err("a check valve needs them".into());
+                return Err("a check valve needs pressure differences".into());
             }
             if link.pump.is_some() {
-                return Err("a pump needs them".into());
+                return Err("a pump needs pressure differences".into());
             }
             if link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
                 return Err("a valve moves".into());
@@ -84,10 +84,10 @@ impl LumpedNetwork {
             }));
         }
         if part.accumulates {
-            return Err("an accumulator needs them".into());
+            return Err("an accumulator needs pressure differences".into());
         }
         if part.bridged {
-            return Err("a turbine needs them".into());
+            return Err("a turbine needs pressure differences".into());
         }
         let pressure = |p: usize| &network.ports[p].pressure;
         if let Some(other) = ports.iter().find(|&&p| pressure(p) != pressure(ports[0])) {

@@ -110,7 +110,7 @@ impl Matrix {
                 self.singular = Some(column);
                 Err(StageError::Singular(column))
             }
-            Err(KluError::Package { status }) => Err(StageError::Fatal(format!("KLU cannot go on (status {status})"))),
+            Err(KluError::Package { status }) => Err(StageError::Fatal(format!("KLU failed (status {status})"))),
         }
     }
 

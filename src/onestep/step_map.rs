@@ -111,7 +111,7 @@ impl<D: Dae> StepMap<D> {
         let room = count as f64 * (BYTES * dae.pattern().entries() as f64);
         if room > MOST_ROOM {
             let size = 1e-9 * room;
-            let what = format!("the factors of all {count} stages would take {size:.0} GB; a coarser mesh takes less");
+            let what = format!("the factors of all {count} stages need {size:.0} GB (limit 2 GB); use a coarser mesh");
             return Err(StepError::new(times[0], what));
         }
         let slots = (0..count).map(|_| {

@@ -4,7 +4,7 @@ use super::numbers::{counted, error_percent, significant};
 use crate::run::summary::{Accuracy, Estimate};
 
 /// Largest number of errors listed.
-const TOLD: usize = 4;
+const LISTED: usize = 4;
 
 /// Requested accuracy, largest errors, and mesh and tolerance, as two lines.
 pub fn words(found: &Accuracy) -> String {
@@ -40,7 +40,7 @@ pub fn setting(found: &Accuracy) -> String {
 pub fn largest(found: &Accuracy) -> Vec<String> {
     let mut worst: Vec<(&String, &Estimate)> = found.quantities.iter().collect();
     worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
-    let told = worst.into_iter().take(TOLD).map(|(name, e)| {
+    let texts = worst.into_iter().take(LISTED).map(|(name, e)| {
         let Some(total) = e.total else {
             return format!("{name} unknown");
         };
@@ -55,5 +55,5 @@ pub fn largest(found: &Accuracy) -> Vec<String> {
         };
         format!("{name} {}{parts}", error_percent(total))
     });
-    told.collect()
+    texts.collect()
 }

@@ -67,7 +67,7 @@ impl ArraysWriter {
                 Some(mark) if mark.bytes == 8 * len * instants => Stream::verify(&path, *mark)?,
                 _ => {
                     let why = "the checkpoint has another number of instants of it";
-                    return Err(fault("go on with", &path, damaged(why)));
+                    return Err(fault("resume with", &path, damaged(why)));
                 }
             }
         }
@@ -189,29 +189,29 @@ impl<W> Patient<W> {
         Self { out, failed: false }
     }
 
-    fn tell<T>(&mut self, done: io::Result<T>, instead: T) -> io::Result<T> {
-        let told = self.failed;
+    fn report_once<T>(&mut self, done: io::Result<T>, instead: T) -> io::Result<T> {
+        let reported = self.failed;
         self.failed |= done.as_ref().is_err_and(|e| e.kind() != io::ErrorKind::Interrupted);
-        if told { done.or(Ok(instead)) } else { done }
+        if reported { done.or(Ok(instead)) } else { done }
     }
 }
 
 impl<W: Write> Write for Patient<W> {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         let done = self.out.write(buffer);
-        self.tell(done, buffer.len())
+        self.report_once(done, buffer.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
         let done = self.out.flush();
-        self.tell(done, ())
+        self.report_once(done, ())
     }
 }
 
 impl<W: Seek> Seek for Patient<W> {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         let done = self.out.seek(to);
-        self.tell(done, 0)
+        self.report_once(done, 0)
     }
 }
 

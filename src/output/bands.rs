@@ -25,25 +25,25 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.max(b)
 }
 
-/// Text of a band beside a value, formatted by `told`: `95 % of samples: 21.4 mm … 23.9 mm; numerical error ± 0.1 mm`.
-pub fn beside(band: &Band, value: f64, told: &dyn Fn(f64, usize) -> String) -> String {
+/// Text of a band beside a value, formatted by `text`: `95 % of samples: 21.4 mm … 23.9 mm; numerical error ± 0.1 mm`.
+pub fn beside(band: &Band, value: f64, text: &dyn Fn(f64, usize) -> String) -> String {
     let magnitude = if band.value * value < 0.0 { " in magnitude" } else { "" };
-    let error = error(band, told).map_or(String::new(), |error| format!("; numerical error {error}"));
+    let error = error(band, text).map_or(String::new(), |error| format!("; numerical error {error}"));
     let outside = match (band.low..=band.high).contains(&band.value) {
         true => "",
         false => ", the case itself outside",
     };
-    match between(band, told) {
+    match between(band, text) {
         Some(ends) => format!("95 % of {}: {ends}{magnitude}{outside}{error}", samples(band)),
-        None => format!("it does not depend on what is uncertain{error}"),
+        None => format!("it does not depend on the uncertain numbers{error}"),
     }
 }
 
 /// Short text of a band with its unit: `−21.6 nm … −18.2 nm (± 2.1 nm numerically)`; `None` if the figure does not spread.
 pub fn short(band: &Band, unit: &str) -> Option<String> {
-    let told = |x: f64, digits: usize| quantity(x, unit, digits);
-    let error = error(band, &told).map_or(String::new(), |error| format!(" ({error} numerically)"));
-    Some(between(band, &told)? + &error)
+    let text = |x: f64, digits: usize| quantity(x, unit, digits);
+    let error = error(band, &text).map_or(String::new(), |error| format!(" ({error} numerically)"));
+    Some(between(band, &text)? + &error)
 }
 
 /// Samples of a band, with their number if some are missing.
@@ -59,12 +59,12 @@ fn samples(band: &Band) -> String {
 }
 
 /// Both ends of a band, with enough digits to distinguish them; `None` if the figure does not spread.
-pub fn between(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
+pub fn between(band: &Band, text: &dyn Fn(f64, usize) -> String) -> Option<String> {
     if band.sd == 0.0 {
         return None;
     }
     let digits = digits(band.low, band.high);
-    Some(format!("{} … {}", told(band.low, digits), told(band.high, digits)))
+    Some(format!("{} … {}", text(band.low, digits), text(band.high, digits)))
 }
 
 /// Number of digits that distinguish the ends of a band.
@@ -77,11 +77,11 @@ pub fn digits(low: f64, high: f64) -> usize {
 }
 
 /// Numerical error, if known.
-fn error(band: &Band, told: &dyn Fn(f64, usize) -> String) -> Option<String> {
+fn error(band: &Band, text: &dyn Fn(f64, usize) -> String) -> Option<String> {
     let error = band.numerical_error?;
     Some(match error <= ROUND_OFF * band.value.abs() {
         true => format!("below {} of it", significant(ROUND_OFF, 1)),
-        false => format!("± {}", told(error, 2)),
+        false => format!("± {}", text(error, 2)),
     })
 }
 
@@ -107,14 +107,14 @@ mod tests {
 
     /// Goal: the ends of a band are distinguishable, a negligible error has no row of digits, and magnitudes are marked as such.
     #[test]
-    fn a_band_is_told_beside_its_error() {
-        let told = |band: &Band, value: f64| beside(band, value, &metres);
+    fn a_band_is_shown_beside_its_error() {
+        let text = |band: &Band, value: f64| beside(band, value, &metres);
         assert_eq!(
-            told(&band(0.02, 0.019, 0.0212), 0.02),
+            text(&band(0.02, 0.019, 0.0212), 0.02),
             "95 % of samples: 19.0 mm … 21.2 mm; numerical error ± 100 µm"
         );
         assert_eq!(
-            told(&band(0.02, 0.019999, 0.020001), -0.02),
+            text(&band(0.02, 0.019999, 0.020001), -0.02),
             "95 % of samples: 19.9990 mm … 20.0010 mm in magnitude; numerical error ± 100 µm"
         );
         let lost = Band {
@@ -122,7 +122,7 @@ mod tests {
             ..band(0.03, 0.019, 0.0212)
         };
         assert_eq!(
-            told(&lost, 0.03),
+            text(&lost, 0.03),
             "95 % of 60 of 64 samples: 19.0 mm … 21.2 mm, the case itself outside; numerical error ± 100 µm"
         );
         let exact = Band {
@@ -130,8 +130,8 @@ mod tests {
             ..band(0.02, 0.02, 0.02)
         };
         assert_eq!(
-            told(&exact, 0.02),
-            "it does not depend on what is uncertain; numerical error below 1·10⁻⁹ of it"
+            text(&exact, 0.02),
+            "it does not depend on the uncertain numbers; numerical error below 1·10⁻⁹ of it"
         );
         assert_eq!(short(&exact, "m"), None);
     }

@@ -190,9 +190,9 @@ impl Behind {
     /// Waits until everything is safe on the disk.
     pub fn secure(&mut self) -> Result<Secured> {
         self.hand_over()?;
-        let (tell, told) = mpsc::channel();
-        self.send(Work::Secure(tell))?;
-        match told.recv() {
+        let (sender, receiver) = mpsc::channel();
+        self.send(Work::Secure(sender))?;
+        match receiver.recv() {
             Ok(secured) => Ok(secured),
             Err(_) => self.broken(),
         }
@@ -250,10 +250,10 @@ fn write(mut files: Growing, todo: &Receiver<Work>) -> Result<Growing> {
     for work in todo {
         match work {
             Work::Write(batch) => files.take(&batch)?,
-            Work::Secure(tell) => {
+            Work::Secure(reply) => {
                 let secured = files.secure()?;
                 // no receiver if the run has ended meanwhile
-                let _ = tell.send(secured);
+                let _ = reply.send(secured);
             }
         }
     }

@@ -92,14 +92,14 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         Err(e) => return Err(fault("read", path, e)),
         Ok(_) => {}
     }
-    let refused = |why: &str| Err(fault("go on from", path, damaged(why)));
+    let refused = |why: &str| Err(fault("resume from", path, damaged(why)));
     let other = |format: u32| {
-        format!("it has format {format} of another version of the program; this one goes on from {FORMAT}")
+        format!("it has format {format} of another version of the program; this one resumes from format {FORMAT}")
     };
     let end = text.iter().position(|&b| b == b'\n').unwrap_or(text.len());
     let (heading, body) = (&text[..end], text.get(end + 1..).unwrap_or_default());
     let Ok(heading) = serde_json::from_slice::<Heading>(heading) else {
-        return refused("its first line is not that of a checkpoint of this version of the program");
+        return refused("its first line is not the header of a checkpoint of this version");
     };
     if heading.format != FORMAT {
         return refused(&other(heading.format));
@@ -108,13 +108,11 @@ fn one(path: &Path) -> Result<Option<Saved>> {
         return refused("it is cut short or changed: its checksum differs");
     }
     if heading.build != build() {
-        return refused(
-            "another build of the program wrote it, with which the run may differ from here on; go on with that one",
-        );
+        return refused("another build of the program wrote it, so the resumed run may differ; resume with that build");
     }
     serde_json::from_slice(body)
         .map(Some)
-        .map_err(|e| fault("go on from", path, e.into()))
+        .map_err(|e| fault("resume from", path, e.into()))
 }
 
 /// Identifies this build: version, and length and checksum of the executable.

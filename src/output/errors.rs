@@ -7,26 +7,26 @@ use crate::error::{At, Code, Error, SolverError, Violation};
 
 /// JSON of an error, as printed by commands with `--json`.
 pub fn json(error: &Error) -> Value {
-    let mut told = json!({"status": "failed", "exit_code": error.exit_code(), "code": error.code().id(), "what": error.to_string()});
+    let mut object = json!({"status": "failed", "exit_code": error.exit_code(), "code": error.code().id(), "what": error.to_string()});
     match error {
         Error::Case(fault) => {
-            told["status"] = "invalid".into();
-            told["file"] = fault.path.display().to_string().into();
+            object["status"] = "invalid".into();
+            object["file"] = fault.path.display().to_string().into();
             let mut places = Places::new(&fault.text);
-            told["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
+            object["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
         }
         Error::Solver(fault) => {
             match fault.at {
-                At::Time(time) => told["time_s"] = time.into(),
-                At::LoadFactor(factor) => told["load_factor"] = factor.into(),
+                At::Time(time) => object["time_s"] = time.into(),
+                At::LoadFactor(factor) => object["load_factor"] = factor.into(),
             }
-            told["unknown"] = fault.unknown.clone().into();
-            told["cause"] = fault.cause.clone().into();
-            told["hint"] = fault.hint.clone().into();
+            object["unknown"] = fault.unknown.clone().into();
+            object["cause"] = fault.cause.clone().into();
+            object["hint"] = fault.hint.clone().into();
         }
         Error::Usage(_) | Error::Interrupted(_) | Error::Output { .. } => {}
     }
-    told
+    object
 }
 
 fn violation(places: &mut Places, violation: &Violation) -> Value {

@@ -60,7 +60,7 @@ impl Kind {
     ];
 
     /// Name on the page, command, and identifying file.
-    fn told(self) -> [&'static str; 3] {
+    fn labels(self) -> [&'static str; 3] {
         match self {
             Self::Run => ["run", "run", SUMMARY],
             Self::Equilibrium => ["equilibrium", "equilibrium", "equilibrium.json"],
@@ -81,17 +81,17 @@ impl Kind {
 
     /// Name on the page.
     pub fn name(self) -> &'static str {
-        self.told()[0]
+        self.labels()[0]
     }
 
     /// The command, as it is typed.
     pub fn command(self) -> &'static str {
-        self.told()[1]
+        self.labels()[1]
     }
 
     /// File that identifies the kind. It is written last, except the plan of `sweep`, which is written first.
     pub fn sign(self) -> &'static str {
-        self.told()[2]
+        self.labels()[2]
     }
 
     /// All files that the command itself writes, the identifying file first; case and page are additional.
@@ -140,7 +140,7 @@ impl Kind {
         match Self::within(path) {
             None | Some(Self::Run | Self::Cycle) => None,
             Some(kind) => Some(format!(
-                "{} holds the result of `slcbeam {}`, and one of run or periodic is wanted here",
+                "{} contains the result of `slcbeam {}`; a result of run or periodic is needed",
                 path.display(),
                 kind.command()
             )),
@@ -169,7 +169,7 @@ impl Kind {
                     .iter()
                     .map(|kind| format!("{} ({})", kind.sign(), kind.command()))
                     .collect();
-                format!("it holds no result, which would be one of {}", signs.join(", "))
+                format!("it contains no result; expected one of {}", signs.join(", "))
             }
             false => NOWHERE.into(),
         };
@@ -186,11 +186,11 @@ impl Kind {
             .iter()
             .map(|kind| format!("`slcbeam {}`", kind.command()))
             .collect();
-        let wanted = format!("a result of {} is wanted", commands.join(" or "));
+        let wanted = format!("a result of {} is needed", commands.join(" or "));
         let what = match Self::within(dir) {
             Some(kind) if kinds.contains(&kind) => return Ok(kind),
-            Some(kind) => format!("it holds a result of `slcbeam {}`; {wanted}", kind.command()),
-            None if dir.is_dir() => format!("it holds no result; {wanted}"),
+            Some(kind) => format!("it contains a result of `slcbeam {}`; {wanted}", kind.command()),
+            None if dir.is_dir() => format!("it contains no result; {wanted}"),
             None if dir.exists() => format!("it {}; {wanted}", file(dir)),
             None => format!("{NOWHERE}; {wanted}"),
         };
@@ -204,9 +204,9 @@ fn file(path: &Path) -> String {
     match around {
         Some(dir) => format!("is a file of the result in {}: name this folder", dir.display()),
         None if path.extension().is_some_and(|x| x == "json") => {
-            "is a file, a case perhaps, and no result folder: `slcbeam run CASE --out DIR` makes one".into()
+            "is a file (perhaps a case), not a result folder; `slcbeam run CASE --out DIR` creates one".into()
         }
-        None => "is a file and no result folder".into(),
+        None => "is a file, not a result folder".into(),
     }
 }
 

@@ -6,8 +6,8 @@ use std::path::Path;
 /// Memory available to the process [byte]: available memory of the system, within the limits of the process and its control group. `None`
 /// if the system does not report it.
 pub fn memory() -> Option<f64> {
-    let told = fs::read_to_string("/proc/meminfo").ok()?;
-    let available = kilobytes(&told, "MemAvailable:")?;
+    let meminfo = fs::read_to_string("/proc/meminfo").ok()?;
+    let available = kilobytes(&meminfo, "MemAvailable:")?;
     let limits = [group(), address_space()];
     Some(limits.into_iter().flatten().fold(available, f64::min))
 }
@@ -15,8 +15,10 @@ pub fn memory() -> Option<f64> {
 /// Free space for a user at a path that exists or will exist [byte]. `None` for file systems without storage, such as `/proc`.
 pub fn free(path: &Path) -> Option<f64> {
     let there = path.ancestors().find(|part| part.exists()).unwrap_or(Path::new("."));
-    let told = rustix::fs::statvfs(there).ok().filter(|told| told.f_blocks > 0)?;
-    Some(told.f_bavail as f64 * told.f_frsize as f64)
+    let statistics = rustix::fs::statvfs(there)
+        .ok()
+        .filter(|statistics| statistics.f_blocks > 0)?;
+    Some(statistics.f_bavail as f64 * statistics.f_frsize as f64)
 }
 
 /// Converts a line `NAME   123 kB` to bytes.

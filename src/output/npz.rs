@@ -58,7 +58,7 @@ impl Npz {
         let mut zip = ZipArchive::new(BufReader::new(file))?;
         if zip.len() > MOST {
             return Err(damaged(format!(
-                "it says that it holds {} arrays; no result has more than {MOST}",
+                "its directory lists {} arrays; a result has at most {MOST}",
                 zip.len()
             )));
         }
@@ -189,7 +189,7 @@ fn describe(entry: &mut impl Read, size: u64) -> io::Result<Vec<usize>> {
     let bytes = shape.iter().try_fold(8, product);
     if bytes.and_then(|bytes| bytes.checked_add(10 + length as u64)) != Some(size) {
         return Err(damaged(format!(
-            "it is said to have {shape:?} numbers, which are not as many as its {size} bytes hold"
+            "its shape {shape:?} does not match its size of {size} bytes"
         )));
     }
     // lengths are at most the file's size, except in empty arrays, whose other length is meaningless

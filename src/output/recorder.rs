@@ -192,7 +192,7 @@ impl FolderRecorder {
             tables_crc32: tables_crc32.clone(),
             ..summary.clone()
         };
-        let (laid, told) = (self.folder.laid(), summary::to_json(&checked));
+        let (laid, text) = (self.folder.laid(), summary::to_json(&checked));
         let [fields, summary] = [FIELDS, SUMMARY].map(|name| self.folder.path(name));
         spent.files += laps.lap();
         let (case, dir) = (&self.labels.case_name, self.folder.dir());
@@ -209,7 +209,7 @@ impl FolderRecorder {
                     begin(scope, || pictures::over_space(case, frequency, arrays)),
                 ],
             };
-            let put = put(tables, &laid, (arrays, &fields), (&told, &summary));
+            let put = put(tables, &laid, (arrays, &fields), (&text, &summary));
             spent.files += laps.lap();
             let drawn = drawing.into_iter().map(Begun::join).collect();
             spent.pictures += laps.lap();
@@ -239,10 +239,10 @@ fn put(
     mut tables: Vec<HistoryWriter>,
     laid: &[Whole],
     (arrays, fields): (&ArraysWriter, &Path),
-    (told, summary): (&str, &Path),
+    (text, summary): (&str, &Path),
 ) -> Result<()> {
     let fields = arrays.packed(fields)?;
-    let summary = Whole::fill(summary, |file| file.write_all(told.as_bytes()))?;
+    let summary = Whole::fill(summary, |file| file.write_all(text.as_bytes()))?;
     let tables = tables
         .iter_mut()
         .map(|table| Box::new(|| table.secure().map(|_| ())) as Wait);

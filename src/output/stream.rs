@@ -72,18 +72,18 @@ impl Stream {
             let there = file.metadata()?.len();
             if there < mark.bytes {
                 return Err(damaged(format!(
-                    "{there} bytes are left of the {} that the checkpoint needs; what there is can be read, but no run goes on from it",
+                    "it has {there} bytes (the checkpoint needs {}); its content can be read, but the run cannot be resumed",
                     mark.bytes
                 )));
             }
             if Mark::of(file.take(mark.bytes))? != mark {
                 return Err(damaged(
-                    "it is not what was written up to the checkpoint (its checksum differs); no run goes on from it",
+                    "its checksum differs from that at the checkpoint; the run cannot be resumed",
                 ));
             }
             Ok(())
         };
-        verify().map_err(|e| fault("go on with", path, e))
+        verify().map_err(|e| fault("resume with", path, e))
     }
 
     /// Opens a verified file and truncates it at the mark.

@@ -36,7 +36,7 @@ const HEADINGS: [&str; 7] = [
 ];
 
 /// Figures of a quantity, in order of preference. The table shows the first that exists; the file contains all.
-const TOLD: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
+const PREFERRED: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
 
 /// Table of one figure of each quantity that spreads, and warnings.
 pub fn words(found: &Uncertainty) -> String {
@@ -44,20 +44,20 @@ pub fn words(found: &Uncertainty) -> String {
     let foremost: &[&str] = if found.command == "floquet" {
         &["growth_per_s"]
     } else {
-        &TOLD
+        &PREFERRED
     };
     let mut lines = vec![HEADINGS.map(String::from).to_vec()];
-    let told = found.figures.iter().filter(|(name, one)| {
+    let shown = found.figures.iter().filter(|(name, one)| {
         let first = name.rsplit_once('.').is_none_or(|(quantity, own)| {
             let there = |figure: &&&str| found.figures.contains_key(&format!("{quantity}.{figure}"));
             foremost.iter().find(there).is_none_or(|first| *first == own)
         });
         first && one.sd > 0.0
     });
-    lines.extend(told.map(|(name, one)| row(name, one, &found.inputs).to_vec()));
+    lines.extend(shown.map(|(name, one)| row(name, one, &found.inputs).to_vec()));
     let others = 1 + found.figures.len() - lines.len();
     let table = match lines.len() {
-        1 => "no figure depends on what is uncertain\n".into(),
+        1 => "no figure depends on the uncertain numbers\n".into(),
         _ => aligned(&lines, &[0, 6]),
     };
     let mut text = format!("{}\n{table}", about(found));
@@ -83,9 +83,8 @@ fn about(found: &Uncertainty) -> String {
         lost => format!(", {} of which did not finish", count(lost as u64)),
     };
     format!(
-        "What {} leave{} open, by {}{finished} (seed {}):",
+        "Uncertainty from {}, by {}{finished} (seed {}):",
         inputs.join(", "),
-        if inputs.len() == 1 { "s" } else { "" },
         counted(found.samples as u64, "sample"),
         found.seed
     )
@@ -138,8 +137,8 @@ pub fn section(found: &Uncertainty) -> Value {
         .collect();
     let mut tables = vec![json!({
         "title": null,
-        "about": "Standard deviations and the numerical error are relative to the figure of the case itself. To first order: by \
-                  derivatives about the means; by samples: whatever the figure does over what is uncertain.",
+        "about": "Standard deviations and the numerical error are relative to the figure of the case itself. First order: from \
+                  derivatives at the means. Samples: from simulations with random values of the uncertain numbers.",
         "headings": HEADINGS, "rows": rows, "file": UNCERTAINTY,
     })];
     let indexed = found
@@ -162,9 +161,9 @@ pub fn section(found: &Uncertainty) -> Value {
         .collect();
     if !indices.is_empty() {
         tables.push(json!({
-            "title": "Whose share",
-            "about": "Sobol's indices: the share of the variance that is of a number alone, and with all that it does together with \
-                      others; each with its standard error.",
+            "title": "Shares of the variance",
+            "about": "Sobol's indices: share of the variance due to a number alone, and including its interactions with other \
+                      numbers; each with its standard error.",
             "headings": ["figure", "number", "alone", "± standard error", "with others", "± standard error"],
             "rows": indices, "file": null,
         }));
@@ -196,7 +195,7 @@ mod tests {
             no_first_order: None,
             warnings: vec![],
         };
-        assert!(words(&found).contains("no figure depends on what is uncertain"));
+        assert!(words(&found).contains("no figure depends on the uncertain numbers"));
     }
 
     #[test]
@@ -222,7 +221,7 @@ mod tests {
             high: -1.8,
             indices: None,
         };
-        let told = row("q.final", &spread, &[input("/a"), input("/b")]);
+        let cells = row("q.final", &spread, &[input("/a"), input("/b")]);
         let expected = [
             "q.final",
             "-2.000",
@@ -232,6 +231,6 @@ mod tests {
             "-2.200 … -1.800",
             "/b 80.0 %",
         ];
-        assert_eq!(told.map(|cell| cell.replace('−', "-")), expected);
+        assert_eq!(cells.map(|cell| cell.replace('−', "-")), expected);
     }
 }

@@ -79,11 +79,11 @@ impl<'a, T: Kept> Whole<'a, T> {
 
 /// JSON text of a result.
 pub fn text<T: Kept>(found: &T) -> String {
-    told(found, None)
+    text_with(found, None)
 }
 
 /// JSON text of a result with a closing sentence about it.
-pub fn told<T: Kept>(found: &T, sentence: Option<&str>) -> String {
+pub fn text_with<T: Kept>(found: &T, sentence: Option<&str>) -> String {
     // Serialization fails only for keys that are not text, and there are none.
     serde_json::to_string_pretty(&Whole::of(found, sentence)).unwrap_or_default() + "\n"
 }
@@ -117,7 +117,9 @@ impl Head {
         let by = self.provenance.as_ref().map(Provenance::words);
         match (self.format, by) {
             (Some(format), Some(by)) => format!("The result has format {format} and was computed by {by}."),
-            (Some(format), None) => format!("The result has format {format}; what computed it is not told."),
+            (Some(format), None) => {
+                format!("The result has format {format}; the program that computed it is not recorded.")
+            }
             (None, _) => "The result has no format number: a version before format 1 wrote it.".into(),
         }
     }

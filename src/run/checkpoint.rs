@@ -54,7 +54,7 @@ impl Checkpoint {
         }
         let unknowns = system.layout.len;
         if self.y.len() != unknowns || self.yp.len() != unknowns {
-            return fault("has another number of unknowns than the case");
+            return fault("has a different number of unknowns than the case");
         }
         if self
             .y
@@ -68,11 +68,11 @@ impl Checkpoint {
         }
         if let Some(kept) = &self.forward {
             if !kept.fits(unknowns, self.integrals.len()) {
-                return fault("has derivatives of another number of unknowns than the case");
+                return fault("has derivatives with a different number of unknowns than the case");
             }
             for kept in &kept.parameters {
                 if Parameter::find(case, &kept.pointer)? != *kept {
-                    return fault("has derivatives by a number that is another in the case");
+                    return fault("has derivatives by a number whose value differs in the case");
                 }
             }
         }

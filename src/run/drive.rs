@@ -45,24 +45,26 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
         kinked_period(&signal, &mut kinks);
         if let Some(period) = kinks {
             return Err(Error::Usage(format!(
-                "a table that repeats every {period} s has kinks or jumps, which the search for a cycle does not stop at: {name}. \
-                 Give the table \"interpolation\": \"cubic\" and a last value that equals its first, or extend the run by `slcbeam run` \
-                 until its cycles repeat"
+                "{name}: a table that repeats every {period} s has kinks or jumps, at which the search for a cycle \
+                 does not stop. Give the table \"interpolation\": \"cubic\" and a last value that equals its first, \
+                 or extend the run by `slcbeam run` until its cycles repeat"
             )));
         }
         return Err(Error::Usage(format!(
-            "{name} has no period: the signal {} goes on without repeating itself; sines, their sums and products, and whatever \
-             comes to rest are periodic",
+            "{name} has no period: the signal {} does not repeat. Use sines, their sums and products, or signals that \
+             become constant",
             serde_json::to_string(&signal).unwrap_or_default()
         )));
     }
     if frequencies.is_empty() {
         return match asked {
             Some(period) if period.is_finite() && period > 0.0 => Ok(Drive { period, driven: false }),
-            Some(period) => Err(Error::Usage(format!("--period {period}: a time > 0, in seconds"))),
+            Some(period) => Err(Error::Usage(format!(
+                "--period {period}: must be a time > 0, in seconds"
+            ))),
             None => Err(Error::Usage(format!(
-                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine; or let `slcbeam floquet` \
-                 look at it as it is, over --period SECONDS"
+                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine, or analyze the \
+                 undriven case by `slcbeam floquet --period SECONDS`"
             ))),
         };
     }
@@ -76,7 +78,7 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     })?;
     match asked {
         Some(asked) => Err(Error::Usage(format!(
-            "--period {asked}: {name} has a period of its own, {period} s; leave it out"
+            "--period {asked}: {name} has a period of its own, {period} s. Omit the option"
         ))),
         None => Ok(Drive { period, driven: true }),
     }

@@ -196,7 +196,7 @@ impl Energies {
                     && value.abs() > (REMAINDER * self.largest_stored).max(self.floor)
                 {
                     all.push(format!(
-                        "the {} {when}, {}, is open by {:.0} % of it",
+                        "the {} {when}, {}, has a balance error of {:.0} %",
                         of.words(),
                         quantity(value, "J", 4),
                         100.0 * error
@@ -213,7 +213,10 @@ impl Energies {
                 let gained = since.gained(&self.last);
                 let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
                 if error > OPEN {
-                    all.push(format!("{what}, has parts that are open by {:.0} %", 100.0 * error));
+                    all.push(format!(
+                        "{what}, is computed from energies with a balance error of {:.0} %",
+                        100.0 * error
+                    ));
                 }
                 if !(-ROUND_OFF..=1.0 + ROUND_OFF).contains(&value) {
                     let side = if value > 1.0 { "above one" } else { "below zero" };
@@ -247,19 +250,19 @@ pub fn too_open(error: f64) -> bool {
 fn why(gained: &Parts) -> String {
     if gained.added.abs() > ROUND_OFF * gained.harvested.abs() {
         return format!(
-            "the published coupling or formulation added {}, with {} put in; it means something with the reciprocal \
-             coupling and the conservative formulation",
+            "the published coupling or formulation added {}, with an input of {} (an efficiency is meaningful only \
+             with the reciprocal coupling and the conservative formulation)",
             quantity(gained.added, "J", 3),
             quantity(gained.input, "J", 3)
         );
     }
     if gained.stored < 0.0 {
         return format!(
-            "{} that were stored before were taken out",
+            "{} of energy stored before were released",
             quantity(-gained.stored, "J", 3)
         );
     }
-    "no coupling adds energy here, so that this is the integration's error".into()
+    "no coupling adds energy here, so this is an integration error".into()
 }
 
 fn finite(x: f64) -> Option<f64> {

@@ -178,8 +178,9 @@ impl Growth {
         let largest = self.windows.iter().map(|w| w.deflection).fold(0.0, f64::max);
         (self.compression > euler && largest < 1e-6 * length).then(|| {
             format!(
-                "buckling: compression reached {}, above Euler's load {}, and the beam without inertia stayed \
-                 straight, an unstable equilibrium; a load across of a thousandth would show the bent one",
+                "buckling: compression reached {}, above Euler's load {}. The beam without inertia stayed straight, \
+                 in an unstable equilibrium. Add a transverse load of a thousandth of the axial load to obtain the \
+                 bent state.",
                 quantity(self.compression, "N", 4),
                 quantity(euler, "N", 4)
             )
@@ -199,8 +200,8 @@ impl Growth {
             all.push(driver(
                 "parametric",
                 format!(
-                    "axial shaking at {:.4} Hz lies in a Mathieu tongue of the first bending mode: predicted rate {:.3} 1/s \
-                     (single undamped mode), seen {rate:.3} 1/s",
+                    "axial shaking at {:.4} Hz lies in a Mathieu tongue of the first bending mode: predicted rate \
+                     {:.3} 1/s (single undamped mode), observed {rate:.3} 1/s",
                     m.frequency, m.growth_rate
                 ),
             ));
@@ -250,7 +251,7 @@ impl Growth {
             all.push(driver(
                 "loads",
                 format!(
-                    "no instability is known: loads, driven ends and ports have done {} of work",
+                    "no known instability: loads, driven ends and ports did {} of work",
                     quantity(last.work, "J", 4)
                 ),
             ));
@@ -258,7 +259,7 @@ impl Growth {
         if all.is_empty() {
             all.push(driver(
                 "unknown",
-                "no instability is known and nothing does work: what was there at the start is passed on".into(),
+                "no known instability, and nothing does work: the initial energy is redistributed".into(),
             ));
         }
         all

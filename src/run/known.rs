@@ -69,20 +69,22 @@ pub fn instant(case: &Case, at: Option<f64>) -> Option<String> {
     Some(Code::Seldom.warning(seldom::instant(case, at?)?))
 }
 
-fn told(seldom: Vec<(String, String)>) -> Vec<String> {
-    let told = |(at, what)| Code::Seldom.warning(format!("{at}: {what}"));
-    seldom.into_iter().map(told).collect()
+fn unusual(seldom: Vec<(String, String)>) -> Vec<String> {
+    let warning = |(at, what)| Code::Seldom.warning(format!("{at}: {what}"));
+    seldom.into_iter().map(warning).collect()
 }
 
 /// Adds warnings from the sizes of the case and its mesh. With `at_rest`, excludes warnings about changes in time.
 fn with_the_mesh(mut all: Vec<String>, case: &Case, system: &System, numbers: &Numbers, at_rest: bool) -> Vec<String> {
-    all.extend(told(seldom::sizes(case)));
+    all.extend(unusual(seldom::sizes(case)));
     if !at_rest {
-        all.extend(told(seldom::late(case)));
+        all.extend(unusual(seldom::late(case)));
     }
     let first = numbers.get("first_bending_frequency_hz").copied();
-    all.extend(told(seldom::damping(case, first)));
-    all.extend(told(seldom::unheld(case, &system.model.unheld()).into_iter().collect()));
+    all.extend(unusual(seldom::damping(case, first)));
+    all.extend(unusual(
+        seldom::unheld(case, &system.model.unheld()).into_iter().collect(),
+    ));
     all.extend(match at_rest {
         true => resolution::warnings_at_rest(case, system),
         false => resolution::warnings(case, system),

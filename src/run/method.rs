@@ -49,23 +49,23 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
         order,
     };
     match method {
-        schema::Method::Ida => ida("as asked", bdf()),
-        schema::Method::Trbdf2 => one_step(Method::TrBdf2, "as asked"),
-        schema::Method::Esdirk34 => one_step(Method::Esdirk34, "as asked"),
-        schema::Method::Esdirk46 => one_step(Method::Esdirk46, "as asked"),
-        schema::Method::Esdirk57 => one_step(Method::Esdirk57, "as asked"),
+        schema::Method::Ida => ida("as requested", bdf()),
+        schema::Method::Trbdf2 => one_step(Method::TrBdf2, "as requested"),
+        schema::Method::Esdirk34 => one_step(Method::Esdirk34, "as requested"),
+        schema::Method::Esdirk46 => one_step(Method::Esdirk46, "as requested"),
+        schema::Method::Esdirk57 => one_step(Method::Esdirk57, "as requested"),
         schema::Method::Auto if case.solver.max_order != MaxOrder::Auto => {
-            ida("max_order is asked for, which is of BDF", bdf())
+            ida("max_order is set, which applies to BDF only", bdf())
         }
         schema::Method::Auto => match bdf() {
             order if order.order > 2 => ida("BDF may use its high orders", order),
             order if rtol > LOOSEST => ida(
-                &format!("rtol {rtol:e} > {LOOSEST:e}: nothing is accurate, and BDF of order 2 costs least"),
+                &format!("rtol {rtol:e} > {LOOSEST:e}: no method is accurate, and BDF of order 2 costs least"),
                 order,
             ),
             _ => one_step(
                 Method::Esdirk46,
-                "waves that nothing damps keep BDF at order 2; an L-stable method of order 4 needs a tenth of its steps",
+                "undamped waves limit BDF to order 2; an L-stable method of order 4 needs a tenth of its steps",
             ),
         },
     }
@@ -80,7 +80,7 @@ pub fn with_sensitivities(case: &Case, system: &System) -> MethodChoice {
     MethodChoice {
         one_step: None,
         reason: format!(
-            "sensitivities are carried along by IDA alone; without them it would be {}",
+            "only IDA integrates sensitivities; without them the method would be {}",
             usual.name()
         ),
         order: order::choose(case, system),

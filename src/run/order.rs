@@ -22,7 +22,7 @@ pub struct OrderChoice {
 pub fn choose(case: &Case, system: &System) -> OrderChoice {
     let chosen = |order, reason: String| OrderChoice { order, reason };
     match case.solver.max_order {
-        MaxOrder::Order(order) => chosen(order, "as asked".into()),
+        MaxOrder::Order(order) => chosen(order, "as requested".into()),
         MaxOrder::Forced(order) => chosen(order, "forced".into()),
         MaxOrder::Auto if !carries(system) => chosen(5, "no inertia: nothing oscillates freely".into()),
         MaxOrder::Auto => match least_damping_ratio(system) {
@@ -40,7 +40,7 @@ pub fn choose(case: &Case, system: &System) -> OrderChoice {
             ratio => chosen(
                 5,
                 format!(
-                    "every wave has a damping ratio of {} or more, {ENOUGH} are enough",
+                    "every wave has a damping ratio of {} or more ({ENOUGH} suffices)",
                     significant(ratio, 2)
                 ),
             ),
@@ -60,7 +60,7 @@ pub fn held_by_stability(system: &System, order: u8, time: f64, steps: u64, reje
     limited.then(|| {
         format!(
             "the steps ({} on average, {reach:.2} over the highest frequency of the mesh, {rejected} rejected) are \
-             held down by the stability of BDF order {order} and not by accuracy: set /solver/max_order to 2",
+             limited by the stability of BDF order {order}, not by accuracy. Set /solver/max_order to 2.",
             quantity(time / steps as f64, "s", 2)
         )
     })
@@ -77,8 +77,8 @@ pub fn stuck(steps: u64, rejected: u64, chosen: bool) -> Option<String> {
     let instead = if chosen { "esdirk46" } else { "auto" };
     often.then(|| {
         format!(
-            "IDA is stuck: its error test rejected {rejected} steps beside {steps} that it took, so that steps are short, their order is low, \
-             and how large errors are is not known: set /solver/method to {instead}"
+            "IDA is stuck: its error test rejected {rejected} steps and accepted {steps}. Steps are short, their \
+             order is low, and the error is unknown. Set /solver/method to {instead}."
         )
     })
 }

@@ -95,7 +95,7 @@ impl Passed {
     }
 
     /// Describes the largest value with its time and place, and the start of exceedance. `None` if the limit was not exceeded.
-    fn told(&self, digits: usize, place: String, limit: f64) -> Option<String> {
+    fn excess(&self, digits: usize, place: String, limit: f64) -> Option<String> {
         let began = self.began?;
         let (largest, t) = (self.largest, self.t);
         Some(format!(
@@ -131,10 +131,10 @@ impl Limits {
             },
             mach_per_flow: case.fluid.as_ref().map_or(0.0, |f| f.density_kg_m3.sqrt()),
             held_back: match [Effect::TubeInertia, Effect::TubeLosses].map(|effect| system.model.effects.has(effect)) {
-                [false, false] => "friction alone holds",
-                [true, false] => "friction and inertia alone hold",
-                [false, true] => "friction and losses alone hold",
-                [true, true] => "friction, losses and inertia alone hold",
+                [false, false] => "friction alone",
+                [true, false] => "friction and inertia alone",
+                [false, true] => "friction and losses alone",
+                [true, true] => "friction, losses and inertia alone",
             },
             unphysical: Unphysical::new(case, system),
             at_rest: case.start.equilibrium.is_some(),
@@ -188,39 +188,41 @@ impl Limits {
         let value = |which| g.of(which)[0];
         if value(Watched::Opening) <= 0.0 {
             return Some(format!(
-                "a bladder is closed at {at}: its cross-section h_b w_b + a1 has reached zero, where the model ends"
+                "a bladder is closed at {at}: its cross-section h_b w_b + a1 has reached zero, the limit of the model"
             ));
         }
         if value(Watched::Low) <= self.vacuum {
             return Some(format!(
-                "a bladder is evacuated at {at}: less than a thousandth of ambient pressure is left in it, and no gas to follow"
+                "a bladder is evacuated at {at}: less than a thousandth of ambient pressure is left in it, the limit \
+                 of the model"
             ));
         }
         if g.thinnest <= self.vacuum {
             return Some(format!(
-                "a vessel, a junction, or what a port pumps from is evacuated at {at}: less than a thousandth of ambient pressure is left \
-                 there; a tube passes no more gas than its own pressure drives"
+                "a vessel, a junction, or the point from which a port pumps is evacuated at {at}: less than a \
+                 thousandth of ambient pressure is left there. A tube passes only the gas that its pressure \
+                 difference drives"
             ));
         }
         let swelling = value(Watched::Swelling);
         if swelling > self.swelling {
             return Some(format!(
                 "a bladder has outgrown its segment at {at}: its cross-section h_b w_b + a1 has reached the half \
-                 section l_seg h_s/2 that holds it (a1 = {})",
+                 section l_seg h_s/2 that contains it (a1 = {})",
                 quantity(swelling, "m^2", 4)
             ));
         }
         if value(Watched::Outermost) > 1.0 {
             return Some(format!(
-                "a section has left at {at} the states for which its strain energy is known: stretch, curvature and pressures, each over \
-                 its limit in /bladders/strain_energy, have a sum of squares above 1"
+                "a section has left the range of its strain energy at {at}: stretch, curvature and pressures, each \
+                 relative to its limit in /bladders/strain_energy, have a sum of squares above 1"
             ));
         }
         let strain = value(Watched::Strain);
         if strain > STRAIN_ENDS {
             return Some(format!(
-                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at {at}, node {}: a law that \
-                 is linear in the strain ends before",
+                "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at {at}, node {}: a law \
+                 linear in the strain is invalid there",
                 g.strained
             ));
         }
@@ -232,7 +234,7 @@ impl Limits {
             ));
         }
         Some(format!(
-            "a node has reached {MOTION_ENDS} lengths of the beam against the root at {at} ({})",
+            "a node has reached a displacement of {MOTION_ENDS} beam lengths relative to the root at {at} ({})",
             quantity(g.moved, "m", 4)
         ))
     }
@@ -280,42 +282,44 @@ impl Range {
         let mut all = limits
             .unphysical
             .warnings(&self.unphysical, &|t| format!("t = {t:.4} s"));
-        if let Some(told) = self.strain.told(2, format!(", node {}", self.strain.place), STRAIN) {
+        if let Some(excess) = self.strain.excess(2, format!(", node {}", self.strain.place), STRAIN) {
             all.push(Code::Strain.warning(format!(
-                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 {told}; strains are meant to be small"
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 {excess}. The model \
+                 assumes small strains."
             )));
         }
-        if let Some(told) = self.reynolds.told(0, in_tube(&self.reynolds), REYNOLDS) {
+        if let Some(excess) = self.reynolds.excess(0, in_tube(&self.reynolds), REYNOLDS) {
             all.push(Code::FastFlow.warning(format!(
-                "range of the model: the Reynolds number {told}; flow is meant to creep"
+                "range of the model: the Reynolds number {excess}. The model assumes creeping flow."
             )));
         }
-        if let Some(told) = self.mach.told(2, in_tube(&self.mach), MACH) {
+        if let Some(excess) = self.mach.excess(2, in_tube(&self.mach), MACH) {
             all.push(Code::FastGas.warning(format!(
-                "range of the model: the Mach number {told}; in the model {} it back, and a tube passes no more than at 1, so that real \
-                 flow is slower than this",
+                "range of the model: the Mach number {excess}. The model limits the flow by {}. A tube passes at most \
+                 Mach 1, so the real flow is slower than the computed one.",
                 limits.held_back
             )));
         }
         if self.begun > 0.0 {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam begins {} behind the face of a wall, and is thrown off; begin in front of it, or with \
-                 /start/equilibrium",
+                "contact: the beam begins {} behind the face of a wall, which throws it off. Begin in front of the \
+                 wall, or with /start/equilibrium.",
                 quantity(self.begun, "m", 4)
             )));
         }
         if let Some(began) = self.touched.began {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam is pressed {} into a wall at t = {:.4} s, by more than half its height from t = {began:.4} s on; a \
-                 stiffer wall holds it",
+                "contact: the beam is pressed {} into a wall at t = {:.4} s (limit half its height, {}; exceeded from \
+                 t = {began:.4} s on). Use a stiffer wall.",
                 quantity(self.touched.largest, "m", 4),
-                self.touched.t
+                self.touched.t,
+                quantity(limits.half_height, "m", 4)
             )));
         }
         if let Some(began) = self.pressed.began {
             all.push(Code::LostConvexity.warning(format!(
-                "the kinked reciprocal potential lost convexity at t = {began:.4} s: p_u + p_d reached {}, above \
-                 {}; results from then on are not to be trusted (use \"reciprocal\" or a larger kink_width)",
+                "the kinked reciprocal potential lost convexity at t = {began:.4} s: p_u + p_d reached {} (limit {}). \
+                 Later results are not reliable. Use \"reciprocal\" or a larger kink_width.",
                 quantity(self.pressed.largest, "Pa", 4),
                 quantity(limits.convex_up_to, "Pa", 4)
             )));

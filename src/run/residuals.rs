@@ -177,17 +177,19 @@ impl Residuals {
         let open = self.energy_relative();
         if open > OPEN {
             all.push(Code::EnergyOpen.warning(format!(
-                "energy balance: it stays open by {} of the largest energy; tighten solver/rtol \
-                 until answers no longer change (a jump to which a beam without inertia answers far from linearly leaves it open at any tolerance)",
+                "energy balance: its error is {} of the largest energy (limit {OPEN}). Tighten solver/rtol until \
+                 results no longer change. At a jump to which a beam without inertia responds far from linearly, the \
+                 error remains at any tolerance.",
                 significant(open, 2)
             )));
         }
         let missed = self.port_flow_relative();
         if missed > OPEN {
             all.push(Code::PortFlow.warning(format!(
-                "flow through ports: what the ports' law lets through and what the network stores differ by {} of the \
-                 volume passed: the pressures that drive it are last digits of pressures. Flows and volumes of ports are told from what is \
-                 stored; only how several ports of one network share them is not sure: tighten solver/rtol until that no longer changes",
+                "flow through ports: the volume by the ports' law and the volume that the network stores differ by {} \
+                 of the volume passed (limit {OPEN}). The pressure differences that drive the flow are near rounding \
+                 error. Flows and volumes of ports are computed from the stored volume. Only their distribution among \
+                 several ports of one network is uncertain. Tighten solver/rtol until it no longer changes.",
                 significant(missed, 2)
             )));
         }
@@ -196,16 +198,16 @@ impl Residuals {
             let open = |share: f64| significant(share, 2);
             let which = match (momentum > OPEN, angular > OPEN) {
                 (true, true) => format!(
-                    "momentum by {} and angular momentum by {}",
+                    "{} for momentum and {} for angular momentum",
                     open(momentum),
                     open(angular)
                 ),
-                (true, false) => format!("momentum by {}", open(momentum)),
-                _ => format!("angular momentum by {}", open(angular)),
+                (true, false) => format!("{} for momentum", open(momentum)),
+                _ => format!("{} for angular momentum", open(angular)),
             };
             all.push(Code::EnergyOpen.warning(format!(
-                "balance of momentum: it stays open, {which} of the largest that the beam has or was given; tighten \
-                 solver/rtol until answers no longer change"
+                "balance of momentum: its error relative to the largest momentum or impulse is {which} (limit \
+                 {OPEN}). Tighten solver/rtol until results no longer change."
             )));
         }
         all

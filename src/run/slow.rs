@@ -34,8 +34,9 @@ pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
     let [from, to] = &slowest.between;
     (share > LEFT).then(|| {
         Code::LateRest.warning(format!(
-            "fluid comes to rest with a time constant of {} (most resists between {from} and {to}): in the run, what flows so slowly lags behind by {:.0} % at {}, \
-             and pressures are others there than those at rest. A longer or slower run, wider tubes or valves, or `slcbeam run` for what is there by then",
+            "the slowest flow of the network (time constant {}, mainly between {from} and {to}) lags by {:.0} % at {} \
+             in the run. Pressures of the run then differ from those of the equilibrium. Use a longer or slower run, \
+             wider tubes or valves, or `slcbeam run` for the state at that time.",
             span(slowest.time),
             100.0 * share,
             span(until)
@@ -125,8 +126,8 @@ mod tests {
                 duration_s: 1e-6,
                 shape: RampShape::Linear,
             });
-            let told = lag(&late, 2e-3, end);
-            assert!((told - (-0.5_f64).exp()).abs() < 0.01, "{end}: {told}");
+            let computed = lag(&late, 2e-3, end);
+            assert!((computed - (-0.5_f64).exp()).abs() < 0.01, "{end}: {computed}");
         }
     }
 

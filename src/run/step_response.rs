@@ -213,34 +213,37 @@ impl StepResponses {
 
     fn one(&self, way: &Way, finished: bool) -> StepResponse {
         let Way { initial, last, sides } = way;
-        let untold = |reason: String| StepResponse {
+        let undefined = |reason: String| StepResponse {
             initial: *initial,
             last: *last,
             reason: Some(reason),
             ..StepResponse::default()
         };
         if !finished {
-            return untold("the run did not come to its end".into());
+            return undefined("the run did not reach its end".into());
         }
         let (change, sign) = ((last - initial).abs(), if last > initial { 1.0 } else { -1.0 });
         let [up, down] = sides;
         let [along, against] = if sign > 0.0 { [up, down] } else { [down, up] };
         let (Some(peak), Some(back)) = (along.most(), against.most()) else {
-            return untold("nothing was followed".into());
+            return undefined("no values were recorded".into());
         };
         let (from, to) = (sign * initial, sign * last);
         let farthest = (peak[0] - from).max(back[0] + from);
         if change <= SAME * farthest {
-            return untold("it ends where it began: there is no way of which to take shares".into());
+            return undefined("its final value equals its initial one: fractions of the change are undefined".into());
         }
         let settled = BANDS.map(|band| {
-            let outside = [along.last_above(to + band * change), against.last_above(band * change - to)];
+            let outside = [
+                along.last_above(to + band * change),
+                against.last_above(band * change - to),
+            ];
             let left = outside.into_iter().flatten().fold(self.at, f64::max);
             let stays = self.end - left >= STAYS * (self.end - self.at);
             stays.then_some(left - self.at).ok_or_else(|| {
                 format!(
-                    "it leaves the band of {:.0} % about its final value {} before the end; settled is what stays in the band \
-                     for the last tenth of the time",
+                    "it leaves the band of {:.0} % about its final value {} before the end. A settled value stays in \
+                     the band for the last tenth of the time",
                     100.0 * band,
                     quantity(self.end - left, "s", 4)
                 )
@@ -249,7 +252,7 @@ impl StepResponses {
         let [two, five] = settled;
         let five = match five {
             Ok(five) => five,
-            Err(reason) => return untold(reason),
+            Err(reason) => return undefined(reason),
         };
         let [begins, ends] = RISE.map(|share| along.first_above(from + share * change));
         StepResponse {

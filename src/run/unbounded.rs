@@ -40,8 +40,9 @@ pub fn leave_out(case: &Case, system: &System, reached: f64, ports: &mut BTreeMa
             };
         }
         Some(Code::Unresolved.warning(format!(
-            "mesh: the largest flow of the port \"{}\" is left out: its pressure jumps at {}, and the flow into the bladder behind it then grows \
-             without limit as the mesh is refined (as 1/t^(1/2) after the jump). Give its pressure as a ramp, or connect it by a tube",
+            "mesh: the largest flow of the port \"{}\" is omitted: its pressure jumps at {}. The flow into the \
+             bladder behind it then grows without limit as the mesh is refined (as 1/t^(1/2) after the jump). Give \
+             its pressure as a ramp, or connect it by a tube.",
             jump.name,
             quantity(first, "s", 3),
         )))

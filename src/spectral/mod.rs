@@ -150,8 +150,8 @@ pub enum SpectralError {
 impl fmt::Display for SpectralError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Singular { .. } => write!(f, "the linearised equations leave an unknown undetermined"),
-            Self::Package { status } => write!(f, "KLU cannot go on (status {status})"),
+            Self::Singular { .. } => write!(f, "the linearised equations do not determine an unknown"),
+            Self::Package { status } => write!(f, "KLU failed (status {status})"),
             Self::Slow { converged, restarts } => {
                 write!(
                     f,
@@ -160,7 +160,7 @@ impl fmt::Display for SpectralError {
                     counted(*restarts as u64, "restart")
                 )
             }
-            Self::NotFinite => write!(f, "the linearised equations are not finite"),
+            Self::NotFinite => write!(f, "the linearised equations have entries that are not finite"),
             Self::Interrupted => f.write_str(INTERRUPTED),
         }
     }

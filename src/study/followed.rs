@@ -46,7 +46,7 @@ impl<'a> Followed<'a> {
             return Ok(self.rows);
         }
         let Summary { status, reason, .. } = outcome.summary;
-        let reason = reason.unwrap_or_else(|| "the run ended before the data".into());
+        let reason = reason.unwrap_or_else(|| "the run ended before the last measurement".into());
         Err(match outcome.fault {
             Some(fault) => Error::Solver(Box::new(fault)),
             None if status == Status::Stopped => Error::Interrupted(reason),
@@ -57,7 +57,7 @@ impl<'a> Followed<'a> {
 
 impl Recorder for Followed<'_> {
     fn begin(&mut self, header: &Header) -> Result<()> {
-        let missing = |name: &str| Error::Usage(format!("the run has no {name} with these numbers"));
+        let missing = |name: &str| Error::Usage(format!("the run has no {name} at these values"));
         for name in self.names {
             let place = header.columns.iter().position(|column| column.name == *name);
             self.places.push(place.ok_or_else(|| missing(name))?);
@@ -94,7 +94,7 @@ impl Recorder for Followed<'_> {
         Ok(match ((self.stop)(), self.rows.len() < self.count) {
             (true, _) => Control::Stop("interrupted".into()),
             (_, true) => Control::Continue,
-            (_, false) => Control::Stop("all instants of the data are passed".into()),
+            (_, false) => Control::Stop("all measurement times are simulated".into()),
         })
     }
 }

@@ -122,7 +122,7 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
     });
     if !whole {
         unknown.push(format!(
-            "poles beyond the {POLES} lowest pairs in the band, beside which peaks may be missed"
+            "poles beyond the {POLES} lowest pairs in the band. Peaks near them may be missing"
         ));
     }
     let (frequencies, values) = sample(&response, request, &poles)?;
@@ -149,7 +149,7 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
                 }
             }
             Err(interrupted @ Error::Interrupted(_)) => return Err(interrupted),
-            Err(fault) => unknown.push(format!("errors by the mesh: {fault}")),
+            Err(fault) => unknown.push(format!("errors due to the mesh: {fault}")),
         }
     }
     if unknown.iter().any(|why| why.starts_with("errors")) {

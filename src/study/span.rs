@@ -42,7 +42,7 @@ impl Span {
     /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = |what: String| Error::Usage(format!("--vary '{text}': {what}"));
-        let wanted = "a JSON pointer and two bounds are wanted, such as /fluid/viscosity_pa_s=1e-4:1e-2";
+        let wanted = "expected a JSON pointer and two bounds, such as /fluid/viscosity_pa_s=1e-4:1e-2";
         let (pointer, bounds) = text.split_once('=').ok_or_else(|| wrong(wanted.into()))?;
         check_pointer(pointer).map_err(wrong)?;
         if let Some(said) = amounts::rewritten(OPTION, pointer, bounds) {
@@ -50,7 +50,7 @@ impl Span {
         }
         if bounds.contains(',') {
             let what = format!(
-                "POINTER=LOW:HIGH, two bounds and a colon between them: {pointer}={}",
+                "expected POINTER=LOW:HIGH with a colon between the bounds: {pointer}={}",
                 bounds.replacen(',', ":", 1)
             );
             return Err(wrong(what));
@@ -61,7 +61,7 @@ impl Span {
                 low,
                 high,
             }),
-            [low, high] => Err(wrong(format!("{low} is not below {high}; POINTER=LOW:HIGH"))),
+            [low, high] => Err(wrong(format!("{low} is not below {high}. Use POINTER=LOW:HIGH"))),
             _ => Err(wrong(wanted.into())),
         }
     }
@@ -131,7 +131,7 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
             .find(|other| is_below(pointer, other) || is_below(other, pointer))
         {
             return Err(Error::Usage(format!(
-                "{pointer} and {other} would be set at once; leave one of them out"
+                "{pointer} and {other} set the same number. Leave out one of them"
             )));
         }
     }
@@ -181,7 +181,10 @@ pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) ->
 pub fn places(spans: &[Span], begin: &[f64], count: usize) -> Result<Vec<Vec<f64>>> {
     let count = count.max(1);
     if count > 1 && spans.len() > sobol::MOST {
-        let what = format!("--starts: several are for {} numbers at most", sobol::MOST);
+        let what = format!(
+            "--starts: several starts are possible for at most {} numbers",
+            sobol::MOST
+        );
         return Err(Error::Usage(what));
     }
     let own = spans.iter().zip(begin).map(|(span, value)| span.place(*value));

@@ -29,7 +29,7 @@ impl Context {
         if (major as u32, minor as u32) != built {
             let (one, other) = built;
             return Err(format!(
-                "the program was built for SUNDIALS {one}.{other} and has loaded {major}.{minor}.{patch}"
+                "the program was built for SUNDIALS {one}.{other}, but loaded {major}.{minor}.{patch}"
             ));
         }
         let mut context = ptr::null_mut();

@@ -75,7 +75,7 @@ impl<D: Dae> Ida<D> {
 pub(super) fn meaning(code: i32) -> &'static str {
     match code {
         s::IDA_TOO_MUCH_WORK => "too many steps were taken",
-        s::IDA_TOO_MUCH_ACC => "the tolerances ask for more than double precision can give",
+        s::IDA_TOO_MUCH_ACC => "the tolerances are too small for double precision",
         s::IDA_ERR_FAIL => "the error test failed too often, or the step became too small",
         s::IDA_CONV_FAIL => "Newton's iteration failed too often, or the step became too small",
         s::IDA_LINIT_FAIL => "the linear solver could not be initialised",

@@ -85,7 +85,7 @@ impl fmt::Display for KinsolError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.what)?;
         match &self.worst {
-            Some(name) => write!(f, "; worst is {name}"),
+            Some(name) => write!(f, "; worst unknown: {name}"),
             None => Ok(()),
         }
     }
@@ -234,7 +234,12 @@ impl<D: Dae> Kinsol<D> {
             let name = self.dae().name(correction.1);
             return Err(KinsolError {
                 code,
-                what: format!("a correction of {:.1e} is left: {}", correction.0, meaning(code)),
+                what: format!(
+                    "the last correction is {:.1e} (limit {:.1e}): {}",
+                    correction.0,
+                    options.tolerance,
+                    meaning(code)
+                ),
                 worst: Some(name),
             });
         }
@@ -308,7 +313,7 @@ impl<D: Dae> Kinsol<D> {
         KinsolError {
             code,
             what: match (singular, recoverable) {
-                (Some(_), _) => "the matrix is singular: no equation is left to determine an unknown".into(),
+                (Some(_), _) => "the matrix is singular: no remaining equation determines an unknown".into(),
                 (None, Some(what)) => format!("{}: {what}", meaning(code)),
                 (None, None) => meaning(code).into(),
             },
@@ -321,10 +326,10 @@ impl<D: Dae> Kinsol<D> {
 fn meaning(code: i32) -> &'static str {
     match code {
         s::KIN_SUCCESS | s::KIN_INITIAL_GUESS_OK | s::KIN_STEP_LT_STPTOL => "Newton's iteration has stopped",
-        s::KIN_LINESEARCH_NONCONV => "no step along Newton's direction makes the residual smaller",
+        s::KIN_LINESEARCH_NONCONV => "no step along Newton's direction reduces the residual",
         s::KIN_LINESEARCH_BCFAIL => "the line search found no acceptable step",
-        s::KIN_MAXITER_REACHED => "the number of Newton steps allowed is used up",
-        s::KIN_MXNEWT_5X_EXCEEDED => "five steps in a row were as long as allowed",
+        s::KIN_MAXITER_REACHED => "the maximum number of Newton steps is reached",
+        s::KIN_MXNEWT_5X_EXCEEDED => "five consecutive steps had the maximum length",
         s::KIN_LSETUP_FAIL => "the matrix could not be evaluated or factored",
         s::KIN_LSOLVE_FAIL | s::KIN_LINSOLV_NO_RECOVERY => "the linear system could not be solved",
         s::KIN_SYSFUNC_FAIL | s::KIN_FIRST_SYSFUNC_ERR | s::KIN_REPTD_SYSFUNC_ERR => {

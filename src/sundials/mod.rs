@@ -44,6 +44,6 @@ pub fn sundials_version() -> String {
 
 const _: () = assert!(
     sundials_sys::SUNDIALS_VERSION_MAJOR == 6,
-    "sundials-sys has found another SUNDIALS than 6"
+    "sundials-sys found a version of SUNDIALS other than 6"
 );
 const _: () = assert!(size_of::<sundials_sys::sunindextype>() == 8 && size_of::<sundials_sys::realtype>() == 8);

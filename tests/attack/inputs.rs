@@ -210,7 +210,11 @@ fn what_a_run_needs_is_told() {
         .output()
         .expect("it starts");
     assert_eq!(full.status.code(), Some(3), "{}", stderr(&full));
-    assert!(stderr(&full).contains("are free where they go"), "{}", stderr(&full));
+    assert!(
+        stderr(&full).contains("are free on the disk of the result folder"),
+        "{}",
+        stderr(&full)
+    );
 }
 
 /// Goal: rows that are not written are not counted: 1e8 outputs of which the window has a thousand are allowed, 1e8 rows are not.

@@ -146,7 +146,7 @@ fn a_starting_case_is_valid_for_editors_and_named_as_its_file() {
         let schema: Value = serde_json::from_str(&fs::read_to_string(beside).unwrap()).unwrap();
         assert!(jsonschema::is_valid(&schema, &written), "{kind}");
         let (code, _, err) = slcbeam(folder.path(), &["new", kind, &file]);
-        assert!(code == 2 && err.contains("not written over"), "{err}");
+        assert!(code == 2 && err.contains("exists and is not overwritten"), "{err}");
         assert_eq!(slcbeam(folder.path(), &["new", kind, &file, "--force"]).0, 0);
     }
 }
@@ -158,7 +158,7 @@ fn a_starting_section_has_coefficients() {
     for kind in ["honeycomb", "pneunet", "channels", "fibre"] {
         let file = format!("{kind}.json");
         let (code, out, _) = slcbeam(folder.path(), &["new", "section", &file, "--of", kind]);
-        assert_eq!((code, out.contains("makes no case")), (0, kind != "honeycomb"));
+        assert_eq!((code, out.contains("no case can contain it")), (0, kind != "honeycomb"));
         let (code, out, err) = slcbeam(folder.path(), &["coefficients", &file, "--json"]);
         assert_eq!(code, 0, "{kind}: {err}");
         let found: Value = serde_json::from_str(&out).unwrap();

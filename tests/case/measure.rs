@@ -291,7 +291,7 @@ fn the_command_prints_what_a_case_takes() {
     case::parse(CASE, Path::new("mine.json"), Path::new(""), &[set]).unwrap();
     let words = String::from_utf8(run(&[]).stdout).unwrap();
     assert!(
-        words.contains("not told apart") && words.contains("\"area_per_pressure_m2_per_pa\""),
+        words.contains("are not significantly different (p ") && words.contains("\"area_per_pressure_m2_per_pa\""),
         "{words}"
     );
     assert_eq!(run(&["--bladders", "0"]).status.code(), Some(2));
@@ -307,7 +307,7 @@ fn what_no_case_can_have_is_refused() {
     let of = |points| measure(Experiment::PressureVolume, points, &case(), Options::default());
     let x = [-1e4, 0.0, 1e4, 2e4];
     let falling = of(points(&x, &[8e-7, 1e-8, -8.1e-7, -1.6e-6])).unwrap_err();
-    assert!(falling.to_string().contains("is a sign turned"), "{falling}");
+    assert!(falling.to_string().contains("Check signs and units"), "{falling}");
     assert!(
         of(points(&x, &[-1e300, 1e297, 1e300, 2e300])).is_err(),
         "squares overflow"

@@ -211,7 +211,7 @@ fn inherited_coefficients_stand_beside_those_of_a_cell() {
     // as wide as the pitch: no wall is left between neighbours
     let none = warnings(&little(&["/bladders/width_m=0.01"])).join("");
     assert!(
-        none.contains("gives nothing to compare with: /bladders/upper: reaches 0.005 m"),
+        none.contains("is not available for comparison: /bladders/upper: reaches 0.005 m"),
         "{none}"
     );
 }

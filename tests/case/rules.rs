@@ -218,7 +218,7 @@ fn ends_have_one_of_each_pair() {
         tip("\"u1_m\": 0, \"moment_n_m\": 1, \"force_z_n\": 0, \"follower_normal_n\": 1"),
         "/ends/tip/conditions/follower_normal_n",
         "\"follower_normal_n\"",
-        "acts on an end that u1_m holds",
+        "acts on an end whose motion u1_m prescribes",
     );
     let clamped = one(&[("\"tip\": \"free\"", "\"tip\": {\"clamped\": {\"force_x_n\": 1}}")]);
     assert_fault(clamped, "/ends/tip/clamped/force_x_n", "\"force_x_n\"", "unknown key");
@@ -284,7 +284,7 @@ fn what_belongs_together() {
         one(&[("\"name\": \"wiring-2\"", "\"name\": \"../x\"")]),
         "/name",
         "\"../x\"",
-        "that of a folder",
+        "a name that a folder cannot have",
     );
 }
 

@@ -95,7 +95,7 @@ fn tables_from_files_are_in_the_units_of_their_headings() {
         (
             pump,
             "t in ms,p in mPa\n0,0\n1,1\n",
-            "the unit mPa at the end of p in mPa is not known; for pressure_pa there are Pa, kPa",
+            "the unit mPa at the end of p in mPa is not known; units of pressure_pa are Pa, kPa",
             "",
         ),
         (valve, "t_s,opening_mm\n0,0\n1,1\n", "but opening is in no unit", ""),
@@ -109,7 +109,7 @@ fn tables_from_files_are_in_the_units_of_their_headings() {
             pump,
             "t_s;p_kpa\n0;0\n0,5;1,5\n",
             "line 3: \"0,5\" is not a number",
-            "decimals stand behind a point",
+            "write decimals with a point",
         ),
     ] {
         let Error::Case(fault) = read(at, text, "").expect_err(text) else {

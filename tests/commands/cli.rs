@@ -665,7 +665,7 @@ fn the_result_of_another_case_file_is_not_replaced() {
     assert_eq!(run(&there, &["b.json"]), well);
     let (code, said) = run(&there, &["a.json", "--out", "out/two-bladders"]);
     assert!(
-        code == 0 && said.contains("out/two-bladders held the result of b.json"),
+        code == 0 && said.contains("out/two-bladders contained the result of b.json"),
         "{code} {said}"
     );
     assert_eq!(

@@ -175,7 +175,7 @@ fn other_ends_and_short_histories_are_told() {
     let found = compare::compare(&one, &other);
     assert_eq!(found.remarks.len(), 1, "{:?}", found.remarks);
     assert!(
-        found.remarks[0].contains("short ends at t = 0.03 s") && found.remarks[0].ends_with("are of other instants"),
+        found.remarks[0].contains("short ends at t = 0.03 s") && found.remarks[0].ends_with("refer to different times"),
         "{:?}",
         found.remarks
     );
@@ -262,10 +262,10 @@ fn several_are_compared_with_one() {
         (&"weak".into(), 2)
     );
     for (more, words) in [
-        (&["--with", "other"][..], "it is none of the folders"),
-        (&["--out", "picture.svg"], "a picture is of two"),
+        (&["--with", "other"][..], "it is not one of the compared folders"),
+        (&["--out", "picture.svg"], "a picture shows two results only"),
         (&["--out", "page.html"], "name the folder, such as page"),
-        (&["--out", "usual"], "it holds a result"),
+        (&["--out", "usual"], "contains a result whose page would be overwritten"),
         (
             &["--match", "a=tip_u1"],
             "one result folder and one file of data, not 3",

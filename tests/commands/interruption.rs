@@ -321,7 +321,7 @@ fn a_disk_that_is_full_while_fields_are_packed_is_told_in_one_sentence() {
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(
-        output.status.code() == Some(5) && told.contains("a symbolic link to what is not there"),
+        output.status.code() == Some(5) && told.contains("a symbolic link whose target does not exist"),
         "{told}"
     );
 }

@@ -145,7 +145,7 @@ fn a_budget_is_kept_and_what_is_left_out_has_a_reason() {
 fn a_budget_too_small_for_anything_is_no_failure() {
     let found = studied(DRY, plan(&[1e-3], &[2], &[2], Budget::Steps(10)));
     assert!(found.measure().is_none() && found.front.is_empty());
-    assert_eq!(files::sentence(&found), "Nothing can be said: no run finished.");
+    assert_eq!(files::sentence(&found), "No accuracy is known: no run finished.");
     assert!(files::picture(&found).is_none());
 }
 

@@ -202,7 +202,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["run", CASE, "--uncertain", "/beam/young_modulus_pa=1e6,2e6"],
             2,
-            "a distribution is wanted",
+            "expected a distribution",
         ),
         (
             vec!["run", CASE, "--uncertain", "/beam/young_modulus_pa"],
@@ -217,7 +217,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["run", CASE, "--uncertain", negative],
             3,
-            "so that the distribution reaches where the model does not",
+            "the distribution extends beyond the range of the model",
         ),
         // the option that was typed is pointed at
         (
@@ -238,7 +238,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["run", CASE, "--uncertain", MODULUS, "--accuracy", "0.01"],
             2,
-            "neither --accuracy nor --resume",
+            "cannot be combined with --accuracy or --resume",
         ),
         (vec!["run", CASE, "--samples", "64"], 2, "--uncertain"),
         (
@@ -267,7 +267,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["compare", CASE, "--uncertain", MODULUS],
             2,
-            "periodic and floquet, not with compare",
+            "periodic and floquet, not of compare",
         ),
         (
             vec![
@@ -279,7 +279,7 @@ fn what_makes_no_sense_is_refused() {
                 "/beam/length_m=1:2:3",
             ],
             2,
-            "not with --sweep",
+            "not to --sweep",
         ),
     ] {
         let said = say(&[&arguments[..], &["--out", &out]].concat());

@@ -168,7 +168,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │ warning     warning number 3 that goes on for quite a    │
     │             few words                                    │
     │             and 2 more in summary.json; slcbeam explain  │
-    │             says more of each number                     │
+    │             describes each number                        │
     │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
     │             largest: u₁ 123 µm · u₃ 1.25 mm              │
     │ pressure    largest in a bladder: 9.01 kPa               │
@@ -305,7 +305,10 @@ fn messages_and_keys_are_explained() {
         ("drained", ["(word): bladders whose pressure", "drained"]),
         ("Probe", ["/probes: ", "Probe/at"]),
         ("CheckValve", ["Tube/check_valve", "Leakage conductance"]),
-        ("dashpot", ["in whose meanings it stands", "damping_x_n_s_m"]),
+        (
+            "dashpot",
+            ["keys with this word in their descriptions", "damping_x_n_s_m"],
+        ),
     ] {
         let (code, said, err) = slcbeam(here, &["explain", asked]);
         assert!(

@@ -114,7 +114,12 @@ fn what_cannot_be_is_refused() {
     let at = r#"{"name": "tank", "at": {"junction": "tank"}"#;
     let no_way_out = FINGER.replace(&format!("{at}, \"pressure_pa\": 0"), &format!("{at}, \"volume_m3\": 0"));
     let slowly = r#"/network/ports/0/volume_m3={"ramp": {"from": 0, "to": 0.01, "start_s": 0, "duration_s": 4, "shape": "smooth"}}"#;
-    refused(&no_way_out, slowly, "/network/ports/0/volume_m3", "let into bladders");
+    refused(
+        &no_way_out,
+        slowly,
+        "/network/ports/0/volume_m3",
+        "injected into bladders",
+    );
     // a large accumulator has room for it
     let roomy = "/network/accumulators/0/kind/elastic/compliance_m3_pa=2e-8";
     let sets = [slowly.to_owned(), roomy.to_owned()];
@@ -124,16 +129,21 @@ fn what_cannot_be_is_refused() {
         PUMP,
         turned,
         "/network/tubes/0/check_valve/reverse_conductance_m3_s_pa",
-        "leaks more",
+        "larger reverse than forward conductance",
     );
     let in_bridge = "/network/turbines/0/rectifier/check_valves/reverse_conductance_m3_s_pa";
-    refused(TOUR, &format!("{in_bridge}=1e-7"), in_bridge, "leaks more");
+    refused(
+        TOUR,
+        &format!("{in_bridge}=1e-7"),
+        in_bridge,
+        "larger reverse than forward conductance",
+    );
     let vacuum = "/network/accumulators/0/start_pressure_pa=-2e5";
     refused(PUMP, vacuum, "/network/accumulators/0/start_pressure_pa", "vacuum");
     for text in [PUMP, FINGER] {
         let text = text.replace("\"time\":", "\"effects\": \"auto\", \"time\":");
         let lumped = "/effects={\"network_pressure_differences\": \"off\"}";
-        refused(&text, lumped, "/effects", "needs them");
+        refused(&text, lumped, "/effects", "needs pressure differences");
     }
 }
 

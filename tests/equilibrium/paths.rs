@@ -138,7 +138,10 @@ fn a_path_that_turns_back_beyond_the_range_ends() {
     let path = path_of(&case, &Options::at(4.0));
     let fault = path.fault.as_ref().expect("a fault");
     assert!(
-        fault.what.contains("turns back at 0.8") && fault.what.contains("section has left at"),
+        fault.what.contains("turns back at 0.8")
+            && fault
+                .what
+                .contains("section has left the range of its strain energy at"),
         "{}",
         fault.what
     );

@@ -64,7 +64,7 @@ fn what_a_port_had_filled_stays_behind_its_valve() {
     let warning = path.warnings().join("\n");
     let resolved = at.resolved(&case).expect("stages");
     assert!(
-        warning.starts_with("W030 fluid is kept behind /network/tubes/0/opening, shut since t = 2.1 s"),
+        warning.starts_with("W030 fluid is trapped behind /network/tubes/0/opening (shut since t = 2.1 s)"),
         "{warning}"
     );
     assert!(
@@ -135,7 +135,7 @@ fn a_start_in_equilibrium_has_shut_valves_too() {
         assert!((rests / stays - 1.0).abs() < 1e-6, "{rests} {stays}");
         let warning = path_of(&case, &options).trapped.expect("a warning");
         assert!(
-            warning.contains("shut since a start in equilibrium with it open under the loads at t = -3 s"),
+            warning.contains("(open in the start equilibrium under the loads at t = -3 s, and shut since)"),
             "{warning}"
         );
         assert!(!warning.contains("still flowing"), "{warning}");

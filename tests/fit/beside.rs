@@ -66,13 +66,13 @@ fn norms_are_those_of_what_was_added() {
     refused(
         &data,
         &["--match", "first=u1@0.25"],
-        "the run recorded nothing at 0.25 of the length",
+        "the run has no record at 0.25 of the length",
     );
     let late = file(&dir, "late.csv", "t_s,u_mm\n0,1\n3,1\n");
     refused(
         &late,
         &["--match", "u_mm=tip_u1"],
-        "3 s is not within the run, from 0 s to 0.002 s",
+        "3 s is outside the run (0 s to 0.002 s)",
     );
     refused(&late, &["--match", "u_mm=max_pressure"], "the column u_mm is in mm");
 }

@@ -48,18 +48,18 @@ fn data_and_options_that_do_not_go_together() {
     for (text, asked, code, words) in [
         ("", tip.to_vec(), 3, "no headings"),
         ("t_s,u_mm\n", tip.to_vec(), 3, "no rows below the headings"),
-        ("t_s,u_mm\n0.001,\n", tip.to_vec(), 2, "holds no number"),
+        ("t_s,u_mm\n0.001,\n", tip.to_vec(), 2, "contains no number"),
         (
             "t_s,u_mm\n0.001,much\n",
             tip.to_vec(),
             3,
-            "line 2, column u_mm: \"much\" is no finite number",
+            "line 2, column u_mm: \"much\" is not a finite number",
         ),
         (
             "t_s,u_mm\n0.001,1\n0.0005,2\n",
             tip.to_vec(),
             3,
-            "line 3, column t_s: 0.0005 s is not after 0.001 s",
+            "line 3, column t_s: 0.0005 s is not later than 0.001 s",
         ),
         (
             "t_s,u_mm\n0.001,1\n0.5,2\n",
@@ -78,7 +78,7 @@ fn data_and_options_that_do_not_go_together() {
             "t_s,u_mm\n0.001,1\n",
             tip.to_vec(),
             2,
-            "1 measured value cannot tell 1 number",
+            "1 measured value cannot determine 1 number",
         ),
         (good, vary.to_vec(), 2, "--match COLUMN=QUANTITY"),
         (good, vec!["--match", "u_mm=tip_u1"], 2, "--vary POINTER=LOW:HIGH"),
@@ -111,13 +111,13 @@ fn data_and_options_that_do_not_go_together() {
             good,
             [&vary[..], &["--match", "p_kpa=pressure@bladder 7"]].concat(),
             2,
-            "bladders are 1 to 1 of the upper row",
+            "The upper row has bladders 1 to 1",
         ),
         (
             good,
             [&vary[..], &["--match", "u_mm=u1@1.5"]].concat(),
             2,
-            "1.5 is no share of the length",
+            "1.5 is not a share of the length",
         ),
         (
             good,
@@ -129,7 +129,7 @@ fn data_and_options_that_do_not_go_together() {
             good,
             [&vary[..], &["--match", "u_mm"]].concat(),
             2,
-            "COLUMN=QUANTITY[@PLACE] is wanted",
+            "expected COLUMN=QUANTITY[@PLACE]",
         ),
         (
             good,
@@ -137,7 +137,7 @@ fn data_and_options_that_do_not_go_together() {
             2,
             "the column u_mm is matched twice",
         ),
-        (good, with(&["--vary", VARY]), 2, "would be set at once"),
+        (good, with(&["--vary", VARY]), 2, "set the same number"),
         (good, with(&["--time", "when"]), 2, "--time: "),
         (
             good,
@@ -145,7 +145,12 @@ fn data_and_options_that_do_not_go_together() {
             2,
             "the column is not matched to anything",
         ),
-        (good, with(&["--noise", "u_mm=0"]), 2, "a standard deviation above 0"),
+        (
+            good,
+            with(&["--noise", "u_mm=0"]),
+            2,
+            "the standard deviation must be above 0",
+        ),
         (
             good,
             with(&["--command", "equilibrium"]),
@@ -175,7 +180,7 @@ fn data_and_options_that_do_not_go_together() {
             "t_s,u_in,u_mm\n0.0005,1,1\n0.001,1,1\n",
             [&vary[..], &["--match", "u_in=tip_u1"]].concat(),
             2,
-            "the unit in at the end of u_in is not known; for tip_u1 there are m, cm, mm, um",
+            "the unit in at the end of u_in is not known; units of tip_u1 are m, cm, mm, um",
         ),
         (
             "t_s,a_degrees\n0.0005,1\n0.001,1\n",
@@ -199,7 +204,7 @@ fn data_and_options_that_do_not_go_together() {
             "l_mm,u_mm\n1,1\n2,1\n3,1\n",
             with(&["--drive", "l_mm=/bladders/area_per_pressure_m2_per_pa"]),
             2,
-            "the column l_mm is in mm, which is not known of area_per_pressure_m2_per_pa",
+            "the column l_mm has the unit mm, but the unit of area_per_pressure_m2_per_pa is unknown",
         ),
         (
             good,
@@ -211,7 +216,7 @@ fn data_and_options_that_do_not_go_together() {
             good,
             vec!["--vary", "/tubes/permeability_m4=1e-13,1e-11", "--match", "u_mm=tip_u1"],
             2,
-            "two bounds and a colon between them: /tubes/permeability_m4=1e-13:1e-11",
+            "POINTER=LOW:HIGH with a colon between the bounds: /tubes/permeability_m4=1e-13:1e-11",
         ),
         (
             good,
@@ -249,7 +254,7 @@ fn absurd_values_are_faults_of_their_rows() {
     let text = "t_s,u_mm\n0.0005,1\n0.001,1e300\n0.0015,1\n";
     let (code, told) = refused(text, &["--vary", VARY, "--match", "u_mm=tip_u1"]);
     assert!(
-        code == 3 && told.contains("line 3, column u_mm: 1e300 is no measured value"),
+        code == 3 && told.contains("line 3, column u_mm: 1e300 is too large for a measured value"),
         "{code}: {told}"
     );
 }

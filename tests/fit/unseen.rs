@@ -55,7 +55,7 @@ fn a_number_that_nothing_depends_on() {
     let found = fitted(&["/beam/young_modulus_pa=3e5:1e7", "/beam/density_kg_m3=500:2000"], &[]);
     assert_eq!(
         unseen(&found),
-        ["the data do not see /beam/density_kg_m3: nothing measured depends on it"]
+        ["the data do not determine /beam/density_kg_m3: no measured quantity depends on it"]
     );
     assert!(
         found["parameters"][1]["standard_error"].is_null() && off(&found, 0, 2e6) < 3.0,
@@ -72,7 +72,7 @@ fn two_numbers_of_which_the_product_is_seen() {
     );
     assert_eq!(
         unseen(&found),
-        ["of /beam/young_modulus_pa and /beam/bending_stiffness_factor the data see the product alone"]
+        ["the data determine only the product of /beam/young_modulus_pa and /beam/bending_stiffness_factor"]
     );
     let value = |k: usize| number(&found["parameters"][k]["value"]);
     assert!((value(0) * value(1) / 1.2e6 - 1.0).abs() < 0.02, "{found:#}");

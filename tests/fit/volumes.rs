@@ -95,7 +95,7 @@ fn a_fit_that_is_ended_keeps_the_best_so_far() {
     let whole = after(usize::MAX).expect("a fit").fit;
     assert!(!whole.interrupted && whole.found && early.columns[0].left.rms >= whole.columns[0].left.rms);
     let nothing = after(0).expect_err("nothing").to_string();
-    assert!(nothing.contains("nothing is written"), "{nothing}");
+    assert!(nothing.contains("No results are written"), "{nothing}");
 }
 
 /// Goal: a fit that is interrupted after its search, while the finer mesh is simulated, says so in its result and has the minimum.

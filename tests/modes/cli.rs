@@ -27,7 +27,7 @@ fn a_folder_is_filled_and_a_table_printed() {
         "Hz",
         "undrained",
         "none of the",
-        "coupling is passive, no loads",
+        "coupling is passive: no cycle",
         out.to_str().unwrap(),
     ] {
         assert!(said.contains(word), "{word}: {said}");
@@ -212,9 +212,9 @@ fn bad_input_is_told() {
     for (arguments, code, words) in [
         (&["--count", "0"][..], 2, "--count 0"),
         (&["--count", "1001"], 2, "from 1 to 1000"),
-        (&["--near", "-1"], 2, "--near -1: a frequency [Hz] is 0 or more"),
-        (&["--near", "nan"], 2, "a number of Hz is wanted"),
-        (&["--at", "-0.5"], 2, "--at -0.5: a time [s] is 0 or more"),
+        (&["--near", "-1"], 2, "--near -1: expected a frequency of 0 Hz or more"),
+        (&["--near", "nan"], 2, "expected a frequency in Hz"),
+        (&["--at", "-0.5"], 2, "--at -0.5: expected a time of 0 s or more"),
         (&["--set", "/beam/length_m=-1"], 3, "length"),
     ] {
         let said = modes(&[&[SMALL, "--out", "/nowhere/to/write"], arguments].concat());

@@ -76,7 +76,7 @@ fn a_figure_that_depends_on_nothing_is_told() {
     let warnings = found["warnings"].as_array().expect("warnings");
     let told = |what: &Value| {
         what.as_str()
-            .is_some_and(|text| text.contains("does not depend on the numbers that were sought"))
+            .is_some_and(|text| text.contains("does not depend on the optimized numbers"))
     };
     assert!(warnings.iter().any(told), "{found}");
 }

@@ -117,7 +117,7 @@ fn a_mode_that_is_another_at_the_best_is_told() {
     };
     let crossed = told("0.06");
     assert!(
-        crossed.contains("W034 mode_2 is another mode at the best") && crossed.contains("is mode_3 there"),
+        crossed.contains("W034 mode_2 at the optimum is another mode") && crossed.contains("is mode_3 there"),
         "{crossed}"
     );
     assert!(!told("0.02").contains("W034"));

@@ -13,7 +13,10 @@ const HABITS: [&str; 4] = ["tell", "tells", "told", "says"];
 /// Beginnings of a comment that does not name its subject.
 const BEGINNINGS: [&str; 4] = ["What ", "Whether ", "How ", "Where "];
 /// Lines of the source that contain a habit for a reason: file and part of the line.
-const EXCEPTIONS: &[(&str, &str)] = &[];
+const EXCEPTIONS: &[(&str, &str)] = &[
+    // a key of `sense.json`
+    ("study/sense/sensed.rs", "rename = \"told\""),
+];
 
 /// Lines of prose of a page with their numbers; an empty line in place of code and tables.
 fn prose(page: &str) -> Vec<(usize, &str)> {
@@ -115,7 +118,8 @@ fn pages_are_plain() {
 #[test]
 fn the_source_is_plain() {
     let mut files = vec![];
-    ["src", "crates"].map(|folder| sources(Path::new(folder), &mut files));
+    sources(Path::new("src"), &mut files);
+    sources(Path::new("crates"), &mut files);
     files.sort();
     let mut found = vec![];
     for path in files {

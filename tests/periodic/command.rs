@@ -292,10 +292,10 @@ fn what_makes_no_sense_is_a_usage_error() {
 fn periods_that_cannot_be_are_refused() {
     let dir = TempDir::new().unwrap();
     for (more, words) in [
-        (&["--periods", "0"][..], "--periods 0: from 1 to 64"),
+        (&["--periods", "0"][..], "--periods 0: must be from 1 to 64"),
         (
             &["--periods", "2", "--sweep", "/network/permeability_factor=0.1:1:2"],
-            "--periods goes with one cycle",
+            "--periods applies to one cycle",
         ),
     ] {
         let said = say(&[&["periodic", "cases/valves-open.json"], more].concat(), dir.path());

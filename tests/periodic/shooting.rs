@@ -292,7 +292,7 @@ fn a_cycle_has_what_valves_have_trapped() {
     let middle = 0.5 * (least + most);
     assert!((middle / 3000.0 - 1.0).abs() < 0.02, "{least} {most}");
     assert!(
-        warnings.contains("W030 fluid is kept behind /network/tubes/0/opening, shut since t = 2 s"),
+        warnings.contains("W030 fluid is trapped behind /network/tubes/0/opening (shut since t = 2 s)"),
         "{warnings}"
     );
 }

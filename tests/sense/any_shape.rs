@@ -285,17 +285,17 @@ fn bands_hold_the_pad_of_the_tour() {
         (
             &["--load", "profile:6", "--smoothing", "off"][..],
             "assumed_smoothness",
-            "only loads that are straight",
+            "only loads that are linear",
         ),
         (
             &["--load", "profile:6", "--smoothing", "discrepancy"],
             "assumed_smoothness",
-            "only loads that are straight",
+            "only loads that are linear",
         ),
         (
             &["--load", "point:0.7"],
             "assumed_form",
-            "act where and as they are looked for",
+            "loads of the given places and forms",
         ),
     ] {
         let asked = [&[&*path, "--noise", "20"], more].concat();

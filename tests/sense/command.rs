@@ -105,7 +105,7 @@ fn loads_come_back_out_of_their_pressures() {
     assert!(page.contains("Loads from pressures") && dir.path().join("out/sense.svg").exists());
     let again = sense(&dir, &[&path, "--noise", "1"]);
     assert!(
-        again.out.contains("tip_force is told") && again.out.contains("files in"),
+        again.out.contains("tip_force is determined") && again.out.contains("files in"),
         "{}",
         again.out
     );
@@ -132,7 +132,11 @@ fn what_cannot_be_told_apart_is_said() {
         "{told}: {truth}"
     );
     let said = sense(&dir, &more);
-    for words in ["told together: tip_force + ", "leaves no trace: ", "not told"] {
+    for words in [
+        "determined only together: tip_force + ",
+        "not observable: ",
+        "not determined",
+    ] {
         assert!(said.out.contains(words), "{}", said.out);
     }
 }
@@ -149,32 +153,37 @@ fn what_is_wrong_is_refused() {
         ("pressure_11_pa\n1\n", &[], 2, "there is no bladder 11"),
         ("pressure_1_mm\n1\n", &[], 2, "is in mm"),
         ("pressure_1_pa\n", &[], 3, "no rows"),
-        ("pressure_1_pa\nmuch\n", &[], 3, "is no finite number"),
-        ("tip_u1_m\n1\n", &[], 2, "no column holds the pressure of a bladder"),
-        (one, &[], 2, "nothing is left to tell the noise by"),
+        ("pressure_1_pa\nmuch\n", &[], 3, "is not a finite number"),
+        ("tip_u1_m\n1\n", &[], 2, "no column contains the pressure of a bladder"),
+        (one, &[], 2, "determine only the loads. Give the deviation of the noise"),
         (one, &["--noise", "0"], 2, "from 1e-6 to 1e9"),
         (one, &["--noise", "1e-300"], 2, "from 1e-6 to 1e9"),
-        (one, &["--load", "profile:2"], 2, "nothing is left to tell the noise by"),
+        (
+            one,
+            &["--load", "profile:2"],
+            2,
+            "determine only the loads. Give the deviation of the noise",
+        ),
         (
             one,
             &["--load", "profile:3", "--smoothing", "discrepancy"],
             2,
-            "which must be known",
+            "needs the noise of the pressures",
         ),
         (
             "pressure_1.5_kpa\n1\n",
             &[],
             2,
-            "not understood as the pressure of a bladder",
+            "unknown name for the pressure of a bladder",
         ),
         (one, &["--load", "tip-forse"], 2, "nearest is tip-force"),
         (one, &["--load", "uniform", "--load", "uniform"], 2, "asked for twice"),
-        (one, &["--load", "tip-force", "--set", clamped], 2, "the tip is held"),
+        (one, &["--load", "tip-force", "--set", clamped], 2, "the tip is fixed"),
         (
             one,
             &["--load", "tip-force", "--noise", "1", "--smoothing", "likelihood"],
             2,
-            "only a profile, or a load over time, is smooth",
+            "smoothing applies to a profile or to a load over time",
         ),
         (one, &["--smoothing", "5"], 2, "--load profile:10"),
         (one, &["--smoothing", "much"], 2, "likelihood, discrepancy, off"),
@@ -188,7 +197,7 @@ fn what_is_wrong_is_refused() {
             "pressure_1_pa,pressure_-1_pa\n-600,-600\n",
             &["--noise", "5", "--set", pairs],
             2,
-            "joined with bladders that give up as much volume",
+            "joined with bladders whose volume changes by the opposite amount",
         ),
     ];
     for (text, more, code, words) in cases {
@@ -200,8 +209,8 @@ fn what_is_wrong_is_refused() {
     }
     // without bladders; with bladders that have the pressure of ports at rest, whatever acts
     for (case, words) in [
-        ("cases/bend-dry.json", "no bladders with fluid"),
-        ("cases/tour-wiring.json", "its pressure is that of a port"),
+        ("cases/bend-dry.json", "no fluid-filled bladders"),
+        ("cases/tour-wiring.json", "is at the pressure of a port"),
     ] {
         let output = assert_cmd::Command::cargo_bin("slcbeam")
             .unwrap()
@@ -220,10 +229,14 @@ fn many_places_that_leave_no_trace_are_one_line() {
     let dir = tempfile::tempdir().unwrap();
     let said = sense(&dir, &["--load", "profile:60"]);
     assert_eq!(said.code, 0, "{}", said.err);
-    let blind: Vec<&str> = said.out.lines().filter(|line| line.contains("no trace")).collect();
+    let blind: Vec<&str> = said
+        .out
+        .lines()
+        .filter(|line| line.contains("not observable"))
+        .collect();
     assert_eq!(blind.len(), 1, "{}", said.out);
     assert!(
-        blind[0].contains("leave no trace: ") && blind[0].contains("places of a profile, profile_"),
+        blind[0].contains("not observable: ") && blind[0].contains("places of a profile, profile_"),
         "{}",
         blind[0]
     );

@@ -33,7 +33,7 @@ fn pressures_that_no_load_explains_are_told() {
     let taken = open["warnings"][0].as_str().unwrap();
     assert!(
         taken.starts_with("W032 ")
-            && taken.contains("% of the pressures are not explained by tip-force, and taken for noise"),
+            && taken.contains("% of the pressures are not explained by tip-force, and count as noise"),
         "{taken}"
     );
     assert!(number(&open["noise"]["sd_pa"]) > 50.0);
@@ -78,7 +78,7 @@ fn pressures_that_no_load_explains_are_told() {
     assert_eq!(right["warnings"], serde_json::json!([]));
     let large = found(&dir, &[&path, "--load", "point:0.4", "--noise", "1"])["warnings"].to_string();
     assert!(
-        large.contains("W032 the pressures lie") && large.contains("look at its unit"),
+        large.contains("W032 the residual of the pressures") && large.contains("Check its unit"),
         "{large}"
     );
     assert_eq!(number(&right["noise"]["widened"]), 1.0);
@@ -90,8 +90,8 @@ fn pressures_that_no_load_explains_are_told() {
     let (before, after) = said.out.split_once("value ± half").expect("a table");
     assert!(
         before.contains("W032 the pressures do not fit point:0.7")
-            && before.contains("the numbers are no answer")
-            && before.contains("times what bends the beam by about its length")
+            && before.contains("Do not use these loads")
+            && before.contains("times those that bend the beam by about its length")
             && !after.contains("W032"),
         "{}",
         said.out

@@ -124,7 +124,7 @@ fn a_force_over_time_comes_back_out_of_its_pressures() {
         "5",
     ];
     let said = found(&dir, &few)["warnings"].to_string();
-    assert!(said.contains("neighbours in time go together"), "{said}");
+    assert!(said.contains("correlated in time"), "{said}");
 }
 
 /// Bands of 95 % hold the truth at a knot in 93 to 97 % of 400 trials, all knots together: loads drawn from what is known, whose weight is the one the
@@ -198,13 +198,13 @@ fn what_cannot_be_followed_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let rows = |last: &str| format!("t_s,pressure_1_pa\n0,1\n0.1,1\n0.15,1\n0.2,1\n{last},1\n");
     let cases: [(String, &[&str], &str); 8] = [
-        ("pressure_1_pa\n1\n1\n1\n1\n1\n".into(), &[], "have no instants"),
+        ("pressure_1_pa\n1\n1\n1\n1\n1\n".into(), &[], "have no times"),
         ("t_s,pressure_1_pa\n0,1\n0.1,2\n".into(), &[], "2 instants: too few"),
         (rows("0.7"), &[], "--set /time/end_s=0.7"),
         (
             rows("0.3"),
             &["--smoothing", "5"],
-            "a number is that of a profile at rest",
+            "a number applies to a profile at rest only",
         ),
         (rows("0.3"), &["--at", "0.2"], "cannot be used with"),
         (rows("0.3"), &["--load", "tip-force", "--knots", "6"], "at most 5 knots"),

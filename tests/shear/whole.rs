@@ -254,7 +254,7 @@ fn it_is_chosen_and_refused() {
     let refused = System::new(&parse(&published)).map(|_| ()).map_err(told).unwrap_err();
     assert_eq!(
         refused,
-        ["/effects/shear: shear is on, and the published form does not shear"]
+        ["/effects/shear: shear is on, but the published form has no shear"]
     );
     published["effects"] = json!("full");
     assert!(

@@ -39,7 +39,7 @@ pub enum Error {
     },
     /// No polynomial fits the energy at finite strain with sufficient accuracy.
     #[error(
-        "the cell's energy at finite strain has no polynomial with an error of at most 1 %: say \"law\": \"linear\""
+        "no polynomial fits the cell's energy at finite strain with an error of at most 1 %; use \"law\": \"linear\""
     )]
     Energy,
 }

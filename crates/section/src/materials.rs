@@ -228,7 +228,7 @@ impl TryFrom<Given> for Material {
         let named = given.preset.map(Preset::material);
         let number = |key: &str, own: Option<f64>, of: fn(&Material) -> f64| {
             own.or(named.as_ref().map(of))
-                .ok_or_else(|| format!("the key \"{key}\" is missing; a \"preset\" would have it"))
+                .ok_or_else(|| format!("the key \"{key}\" is missing; a \"preset\" supplies it"))
         };
         Ok(Self {
             young_modulus_pa: number("young_modulus_pa", given.young_modulus_pa, |m| m.young_modulus_pa)?,

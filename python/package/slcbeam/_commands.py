@@ -128,7 +128,7 @@ def check(case: CaseLike, **options: Any) -> Answer:
 
     >>> import slcbeam
     >>> slcbeam.check("bend-wet")["effects"]["shear"]
-    {'value': 'off', 'reason': 'the published form does not shear'}
+    {'value': 'off', 'reason': 'the published form has no shear'}
     """
     return _do("check", [case], writes=False, options=options)
 

@@ -33,7 +33,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 let fault = Violation::new(Code::Together, at, "an offset without a mass");
                 faults.push(fault.hint("give mass_kg, or leave it out"));
             } else if offset.abs() > far {
-                let what = format!("a mass centre {offset} m from its place");
+                let what = format!("a mass centre {offset} m from the attachment point");
                 let fault = Violation::new(Code::Implausible, at, what);
                 let fault = fault.allowed(format!("-{0} to {0} m, ten lengths of the beam", rounded(far)));
                 faults.push_beside(&[LENGTH], fault);
@@ -42,7 +42,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let inertia = attachment.rotary_inertia_kg_m2;
         if inertia > hardest && hardest > 0.0 {
             let what = format!(
-                "{} kg m^2 is more than a hundred beams have in a distance of ten lengths",
+                "{} kg m^2 is more than 100 beam masses at a distance of ten beam lengths have",
                 digits(inertia)
             );
             let fault = Violation::new(Code::Implausible, format!("{pointer}/rotary_inertia_kg_m2"), what);

@@ -100,7 +100,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
             Code::Geometry,
             "/mesh/segments",
             format!(
-                "{} for {} a row",
+                "{} for {} per row",
                 counted(segments as u64, "segment"),
                 counted(bladders.per_row as u64, "bladder")
             ),
@@ -164,7 +164,7 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
         faults.push(fault.hint("or leave the strain energy out: \"strain_energy\": null"));
     };
     if bladders.coupling != Coupling::Reciprocal {
-        let what = "a coupling that is not the reciprocal one";
+        let what = "a coupling that is not reciprocal";
         refuse("/bladders/coupling", what, "\"reciprocal\"");
     }
     if case.formulation != Formulation::Conservative {
@@ -177,7 +177,7 @@ pub(super) fn two_permeabilities(pointer: &str, faults: &mut Violations) {
     let fault = Violation::new(
         Code::Slopes,
         format!("{pointer}/cross_section"),
-        "a permeability and a cross-section to compute it from",
+        "both a permeability and a cross-section, which determines the permeability",
     );
     faults.push_at_key(fault.hint("keep \"permeability_m4\" or \"cross_section\""));
 }

@@ -32,7 +32,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let largest = BEYOND * suggested;
         if value > largest && largest.is_finite() {
             let what = format!(
-                "{} {unit} is {:.0e} times what the sizes suggest",
+                "{} {unit} is {:.0e} times the estimate from the sizes",
                 plain(value),
                 value / suggested
             );

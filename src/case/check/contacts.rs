@@ -21,7 +21,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         if contact.normal.iter().all(|x| *x == 0.0) {
             fault(
                 "normal",
-                "a normal without a direction",
+                "a normal of length zero",
                 "[1, 0] is a wall below the beam, [-1, 0] one above it",
             );
         }
@@ -29,27 +29,31 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             (Some(_), None, None) | (None, Some(_), Some(_)) => {}
             _ => fault(
                 "",
-                "a wall whose stiffness is not clear",
-                "give stiffness_pa for a wall all along the beam, or at and stiffness_n_m for one that touches it at a place",
+                "a wall without a unique stiffness",
+                "give stiffness_pa for a wall along the whole beam, or at and stiffness_n_m for contact at one place",
             ),
         }
         if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
             fault(
                 "friction_coefficient",
-                "friction without the velocity below which it lets go",
-                "give friction_velocity_m_s, a hundredth of the velocity with which the beam slides",
+                "friction without friction_velocity_m_s",
+                "give friction_velocity_m_s, about a hundredth of the sliding velocity",
             );
         }
         if contact.friction_coefficient == 0.0 && contact.friction_velocity_m_s.is_some() {
             fault(
                 "friction_velocity_m_s",
-                "a velocity of friction without friction",
+                "a friction velocity without friction",
                 "give friction_coefficient, or leave it out",
             );
         }
         if let Some(first) = known.insert(&contact.name, i) {
             let what = format!("a second contact \"{}\", the first is /contacts/{first}", contact.name);
-            fault("name", &what, "names tell columns of outputs apart");
+            fault(
+                "name",
+                &what,
+                "columns of outputs have these names: give each contact its own",
+            );
         }
     }
 }

@@ -48,7 +48,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
             pair[0], pair[1]
         );
         let hint = format!(
-            "add {} for a free end or {} for a held one, 0 for zero",
+            "add {} for a free end, or {} for a fixed or driven end; the value may be 0",
             pair[1], pair[0]
         );
         faults.push_at_key(
@@ -59,7 +59,7 @@ fn complete(name: &str, pointer: &str, given: &EndConditions, keys: &[&str], fau
     }
     for key in ["u1_m", "u3_m"].iter().filter(|key| keys.contains(key)) {
         if let Some(follower) = follower {
-            let what = format!("{follower} acts on an end that {key} holds");
+            let what = format!("{follower} acts on an end whose motion {key} prescribes");
             let fault = Violation::new(Code::Together, format!("{pointer}/{follower}"), what);
             faults.push_at_key(fault.hint(format!("remove {follower}, or give a force instead of {key}")));
         }

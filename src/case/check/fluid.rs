@@ -24,7 +24,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     if let Some(named) = fluid.preset.filter(|named| named.kind() != fluid.kind) {
         let word = |kind: FluidKind| if kind == FluidKind::Gas { "gas" } else { "liquid" };
         let (is, given) = (word(named.kind()), word(fluid.kind));
-        let what = format!("{} is a {is}, kind says {given}", named.name());
+        let what = format!("{} is a {is}, but kind is {given}", named.name());
         let fault = Violation::new(Code::Together, "/fluid/kind", what).allowed(format!("\"{is}\", or no kind"));
         let hint = "leave kind out, name another fluid, or give density_kg_m3 and viscosity_pa_s in place of preset";
         faults.push_at_key(fault.hint(hint));
@@ -38,12 +38,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         refuse(
             key,
             &format!("\"{key}\" of a gas"),
-            "it is that of a liquid: leave it out, or give kind \"liquid\"",
+            "only a liquid has it: leave it out, or give kind \"liquid\"",
         );
     }
     let presses = |key: &str| some_gas || (key == "ambient_pressure_pa" && cushioned);
     for (key, _) in of_gas.iter().filter(|(key, value)| !presses(key) && value.is_some()) {
-        let hint = "it is that of a gas: leave it out, give kind \"gas\", or a gas_fraction";
+        let hint = "only gas has it: leave it out, or give kind \"gas\" or a gas_fraction";
         refuse(key, &format!("\"{key}\" of a liquid without gas"), hint);
     }
     if some_gas {
@@ -59,23 +59,22 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
         let start = format!("{pointer}/start_pressure_pa");
         match one.kind {
             AccumulatorKind::Tank { .. } if !fluid.is_compressible() => {
-                let what = "a tank of fluid that is not compressed, which stores nothing";
+                let what = "a tank of incompressible fluid, which stores nothing";
                 let fault = Violation::new(Code::Together, format!("{pointer}/kind/tank"), what);
                 let hint = "give \"elastic\" or \"gas\" in its place, or bulk_modulus_pa or gas_fraction in /fluid, or kind \"gas\" there";
                 faults.push_at_key(fault.hint(hint));
             }
             AccumulatorKind::Elastic { volume_m3: 0.0, .. } if fluid.kind == FluidKind::Gas => {
-                let what = "an elastic vessel of gas that holds none at ambient pressure";
+                let what = "an elastic vessel of gas without a volume at ambient pressure";
                 let fault = Violation::new(Code::Together, format!("{pointer}/kind/elastic"), what);
-                faults.push_at_key(
-                    fault.hint("give its volume_m3: gas in it is compressed as well as its walls stretched"),
-                );
+                faults
+                    .push_at_key(fault.hint("give its volume_m3: pressure compresses the gas and stretches the walls"));
             }
             AccumulatorKind::Elastic {
                 compliance_m3_pa,
                 volume_m3,
             } if fluid.kind == FluidKind::Gas && volume_m3 + compliance_m3_pa * one.start_pressure_pa <= 0.0 => {
-                let what = format!("{} Pa, at which its walls leave no room", plain(one.start_pressure_pa));
+                let what = format!("{} Pa, at which the vessel has no volume", plain(one.start_pressure_pa));
                 let least = format!(
                     "above -{} Pa, -volume_m3/compliance_m3_pa",
                     plain(volume_m3 / compliance_m3_pa)
@@ -86,7 +85,7 @@ fn vessels(case: &Case, fluid: &Fluid, faults: &mut Violations) {
             }
             AccumulatorKind::Gas { .. } if fluid.kind == FluidKind::Gas && one.start_pressure_pa < 0.0 => {
                 let what = format!(
-                    "{} Pa, at which it holds less than nothing of the gas",
+                    "{} Pa, at which the vessel contains a negative amount of gas",
                     plain(one.start_pressure_pa)
                 );
                 faults.push(Violation::new(Code::Range, start, what).allowed("0 Pa or more"));
@@ -103,7 +102,7 @@ fn above_vacuum(fluid: &Fluid, pointer: String, lowest: f64, faults: &mut Violat
     if lowest <= -ambient {
         let what = format!("{} Pa, at or below absolute vacuum", plain(lowest));
         let fault = Violation::new(Code::Range, pointer, what).allowed(format!("above -{} Pa", plain(ambient)));
-        let hint = "pressures are those above ambient_pressure_pa, and gas fills what is left";
+        let hint = "pressures are relative to ambient_pressure_pa, and the absolute pressure of a gas is above 0";
         faults.push_beside(&["/fluid/ambient_pressure_pa"], fault.hint(hint));
     }
 }

@@ -73,12 +73,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     for (i, _) in case.loads.iter().enumerate().filter(|(_, load)| load.is_rest()) {
         if case.formulation == Formulation::Published {
             let pointer = format!("/loads/{i}/rest_curvature_1_m");
-            let fault = Violation::new(
-                Code::Together,
-                pointer,
-                "a beam that is curved at rest, in the published form",
+            let fault = Violation::new(Code::Together, pointer, "a rest curvature in the published formulation");
+            faults.push_at_key(
+                fault.hint("the published formulation applies to straight beams only: leave \"formulation\" out"),
             );
-            faults.push_at_key(fault.hint("the published form knows straight beams alone: leave \"formulation\" out"));
         }
     }
     for (pointer, profile) in profiles(case) {
@@ -207,7 +205,7 @@ fn part_faults(pointer: &str, signal: &Signal, end: f64, faults: &mut Violations
             let what = format!("a steepness of {} 1/s is a jump", plain(sigmoid.steepness_per_s));
             let fault = Violation::new(Code::Function, format!("{pointer}/sigmoid/steepness_per_s"), what);
             let fault = fault.allowed(format!("up to {} 1/s", plain(STEEPEST)));
-            faults.push(fault.hint("for a jump take a ramp of duration 0, which the integrator stops at"));
+            faults.push(fault.hint("for a jump use a ramp of duration 0, at which the integrator stops"));
         }
         Signal::Table(table) if !table.is_sound() => {
             let at = child(pointer, "table");
@@ -275,13 +273,13 @@ fn table_fault(pointer: &str, key: &str, jumps: Option<bool>, at: &[f64], values
             None => fault.allowed("strictly ascending order"),
         }
     } else if let Some(i) = at.windows(3).position(|w| w[0] == w[2]) {
-        let what = format!("{} s stands more than twice", at[i]);
+        let what = format!("the time {} s is given more than twice", at[i]);
         let fault = Violation::new(Code::Table, format!("{pointer}/{key}/{}", i + 2), what);
         fault.hint("for a jump write the time twice, with the values before and after it")
     } else if jumps == Some(true) && at.first() == at.last() {
-        let what = "a table that repeats and has no length in time";
+        let what = "a repeated table of duration zero";
         Violation::new(Code::Table, child(pointer, "repeat"), what)
-            .allowed("two times at least; the period is the time between the first and the last")
+            .allowed("at least two times; the period is the time from the first to the last")
     } else {
         Violation::new(Code::Table, pointer, "a table with numbers that are not finite")
     };

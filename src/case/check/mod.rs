@@ -70,7 +70,7 @@ pub fn check(case: &Case, broken: &[String], faults: &mut Violations) {
 fn name(case: &Case, faults: &mut Violations) {
     let good = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if case.name.is_empty() || case.name.starts_with('.') || !case.name.chars().all(good) {
-        let fault = Violation::new(Code::CaseName, "/name", "a name that cannot be that of a folder");
+        let fault = Violation::new(Code::CaseName, "/name", "a name that a folder cannot have");
         faults.push(fault.allowed("letters, digits, `-`, `_` and `.`, not starting with `.`"));
     }
 }

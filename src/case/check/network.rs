@@ -143,7 +143,7 @@ impl<'a> Rules<'a, '_> {
                 return place.map(Point::Junction);
             }
             (_, _, Some(_)) => "a bladder end and a junction at once",
-            (Some(_), None, None) => "a bladder without saying which end",
+            (Some(_), None, None) => "a bladder without its end",
             (None, Some(_), None) => "an end without its bladder",
             (None, None, None) => "a point that is neither a bladder end nor a junction",
         };
@@ -197,7 +197,7 @@ impl<'a> Rules<'a, '_> {
             let Some((length_m, bore)) = size(tube, self.usual) else {
                 let permeable = tube.permeability_m4.is_some() || tube.cross_section.is_some();
                 let missing = if permeable { "length" } else { "permeability" };
-                let what = format!("a tube without {missing}, and no /tubes to take it from");
+                let what = format!("a tube without {missing}, and no default in /tubes");
                 let hint = "add \"tubes\" to the case, or \"length_m\" and \"permeability_m4\" to the tube";
                 self.faults.push(Violation::new(Code::Wiring, pointer, what).hint(hint));
                 continue;
@@ -303,13 +303,13 @@ impl<'a> Rules<'a, '_> {
     /// Checks that the reverse conductance of a valve does not exceed its forward conductance.
     fn valve(&mut self, valve: &CheckValve, pointer: &str) {
         if valve.reverse_conductance_m3_s_pa > valve.forward_conductance_m3_s_pa {
-            let what = "a check valve that leaks more than it lets through";
+            let what = "a check valve with a larger reverse than forward conductance";
             let fault = Violation::new(Code::Wiring, format!("{pointer}/reverse_conductance_m3_s_pa"), what);
             let allowed = format!(
                 "up to its forward conductance, {}",
                 plain(valve.forward_conductance_m3_s_pa)
             );
-            let hint = "are the two conductances the wrong way round? A tube's valve opens from \"from\" to \"to\"";
+            let hint = "are the two conductances exchanged? The valve of a tube opens from \"from\" to \"to\"";
             let forward = format!("{pointer}/forward_conductance_m3_s_pa");
             self.faults.push_beside(&[&forward], fault.allowed(allowed).hint(hint));
         }
@@ -328,7 +328,7 @@ impl<'a> Rules<'a, '_> {
                 if let Some(first) = used.get(&index) {
                     let what = format!("bladder {number} is used twice, first at {first}");
                     let fault = Violation::new(Code::Wiring, pointer, what);
-                    self.faults.push(fault.allowed("every bladder in one chain at most"));
+                    self.faults.push(fault.allowed("each bladder in at most one chain"));
                 } else {
                     used.insert(index, pointer);
                 }

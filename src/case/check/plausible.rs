@@ -48,7 +48,8 @@ const SHEAR: Range = Range::new(
     1e-6,
     1e3,
     "N",
-    "a force: about 5/6 of the area times the shear modulus, a third of Young's modulus where nothing is compressed",
+    "a force: about 5/6 of the area times the shear modulus, which is a third of Young's modulus of an incompressible \
+     solid",
 );
 const RELAXATION: Range = Range::new(1e-9, 1e9, "s", "times are in seconds");
 const DURATION: Range = Range::new(1e-9, 1e7, "s", "times are in seconds");

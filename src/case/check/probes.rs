@@ -19,11 +19,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         if name.is_empty() || !name.chars().all(good) {
             fault(format!("\"{name}\" cannot begin the name of a column"));
         } else if name == TIP {
-            fault(format!("the columns of \"{name}\" are there already"));
+            fault(format!("the name \"{name}\" is reserved for the columns of the tip"));
         }
         if let Some(first) = known.insert(name, i) {
             fault(format!(
-                "two probes are called \"{name}\", the first is /probes/{first}"
+                "two probes have the name \"{name}\", the first is /probes/{first}"
             ));
         }
     }
@@ -39,7 +39,7 @@ pub(super) fn step(case: &Case, faults: &mut Violations) {
         step.at_s, case.time.end_s
     );
     let fault = Violation::new(Code::Times, "/step_response/at_s", what).allowed("times before /time/end_s");
-    let fault = fault.hint("make the run longer than the response takes to settle");
+    let fault = fault.hint("make the run longer than the settling time");
     faults.push_beside(&[END], fault);
 }
 

@@ -14,7 +14,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let fault = Violation::new(Code::Missing, pointer, "neither branches nor a loss factor");
             faults.push(
                 fault
-                    .allowed("\"prony\" with a branch at least, or \"loss_factor\"")
+                    .allowed("\"prony\" with at least one branch, or \"loss_factor\"")
                     .hint("give one of them, or leave viscoelasticity out"),
             );
         }
@@ -24,9 +24,9 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(
             Code::Together,
             format!("{pointer}/prony"),
-            "branches beside a loss factor",
+            "both branches and a loss factor",
         );
-        faults.push_at_key(fault.hint("a loss factor has branches of its own: give one of them"));
+        faults.push_at_key(fault.hint("a loss factor determines its own branches: give one of the two"));
         return;
     }
     if !faults.are_sound(&["/beam/viscoelasticity/loss_factor"]) {
@@ -37,7 +37,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(
             Code::Range,
             format!("{pointer}/loss_factor/to_hz"),
-            format!("a band that ends at {to} Hz, where it begins or before"),
+            format!("a band that ends at {to} Hz, not above its start"),
         );
         faults.push(fault.allowed(format!("above {from} Hz")));
     } else if to / from > WIDEST {
@@ -52,7 +52,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             Code::Range,
             format!("{pointer}/loss_factor/value"),
             format!(
-                "no series has the loss factor {} from {from} to {to} Hz",
+                "no Prony series reaches the loss factor {} from {from} to {to} Hz",
                 loss_factor.value
             ),
         );

@@ -91,7 +91,7 @@ pub fn sizes(case: &Case) -> Vec<(String, String)> {
         for (key, size) in [("x_m_s2", *x_m_s2), ("z_m_s2", *z_m_s2)] {
             if size.abs() > HEAVY {
                 let what = format!(
-                    "a gravity of {} m/s^2 is {} times that of the earth, 9.81: is this in mm/s^2?",
+                    "a gravity of {} m/s^2 is {} times that of the earth, 9.81 m/s^2: is this in mm/s^2?",
                     plain(size),
                     digits(size.abs() / 9.81)
                 );
@@ -158,7 +158,7 @@ fn is_absolute(pointer: &str, value: f64) -> bool {
 /// Warns of angles that are probably degrees: more than a turn, and whole or half numbers.
 fn angles(case: &Case, all: &mut Vec<(String, String)>) {
     let is_degrees = |angle: f64| angle.abs() > TAU && (2.0 * angle).fract() == 0.0;
-    let mut tell = |pointer: String, angle: f64| {
+    let mut warn = |pointer: String, angle: f64| {
         let (turns, meant) = (digits(angle.abs() / TAU), digits(angle.to_radians()));
         let what = format!(
             "{} rad is {turns} turns; {} degrees are {meant} rad: is this in degrees?",
@@ -171,7 +171,7 @@ fn angles(case: &Case, all: &mut Vec<(String, String)>) {
         if pointer.ends_with("/slope_rad") {
             each_value(&pointer, signal, &mut |at, value| {
                 if is_degrees(value) {
-                    tell(at, value);
+                    warn(at, value);
                 }
             });
         }
@@ -179,29 +179,29 @@ fn angles(case: &Case, all: &mut Vec<(String, String)>) {
             if let Signal::Sine(sine) = part
                 && is_degrees(sine.phase_rad)
             {
-                tell(format!("{at}/sine/phase_rad"), sine.phase_rad);
+                warn(format!("{at}/sine/phase_rad"), sine.phase_rad);
             }
         });
     }
 }
 
 /// Visits the values of a signal in its own unit: constants, ends of ramps, amplitudes, first and last values of tables. Skips products.
-fn each_value(pointer: &str, signal: &Signal, tell: &mut dyn FnMut(String, f64)) {
+fn each_value(pointer: &str, signal: &Signal, visit: &mut dyn FnMut(String, f64)) {
     each_part(pointer, signal, &mut |at, part| {
-        let mut tell = |key: &str, value: f64| tell(format!("{at}{key}"), value);
+        let mut visit = |key: &str, value: f64| visit(format!("{at}{key}"), value);
         match part {
             _ if at[pointer.len()..].contains("/product/") => {}
-            Signal::Constant(value) => tell("", *value),
+            Signal::Constant(value) => visit("", *value),
             Signal::Ramp(ramp) => {
-                tell("/ramp/from", ramp.from);
-                tell("/ramp/to", ramp.to);
+                visit("/ramp/from", ramp.from);
+                visit("/ramp/to", ramp.to);
             }
-            Signal::Sine(sine) => tell("/sine/amplitude", sine.amplitude),
-            Signal::Sigmoid(sigmoid) => tell("/sigmoid/amplitude", sigmoid.amplitude),
+            Signal::Sine(sine) => visit("/sine/amplitude", sine.amplitude),
+            Signal::Sigmoid(sigmoid) => visit("/sigmoid/amplitude", sigmoid.amplitude),
             Signal::Table(table) => {
                 for k in [Some(0), table.values.len().checked_sub(1)].into_iter().flatten() {
                     if let Some(value) = table.values.get(k) {
-                        tell(&format!("/table/values/{k}"), *value);
+                        visit(&format!("/table/values/{k}"), *value);
                     }
                 }
             }
@@ -220,16 +220,17 @@ pub fn damping(case: &Case, first: Option<f64>) -> Vec<(String, String)> {
         ("bending_time_s", damping.bending_time_s),
         ("axial_time_s", damping.axial_time_s),
     ];
-    let told = times.into_iter().filter(|(_, time)| time * frequency > 1.0);
-    let told = told.map(|(key, time)| {
+    let long = times.into_iter().filter(|(_, time)| time * frequency > 1.0);
+    let warnings = long.map(|(key, time)| {
         let what = format!(
-            "a damping time of {} s is longer than the period of the first bending mode, {} s, so that nothing swings: is this in ms?",
+            "a damping time of {} s is longer than the period of the first bending mode, {} s. The mode does not \
+             oscillate. Is this in ms?",
             plain(time),
             digits(1.0 / frequency)
         );
         (format!("/beam/damping/{key}"), what)
     });
-    told.collect()
+    warnings.collect()
 }
 
 /// Warning that no support holds the beam in some directions.
@@ -238,7 +239,8 @@ pub fn unheld(case: &Case, directions: &[&str]) -> Option<(String, String)> {
         return None;
     }
     let what = format!(
-        "nothing holds the beam {}: what pushes it makes it fly off as a whole; hold an end, or attach a spring to ground, unless it is to fly",
+        "no support holds the beam {}: loads accelerate it as a rigid body. Hold an end or attach a spring to ground, \
+         unless this is intended",
         directions.join(" and ")
     );
     Some(("/ends".to_owned(), what))
@@ -253,7 +255,7 @@ pub fn instant(case: &Case, at: f64) -> Option<String> {
         _ => return None,
     };
     Some(format!(
-        "--at {}: this is {side}; the run of the case is from 0 to {} s, and what acts is taken as its signals go on",
+        "--at {}: this is {side}; the run of the case is from 0 to {} s. Signals are extrapolated to this instant",
         plain(at),
         plain(end)
     ))
@@ -269,7 +271,7 @@ pub fn late(case: &Case) -> Vec<(String, String)> {
                 all.push((
                     child(at, key),
                     format!(
-                        "it begins at {} s, and the run ends at {end} s: nothing of it acts",
+                        "it begins at {} s, but the run ends at {end} s: it has no effect",
                         plain(start)
                     ),
                 ));

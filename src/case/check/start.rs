@@ -47,10 +47,11 @@ fn volumes(case: &Case, faults: &mut Violations) {
         }
         let (begins, holds) = (signal.value(0.0), case.held_at_start(signal));
         if (begins - holds).abs() > 1e-9 * signal.largest(case.time.end_s).value.max(holds.abs()) {
-            let what = format!("a volume that begins at {begins} m^3, of which the start holds {holds} m^3");
+            let what = format!("the volume signal begins at {begins} m^3, but the start contains {holds} m^3");
             let hint = match case.start.equilibrium {
                 None => {
-                    "begin at 0: bladders begin at their pressures of /start; or give /start/equilibrium: --set '/start/equilibrium={}'"
+                    "begin at 0, because bladders start at the pressures of /start; or give /start/equilibrium: --set \
+                     '/start/equilibrium={}'"
                 }
                 Some(_) => "give /start/equilibrium with loads_at_s 0, or the same volume at both instants",
             };
@@ -73,7 +74,7 @@ fn equilibrium(case: &Case, faults: &mut Violations) {
         // signals beyond the end of the run are not checked elsewhere
         if !(instant.is_finite() && instant <= case.time.end_s) {
             let pointer = format!("/start/equilibrium/via_s/{i}");
-            let what = format!("the instant {instant} s is not one before the end of the run");
+            let what = format!("the instant {instant} s is not before the end of the run");
             let allowed = format!("finite, at most {} s", case.time.end_s);
             faults.push_beside(&[END], Violation::new(Code::Together, pointer, what).allowed(allowed));
         }
@@ -115,7 +116,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations
             } else {
                 pointer
             };
-            let hint = format!("let the signal begin at {starts}, or change /start/{start_key}");
+            let hint = format!("start the signal at {starts}, or change /start/{start_key}");
             faults.push(
                 Violation::new(Code::Together, pointer, what)
                     .allowed(format!("agreement within {tolerance:.1e} {unit}"))

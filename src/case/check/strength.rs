@@ -82,7 +82,7 @@ impl Bounds {
         let ei = beam.young_modulus_pa * area * beam.height_m.powi(2) / 12.0 * beam.bending_stiffness_factor;
         let mass = beam.density_kg_m3 * area * beam.length_m * beam.mass_factor.unwrap_or(1.0);
         let (force, moment) = (MOST * ea, 2.0 * MOST * ei / beam.height_m);
-        let strain = "that strains the beam by 1000 %";
+        let strain = "the load that strains the beam by 1000 %";
         let bound = |largest, of, unit, meaning, hint| Bound {
             largest,
             of,
@@ -263,13 +263,13 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     });
     let room = in_bladders + vessels.sum::<f64>();
     let beyond = format!(
-        "bladders of {} m^3, more than ten times Young's modulus presses in",
+        "bladders of {} m^3, more than a pressure of ten times Young's modulus fills in",
         digits(volume)
     );
     for (pointer, signal) in &found.volumes {
         let size = size_of(signal, end);
         if size > room {
-            let what = format!("{} m^3 let into {beyond}", digits(size));
+            let what = format!("{} m^3 injected into {beyond}", digits(size));
             let allowed = format!("up to {} m^3", digits(room));
             refuse(faults, pointer, &ROOM, what, allowed, VOLUME);
         }
@@ -280,7 +280,7 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     if let (Some((pointer, _)), Some(left)) = (main, size_of_integral(&all, end))
         && left > room
     {
-        let what = format!("flows leave {} m^3 in {beyond}", digits(left));
+        let what = format!("flows inject {} m^3 into {beyond}", digits(left));
         let allowed = format!("up to {} m^3 by the end of the run", digits(room));
         refuse(faults, pointer, &ROOM, what, allowed, FLOW);
     }

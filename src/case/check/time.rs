@@ -56,8 +56,8 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let least = interval * count / most;
             refuse(
                 key,
-                format!("{interval:e} s makes {count:.1e} {what} in a run of {} s", time.end_s),
-                format!("at least {least:e} s, which makes {most:.0} of them"),
+                format!("{interval:e} s gives {count:.1e} {what} in a run of {} s", time.end_s),
+                format!("at least {least:e} s, which gives {most:.0} {what}"),
             );
         }
     }

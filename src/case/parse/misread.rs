@@ -54,16 +54,16 @@ pub fn behind_number(number: &str, text: &str, pointer: &str) -> Option<Slip> {
     if let Some((bytes, joined)) = grouped(whole) {
         return slip(
             bytes,
-            format!("{} is not how JSON writes a number", short(&whole[..bytes])),
+            format!("{} is not a JSON number", short(&whole[..bytes])),
             match last.is_some_and(|part| part.bytes().all(|b| b.is_ascii_digit())) {
-                true => format!("write commas between numbers, or {joined}: nothing stands between digits"),
-                false => format!("write {joined}: nothing stands between digits"),
+                true => format!("write commas between numbers, or {joined}, without separators between digits"),
+                false => format!("write {joined}, without separators between digits"),
             },
         );
     }
     if "/*".contains(behind) && !rest.trim_start().starts_with("//") && !rest.trim_start().starts_with("/*") {
         let operand = rest.trim_start()[1..].trim();
-        let what = format!("`{}`: JSON does not calculate", short(whole));
+        let what = format!("`{}`: JSON has no arithmetic", short(whole));
         let result = match (number.parse::<f64>(), operand.parse::<f64>()) {
             (Ok(a), Ok(b)) if behind == '/' && b != 0.0 => Some(a / b),
             (Ok(a), Ok(b)) if behind == '*' => Some(a * b),
@@ -75,7 +75,7 @@ pub fn behind_number(number: &str, text: &str, pointer: &str) -> Option<Slip> {
     let unit = behind.is_alphabetic() || "%°".contains(behind);
     unit.then(|| {
         let hint = amounts::remedy(pointer, whole);
-        let hint = hint.unwrap_or_else(|| "a number has no unit behind it; the key names it".into());
+        let hint = hint.unwrap_or_else(|| "write the number without a unit; the key names the unit".into());
         Slip {
             bytes: whole.len(),
             what: format!("`{}` is not a JSON value", short(whole)),
@@ -155,10 +155,12 @@ pub fn loose(text: &str) -> Vec<String> {
 pub fn loosely(text: &str) -> Option<String> {
     match &loose(text)[..] {
         [one] => Some(match *one == text.replacen(',', ".", 1) {
-            true => format!("write {one}: decimals stand behind a point"),
-            false => format!("write {one}: nothing stands between digits"),
+            true => format!("write {one}, with a decimal point"),
+            false => format!("write {one}, without separators between digits"),
         }),
-        [one, other] => Some(format!("{text} may be {one} or {other}: write the one that is meant")),
+        [one, other] => Some(format!(
+            "{text} is ambiguous: {one} or {other}. Write the intended number"
+        )),
         _ => None,
     }
 }
@@ -166,7 +168,7 @@ pub fn loosely(text: &str) -> Option<String> {
 /// Remedy for a word that is not a JSON value.
 pub fn word(word: &str, pointer: &str) -> String {
     if let Some((_, joined)) = grouped(word).filter(|(bytes, _)| *bytes == word.len()) {
-        return format!("write {joined}: nothing stands between digits");
+        return format!("write {joined}, without separators between digits");
     }
     if let Some(hint) = amounts::remedy(pointer, word) {
         return hint;
@@ -176,7 +178,7 @@ pub fn word(word: &str, pointer: &str) -> String {
         "false" => "write false, in small letters".into(),
         "none" | "null" | "nil" | "undefined" => "write null, or leave the key out".into(),
         _ if word.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) => {
-            "a number has no unit behind it; the key names it".into()
+            "write the number without a unit; the key names the unit".into()
         }
         _ => "text needs double quotes".into(),
     }
@@ -195,7 +197,7 @@ pub fn quoted(text: &str) -> Option<Slip> {
         .map_or(0, char::len_utf8);
     Some(Slip {
         bytes: open.len_utf8() + text.len() + last,
-        what: format!("`{open}` is no double quote of JSON"),
+        what: format!("`{open}` is not a JSON double quote"),
         hint: match close {
             Some(_) => format!("write \"{}\" in straight quotes", short(text)),
             None => "write straight quotes, \"".into(),
@@ -249,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_a_number_is_told() {
+    fn text_behind_a_number_is_reported() {
         for (number, text, bytes, hint) in [
             ("1", "1/10, 2", 4, "write 0.1"),
             ("2", "2 * 1e-3}", 8, "write 0.002"),

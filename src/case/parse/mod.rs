@@ -1,12 +1,12 @@
 //! Strict JSON reader that stores places, continues after invalid numbers, and describes every mistake.
 //!
 //! ```text
+//! diagnostics faults of a text
 //! misread     common mistakes and their intended meaning
-//! told        faults of a text
 //! ```
 
+mod diagnostics;
 pub(super) mod misread;
-mod told;
 
 use std::collections::HashMap;
 
@@ -71,12 +71,12 @@ impl Parser<'_> {
         match self.peek() {
             None => Some(node),
             Some(b'}' | b']') => {
-                let what = format!("{} closes nothing: one too many", self.found());
+                let what = format!("{} without an opening bracket", self.found());
                 let fault = self.fault(self.here(), what);
                 self.fail(fault.hint("remove it, or one before it"))
             }
             Some(b',' | b'"') if matches!(node.kind, Kind::Object(_)) => {
-                let what = "`}` closes the whole object, and more follows: one too many";
+                let what = "`}` closes the whole object, but more text follows";
                 let fault = self.fault(node.span.end - 1..node.span.end, what);
                 self.fail(fault.hint("remove it, or one before it"))
             }
@@ -111,7 +111,7 @@ impl Parser<'_> {
     fn nested(&mut self, read: fn(&mut Self, usize) -> Option<Kind>) -> Option<Kind> {
         let start = self.at;
         if self.depth == DEEPEST {
-            let fault = self.fault(self.here(), format!("more than {DEEPEST} brackets inside each other"));
+            let fault = self.fault(self.here(), format!("brackets nested more than {DEEPEST} deep"));
             return self.fail(fault);
         }
         self.depth += 1;
@@ -236,7 +236,7 @@ impl Parser<'_> {
         match serde_json::from_str(&self.text[start..self.at]) {
             Ok(text) => Some(text),
             Err(_) => {
-                let fault = self.fault(start..self.at, "text with an escape that JSON does not know");
+                let fault = self.fault(start..self.at, "text with an escape that JSON does not have");
                 self.fail(fault.hint("a backslash itself is written `\\\\`"))
             }
         }
@@ -267,10 +267,7 @@ impl Parser<'_> {
         }
         let fault = match word.replace(misread::MINUS, "-").parse::<f64>() {
             Ok(number) if number.is_finite() => self
-                .fault(
-                    start..self.at,
-                    format!("{} is not how JSON writes a number", short(word)),
-                )
+                .fault(start..self.at, format!("{} is not a JSON number", short(word)))
                 .hint(match word.contains(misread::MINUS) {
                     true => format!("write {number:?}, with the minus sign of the keyboard"),
                     false => format!("write {number:?}"),

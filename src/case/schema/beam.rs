@@ -44,7 +44,7 @@ pub struct Beam {
     /// Material damping and external drag; absent: undamped.
     #[serde(default)]
     pub damping: Damping,
-    /// How the material relaxes; absent: it does not.
+    /// Relaxation of the material; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscoelasticity: Option<Viscoelasticity>,
 }

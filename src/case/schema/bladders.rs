@@ -76,7 +76,7 @@ impl Fluid {
     }
 }
 
-/// What a fluid is.
+/// State of matter of a fluid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FluidKind {
@@ -123,7 +123,7 @@ pub struct Bladders {
     pub area_per_moment_m2_per_n_m: AreaPerMoment,
     /// `aN-` (tension) and `aN+` (compression) in `A_N(N)`: area per normal force [m^2/N].
     pub area_per_force_m2_per_n: AreaPerForce,
-    /// How pressure strains the beam: `lambda_p` and `alpha_p` in `N = EA (lambda - 1 - lambda_p)`, `M = EI (alpha - alpha_p)`.
+    /// Strain of the beam by pressure: `lambda_p` and `alpha_p` in `N = EA (lambda - 1 - lambda_p)`, `M = EI (alpha - alpha_p)`.
     #[serde(default)]
     pub coupling: Coupling,
     /// Energy of the section beyond its quadratic part, where strains are large; with the reciprocal coupling and the conservative
@@ -212,7 +212,7 @@ pub struct AreaPerForce {
     pub compression: f64,
 }
 
-/// How pressure strains the beam.
+/// Strain of the beam by pressure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Coupling {

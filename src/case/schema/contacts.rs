@@ -17,7 +17,7 @@ pub struct Contact {
     pub point_m: [f64; 2],
     /// Direction out of the wall, towards the free side, x and z; of any length but 0.
     pub normal: [f64; 2],
-    /// How far from the line of its centre the beam touches [m]; absent: half its height, its surface.
+    /// Distance of the contact surface from the center line of the beam [m]; absent: half its height, its surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
     pub reach_m: Option<f64>,

@@ -8,7 +8,7 @@ use super::Formulation;
 /// Choice of the simulated physical effects: `"auto"`, `"full"` or effect by effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Effects {
-    /// The program chooses and says why.
+    /// The program chooses and reports the reasons.
     #[default]
     Auto,
     /// Everything the case describes.
@@ -111,7 +111,7 @@ effects! {
         /// Pressure differences within each network; off: one pressure for all bladders that are joined. Not possible with
         /// turbines, valves that move, check valves, pumps, accumulators, or ports of different pressures.
         NetworkPressureDifferences network_pressure_differences,
-        /// Pressure differences along each bladder; off: one finite volume a bladder, whatever `/mesh/cells_per_bladder` says.
+        /// Pressure differences along each bladder; off: one finite volume a bladder, regardless of `/mesh/cells_per_bladder`.
         FlowAlongBladders flow_along_bladders,
         /// Compression of the fluid: gas, or a liquid with `bulk_modulus_pa` or `gas_fraction`; off: it keeps its density at ambient
         /// pressure.

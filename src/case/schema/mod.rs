@@ -47,7 +47,7 @@ pub struct Case {
     pub schema: Option<String>,
     /// Short name; the default result folder is `out/<name>`. Letters, digits, `-`, `_` and `.`.
     pub name: String,
-    /// What the case shows and where it comes from.
+    /// Purpose and origin of the case.
     #[serde(default)]
     pub about: String,
     /// Material and sizes to start from: what the case does not give of `beam`, `fluid`, `bladders` and `tubes` is taken from
@@ -67,10 +67,10 @@ pub struct Case {
     /// The two rows of bladders. Absent: a dry beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bladders: Option<Bladders>,
-    /// What a tube is unless it says otherwise.
+    /// Default properties of tubes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tubes: Option<TubeDefaults>,
-    /// How the bladders are joined. Absent: every bladder is sealed singly.
+    /// Connections of the bladders. Absent: every bladder is sealed singly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub network: Option<Network>,
     /// Distributed forces and moments, body force, gravity. They add.
@@ -85,7 +85,7 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100))]
     pub contacts: Vec<Contact>,
-    /// What the beam moves through. Absent: nothing.
+    /// Medium around the beam. Absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings: Option<Surroundings>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
@@ -96,10 +96,10 @@ pub struct Case {
     /// Form of the momentum balance.
     #[serde(default)]
     pub formulation: Formulation,
-    /// Whether sizes, proportions and strengths that hardly any beam has are refused.
+    /// Rejection of sizes, proportions and strengths that hardly any beam has.
     #[serde(default, skip_serializing_if = "Plausibility::is_on")]
     pub plausibility: Plausibility,
-    /// Which physical effects are simulated.
+    /// Simulated physical effects.
     #[serde(default)]
     pub effects: Effects,
     /// Relative change of results that an effect may make and still be left out by `"auto"`. Absent: a tenth of the accuracy that
@@ -123,7 +123,7 @@ pub struct Case {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 1000))]
     pub probes: Vec<Probe>,
-    /// Tells rise time, settling times and overshoot of the tip and at probes. Absent: not.
+    /// Reports rise time, settling times and overshoot of the tip and at probes. Absent: no report.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub step_response: Option<Step>,
     /// Origins of the coefficients; neither serialized nor compared.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{CrossSection, is_zero, one};
 use crate::functions::signals::Signal;
 
-/// What a tube is unless it says otherwise: rigid, slender, without storage.
+/// Default properties of tubes: rigid, slender, without storage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TubeDefaults {
@@ -31,7 +31,7 @@ pub struct TubeDefaults {
     pub roughness_m: Option<f64>,
 }
 
-/// How the bladders are joined: any graph of tubes between bladder ends and junctions.
+/// Connections of the bladders: any graph of tubes between bladder ends and junctions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Network {
@@ -98,7 +98,7 @@ pub struct Endpoint {
     /// Bladder index `R j`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bladder: Option<i64>,
-    /// Which end of that bladder.
+    /// End of that bladder.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end: Option<BladderEnd>,
     /// Name of a junction listed under `/network/junctions`.
@@ -129,9 +129,9 @@ impl std::fmt::Display for BladderEnd {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Tube {
-    /// Where it starts.
+    /// Start of the tube.
     pub from: Endpoint,
-    /// Where it ends.
+    /// End of the tube.
     pub to: Endpoint,
     /// Length [m]; absent: that of `/tubes`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -255,7 +255,7 @@ pub struct CheckValve {
 pub struct Pump {
     /// Pressure that it adds where nothing flows, over time [Pa].
     pub pressure_pa: Signal,
-    /// What that falls by with its flow [Pa s/m^3]: the slope of its curve.
+    /// Decrease of its pressure per flow [Pa s/m^3]: the slope of its curve.
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
     pub resistance_pa_s_m3: f64,
@@ -270,14 +270,14 @@ pub struct Accumulator {
     pub name: Option<String>,
     /// The point.
     pub at: Endpoint,
-    /// What presses on the fluid in it: elastic walls, or gas above it.
+    /// Source of the pressure on its fluid: elastic walls, or gas above it.
     pub kind: AccumulatorKind,
     /// Gauge pressure in it at the start [Pa].
     #[serde(default, skip_serializing_if = "is_zero")]
     pub start_pressure_pa: f64,
 }
 
-/// What presses on the fluid in an accumulator.
+/// Source of the pressure on the fluid in an accumulator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum AccumulatorKind {

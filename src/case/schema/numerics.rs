@@ -14,14 +14,14 @@ pub enum Formulation {
     Published,
 }
 
-/// Whether sizes that hardly any beam has are faults of the case.
+/// Treatment of sizes that hardly any beam has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Plausibility {
-    /// They are: almost always it is a unit.
+    /// They are faults of the case: almost always a unit is wrong.
     #[default]
     On,
-    /// They are meant: an analysis without units, a beam of a hundred thousand bladders.
+    /// They are intended: an analysis without units, a beam of a hundred thousand bladders.
     Off,
 }
 
@@ -115,13 +115,13 @@ pub struct Time {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub checkpoint_interval_s: Option<f64>,
-    /// Which output times before the window are written; absent: all. Where not all are, `envelope.csv` has the least, the greatest
+    /// Output times before the window that are written; absent: all. If some are omitted, `envelope.csv` has the least, the greatest
     /// and the mean value of each column over each cycle of the drive, or over each thousandth of the run.
     #[serde(default, skip_serializing_if = "Thinning::is_none")]
     pub history: Thinning,
 }
 
-/// Which output times before the window are written to history and fields, besides the first.
+/// Output times before the window that are written to history and fields, besides the first.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Thinning {
@@ -187,7 +187,7 @@ pub struct Solver {
     #[serde(default = "default_rtol")]
     #[schemars(range(min = 1e-13, max = 0.1))]
     pub rtol: f64,
-    /// How time is integrated.
+    /// Method of time integration.
     #[serde(default)]
     pub method: Method,
     /// Highest BDF order; of no meaning to other methods.
@@ -238,7 +238,7 @@ impl Default for Solver {
     }
 }
 
-/// How time is integrated.
+/// Method of time integration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Method {

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
-    /// What its columns begin with: letters, digits, `-` and `_`.
+    /// Beginning of the names of its columns: letters, digits, `-` and `_`.
     pub name: String,
     /// Place `theta/l_s`, 0 at the root and 1 at the tip.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub at: f64,
 }
 
-/// A step whose response is told in `summary.json`, of the tip and at probes: rise time, settling times, overshoot.
+/// A step whose response is in `summary.json`, of the tip and at probes: rise time, settling times, overshoot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Step {

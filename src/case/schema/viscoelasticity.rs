@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How the solid relaxes (generalised Maxwell solid): by a Prony series, or with a loss factor that is the same over a band of frequencies.
+/// Relaxation of the solid (generalised Maxwell solid): by a Prony series, or with a loss factor that is the same over a band of frequencies.
 /// `young_modulus_pa` is then the modulus in the long term; bladders keep to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -71,7 +71,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     };
     let of_case = value.get(KEY).is_some();
     if !of_case && value.get("ends").is_some() {
-        let what = "this case has no section: its coefficients are given, or those of its preset";
+        let what = "this case has no section: it gives its coefficients directly or by a preset";
         return Err(source.error(vec![Violation::new(Code::Missing, "", what)]));
     }
     let (schema, at) = schema_json::section(of_case);
@@ -95,6 +95,7 @@ pub(in crate::case) fn is_one(value: &Value) -> bool {
 
 /// Fault of a file that is a section, not a case.
 pub(in crate::case) fn no_case() -> Violation {
-    let hint = "`slcbeam coefficients` has its coefficients; in a case it stands under \"section\", beside beam, ends and time";
+    let hint = "`slcbeam coefficients` computes its coefficients; a case contains it under \"section\", beside beam, \
+                ends and time";
     Violation::new(Code::Missing, "", "this is a section by its geometry, not a case").hint(hint)
 }

@@ -67,7 +67,7 @@ pub(super) struct Brought {
     /// True for values from the cell in three dimensions.
     three_d: bool,
     stands_in: bool,
-    told: Vec<Violation>,
+    faults: Vec<Violation>,
 }
 
 /// Returns the values of the section of a case, if it has one.
@@ -77,16 +77,16 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     let found = found.and_then(|section| Ok((values(case, &section)?, section.three_d)));
     Some(match found {
         Ok((values, three_d)) => Brought {
-            told: contradictions(case, &values),
+            faults: contradictions(case, &values),
             values,
             three_d,
             stands_in: false,
         },
-        Err(told) => Brought {
+        Err(faults) => Brought {
             values: stand_in(case),
             three_d: false,
             stands_in: true,
-            told,
+            faults,
         },
     })
 }
@@ -135,7 +135,7 @@ impl Brought {
     pub(super) fn doubt(&self, own: &Value, faults: &mut Violations) {
         if self.stands_in {
             // the number of bladders is valid, because it follows from the pitch
-            let pitched = !self.told.iter().any(|fault| is_below(&fault.pointer, PITCH));
+            let pitched = !self.faults.iter().any(|fault| is_below(&fault.pointer, PITCH));
             let doubted = self.in_place(own).into_iter();
             let doubted = doubted.filter(|pointer| pointer != PER_ROW || !pitched);
             doubted.for_each(|pointer| faults.doubt(pointer));
@@ -164,7 +164,7 @@ impl Brought {
 
     /// Reports the faults of the section of a case `own`, and drops those of preset values. Faults that the schema has found in the section
     /// take precedence.
-    pub(super) fn tell(&self, own: &Value, faults: &mut Violations) {
+    pub(super) fn report(&self, own: &Value, faults: &mut Violations) {
         if self.stands_in {
             let mut at = self.in_place(own);
             at.push("/bladders".into());
@@ -173,20 +173,20 @@ impl Brought {
                 return;
             }
         }
-        self.told.iter().for_each(|violation| faults.push(violation.clone()));
+        self.faults.iter().for_each(|violation| faults.push(violation.clone()));
     }
 }
 
 /// Dimensions and material of a case that differ from those of its section.
 fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
     let number = |of: &Value, pointer: &str| of.pointer(pointer).and_then(Value::as_f64);
-    let told = SIZES.into_iter().filter_map(|pointer| {
+    let contradictions = SIZES.into_iter().filter_map(|pointer| {
         let (given, own) = (number(case, pointer)?, number(values, pointer)?);
-        let hint = "leave it out: the section has it, and its coefficients belong to that";
-        let fault = || Violation::new(Code::Range, pointer, format!("{given} beside the section's {own}"));
+        let hint = "leave it out: the section defines it, and its coefficients are computed for that value";
+        let fault = || Violation::new(Code::Range, pointer, format!("{given}, but the section has {own}"));
         ((given / own - 1.0).abs() > ROUND_OFF).then(|| fault().allowed(own.to_string()).hint(hint))
     });
-    told.collect()
+    contradictions.collect()
 }
 
 /// Reads a section at a pointer of its file.
@@ -242,8 +242,8 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
     let coarse = worst.into_iter().filter(|(_, error)| *error > most);
     let mut faults: Vec<Violation> = coarse
         .map(|(name, error)| {
-            fault("", format!("{name} is known to {:.1} % only", 100.0 * error))
-                .allowed(format!("{:.0} %", 100.0 * most))
+            fault("", format!("{name} has an estimated error of {:.1} %", 100.0 * error))
+                .allowed(format!("at most {:.0} %", 100.0 * most))
         })
         .collect();
     let solid = section.height_m * section.width_m - c.fluid_volume_per_length_m2;
@@ -270,18 +270,14 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
         } else {
             "/regions"
         };
-        faults.push(
-            fault(place, what)
-                .allowed("halves that mirror each other")
-                .hint(ONE_ROW),
-        );
+        faults.push(fault(place, what).allowed("mirror-symmetric halves").hint(ONE_ROW));
     }
     match (&c.upper, &c.lower) {
         (None, None) => {}
         (Some(upper), Some(lower)) => {
             let differs = (lower.area_per_moment_m2_per_n_m / upper.area_per_moment_m2_per_n_m - 1.0).abs() > ALIKE;
             if differs && faults.is_empty() {
-                let what = "the rows are not alike".to_owned();
+                let what = "the two rows differ".to_owned();
                 faults.push(fault("/bladders/lower", what).allowed("\"mirrored\"").hint(ONE_ROW));
             }
             let along = section.bladders.along();
@@ -323,7 +319,7 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
 /// Pointer of the length of a cell.
 const PITCH: &str = "/section/pitch_m";
 
-const ONE_ROW: &str = "a case has two rows alike; `slcbeam coefficients` has the numbers of any section";
+const ONE_ROW: &str = "a case has two equal rows; `slcbeam coefficients` computes the numbers of any section";
 
 /// Number of bladders in a row.
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
@@ -335,7 +331,7 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     match given.unwrap_or(count) {
         number if (number * pitch - length).abs() <= 1e-6 * length => Ok(count as u64),
         number => Err(format!(
-            "{number} times {pitch} m of a bladder are {} m of a beam of {length} m",
+            "{number} bladders with a pitch of {pitch} m need {} m, but the beam is {length} m long",
             rounded(number * pitch)
         )),
     }

@@ -8,11 +8,11 @@ use crate::run::modes::Sort;
 /// Of which kind modes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModeKind {
-    /// What swings, growing or not
+    /// Modes that oscillate, growing or not
     Oscillation,
-    /// What dies away without swinging
+    /// Modes that decay without oscillation
     Decay,
-    /// What grows, swinging or not
+    /// Modes that grow, with or without oscillation
     Growth,
 }
 

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use super::{CaseArguments, ResultArguments};
 use crate::study::fit::robust::Loss;
 
-/// What large residuals count.
+/// Weight of large residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Robust {
     /// Beyond some standard deviations their size in place of their square
@@ -25,12 +25,12 @@ impl From<Robust> for Loss {
     }
 }
 
-/// What a case goes through.
+/// Analysis of a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FittedThrough {
     /// A run in time: rows are instants
     Run,
-    /// Static equilibria: rows are cases, --drive says of what
+    /// Static equilibria: rows are cases, --drive names the numbers that they set
     Equilibrium,
 }
 
@@ -48,7 +48,7 @@ pub struct FitArguments {
     /// A column beside a quantity of the result, repeatable, such as angle_deg=tip_angle, p_kpa="pressure@bladder 3", u_mm=u1@0.5
     #[arg(long = "match", value_name = "COLUMN=QUANTITY[@PLACE]")]
     pub matches: Vec<String>,
-    /// What the case goes through [default: equilibrium with --drive, else run]
+    /// Analysis of the case [default: equilibrium with --drive, else run]
     #[arg(long, value_enum)]
     pub command: Option<FittedThrough>,
     /// Column of time [default: t or time]

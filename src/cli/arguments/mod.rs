@@ -74,9 +74,9 @@ pub enum Command {
     Sweep(SweepArguments),
     /// Join the shards of a sweep to one table, and name what is lost
     Merge(MergeArguments),
-    /// Fit numbers of a case to measured data between bounds, with errors, and with what the data do not tell
+    /// Fit numbers of a case to measured data between bounds, with errors; report what the data do not determine
     Fit(FitArguments),
-    /// Find loads from measured pressures of bladders, at rest or over time, with bands; what pressures tell, which to measure
+    /// Find loads from measured pressures of bladders, at rest or over time, with bands; report observable loads and the best sensors
     Sense(SenseArguments),
     /// Find the numbers of a case between bounds with which a figure is largest or least, under limits to others
     Optimize(OptimizeArguments),
@@ -143,13 +143,13 @@ pub struct CaseArguments {
     pub sets: Vec<String>,
 }
 
-/// What becomes of the result of a computation.
+/// Folder, time limit and progress of a computation.
 #[derive(Clone, Debug, Args)]
 pub struct ResultArguments {
-    /// Where its result goes.
+    /// Folder of the result.
     #[command(flatten)]
     pub place: PlaceArguments,
-    /// How long it may take.
+    /// Limit of wall time.
     #[command(flatten)]
     pub wall: WallArguments,
     /// No progress
@@ -188,7 +188,7 @@ pub struct StudyArguments {
         default_value = "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7"
     )]
     pub rtol: Vec<f64>,
-    /// Meshes: beam cells per segment, each with half as many fluid cells per bladder; powers of two tell most
+    /// Meshes: beam cells per segment, each with half as many fluid cells per bladder; powers of two are most informative
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1,2,4,8")]
     pub cells: Vec<usize>,
     /// Methods: ida (with each of the orders), trbdf2, esdirk34, esdirk46, esdirk57
@@ -200,7 +200,7 @@ pub struct StudyArguments {
     /// Timed runs of a setting, after one to warm up, as far as the budget allows
     #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = crate::cli::line::count)]
     pub repeats: usize,
-    /// What table, picture and sentence are about: a column, field or figure [default: tip_u1, else tip_u3]
+    /// Subject of table, picture and sentence: a column, field or figure [default: tip_u1, else tip_u3]
     #[arg(long, value_name = "NAME")]
     pub measure: Option<String>,
     /// Run on all cores at once; times suffer
@@ -289,7 +289,7 @@ pub struct MappingArguments {
 pub struct VerifyArguments {
     /// Only results whose name contains this
     pub name: Option<String>,
-    /// How long it may take.
+    /// Limit of wall time.
     #[command(flatten)]
     pub wall: WallArguments,
     /// Compute instead the coefficients of the published cell, for every shape that the paper leaves open, beside the printed ones

@@ -30,10 +30,10 @@ pub struct OptimizeArguments {
     /// The figure that is to be least
     #[arg(long, value_name = "QUANTITY[.FIGURE]")]
     pub minimize: Option<String>,
-    /// What another figure has to hold, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
+    /// Limit of another figure, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
     pub subject_to: Vec<String>,
-    /// What every design goes through
+    /// Analysis of every design
     #[arg(long, value_enum, default_value_t = Through::Run)]
     pub command: Through,
     /// Searches, from the case's own numbers and from places between the bounds

@@ -13,7 +13,7 @@ pub struct RunArguments {
     /// Uncertain numbers.
     #[command(flatten)]
     pub uncertain: UncertainArguments,
-    /// Where its result goes.
+    /// Folder of the result.
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01

@@ -13,7 +13,7 @@ pub struct SenseArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Measured pressures (CSV), a column a bladder such as `pressure_3_pa` or `pressure_-3_kpa`, a row a measurement at rest, or
-    /// an instant (--dynamic); without it: what pressures would tell, and which to measure
+    /// an instant (--dynamic); without it: loads that pressures can determine, and which pressures to measure
     pub pressures: Option<PathBuf>,
     /// A load that is looked for, repeatable: tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places,
     /// point:S at a share S of the length [default: tip-force where the tip is free, uniform]
@@ -23,8 +23,8 @@ pub struct SenseArguments {
     /// loads leave]
     #[arg(long, value_name = "PA")]
     pub noise: Option<f64>,
-    /// How smooth a profile, or a load over time, is taken to be: as the data speak for (likelihood), so that they are left their noise (discrepancy), off,
-    /// or, of a profile at rest, the standard deviation of its second differences [N/m]
+    /// Smoothness of a profile, or of a load over time: the most likely one (likelihood), the one whose residuals have the size of the
+    /// noise (discrepancy), off, or, of a profile at rest, the standard deviation of its second differences [N/m]
     /// [default: likelihood]
     #[arg(long, value_name = "HOW")]
     pub smoothing: Option<String>,

@@ -55,10 +55,10 @@ pub struct SweepArguments {
     /// Designs from a CSV file: columns are JSON pointers, rows are designs
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "design"])]
     pub designs: Option<PathBuf>,
-    /// What every design goes through
+    /// Analysis of every design
     #[arg(long, value_enum, default_value_t = Through::Run)]
     pub command: Through,
-    /// How designs are drawn where something is: latin:N or sobol:N; grid: all combinations of values
+    /// Sampling of designs with drawn values: latin:N or sobol:N; grid: all combinations of values
     #[arg(long, value_name = "grid|latin:N|sobol:N", default_value = "grid")]
     pub design: String,
     /// Draw other designs [default: 1 for latin; sobol as it is]
@@ -114,7 +114,7 @@ pub struct MergeArguments {
     /// Folders of shards
     #[arg(required = true, value_name = "DIR")]
     pub parts: Vec<PathBuf>,
-    /// Where the whole sweep goes, if not into out/<case name>-sweep.
+    /// Folder of the whole sweep, if not out/<case name>-sweep.
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Tables alone: no pictures and no page

@@ -10,7 +10,7 @@ use crate::error::Error;
 /// Numbers of the case that are uncertain.
 #[derive(Clone, Debug, Args)]
 pub struct UncertainArguments {
-    /// How far the figures spread where a number of the case is uncertain, to first order and by samples: a JSON pointer and
+    /// Spread of the figures due to an uncertain number of the case, to first order and by samples: a JSON pointer and
     /// normal:MEAN:SD or uniform:LOW:HIGH in the unit of the key; repeatable
     #[arg(long, value_name = "POINTER=SPEC")]
     pub uncertain: Vec<String>,
@@ -32,27 +32,31 @@ pub struct UncertainArguments {
 const INSTEAD: [(&str, &str); 6] = [
     (
         "optimize",
-        "at the best, whose case the result holds: `slcbeam run DIR/optimum-case.json --uncertain ..`, or the command that --command names",
+        "for the optimum, use its case in the result: `slcbeam run DIR/optimum-case.json --uncertain ..`, or the \
+         command that --command names",
     ),
     (
         "fit",
-        "with the fitted numbers and their standard errors: `slcbeam run DIR/fitted-case.json --uncertain POINTER=normal:VALUE:STANDARD_ERROR`",
+        "use the fitted numbers and their standard errors: `slcbeam run DIR/fitted-case.json --uncertain \
+         POINTER=normal:VALUE:STANDARD_ERROR`",
     ),
     (
         "sense",
-        "bands of loads by the noise of pressures are in its result; for numbers of the case, sense with --set at either end of what is uncertain",
+        "its result contains bands of the loads by the noise of pressures; for uncertain numbers of the case, repeat \
+         the command with --set at both ends of their ranges",
     ),
     (
         "sweep",
-        "--vary POINTER=normal:MEAN:SD --design sobol:64 draws designs; of one design: `slcbeam run CASE --set .. --uncertain ..`",
+        "--vary POINTER=normal:MEAN:SD --design sobol:64 draws designs; for one design: `slcbeam run CASE --set .. \
+         --uncertain ..`",
     ),
     (
         "study",
-        "`slcbeam run CASE --uncertain ..`, with the mesh and tolerance that the study leads to",
+        "use `slcbeam run CASE --uncertain ..` with the mesh and tolerance that the study recommends",
     ),
     (
         "effects",
-        "`slcbeam run CASE --uncertain ..`, with the effects that are left out set to \"off\"",
+        "use `slcbeam run CASE --uncertain ..` with the omitted effects set to \"off\"",
     ),
 ];
 
@@ -63,10 +67,10 @@ pub fn elsewhere(words: &[OsString], answer: &clap::Error) -> Option<Error> {
         return None;
     }
     let command = words.get(1)?.to_string_lossy();
-    let goes = "--uncertain goes with run, equilibrium, modes, periodic and floquet";
+    let goes = "--uncertain is an option of run, equilibrium, modes, periodic and floquet";
     let instead = INSTEAD.iter().find(|(own, _)| *own == command);
     Some(Error::Usage(match instead {
-        Some((_, instead)) => format!("{goes}, not with {command}; {instead}"),
-        None => format!("{goes}, not with {command}"),
+        Some((_, instead)) => format!("{goes}, not of {command}; {instead}"),
+        None => format!("{goes}, not of {command}"),
     }))
 }

@@ -65,23 +65,23 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         found = named(&snake);
         found.extend(named(&format!("{snake}s")));
     }
-    let told = pages::of(name);
+    let entries = pages::of(name);
     let elsewhere = synonyms::elsewhere(name);
     let mut text = String::new();
-    if found.is_empty() && told.is_empty() {
+    if found.is_empty() && entries.is_empty() {
         let (how, others) = likely(&all, name);
         if others.is_empty() && elsewhere.is_empty() {
             return Err(unknown(&all, what, name));
         }
         if !others.is_empty() {
-            let _ = writeln!(text, "{name} is no key; {how}");
+            let _ = writeln!(text, "{name} is not a key; {how}");
         }
         found = others;
     }
     for place in &elsewhere {
         let _ = writeln!(text, "{name}: {place}");
     }
-    for one in &told {
+    for one in &entries {
         let _ = writeln!(text, "{} ({}): {}", one.name, one.kind, one.meaning);
     }
     // a word may be a key and also mean others: flow is an effect, and a port has flow_m3_s
@@ -91,7 +91,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     found.extend(also);
     for (k, m) in found.iter().enumerate() {
         if k == known && k > 0 {
-            let _ = writeln!(text, "what else has to do with it:");
+            let _ = writeln!(text, "also related:");
         }
         let _ = writeln!(text, "{}: {}", m.place, m.meaning);
         for inner in inside(&all, m) {
@@ -100,11 +100,11 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     }
     let row = |m: &Meaning| json!({"key": m.place, "meaning": m.meaning});
     let keys = found.iter().map(|m| {
-        let mut told = row(m);
-        told["keys"] = inside(&all, m).map(row).collect();
-        told
+        let mut entry = row(m);
+        entry["keys"] = inside(&all, m).map(row).collect();
+        entry
     });
-    let others = told.iter().map(|one| {
+    let others = entries.iter().map(|one| {
         let mut row = json!({"meaning": one.meaning});
         row[one.kind] = one.name.as_str().into();
         row
@@ -133,22 +133,22 @@ fn likely<'m>(all: &'m [Meaning], word: &str) -> (&'static str, Vec<&'m Meaning>
     let meant = keys.iter().flat_map(|key| all.iter().filter(move |m| m.name == *key));
     let meant: Vec<&Meaning> = meant.take(MOST).collect();
     if !meant.is_empty() {
-        return ("what has to do with it:", meant);
+        return ("related:", meant);
     }
     let word = word.to_lowercase();
     let part = |m: &&Meaning| word.len() > 2 && m.name.split('_').any(|part| part == word);
     let parts: Vec<&Meaning> = all.iter().filter(part).take(MOST).collect();
     if !parts.is_empty() {
-        return ("keys in whose names it stands:", parts);
+        return ("keys with this word in their names:", parts);
     }
-    let says = |m: &&Meaning| {
+    let has_word = |m: &&Meaning| {
         let text = m.meaning.to_lowercase();
         let mut words = text.split(|c: char| !c.is_alphanumeric());
         word.len() > 3 && words.any(|one| one == word)
     };
     (
-        "keys in whose meanings it stands:",
-        all.iter().filter(says).take(MOST).collect(),
+        "keys with this word in their descriptions:",
+        all.iter().filter(has_word).take(MOST).collect(),
     )
 }
 

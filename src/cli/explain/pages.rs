@@ -32,7 +32,7 @@ const GREEK: &[(&str, &str)] = &[
 
 /// A name that is not a key of a case, and its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Told {
+pub struct Explanation {
     /// Kind: `symbol`, `word`, `column`, `figure`, `field`, `number`, `result`.
     pub kind: &'static str,
     /// Its name.
@@ -41,7 +41,7 @@ pub struct Told {
     pub meaning: String,
 }
 
-impl Told {
+impl Explanation {
     fn new(kind: &'static str, name: &str, meaning: String) -> Self {
         Self {
             kind,
@@ -52,7 +52,7 @@ impl Told {
 }
 
 /// All meanings of a name; a figure is found by its quantity and its kind: `tip_u1_m.max_abs`.
-pub fn of(name: &str) -> Vec<Told> {
+pub fn of(name: &str) -> Vec<Explanation> {
     let mut found = exactly(name);
     if found.is_empty()
         && let Some((quantity, kind)) = name.rsplit_once('.')
@@ -64,19 +64,19 @@ pub fn of(name: &str) -> Vec<Told> {
         // a column of a table in the form of a key, with its unit at the end
         let ends = ["_pa", "_j", "_w", "_m", "_m3", "_m^3", "_N", "_N m", "_rad"];
         let mut without = ends.iter().filter_map(|end| name.strip_suffix(end)).map(exactly);
-        found = without.find(|told| !told.is_empty()).unwrap_or_default();
+        found = without.find(|all| !all.is_empty()).unwrap_or_default();
     }
     found.extend(rows(GLOSSARY).flat_map(|row| of_glossary(&row, name)));
     found
 }
 
-fn exactly(name: &str) -> Vec<Told> {
+fn exactly(name: &str) -> Vec<Explanation> {
     let mut found = quantities(name);
     if found.is_empty()
         && let Some([unit, about]) = facts::meaning(name)
     {
         let what = format!("{about} [{unit}], a characteristic number: slcbeam check, summary.json");
-        found.push(Told::new("number", name, what));
+        found.push(Explanation::new("number", name, what));
     }
     // rows of the first page have one name or few
     for (page, text) in RESULTS {
@@ -97,18 +97,18 @@ pub fn names() -> Vec<&'static str> {
         .collect()
 }
 
-fn quantities(name: &str) -> Vec<Told> {
+fn quantities(name: &str) -> Vec<Explanation> {
     let column = Observable::named(name).map(|one| {
         let what = format!("{} [{}], a column of history.csv", one.about(), one.unit());
-        Told::new("column", name, what)
+        Explanation::new("column", name, what)
     });
     let figure = Interest::named(name).map(|one| {
         let what = format!("{} [{}], under quantities in summary.json", one.words(), one.unit());
-        Told::new("figure", name, what)
+        Explanation::new("figure", name, what)
     });
     let field = Field::named(name).map(|one| {
         let what = format!("{} [{}], an array of fields.npz", one.about(), one.unit());
-        Told::new("field", name, what)
+        Explanation::new("field", name, what)
     });
     [column, figure, field].into_iter().flatten().collect()
 }
@@ -128,7 +128,7 @@ fn rows(page: &'static str) -> impl Iterator<Item = Vec<&'static str>> {
 }
 
 /// Meanings of a name in a row of the glossary; a spelled-out Greek letter matches its symbol.
-fn of_glossary(row: &[&str], name: &str) -> Vec<Told> {
+fn of_glossary(row: &[&str], name: &str) -> Vec<Explanation> {
     let Some(first) = row.first() else { return vec![] };
     let names: Vec<&str> = first.split([',', ';']).map(str::trim).collect();
     let letter = GREEK.iter().find(|(spelled, _)| name.eq_ignore_ascii_case(spelled));
@@ -150,9 +150,9 @@ fn of_glossary(row: &[&str], name: &str) -> Vec<Told> {
         .collect()
 }
 
-fn of_symbol(row: &[&str], names: &[&str], place: usize, name: &str) -> Option<Told> {
+fn of_symbol(row: &[&str], names: &[&str], place: usize, name: &str) -> Option<Explanation> {
     match *row {
-        [_, meaning] => Some(Told::new("word", name, meaning.into())),
+        [_, meaning] => Some(Explanation::new("word", name, meaning.into())),
         [_, meaning, unit, tag] => {
             // with as many parts as names, each part belongs to one name
             let part = |text: &str| {
@@ -169,13 +169,13 @@ fn of_symbol(row: &[&str], names: &[&str], place: usize, name: &str) -> Option<T
             if !tag.is_empty() {
                 what += &format!(", {tag} in docs/model.md");
             }
-            Some(Told::new("symbol", name, what))
+            Some(Explanation::new("symbol", name, what))
         }
         _ => None,
     }
 }
 
-fn of_results(page: &str, row: &[&str], name: &str) -> Option<Told> {
+fn of_results(page: &str, row: &[&str], name: &str) -> Option<Explanation> {
     let [first, rest @ ..] = row else { return None };
     let quoted = first.split('`').skip(1).step_by(2);
     let own = quoted
@@ -190,7 +190,11 @@ fn of_results(page: &str, row: &[&str], name: &str) -> Option<Told> {
         format!(" [{}]", own.1)
     };
     let meaning = rest.join("; ").replace('`', "");
-    Some(Told::new("result", own.0, format!("{meaning}{unit}, see {page}")))
+    Some(Explanation::new(
+        "result",
+        own.0,
+        format!("{meaning}{unit}, see {page}"),
+    ))
 }
 
 /// True if a name matches that of a row, in which words of capitals are placeholders for names and numbers.

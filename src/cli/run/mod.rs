@@ -51,7 +51,8 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     }
     let parameters = Parameter::find_all(case, &asked.sensitivities)?;
     if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
-        let what = "--uncertain goes with neither --accuracy nor --resume; the mesh and tolerance that an accuracy led to stand in summary.json";
+        let what = "--uncertain cannot be combined with --accuracy or --resume. After a run with --accuracy, \
+                    summary.json contains its mesh and tolerance";
         return Err(Error::Usage(what.into()));
     }
     let mut uncertain = Uncertain::new(&asked.uncertain, &asked.case, case, AnalysisKind::Run, asked.quiet)?;
@@ -124,7 +125,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     }
     written?;
     if let Some(aside) = aside {
-        terminal::tell(&format!("slcbeam: the older result is in {}", aside.display()));
+        terminal::print_line(&format!("slcbeam: the older result is in {}", aside.display()));
     }
     Ok(terminal::exit_code(fault.as_ref()))
 }

@@ -43,7 +43,7 @@ pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Pat
         return Err(other_derivatives(kept));
     }
     if let Some(damage) = damage {
-        terminal::tell(&format!("slcbeam: {damage}; going on from the one before"));
+        terminal::print_line(&format!("slcbeam: {damage}; going on from the one before"));
     }
     let header = Observer::header(case, &system);
     let mut recorder =
@@ -63,7 +63,7 @@ fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outc
     let summary = summary.ok_or_else(|| {
         let dir = folder.dir().display();
         Error::Usage(format!(
-            "{dir} holds no checkpoint to resume from; a case writes some with /time/checkpoint_interval_s"
+            "{dir} contains no checkpoint to resume from; set /time/checkpoint_interval_s to write checkpoints"
         ))
     })?;
     let there = text_of(&folder.path(CASE))?;
@@ -72,11 +72,11 @@ fn ended(case: &Case, asked: &[Parameter], folder: &ResultFolder) -> Result<Outc
     }
     if !asked.iter().all(|p| summary.sensitivities.contains_key(&p.pointer)) {
         return Err(Error::Usage(
-            "--sensitivity: the run had ended without these derivatives; run it again without --resume".into(),
+            "--sensitivity: the finished run does not contain these derivatives; run it again without --resume".into(),
         ));
     }
     folder.remove_raw()?;
-    terminal::tell("slcbeam: the run had ended; nothing to resume");
+    terminal::print_line("slcbeam: the run had ended; nothing to resume");
     Ok(Outcome { summary, fault: None })
 }
 
@@ -88,7 +88,8 @@ fn other_derivatives(kept: &[Parameter]) -> Error {
         false => kept.join(", "),
     };
     Error::Usage(format!(
-        "--sensitivity: the run in the folder is differentiated by {kept}, which goes on without naming it again; nothing was changed"
+        "--sensitivity: the run in the folder is differentiated by {kept}; resume it without --sensitivity. Nothing \
+         was changed"
     ))
 }
 
@@ -107,7 +108,7 @@ fn another_case(there: &str, here: &Case, whose: &str) -> Error {
         differences.push(format!("and {more} more"));
     }
     if differences.is_empty() {
-        differences.push("name or words differ".into());
+        differences.push("name or description differs".into());
     }
     Error::Usage(format!(
         "{whose} belongs to another case: {}; nothing was changed",

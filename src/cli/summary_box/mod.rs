@@ -103,7 +103,7 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
         add("warning", Some(warning.clone()), Tone::Warning);
     }
     let more = summary.warnings.len().saturating_sub(WARNINGS);
-    let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain says more of each number"));
+    let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain describes each number"));
     add("", more, Tone::Warning);
     let [end, largest] = tip(summary);
     let below = if end.is_some() { "" } else { "tip" };
@@ -219,10 +219,10 @@ fn get(summary: &Summary, one: Interest) -> Option<&Quantity> {
 
 /// Position of the tip at the end, and its largest displacement with the time.
 fn tip(summary: &Summary) -> [Option<String>; 2] {
-    let joined = |words: &str, told: &dyn Fn(&str, &Quantity) -> Option<String>| {
+    let joined = |words: &str, text: &dyn Fn(&str, &Quantity) -> Option<String>| {
         let tip = [("u₁", Interest::TipU1), ("u₃", Interest::TipU3)];
         let one =
-            |(symbol, one): (&str, Interest)| Some(hold(format!("{symbol} {}", told(one.name(), get(summary, one)?)?)));
+            |(symbol, one): (&str, Interest)| Some(hold(format!("{symbol} {}", text(one.name(), get(summary, one)?)?)));
         let parts: Vec<String> = tip.into_iter().filter_map(one).collect();
         (!parts.is_empty()).then(|| format!("{words}: {}", parts.join(BETWEEN)))
     };
@@ -352,6 +352,6 @@ fn spent(summary: &Summary) -> Option<String> {
         ("output", w.output + w.pictures + w.report + w.files),
     ];
     let share = |(name, s): (&str, f64)| hold(format!("{name} {:.0} %", 100.0 * s / w.total));
-    let told = shares.into_iter().filter(|(_, s)| *s >= LEAST_SHARE * w.total);
-    Some(told.map(share).collect::<Vec<_>>().join(BETWEEN))
+    let large = shares.into_iter().filter(|(_, s)| *s >= LEAST_SHARE * w.total);
+    Some(large.map(share).collect::<Vec<_>>().join(BETWEEN))
 }

@@ -40,7 +40,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     let source = Source::read(asked)?;
     let plan = &source.plan;
     if asked.keep_folders && plan.command != AnalysisKind::Run {
-        let what = "--keep-folders keeps those of runs; --keep-cases keeps the case of every design, which the command takes itself";
+        let what = "--keep-folders keeps the folders of runs only; --keep-cases keeps the case of every design, with \
+                    which the command can be repeated";
         return Err(Error::Usage(what.into()));
     }
     let jobs = jobs(asked.jobs)?;
@@ -56,7 +57,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         && let Some(why) = plan.difference(there)
     {
         return Err(Error::Usage(format!(
-            "{} holds another sweep: {why}; name another folder with --out, or begin again with --restart",
+            "{} contains another sweep: {why}; name another folder with --out, or begin again with --restart",
             folder.dir().display()
         )));
     }
@@ -66,7 +67,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         None => Survey::of(&PathBuf::new(), plan)?,
     };
     if let Some(damage) = done.damage() {
-        terminal::tell(&format!("slcbeam: {damage}. Designs without a row are computed again."));
+        terminal::print_line(&format!("slcbeam: {damage}. Designs without a row are computed again."));
     }
     let left: Vec<usize> = (0..plan.designs)
         .filter(|n| plan.has(*n) && !(done.has(*n) && (done.finished(*n) || !asked.retry)))
@@ -76,8 +77,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     if before.is_none() {
         files::begin(&mut folder, plan, &source.first.written())?;
     } else if !asked.result.quiet && done.count() > 0 {
-        terminal::tell(&format!(
-            "slcbeam: there already: {}; going on with {}",
+        terminal::print_line(&format!(
+            "slcbeam: already computed: {}; continuing with {}",
             words::several(done.count()),
             left.len()
         ));
@@ -87,29 +88,29 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         keep_others(&source, &folder, &done)?;
     }
     let survey = Survey::of(&journal, plan)?;
-    let told = files::summarize(plan, &survey)?;
-    let written = files::write(&folder, plan, &survey, &told, asked.lean);
+    let summary = files::summarize(plan, &survey)?;
+    let written = files::write(&folder, plan, &survey, &summary, asked.lean);
     let written = written.and_then(|()| match asked.lean {
         true => Ok(()),
         false => report::write(folder.dir(), None).map(|_| ()),
     });
-    super::tell(
+    super::print_result(
         asked.json,
         folder.dir(),
         written,
-        || results::text(&told),
-        || words::words(&told, &survey).unwrap_or_default(),
+        || results::text(&summary),
+        || words::words(&summary, &survey).unwrap_or_default(),
     )?;
     if stopped {
-        let missing = told.missing;
-        terminal::tell(&format!(
-            "slcbeam: interrupted; {} left to do, with which the same command goes on",
+        let missing = summary.missing;
+        terminal::print_line(&format!(
+            "slcbeam: interrupted; {} left to compute. The same command continues with them",
             words::several(missing)
         ));
     }
     let finished = survey.statuses.get(&Status::Finished).is_some_and(|n| *n > 0);
     // a shard may have no designs
-    let none = told.rows == 0 && told.missing == 0;
+    let none = summary.rows == 0 && summary.missing == 0;
     Ok(ExitCode::from(if finished || stopped || none { 0 } else { 4 }))
 }
 
@@ -134,7 +135,7 @@ pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> Strin
         let pointer = set.split_once('=').map_or(set.as_str(), |(pointer, _)| pointer);
         if let Some(other) = again.iter().find(|other| is_below(pointer, other)) {
             let what = format!(
-                "--set {set}: it would be without effect, since {}; leave one of them out",
+                "--set {set}: it would have no effect, because {}; leave one of them out",
                 why(other)
             );
             return Err(Error::Usage(what));
@@ -165,7 +166,7 @@ fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &Atomi
     match faults.pop_first() {
         None => Ok(()),
         Some((number, fault)) => {
-            source.tell(number, more);
+            source.name_design(number, more);
             Err(fault)
         }
     }
@@ -324,7 +325,8 @@ fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Resul
     for path in files.chain([&program, &out]) {
         if path.to_str().is_none_or(|name| name.contains(char::is_control)) {
             return Err(Error::Usage(format!(
-                "--script: {:?} cannot be named in a script: it holds control characters or is not UTF-8. Rename it.",
+                "--script: {:?} cannot be named in a script: it contains control characters or is not UTF-8. Rename \
+                 it.",
                 path.display()
             )));
         }

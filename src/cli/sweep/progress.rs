@@ -17,7 +17,7 @@ pub struct Counter {
     of: usize,
     failed: usize,
     begun: Instant,
-    told: Instant,
+    printed: Instant,
 }
 
 impl Counter {
@@ -31,7 +31,7 @@ impl Counter {
             of,
             failed: 0,
             begun: now,
-            told: now,
+            printed: now,
         }
     }
 
@@ -51,9 +51,9 @@ impl Counter {
         if let Some(bar) = &self.shown.bar {
             bar.set_message(words());
             bar.tick();
-        } else if self.shown.lines && self.told.elapsed() >= EVERY {
-            terminal::tell(&words());
-            self.told = Instant::now();
+        } else if self.shown.lines && self.printed.elapsed() >= EVERY {
+            terminal::print_line(&words());
+            self.printed = Instant::now();
         }
     }
 }

@@ -41,7 +41,8 @@ impl Source {
             .map(|text| Vary::parse(text))
             .collect::<Result<Vec<_>>>()?;
         if varied.is_empty() && asked.designs.is_none() && asked.cases.len() == 1 {
-            let what = "one case and nothing varied: give --vary POINTER=SPEC, --designs FILE.csv, or several cases";
+            let what = "only one case, and no number is varied: give --vary POINTER=SPEC, --designs FILE.csv, or \
+                        several cases";
             return Err(Error::Usage(what.into()));
         }
         let texts = asked.cases.iter().map(|path| Ok((path.clone(), case::text(path)?)));
@@ -66,7 +67,7 @@ impl Source {
             .find(|pointer| CHOSEN.iter().any(|one| case::is_below(one, pointer)));
         if let (Some(pointer), Some(_)) = (chosen, accuracy) {
             let what = format!(
-                "--accuracy chooses mesh and tolerance of every design anew, so that {pointer} would be without effect"
+                "--accuracy chooses mesh and tolerance of every design, so that {pointer} would have no effect"
             );
             return Err(Error::Usage(format!("{what}; leave one of them out")));
         }
@@ -88,7 +89,7 @@ impl Source {
         let mut first = None;
         for (k, (path, text)) in texts.iter().enumerate() {
             let design = designs.design(k * each);
-            let case = told(parse(path, text, &asked.sets, &designs, &design), &designs, &design)?;
+            let case = name_faulty(parse(path, text, &asked.sets, &designs, &design), &designs, &design)?;
             let written = case.written();
             let resolved = written
                 .tables
@@ -135,7 +136,7 @@ impl Source {
     }
 
     /// Prints the design to which an error belongs.
-    pub fn tell(&self, number: usize, more: usize) {
+    pub fn name_design(&self, number: usize, more: usize) {
         name(&self.designs, &self.designs.design(number), more);
     }
 }
@@ -147,7 +148,7 @@ fn parse(path: &Path, text: &str, sets: &[String], designs: &Designs, design: &D
 }
 
 /// Prints the design if its case has an error.
-fn told<T>(found: Result<T>, designs: &Designs, design: &Design) -> Result<T> {
+fn name_faulty<T>(found: Result<T>, designs: &Designs, design: &Design) -> Result<T> {
     if found.is_err() {
         name(designs, design, 0);
     }
@@ -166,8 +167,8 @@ fn name(designs: &Designs, design: &Design, more: usize) {
         n => format!(", and {n} more like it"),
     };
     let (number, count) = (design.number, designs.count());
-    terminal::tell(&format!(
-        "slcbeam: design {number} of {count}{place} cannot be computed{more}; nothing was begun"
+    terminal::print_line(&format!(
+        "slcbeam: design {number} of {count}{place} cannot be computed{more}; no design was started"
     ));
 }
 
@@ -176,7 +177,7 @@ fn alike(cases: &[Listed]) -> Result<()> {
     for (k, case) in cases.iter().enumerate() {
         if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
             return Err(Error::Usage(format!(
-                "{} and {} both have the name {}; rows are told apart by it",
+                "{} and {} both have the name {}, by which rows of the table are distinguished; rename one of the cases",
                 other.file, case.file, case.name
             )));
         }

@@ -151,8 +151,8 @@ impl Layout {
             Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::Accumulator(k) => format!("volume [m^3] in accumulator {}", k + 1),
-            Name::Stored(j) => format!("fluid [m^3] that tubes hold at junction {}", j + 1),
-            Name::LetIn(source) => format!("volume [m^3] that source {} has let in", source + 1),
+            Name::Stored(j) => format!("fluid [m^3] in tubes at junction {}", j + 1),
+            Name::LetIn(source) => format!("volume [m^3] injected by source {}", source + 1),
             Name::LumpedNetwork(what, component) => format!("{what} of network {}", component + 1),
             Name::Flow(what, tube) => format!("{what} of tube {}", tube + 1),
             Name::Face(what, b, face) => format!(

@@ -207,8 +207,8 @@ observables! {
         "smallest bladder cross-section over that at rest; 0 is closed";
     PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, Read::State(port_flow),
         "flow through all ports into the networks";
-    InjectedVolume: "injected_volume" ["m^3"], "volume let in", "volume let in", Ports, Recorded, open, Read::Through(injected),
-        "volume let in through all ports since the start, less what left through them";
+    InjectedVolume: "injected_volume" ["m^3"], "injected volume", "injected volume", Ports, Recorded, open, Read::Through(injected),
+        "volume injected through all ports since the start, minus the outflow";
     KineticEnergy: "kinetic_energy" ["J"], "kinetic energy", "kinetic energy", Stored, Studied, always, Read::State(|look| look.stored.kinetic),
         "kinetic energy of the beam's translation";
     RotaryEnergy: "rotary_energy" ["J"], "rotary energy", "rotary energy", Stored, Recorded, always, Read::State(|look| look.stored.rotary),
@@ -221,18 +221,18 @@ observables! {
         "energy stored in the bladders";
     SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
-    RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of what relaxes", Stored, Recorded, relaxing, Read::State(|look| look.stored.relaxing),
-        "energy of the parts of moments and normal forces that relax";
+    RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of relaxing branches", Stored, Recorded, relaxing, Read::State(|look| look.stored.relaxing),
+        "energy of the Maxwell branches of moments and normal forces";
     AccumulatorEnergy: "accumulator_energy" ["J"], "accumulator energy", "energy in accumulators", Stored, Recorded, accumulating, Read::State(|look| look.stored.accumulators),
         "energy in accumulators";
     CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
         "energy of compressed fluid, relative to ambient pressure";
     TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes and along bladders", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
         "kinetic energy of the fluid in tubes and along bladders";
-    ContactEnergy: "contact_energy" ["J"], "contact energy", "energy of walls that are pressed", Stored, Recorded, touching, Read::State(|look| look.stored.contacts),
-        "energy of walls that are pressed";
+    ContactEnergy: "contact_energy" ["J"], "contact energy", "elastic energy of contacts", Stored, Recorded, touching, Read::State(|look| look.stored.contacts),
+        "elastic energy of contacts";
     SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
-        "energy of what holds the beam elastically at places";
+        "elastic energy of springs between beam and ground";
     SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, Read::State(|look| look.stored.around),
         "kinetic energy of the fluid around that moves with the beam";
     WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
@@ -255,8 +255,8 @@ observables! {
         "energy that the published momentum balance adds";
     WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, Read::Integral(|i| i[EnergyRate::Reciprocity as usize]),
         "energy that a coupling without reciprocity adds";
-    EnergyResidual: "energy_residual" ["J"], "what does not close", "what does not close", Open, Recorded, always, Read::Open,
-        "energy now less energy at the start less all of the above: the integrator's error";
+    EnergyResidual: "energy_residual" ["J"], "open balance", "open balance", Open, Recorded, always, Read::Open,
+        "energy minus energy at the start minus all of the above: error of the integrator";
 }
 
 impl Observable {

@@ -55,13 +55,13 @@ pub fn columns(system: &System) -> impl Iterator<Item = Column> {
             Told::End(k, axis) => (
                 format!("reaction_{}_{}", ENDS[k], AXES[axis]),
                 "N",
-                format!("force in {} of what holds the {} on the beam", AXES[axis], ENDS[k]),
+                format!("force in {} of the support at the {} on the beam", AXES[axis], ENDS[k]),
             ),
             Told::Couple(k) => (
                 format!("reaction_{}_couple", ENDS[k]),
                 "N m",
                 format!(
-                    "couple of what holds the {} on the beam, in the sense of growing phi",
+                    "couple of the support at the {} on the beam, positive with phi",
                     ENDS[k]
                 ),
             ),

@@ -52,12 +52,8 @@ fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
         all.push(column("pressure", "Pa", "pressure at"));
         if !at_rest {
             all.push(column("flow", "m^3/s", "flow in through"));
-            all.push(column("power", "W", "power that comes in through"));
-            all.push(column(
-                "volume",
-                "m^3",
-                "volume that has come in since the start through",
-            ));
+            all.push(column("power", "W", "power supplied through"));
+            all.push(column("volume", "m^3", "volume injected since the start through"));
         }
     }
     for (name, short) in short("accumulator", kept) {

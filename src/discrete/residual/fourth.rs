@@ -208,13 +208,13 @@ pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
     } else if !model.relaxation.is_empty() {
-        "a solid that relaxes is of second order"
+        "a viscoelastic solid needs a mesh of second order"
     } else if model.strain_energy().is_some() {
-        "a section at finite strain is of second order"
+        "a section at finite strain needs a mesh of second order"
     } else if !model.attachments.is_empty() || !model.contacts.is_empty() {
-        "what is attached to the beam, or touches it, acts at a point, which fourth order does not resolve"
+        "a mesh of fourth order does not resolve the point forces of attachments and walls"
     } else {
         return None;
     };
-    Some(Violation::new(Code::Together, "/mesh/order", what).hint("leave \"order\" out, and take more cells"))
+    Some(Violation::new(Code::Together, "/mesh/order", what).hint("omit \"order\", and use more cells"))
 }

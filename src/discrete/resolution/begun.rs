@@ -73,7 +73,7 @@ impl<'a> Begun<'a> {
     pub fn left_out(&self, cells: usize) -> (f64, &'static str) {
         let there = self.at_once(cells);
         match self.vibrations.as_ref().map(|v| v.left_out(cells)) {
-            Some(later) if later > there.0 => (later, "the motion by its short waves, which the mesh slows down,"),
+            Some(later) if later > there.0 => (later, "the motion by its short waves, which are too slow on the mesh,"),
             _ => there,
         }
     }
@@ -90,7 +90,7 @@ impl<'a> Begun<'a> {
                     held.energy_left_out(self.profile, cells)
                 };
                 if energy > between {
-                    (energy, "the root of the elastic energy of the displacement")
+                    (energy, "the square root of the elastic energy of the displacement")
                 } else {
                     (between, "the displacement between the nodes")
                 }

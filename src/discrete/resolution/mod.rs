@@ -147,14 +147,15 @@ pub fn warnings_at_rest(case: &Case, system: &System) -> Vec<String> {
 fn warnings_of(findings: Vec<Finding>) -> Vec<String> {
     let warning = |finding: Finding| {
         let advice = match finding.wanted {
-            Some(cells) => format!("{cells} in {} resolve it", finding.setting),
-            None => format!("{FINEST} in {} would not resolve it", finding.setting),
+            Some(cells) => format!("Use {cells} in {}", finding.setting),
+            None => format!("Even {FINEST} in {} do not resolve it", finding.setting),
         };
         Code::Unresolved.warning(format!(
-            "mesh: {} is not resolved: {} is off by {:.0} % of itself; {advice}",
+            "mesh: {} is not resolved: the error of {} is {:.0} % (limit {:.0} %). {advice}",
             finding.pointer,
             finding.what,
-            100.0 * finding.left_out.min(9.99)
+            100.0 * finding.left_out.min(9.99),
+            100.0 * LIMIT
         ))
     };
     findings.into_iter().map(warning).collect()
@@ -221,7 +222,7 @@ fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
     if largest > square {
         (largest, "the largest pressure along the bladder at the start")
     } else {
-        (square, "pressure along the bladder at the start")
+        (square, "the pressure along the bladder at the start")
     }
 }
 

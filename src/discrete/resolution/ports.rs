@@ -50,12 +50,12 @@ impl Port {
         match flows > swings {
             true => LeftOut {
                 share: flows,
-                what: "the largest pressure of a flow through, in the middle of the first cell,",
+                what: "the largest pressure by its flow (middle of the first cell)",
                 at_rest: true,
             },
             false => LeftOut {
                 share: swings,
-                what: "pressure along the bladder behind it",
+                what: "the pressure along the bladder behind it",
                 at_rest: false,
             },
         }

@@ -156,7 +156,10 @@ impl<D: Dae> Newton<'_, D> {
                 return self.finish(&correction, size);
             }
             if self.iterations == options.max_iterations {
-                return Err(self.give_up(format!("corrections of {size:.1e} are left"), worst));
+                return Err(self.give_up(
+                    format!("the last correction is {size:.1e} (limit {:.1e})", options.tolerance),
+                    worst,
+                ));
             }
             last = size;
             self.iterations += 1;
@@ -194,7 +197,8 @@ impl<D: Dae> Newton<'_, D> {
             if damping < options.smallest_damping {
                 let worst = largest(&self.relative(correction));
                 self.go(&from, correction, 0.0);
-                let what = fault.unwrap_or_else(|| "no step along Newton's direction comes closer".to_owned());
+                let what =
+                    fault.unwrap_or_else(|| "no step along Newton's direction reduces the correction".to_owned());
                 return Err(self.give_up(what, worst));
             }
         }
@@ -342,12 +346,12 @@ fn largest(x: &[f64]) -> Option<usize> {
 fn singular<D: Dae>(dae: &D, fault: KluError, iterations: u16) -> StartError {
     match fault {
         KluError::Singular { column } => StartError {
-            what: "no equation is left to determine an unknown".to_owned(),
+            what: "no remaining equation determines an unknown".to_owned(),
             worst: Some((column, dae.name(column))),
             iterations,
         },
         KluError::Package { status } => StartError {
-            what: format!("KLU cannot go on (status {status})"),
+            what: format!("KLU failed (status {status})"),
             worst: None,
             iterations,
         },

@@ -51,7 +51,7 @@ impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "no consistent start: {}", self.what)?;
         match &self.worst {
-            Some((_, name)) => write!(f, "; worst is {name}, after {} iterations", self.iterations),
+            Some((_, name)) => write!(f, "; worst unknown: {name}, after {} iterations", self.iterations),
             None => Ok(()),
         }
     }

@@ -157,16 +157,14 @@ pub enum Keeps {
 impl Display for Cause {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         match self {
-            Self::Full => f.write_str("full model asked for"),
-            Self::Asked => f.write_str("asked for"),
-            Self::LeftOut => f.write_str("left out as asked"),
+            Self::Full => f.write_str("full model requested"),
+            Self::Asked => f.write_str("switched on by name"),
+            Self::LeftOut => f.write_str("switched off by name"),
             Self::Refused(obstacle) => write!(f, "cannot be left out: {}", obstacle.what),
-            Self::Unasked => {
-                f.write_str("flow in tubes creeps in the published form, unless this is asked for by name")
-            }
-            Self::Unsheared => f.write_str("the published form does not shear"),
+            Self::Unasked => f.write_str("tube flow is creeping in the published form; switch this on by name"),
+            Self::Unsheared => f.write_str("the published form has no shear"),
             Self::Massless => f.write_str("the fluid has no mass"),
-            Self::FedJunction => f.write_str("left out: the flow of a port enters a junction where only tubes meet"),
+            Self::FedJunction => f.write_str("left out: the flow of a port enters a junction of tubes only"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
             Self::Filled(true) => f.write_str("bladders and fluid are given"),
@@ -174,7 +172,7 @@ impl Display for Cause {
             Self::Needs(Effect::NetworkPressureDifferences) => f.write_str("each network has one pressure"),
             Self::Needs(effect) => write!(f, "no {}", effect.name().replace('_', " ")),
             Self::NoKinks => {
-                f.write_str("the reciprocal coupling takes mean slopes: the kinked potential is not convex")
+                f.write_str("the reciprocal coupling uses mean slopes, because the kinked potential is not convex")
             }
             Self::Obstacle(obstacle) => write!(f, "kept: {}", obstacle.what),
             Self::Unstable(why) => write!(f, "kept: {why}"),
@@ -182,10 +180,10 @@ impl Display for Cause {
             Self::Weighed(weighed) => weighed.fmt(f),
             Self::Straight(pressed) => write!(
                 f,
-                "nothing acts across, the rows mirror each other, {} of the buckling load",
+                "no transverse load, mirrored rows, compression {} of the buckling load",
                 significant(*pressed, 2)
             ),
-            Self::Sealed(all) => write!(f, "all {all} bladders are sealed: exact without unknowns"),
+            Self::Sealed(all) => write!(f, "all {all} bladders are sealed, which is exact without unknowns"),
             Self::PartlySealed { sealed, all, leaks } => write!(f, "{sealed} of {all} bladders are sealed; {leaks}"),
         }
     }
@@ -206,23 +204,23 @@ impl Display for Number {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Rotation => "square of the largest angle",
-            Self::DrawnIn => "how much bending draws in over the stretch",
+            Self::DrawnIn => "shortening by bending over stretch",
             Self::NormalForce => "normal force over the buckling load",
-            Self::Stretch => "stretch over how much bending draws in",
-            Self::BendingInertia => "inertia of bending over its stiffness",
-            Self::AxialWaves => "axial waves over the stretch without them",
-            Self::RotaryInertia => "phase of the second bending mode in the whole run",
-            Self::Shear => "deflection and phase of the second bending mode by shear",
-            Self::Leakage => "what leaks in the whole run",
-            Self::LagAlongBladders => "a bladder's own time against that of the motion",
+            Self::Stretch => "stretch over shortening by bending",
+            Self::BendingInertia => "inertia of bending over bending stiffness",
+            Self::AxialWaves => "axial waves over static stretch",
+            Self::RotaryInertia => "phase shift of the second bending mode over the whole run",
+            Self::Shear => "effect of shear on deflection and phase of the second bending mode",
+            Self::Leakage => "leakage over the whole run",
+            Self::LagAlongBladders => "time constant of a bladder over that of the motion",
             Self::Inertance => "inertia of the fluid in a tube over its resistance",
             Self::Sloshing => "inertia of the fluid along bladders",
-            Self::UnsteadyFriction => "error of a steady profile in a tube or a bladder",
+            Self::UnsteadyFriction => "error of a steady velocity profile in a tube or a bladder",
             Self::TubeLosses => "losses of a tube over its laminar friction",
-            Self::PressureStrain => "what pressure does over what loads do",
+            Self::PressureStrain => "strain by pressure over strain by loads",
             Self::Asymmetry => "larger of dm/am, dn/an",
-            Self::Compression => "compression over what the walls of bladders store",
-            Self::StrainEnergy => "strain energy beyond the quadratic part over that, at most",
+            Self::Compression => "storage by compression over storage by bladder walls",
+            Self::StrainEnergy => "largest energy beyond the quadratic part over the quadratic energy",
         })
     }
 }
@@ -230,23 +228,23 @@ impl Display for Number {
 impl Display for Keeps {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         f.write_str(match self {
-            Self::RowsDiffer => "the rows of bladders are not each other's mirror image",
-            Self::Resonance => "something acts near or above the first bending frequency",
-            Self::DrivenEnds => "driven ends act by inertia",
-            Self::NotHeld => "the ends do not hold the beam without it",
-            Self::Sudden => "something acts suddenly and excites waves of every length",
-            Self::Fed => "ports or turbines take fluid through the network",
-            Self::AskedWithInertia => "something that needs it is asked for by name",
-            Self::Dissipation => "all that the fluid dissipates goes with them",
-            Self::UnevenStart => "the start has differences along a bladder",
-            Self::FiniteStrain => "the section is not linear at these loads",
-            Self::Attachments => "what is attached to the beam has no bound here",
-            Self::Contacts => "what walls do to the beam has no bound here",
+            Self::RowsDiffer => "the rows of bladders are not mirror images",
+            Self::Resonance => "a load acts near or above the first bending frequency",
+            Self::DrivenEnds => "driven ends load the beam by inertia",
+            Self::NotHeld => "the ends do not support the beam without it",
+            Self::Sudden => "a sudden load excites waves of all lengths",
+            Self::Fed => "ports or turbines drive flow through the network",
+            Self::AskedWithInertia => "an effect that needs it is switched on by name",
+            Self::Dissipation => "it is the only dissipation of the fluid",
+            Self::UnevenStart => "the initial pressure differs along a bladder",
+            Self::FiniteStrain => "the section is nonlinear at these loads",
+            Self::Attachments => "no bound is known for attachments",
+            Self::Contacts => "no bound is known for walls",
             Self::Gas => "the fluid is a gas",
-            Self::Surroundings => "the fluid around the beam has no bound here",
-            Self::RestCurvature => "a beam that is curved at rest has no bound here",
-            Self::Viscoelasticity => "a solid that relaxes has no bound here",
-            Self::MakesPressure => "it is what makes pressure",
+            Self::Surroundings => "no bound is known for ambient fluid",
+            Self::RestCurvature => "no bound is known for a rest curvature",
+            Self::Viscoelasticity => "no bound is known for a viscoelastic solid",
+            Self::MakesPressure => "it generates the pressure",
         })
     }
 }

@@ -73,25 +73,25 @@ impl<'a> Chooser<'a> {
                     return;
                 };
                 let hint = format!("leave it out, or set {off} to \"on\"");
-                (format!("{effect} is on without {off}, which it needs"), hint)
+                (format!("{effect} is on, but {off}, which it needs, is off"), hint)
             }
             Cause::Given(false) if effect == Effect::Compressibility => (
-                format!("{effect} is on, and nothing is given that is compressed"),
+                format!("{effect} is on, but the fluid is incompressible"),
                 "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
             ),
             Cause::Unsheared => (
-                format!("{effect} is on, and the published form does not shear"),
+                format!("{effect} is on, but the published form has no shear"),
                 "leave it out, or set \"formulation\" to \"conservative\"".into(),
             ),
             Cause::Given(false) if effect == Effect::Shear => (
-                format!("{effect} is on, and no shear_stiffness_n is given"),
-                "give /beam/shear_stiffness_n, of a full rectangle about 5/6 of its area times the shear modulus, or a section that \
-                 brings it; or leave it out"
+                format!("{effect} is on, but no shear_stiffness_n is given"),
+                "give /beam/shear_stiffness_n (solid rectangle: about 5/6 of its area times the shear modulus), or a section that \
+                 supplies it; or leave shear out"
                     .into(),
             ),
             Cause::Given(false) => (
-                format!("{effect} is on, and no strain_energy is given"),
-                "give /bladders/strain_energy, or a section that brings it; or leave it out".into(),
+                format!("{effect} is on, but no strain_energy is given"),
+                "give /bladders/strain_energy, or a section that supplies it; or leave the effect out".into(),
             ),
             _ => return,
         };

@@ -36,18 +36,18 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
     }
     if let Some(wall) = case.contacts.first() {
-        return obstacle(format!("the wall \"{}\" may push the beam across", wall.name), HINT);
+        return obstacle(format!("the wall \"{}\" may push the beam sideways", wall.name), HINT);
     }
     let pushed = |a: &Attachment| {
         let across = [&a.force_x_n, &a.force_normal_n];
         across.into_iter().flatten().any(|signal| !signal.is_zero())
     };
     if let Some(k) = case.attachments.iter().position(pushed) {
-        return obstacle(format!("/attachments/{k} pushes the beam across"), HINT);
+        return obstacle(format!("/attachments/{k} pushes the beam sideways"), HINT);
     }
     if let Some(k) = case.attachments.iter().position(|a| a.offset_across_m != 0.0) {
         return obstacle(
-            format!("the mass of /attachments/{k} lies beside the beam and bends it"),
+            format!("the mass of /attachments/{k} is eccentric and bends the beam"),
             HINT,
         );
     }
@@ -56,7 +56,7 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         .as_ref()
         .is_some_and(|around| around.stream().next().is_some())
     {
-        return obstacle("/surroundings streams across the beam", HINT);
+        return obstacle("/surroundings has a stream across the beam", HINT);
     }
     for (end, name) in [(&case.ends.root, "root"), (&case.ends.tip, "tip")] {
         let ResolvedEnd {
@@ -68,12 +68,15 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         let (Translation::Displacement(moves) | Translation::Force(moves)) = &transverse;
         let (Rotation::Slope(turns) | Rotation::Moment(turns)) = &rotation;
         if !moves.is_zero() || !turns.is_zero() || follower.is_some_and(|f| !f.shear.is_zero()) {
-            return obstacle(format!("the {name} is moved, turned or loaded across the beam"), HINT);
+            return obstacle(
+                format!("the {name} has a transverse motion, a rotation or a transverse load"),
+                HINT,
+            );
         }
     }
     let begins = |profile: &Option<Profile>| profile.as_ref().is_some_and(|p| *p != Profile::Constant(0.0));
     if begins(&case.start.u1_m) || begins(&case.start.u1_rate_m_s) {
-        return obstacle("the beam starts bent or moving across", HINT);
+        return obstacle("the beam starts with a deflection or a transverse velocity", HINT);
     }
     None
 }
@@ -91,8 +94,11 @@ pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
 
 /// Obstacle: finite rotations, which turn the normal force with the beam.
 pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
-    let turns = finite_rotation.then_some("finite_rotation is on, which turns the normal force with the beam")?;
-    obstacle(turns, "leave finite_rotation out too, or axial_force_on_bending on")
+    let turns = finite_rotation.then_some("finite_rotation is on, which rotates the normal force with the beam")?;
+    obstacle(
+        turns,
+        "switch finite_rotation off too, or leave axial_force_on_bending on",
+    )
 }
 
 /// Obstacle: a dashpot or a lossy wall, which acts only on moving masses.
@@ -100,7 +106,7 @@ pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     if let Some(wall) = lossy(case) {
         return obstacle(
             format!(
-                "the wall \"{}\" has damping or friction, which is nothing where masses do not move",
+                "the wall \"{}\" has damping or friction, which has no effect without inertia",
                 wall.name
             ),
             "remove them, or leave solid_inertia on",
@@ -109,7 +115,7 @@ pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     let damped = |a: &Attachment| a.damping_x_n_s_m > 0.0 || a.damping_z_n_s_m > 0.0;
     let k = case.attachments.iter().position(damped)?;
     obstacle(
-        format!("/attachments/{k} has a dashpot, which damps nothing where masses do not move"),
+        format!("/attachments/{k} has a dashpot, which has no effect without inertia"),
         "remove it, or leave solid_inertia on",
     )
 }
@@ -119,8 +125,8 @@ pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
     let turned = |a: &Attachment| a.is_eccentric() || a.rotary_inertia_kg_m2 > 0.0;
     let k = case.attachments.iter().position(turned).filter(|_| sheared)?;
     obstacle(
-        format!("/attachments/{k} resists the turning of sections that shear"),
-        "leave rotary_inertia on, or shear out",
+        format!("/attachments/{k} resists the rotation of sections with shear"),
+        "leave rotary_inertia on, or switch shear off",
     )
 }
 
@@ -133,8 +139,8 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
         .is_some_and(|s| s.added_mass_coefficient > 0.0);
     if inert && finite_rotation {
         return obstacle(
-            "the fluid around the beam is carried along by nodes that turn",
-            "leave finite_rotation out too, or axial_inertia on",
+            "ambient fluid has added mass, which acts axially at finite rotations",
+            "switch finite_rotation off too, or leave axial_inertia on",
         );
     }
     if let Some(wall) = lossy(case) {
@@ -145,14 +151,14 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     }
     if let Some(k) = case.attachments.iter().position(|a| a.damping_z_n_s_m > 0.0) {
         return obstacle(
-            format!("/attachments/{k} has a dashpot along"),
+            format!("/attachments/{k} has an axial dashpot"),
             "remove damping_z_n_s_m, or leave axial_inertia on",
         );
     }
     let turned = |a: &Attachment| a.is_eccentric() || finite_rotation && a.rotary_inertia_kg_m2 > 0.0;
     if let Some(k) = case.attachments.iter().position(turned) {
         return obstacle(
-            format!("/attachments/{k} turns with the beam and takes its inertia along"),
+            format!("/attachments/{k} has inertia that rotates with the beam"),
             "leave axial_inertia on",
         );
     }
@@ -161,7 +167,7 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
         return None;
     }
     obstacle(
-        "neither end holds u3, so nothing but its inertia keeps the beam where it is",
+        "neither end holds u3, so only inertia determines the axial position of the beam",
         "give u3_m at an end, or leave axial_inertia on",
     )
 }
@@ -181,12 +187,12 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     if finite_rotation {
         return obstacle(
             "finite_rotation is on, which couples stretch and bending",
-            "leave finite_rotation out too",
+            "switch finite_rotation off too",
         );
     }
     if let Some(wall) = case.contacts.first() {
         let what = format!(
-            "the wall \"{}\" may push the beam along, so the normal force does not follow from the loads",
+            "the wall \"{}\" may push the beam axially, so the loads alone do not determine the normal force",
             wall.name
         );
         return obstacle(what, HINT);
@@ -194,7 +200,7 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     if let Some(k) = case.attachments.iter().position(Attachment::is_eccentric) {
         return obstacle(
             format!(
-                "the mass of /attachments/{k} pushes the beam along when it turns, so the normal force does not follow from the loads"
+                "the mass of /attachments/{k} pushes the beam axially as it rotates, so the loads alone do not determine the normal force"
             ),
             HINT,
         );
@@ -202,7 +208,7 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     let holds = |a: &Attachment| a.stiffness_z_n_m > 0.0 || a.damping_z_n_s_m > 0.0;
     if let Some(k) = case.attachments.iter().position(holds) {
         return obstacle(
-            format!("/attachments/{k} holds the beam along, so the normal force does not follow from the loads"),
+            format!("/attachments/{k} supports the beam axially, so the loads alone do not determine the normal force"),
             HINT,
         );
     }
@@ -215,7 +221,7 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
         1 => None,
         0 => obstacle("neither end holds u3", HINT),
         _ => obstacle(
-            "both ends hold u3, so the normal force does not follow from the loads",
+            "both ends hold u3, so the loads alone do not determine the normal force",
             HINT,
         ),
     }
@@ -232,7 +238,7 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
         return obstacle(what, "remove the port, or leave flow on");
     }
     if network.links.iter().any(|link| link.pump.is_some()) {
-        return obstacle("a pump drives it", "remove the pump, or leave flow on");
+        return obstacle("a pump drives the flow", "remove the pump, or leave flow on");
     }
     None
 }
@@ -241,7 +247,7 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
 pub fn compressibility(network: &Network) -> Option<Obstacle> {
     let rigid = |law| matches!(law, AccumulatorLaw::Rigid { .. });
     let tank = network.accumulators.iter().find(|one| rigid(one.law))?;
-    let what = format!("the tank \"{}\" stores nothing else", tank.name);
+    let what = format!("the tank \"{}\" stores nothing without compression", tank.name);
     obstacle(what, "remove the tank, or leave compressibility on")
 }
 

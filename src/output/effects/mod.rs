@@ -77,7 +77,7 @@ impl Shown {
 
 /// Text of `effects.json`; numbers that are not finite are null.
 pub fn json(found: &Ablation) -> String {
-    results::told(found, Some(&sentence(found)))
+    results::text_with(found, Some(&sentence(found)))
 }
 
 /// Writes the files into a folder; other files in it stay.

@@ -49,7 +49,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
                 reasons.push(format!("{}: {}: {why}", row.name, said(row)));
             }
             _ if !row.takes.is_empty() => reasons.push(format!(
-                "{} takes with it {}",
+                "leaving out {} also leaves out {}",
                 row.name,
                 Effect::names(&row.takes, ", ")
             )),
@@ -75,7 +75,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
 pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
     let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
     let all = [
-        ("as the case says", found.given.as_ref()),
+        ("as in the case", found.given.as_ref()),
         ("auto", found.auto.as_ref()),
         ("recommended", recommended),
     ];
@@ -102,7 +102,7 @@ fn legend(found: &Ablation, shown: &Shown) -> String {
     }
     text += "\nwork: residual evaluations times unknowns, time: least wall time; both over those of the model compared with\n";
     if found.judged_by == Judged::WindowStatistics {
-        text += "the motion cannot be followed to the end at this tolerance: judged are root mean squares and increments over the window\n";
+        text += "the motion cannot be computed to the end at this tolerance: root mean squares and increments over the window are compared instead\n";
     }
     text
 }
@@ -168,10 +168,10 @@ fn line(found: &Ablation, shown: &Shown, name: &str, verdict: &str, c: &Compared
 /// Recommendation with the JSON of the key `effects`: `Without rotary_inertia the model needs ... "effects": {...}`
 pub fn sentence(found: &Ablation) -> String {
     let Some(r) = &found.recommendation else {
-        return "Nothing can be recommended: the full model did not run to the end.".into();
+        return "No recommendation: the full model did not run to the end.".into();
     };
     let mut text = match (r.off.as_slice(), &r.run) {
-        ([], _) if r.dropped.is_empty() => "Nothing that can be left out saves anything.".to_string(),
+        ([], _) if r.dropped.is_empty() => "No effect that can be left out saves work.".to_string(),
         ([], _) => "Nothing should be left out.".to_string(),
         (off, Some(run)) => {
             let change = |(name, x): &(String, f64)| format!(" {name} changes most, by {x:.1e}.");
@@ -182,7 +182,7 @@ pub fn sentence(found: &Ablation) -> String {
         (off, None) => format!("Leave out {}.", Effect::names(off, ", ")),
     };
     for (name, why) in &r.dropped {
-        let _ = write!(text, " {name} saves, but stays: {why}.");
+        let _ = write!(text, " {name} would save work but is kept: {why}.");
     }
     let _ = write!(text, "\n\"effects\": {}", crate::case::spaced(&r.effects));
     text

@@ -69,7 +69,7 @@ pub fn words(found: &Found) -> String {
         ));
         let derivatives = found.columns.iter().zip(&s.row).skip(1);
         // omits bladders that do not change
-        let told = |column: &Column, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
+        let changes = |column: &Column, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
         let mut lines: Vec<_> = derivatives
             .map(|(column, derivative)| {
                 let by_share = 0.01 * s.parameter.value * derivative;
@@ -80,7 +80,7 @@ pub fn words(found: &Found) -> String {
                 let line = [String::new(), column.name.clone(), significant(*derivative, 6), words];
                 (column, line)
             })
-            .filter(|(column, line)| told(column, line))
+            .filter(|(column, line)| changes(column, line))
             .map(|(_, line)| line)
             .collect();
         let more = lines.len().saturating_sub(DERIVATIVES);
@@ -101,15 +101,15 @@ pub fn words(found: &Found) -> String {
 fn last_with_errors(found: &Found) -> String {
     let row = found.path.states.last().map_or(&[][..], |state| &state.row);
     let error = |column: &Column| found.meshes?.errors.get(&column.name).copied();
-    let told = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
+    let texts = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
         let group = Observable::named(&column.name).map(Observable::group);
         let counts = matches!(group, Some(Group::Tip | Group::Pressure)) && value.abs() > floor(found, column.unit);
         let error = error(column).filter(|_| counts)?;
         Some(format!("{} {}", column.name, with_error(*value, error, column.unit)))
     });
-    match told.collect::<Vec<_>>() {
-        told if told.is_empty() => String::new(),
-        told => format!("last state: {}\n", told.join(" · ")),
+    match texts.collect::<Vec<_>>() {
+        texts if texts.is_empty() => String::new(),
+        texts => format!("last state: {}\n", texts.join(" · ")),
     }
 }
 

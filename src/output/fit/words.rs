@@ -8,7 +8,7 @@ use crate::study::fit::found::{Bound, Estimate, Fit};
 use crate::study::fit::robust::Loss;
 
 /// Smallest magnitude of a correlation that is listed.
-const TOLD: f64 = 0.9;
+const NOTABLE: f64 = 0.9;
 
 /// Estimates with their errors, statistics of the residuals, and warnings.
 pub fn words(fit: &Fit) -> String {
@@ -51,7 +51,7 @@ pub fn words(fit: &Fit) -> String {
         fit.degrees_of_freedom
     );
     if fit.columns.iter().any(|column| !column.noise_given) {
-        text += "; the noise is what the fit leaves";
+        text += "; noise estimated from the residuals";
     }
     text.push('\n');
     if fit.starts.len() > 1 {
@@ -92,7 +92,7 @@ fn correlations(fit: &Fit) -> String {
     let mut text = String::new();
     for (i, row) in fit.correlation.iter().enumerate() {
         for (k, r) in row.iter().enumerate().take(i) {
-            if let Some(r) = r.filter(|r| r.abs() >= TOLD) {
+            if let Some(r) = r.filter(|r| r.abs() >= NOTABLE) {
                 let [a, b] = [k, i].map(|k| &fit.parameters[k].pointer);
                 text += &format!("correlation of {a} and {b}: {}\n", significant(r, 4));
             }
@@ -108,10 +108,10 @@ fn starts(fit: &Fit) -> String {
     let same = found.iter().filter(|cost| **cost <= best * 1.001 + 1e-9).count();
     let failed = match fit.starts.len() - found.len() {
         0 => String::new(),
-        n => format!(", {n} had nothing to begin with"),
+        n => format!(", {n} found no simulation that finishes"),
     };
     format!(
-        "{same} of {} came to the least sum of squares{failed}\n",
+        "{same} of {} reached the least sum of squares{failed}\n",
         counted(fit.starts.len() as u64, "search")
     )
 }
@@ -124,7 +124,7 @@ fn worst(fit: &Fit) -> Option<String> {
         .filter_map(|one| Some((one, one.finer_change?, one.standard_error?)));
     let (one, change, error) = moved.max_by(|a, b| (a.1.abs() / a.2).total_cmp(&(b.1.abs() / b.2)))?;
     Some(format!(
-        "with {} {} would move most, by {}: {} standard errors",
+        "largest change with {}: {} by {} ({} standard errors)",
         fit.simulator.finer,
         one.pointer,
         significant(change, 2),

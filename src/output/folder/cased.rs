@@ -29,7 +29,7 @@ impl ResultFolder {
         let path = self.path(name);
         let own = fs::symlink_metadata(&path).is_ok_and(|there| there.is_file());
         if own && text_of(&path).is_ok_and(|there| there == text) {
-            return self.tell_origin();
+            return self.record_origin();
         }
         self.lay(name, text.as_bytes()).map(|_| ())
     }

@@ -22,7 +22,7 @@ pub(super) struct Laid {
 impl ResultFolder {
     /// Writes a file completely or not at all, unless the disk fails. [`ResultFolder::secure`] syncs it to the disk.
     pub fn lay(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
-        self.tell_origin()?;
+        self.record_origin()?;
         let target = self.path(name);
         let file = Whole::fill(&target, |file| file.write_all(contents))?;
         let file = file.name()?;
@@ -37,14 +37,14 @@ impl ResultFolder {
 
     /// Syncs laid files, and the names of all files, to the disk.
     pub fn secure(&self) -> Result<()> {
-        self.tell_origin()?;
+        self.record_origin()?;
         let brought = bring(&self.laid(), &self.dir);
         self.secured_behind().and(brought)
     }
 
     /// Does the work of [`ResultFolder::secure`] in a thread. The next [`ResultFolder::secure`] waits for it and returns its error.
     pub fn secure_behind(&self) -> Result<()> {
-        self.tell_origin()?;
+        self.record_origin()?;
         self.secured_behind()?;
         let (files, dir) = (Arc::new(Mutex::new(self.laid())), self.dir.clone());
         let there = Arc::clone(&files);

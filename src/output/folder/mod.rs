@@ -90,7 +90,7 @@ impl ResultFolder {
     pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
         let made = !dir.exists();
         if made && dir.is_symlink() {
-            let why = "it is a symbolic link to what is not there";
+            let why = "it is a symbolic link whose target does not exist";
             return Err(fault("use", dir, io::Error::new(io::ErrorKind::NotFound, why)));
         }
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
@@ -147,7 +147,7 @@ impl ResultFolder {
     /// There is no run, or another process writes into the folder.
     pub fn again(dir: &Path) -> Result<Self> {
         if Kind::within(dir) != Some(Kind::Run) {
-            return Err(Error::Usage(format!("{} holds no run to go on with", dir.display())));
+            return Err(Error::Usage(format!("{} contains no run to resume", dir.display())));
         }
         let mut folder = Self::claim(dir, Kind::Run, false)?;
         folder.origin.stays = true;
@@ -166,7 +166,7 @@ impl ResultFolder {
 
     /// Writes a file completely or not at all: under a hidden name first, then renamed when safe on disk.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<PathBuf> {
-        self.tell_origin()?;
+        self.record_origin()?;
         let target = self.path(name);
         put_whole(&target, |file| file.write_all(contents))?;
         Ok(target)
@@ -174,7 +174,7 @@ impl ResultFolder {
 
     /// Writes files, each as [`ResultFolder::write`], together with laid files; waits for the disk once.
     fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<Vec<PathBuf>> {
-        self.tell_origin()?;
+        self.record_origin()?;
         let fill = |(name, bytes): &(&str, T)| Whole::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
         let parts = files.iter().map(fill).collect::<Result<Vec<_>>>()?;
         let laid = self.laid();
@@ -251,7 +251,7 @@ impl ResultFolder {
 
     /// Removes the files of an older result by name; all others stay.
     pub fn clear(&mut self) -> Result<()> {
-        self.tell_origin()?;
+        self.record_origin()?;
         let Some(older) = self.older else { return Ok(()) };
         // A history stays until another run begins and empties it. Until then it identifies the folder as that of a run.
         let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);
@@ -367,11 +367,11 @@ fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
     let sign = dir.join(kind.sign());
     if !sign.exists() {
         let own = history_begins_with_time(&dir.join(HISTORY));
-        return Ok((!own).then(|| format!("its {HISTORY} is none of slcbeam's")));
+        return Ok((!own).then(|| format!("its {HISTORY} was not written by slcbeam")));
     }
     let text = text_of(&sign).ok();
     let own = text.is_some_and(|text| results::is_one(&text));
-    Ok((!own).then(|| format!("its {} is none of slcbeam's", kind.sign())))
+    Ok((!own).then(|| format!("its {} was not written by slcbeam", kind.sign())))
 }
 
 fn history_begins_with_time(path: &Path) -> bool {

@@ -18,7 +18,7 @@ pub(super) struct Origin {
     file: Option<String>,
     /// True if the recorded path stays: a run resumes, or the case in the folder itself is run.
     pub(super) stays: bool,
-    told: AtomicBool,
+    recorded: AtomicBool,
 }
 
 impl ResultFolder {
@@ -31,8 +31,8 @@ impl ResultFolder {
     }
 
     /// Records the path once; removes an old record if the path is unknown.
-    pub(super) fn tell_origin(&self) -> Result<()> {
-        if self.origin.stays || self.origin.told.swap(true, Ordering::Relaxed) {
+    pub(super) fn record_origin(&self) -> Result<()> {
+        if self.origin.stays || self.origin.recorded.swap(true, Ordering::Relaxed) {
             return Ok(());
         }
         match &self.origin.file {

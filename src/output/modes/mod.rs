@@ -98,7 +98,7 @@ impl Report<'_> {
                 let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
                 match self.sort {
                     None if !swings => format!(
-                        "none of the {count} shown grows, and none swings: --kind oscillation shows those that do, if there are any"
+                        "none of the {count} shown grows, and none oscillates; --kind oscillation shows oscillating modes, if any"
                     ),
                     _ => format!("none of the {count} shown grows"),
                 }

@@ -57,10 +57,10 @@ pub fn table(report: &Report) -> String {
         };
         let _ = writeln!(
             text,
-            "\nmesh error: how far half the cells of the beam{bladders} say that this one is off, to second order"
+            "\nmesh error: estimate from half the cells of the beam{bladders}, to second order"
         );
     } else if found.modes.iter().any(|m| m.by_mesh.bladders.is_some()) {
-        text += "\nmesh error: not known, since the beam's cells cannot be halved; an even /mesh/cells_per_segment tells it\n";
+        text += "\nmesh error: not known, since the cells of the beam cannot be halved; use an even /mesh/cells_per_segment\n";
     }
     if found.modes.iter().any(|m| m.undrained.is_some() || m.drained.is_some()) {
         text += "\nundrained: the same shape with every bladder sealed; drained: with networks of one pressure\n";
@@ -71,14 +71,14 @@ pub fn table(report: &Report) -> String {
 /// Counts of the modes that do not move.
 fn staying(report: &Report) -> String {
     let count = |kind| report.found.modes.iter().filter(|mode| mode.kind == kind).count();
-    let told = |count: usize, one: &str, what: &str| match count {
+    let described = |count: usize, one: &str, what: &str| match count {
         0 => None,
         1 => Some(format!("1 {one} ({what})")),
         n => Some(format!("{n} {one}s ({what})")),
     };
     let all: Vec<String> = [
-        told(count(Kind::Rigid), Kind::Rigid.word(), "nothing holds them"),
-        told(count(Kind::Volume), Kind::Volume.word(), "fluid of closed networks"),
+        described(count(Kind::Rigid), Kind::Rigid.word(), "nothing holds them"),
+        described(count(Kind::Volume), Kind::Volume.word(), "fluid of closed networks"),
     ]
     .into_iter()
     .flatten()

@@ -120,11 +120,11 @@ fn drawn(problem: &Problem, found: &Optimised) -> Option<String> {
         let x = PictureAxis::new(name, unit, 8).logarithmic(span.logarithmic() && span.low > 0.0);
         panel(x, &|_, one| one.values[i], Some(optimum.variables[i].value))
     });
-    let told = optimum.variables.iter().map(|one| {
+    let values = optimum.variables.iter().map(|one| {
         let name = readable::pointer_name(&one.pointer);
         format!("{name} = {}", significant(one.value, 5))
     });
     let title = format!("{}, {}", optimum.case, optimum.goal.figure);
-    let about = told.collect::<Vec<_>>().join(", ");
+    let about = values.collect::<Vec<_>>().join(", ");
     Picture::stacked(title, about, std::iter::once(designs).chain(numbers)).svg()
 }

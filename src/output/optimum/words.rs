@@ -23,10 +23,9 @@ pub fn words(found: &Optimum) -> String {
         found.command.word(),
         if goal.largest { "largest" } else { "least" },
         significant(found.value, 6),
-        found.begin.map_or(String::new(), |begin| format!(
-            ", {} to begin with",
-            significant(begin, 6)
-        ))
+        found
+            .begin
+            .map_or(String::new(), |begin| format!(", {} at first", significant(begin, 6)))
     );
     if let Some(error) = found.error.filter(|_| found.value != 0.0) {
         text += &format!(
@@ -74,11 +73,11 @@ fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
         let kind = kinds.entry(kind).and_modify(|kind| kind.2 = true);
         kind.or_insert((reason, 0, false)).1 += n;
     }
-    let told = kinds.into_values().map(|(reason, count, more)| {
+    let reasons = kinds.into_values().map(|(reason, count, more)| {
         let like = if more { ", and others with other numbers" } else { "" };
         (format!("{reason}{like}"), count)
     });
-    told.collect()
+    reasons.collect()
 }
 
 /// Kind of derivatives; empty if no numbers were varied.
@@ -96,13 +95,13 @@ fn alternatives(found: &Optimum) -> String {
         return String::new();
     }
     let line = |one: &Compared| {
-        let told = match (&one.reason, one.held) {
+        let note = match (&one.reason, one.held) {
             (Some(reason), _) => visible(reason).into_owned(),
             (None, true) => String::new(),
             (None, false) => "beyond a limit".into(),
         };
         let value = one.value.map_or("-".into(), |value| significant(value, 6));
-        [String::new(), one.name.clone(), value, told]
+        [String::new(), one.name.clone(), value, note]
     };
     let ranked = ranked(found);
     let shown = ranked.iter().take(SHOWN).map(|one| line(one));
@@ -158,8 +157,8 @@ fn limit(one: &Held) -> [String; 4] {
         _ => "≥",
     };
     let gain = match (one.reached, one.gain) {
-        _ if one.beyond() => "not held".into(),
-        (true, Some(gain)) => format!("reached; let go, it brings {} for each unit", significant(gain, 3)),
+        _ if one.beyond() => "violated".into(),
+        (true, Some(gain)) => format!("reached; relaxing it by one unit gains {}", significant(gain, 3)),
         (true, None) => "reached".into(),
         (false, _) => "not reached".into(),
     };
@@ -189,15 +188,18 @@ fn starts(found: &Optimum) -> String {
     others.sort_by(f64::total_cmp);
     others.dedup_by(|a, b| (*a - *b).abs() <= SAME * a.abs());
     let others: Vec<String> = others.iter().map(|value| significant(*value, 5)).collect();
-    let mut text = format!("{same} of {} came to it", counted(found.starts.len() as u64, "search"));
+    let mut text = format!(
+        "{same} of {} reached this optimum",
+        counted(found.starts.len() as u64, "search")
+    );
     if !others.is_empty() {
         text += &format!("; others ended at {}", others.join(", "));
     }
     if beyond > 0 {
-        text += &format!("; {beyond} did not come within the limits");
+        text += &format!("; {beyond} ended outside the limits");
     }
     if nothing > 0 {
-        text += &format!("; {nothing} had nothing to begin with");
+        text += &format!("; {nothing} found no design that can be computed");
     }
     text + "\n"
 }
@@ -215,11 +217,11 @@ mod tests {
             "it ran out of steps",
         ];
         let failed = all.map(|reason| (reason.to_owned(), 2)).into_iter().collect();
-        let told = alike(&failed);
-        assert_eq!(told.len(), 2, "{told:?}");
+        let reasons = alike(&failed);
+        assert_eq!(reasons.len(), 2, "{reasons:?}");
         assert!(
-            told.contains(&("outgrown at t = 0.25 s, and others with other numbers".into(), 4)),
-            "{told:?}"
+            reasons.contains(&("outgrown at t = 0.25 s, and others with other numbers".into(), 4)),
+            "{reasons:?}"
         );
     }
 }

@@ -20,8 +20,8 @@ pub fn columns(found: &Along) -> Vec<String> {
 }
 
 /// A figure or its error, by the name of its column.
-pub fn column(told: &[Figure], name: &str) -> Option<f64> {
-    told.iter().find_map(|f| match name == f.name {
+pub fn column(figures: &[Figure], name: &str) -> Option<f64> {
+    figures.iter().find_map(|f| match name == f.name {
         true => Some(f.value),
         false => f.open.filter(|_| name == f.open_name()),
     })
@@ -44,9 +44,9 @@ pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
 
 /// Values of figures in one cycle, with errors.
 pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
-    let told = energies(member);
+    let figures = energies(member);
     let cell = |name: &str| {
-        let f = told.iter().find(|f| f.name == name)?;
+        let f = figures.iter().find(|f| f.name == name)?;
         let value = match f.unit {
             "1" => percent(f.value),
             _ => significant(f.value, 4),
@@ -64,7 +64,7 @@ pub fn lines(
 ) -> Vec<[String; 2]> {
     let all = power::figures(quantities, period);
     // the input is listed as an energy; its mean power is in the table of a sweep
-    let told = all.iter().filter(|f| !f.name.starts_with("input_power"));
+    let listed = all.iter().filter(|f| !f.name.starts_with("input_power"));
     let line = |f: &Figure| {
         let value = match f.unit {
             "1" => percent(f.value),
@@ -80,5 +80,5 @@ pub fn lines(
         };
         [f.words.into(), value + &known]
     };
-    told.map(line).collect()
+    listed.map(line).collect()
 }

@@ -50,8 +50,8 @@ pub fn csv(found: &Along) -> String {
         let number = |x: Option<f64>| x.map_or(String::new(), shortest);
         let mut row = vec![shortest(m.value)];
         row.extend(SHOWN.map(|one| number(largest(m, one))));
-        let told = energies(m);
-        row.extend(names.iter().map(|name| number(energies::column(&told, name))));
+        let figures = energies(m);
+        row.extend(names.iter().map(|name| number(energies::column(&figures, name))));
         row.extend([first.map(|f| f.growth_per_s), first.map(|f| f.re), first.map(|f| f.im)].map(number));
         row.extend([
             m.search.work.steps.to_string(),
@@ -90,7 +90,7 @@ pub fn words(found: &Along) -> String {
     });
     let mut text = table(&headings, lines);
     if !harvested.is_empty() {
-        text += "  ±: how far the balance of energy is open beside a figure; what meshes do to it, `slcbeam periodic` tells of each value\n";
+        text += "  ±: open part of the energy balance, relative to the value; `slcbeam periodic` estimates the mesh error of each value\n";
     }
     for (value, why) in &found.missing {
         let _ = writeln!(text, "  {}: {why}", significant(*value, 4));

@@ -100,7 +100,7 @@ fn begun(label: &str, name: String) -> Page {
 fn put(page: &Page, dir: &Path) -> Result<Written> {
     if Kind::find(dir).is_ok() {
         return Err(Error::Usage(format!(
-            "--out {}: it holds a result, whose page would be written over; name another folder",
+            "--out {}: the folder contains a result whose page would be overwritten; name another folder",
             dir.display()
         )));
     }
@@ -150,12 +150,12 @@ fn answer(found: &Beside, names: &[String]) -> String {
         all.max_by(|a, b| a.0.relative.l2.total_cmp(&b.0.relative.l2))
     };
     let mut text = match largest(&headline) {
-        None => "The results have no history in common that matters most.".into(),
+        None => "The results have no headline history in common.".into(),
         Some((most, _)) if most.relative.l2 == 0.0 => {
             format!("No quantity of those that matter most differs from {}.", names[0])
         }
         Some((most, name)) => format!(
-            "Of the quantities that matter most {} differs most from {}, in {name}: {} of its size over all instants, {} at most, at {}.",
+            "Of the quantities that matter most, {} differs most from {} (in {name}): {} of its size over all instants, at most {} at {}.",
             most.name,
             names[0],
             percent(most.relative.l2),
@@ -166,7 +166,11 @@ fn answer(found: &Beside, names: &[String]) -> String {
     if let (Some((all, name)), shown) = (largest(&|_| true), largest(&headline))
         && all.relative.l2 > shown.map_or(0.0, |(most, _)| most.relative.l2)
     {
-        text += &format!(" Of all {} does, in {name}: {}.", all.name, percent(all.relative.l2));
+        text += &format!(
+            " Of all quantities, {} differs most (in {name}): {}.",
+            all.name,
+            percent(all.relative.l2)
+        );
     }
     text
 }

@@ -19,7 +19,7 @@ const GROWTH: &str = "growth_per_s";
 
 /// Table of the multipliers.
 fn multipliers(found: &Cycle) -> Value {
-    let told = !found.bands.is_empty();
+    let banded = !found.bands.is_empty();
     let names: Vec<String> = numbers::named(&found.floquet)
         .into_iter()
         .map(|(name, _)| name)
@@ -38,7 +38,7 @@ fn multipliers(found: &Cycle) -> Value {
         };
         let before = [m.re, m.im, m.modulus, m.growth_per_s].map(Value::from);
         let behind = [json!(m.frequency_hz), json!(part), json!(m.share)];
-        let band = told.then(|| json!(band(k)));
+        let band = banded.then(|| json!(band(k)));
         before.into_iter().chain(band).chain(behind).collect::<Vec<_>>()
     };
     let mut headings = vec![
@@ -50,7 +50,7 @@ fn multipliers(found: &Cycle) -> Value {
         "mostly",
         "share of energy",
     ];
-    if told {
+    if banded {
         headings.insert(4, "95 % of samples: growth [1/s]");
     }
     json!({
@@ -138,8 +138,8 @@ pub fn map(place: &Place) -> Result<Page> {
         ],
         "figures": [{
             "title": "Growth over frequency and amplitude", "picture": place.picture("map.svg"),
-            "about": "Each cell is one frequency and one amplitude of shaking. Where the colour says growth, bending swings up by itself \
-                      even though the beam is shaken along its axis only.",
+            "about": "Each cell is one frequency and one amplitude of shaking. In the colours of growth, bending vibrations grow by \
+                      themselves, although the beam is shaken along its axis only.",
         }],
         "table": {
             "title": "Every point", "about": "",
@@ -172,11 +172,12 @@ pub fn sweep(place: &Place) -> Result<Page> {
         n => format!(" For {n} values none was found."),
     };
     // all cycles of one case have the same energy figures
-    let told = members.first().map_or(vec![], energies);
+    let figures = members.first().map_or(vec![], energies);
     let mut headings = vec![pointer.clone()];
     headings.extend(["tip u₁ [m]", "tip u₃ [m]", "pressure [Pa]"].map(String::from));
     headings.extend(
-        told.iter()
+        figures
+            .iter()
             .flat_map(|f| [format!("{} [{}]", f.words, f.unit), "± of it".into()]),
     );
     headings.extend(["growth [1/s]", "verdict"].map(String::from));
@@ -196,11 +197,11 @@ pub fn sweep(place: &Place) -> Result<Page> {
                    members.len(), significant(low, 3), significant(high, 3), members.iter().filter(unstable).count()),
         "figures": [{
             "title": "Along the parameter", "picture": place.picture("sweep.svg"),
-            "about": "What the steady cycle does for each value of the parameter, each found from the one before, without its transient.",
+            "about": "Steady cycle for each value of the parameter, without its transient. Each cycle starts from the one before.",
         }],
         "table": {
-            "title": "Every cycle", "about": "Largest values within the cycle, its energies with how far their balance is open beside them, and how fast the slowest \
-                      disturbance grows (below 0: dies away).",
+            "title": "Every cycle", "about": "Largest values within the cycle, its energies with the open part of their balance, and the growth rate of the \
+                      slowest disturbance (below 0: it decays).",
             "headings": headings, "left_out": members.len().saturating_sub(MOST_ROWS),
             "rows": members.iter().take(MOST_ROWS).map(row).collect::<Vec<_>>(), "file": "sweep.csv",
         },

@@ -97,8 +97,8 @@ fn rows(place: &Place, found: &Sweep, survey: &Survey) -> Result<Value> {
     Ok(json!({
         "title": "Every design",
         "about": format!(
-            "Figures as in the result of one case; NAME.error is the estimated error of NAME, relative. A number leads to what is kept of its \
-             design, the button beside it copies the command that does it alone.{narrow}"
+            "Figures as in the result of one case; NAME.error is the estimated error of NAME, relative. The number of a design links to its \
+             files; the button beside it copies the command that computes this design alone.{narrow}"
         ),
         "headings": found.columns.iter().take(columns).map(|column| &column.name).collect::<Vec<_>>(),
         "left_out": found.rows - rows.len(), "rows": rows, "file": TABLE, "leads": leads,

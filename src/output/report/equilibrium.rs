@@ -48,8 +48,8 @@ pub fn data(place: &Place) -> Result<Page> {
         let value = value?;
         let least = if unit == "Pa" { 1e-9 } else { 1e-15 };
         let value = if value.abs() < least { 0.0 } else { value };
-        let told = |x: f64, digits: usize| quantity(x, unit, digits);
-        let band = found.bands.get(name).map(|band| bands::beside(band, value, &told));
+        let text = |x: f64, digits: usize| quantity(x, unit, digits);
+        let band = found.bands.get(name).map(|band| bands::beside(band, value, &text));
         Some(json!({"label": label, "value": quantity(value, unit, 3), "note": note, "band": band}))
     };
     let last = |name: &str| {
@@ -111,15 +111,15 @@ fn answer(found: &Equilibrium, share: f64) -> String {
         ),
     };
     let stability = match found.stability.map(|s| s.unstable_modes) {
-        None => "whether it is stable is not known".to_string(),
+        None => "its stability is not known".to_string(),
         Some(0) => "it is stable".to_string(),
-        Some(1) => "it is unstable in one way".to_string(),
-        Some(n) => format!("it is unstable in {n} ways"),
+        Some(1) => "it is unstable (1 unstable mode)".to_string(),
+        Some(n) => format!("it is unstable ({n} unstable modes)"),
     };
     let way = match found.events.len() {
-        0 => "On the way there nothing gives way.".to_string(),
-        1 => "On the way there one thing happens, told below.".to_string(),
-        n => format!("On the way there {n} things happen, told below."),
+        0 => "The path to it has no critical points.".to_string(),
+        1 => "The path to it has one event, listed below.".to_string(),
+        n => format!("The path to it has {n} events, listed below."),
     };
     format!("Under {loads} the beam rests in the state shown; {stability}. {way}")
 }

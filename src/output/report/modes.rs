@@ -43,8 +43,8 @@ pub fn data(place: &Place) -> Result<Page> {
     page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
-        let told = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
-        page.warnings.push(told);
+        let warning = format!("{ARRAYS} cannot be read ({e}), so no shapes are shown.");
+        page.warnings.push(warning);
     }
     let near = match found.near_hz {
         0.0 => String::new(),

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{Found, Kind, Page, Place};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
-use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as told, ranked};
+use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as position, ranked};
 use crate::output::sweep::unit;
 use crate::output::sweep::words::several;
 use crate::results::optimum::{Derivatives, Optimum, Variable};
@@ -20,7 +20,7 @@ pub fn data(place: &Place) -> Result<Page> {
     let figure = |value: f64| quantity(value, unit(&goal.figure), 5);
     let begin = found
         .begin
-        .map_or(String::new(), |begin| format!(", {} to begin with", figure(begin)));
+        .map_or(String::new(), |begin| format!(", {} at first", figure(begin)));
     let mut facts = vec![
         several(found.evaluations),
         match found.derivatives {
@@ -39,8 +39,8 @@ pub fn data(place: &Place) -> Result<Page> {
     }
     let tile = |one: &Variable| {
         let note = match one.within_1_percent {
-            Some(_) => format!("1 % worse at {}", told(one)),
-            None => told(one),
+            Some(_) => format!("1 % worse at {}", position(one)),
+            None => position(one),
         };
         json!({"label": one.pointer, "value": significant(one.value, 5), "note": note})
     };
@@ -79,8 +79,8 @@ pub fn data(place: &Place) -> Result<Page> {
         }],
         "table": {
             "title": "Numbers, limits and alternatives",
-            "about": format!("In the unit that each key names; alternatives by {}{}. What a unit brings is what the figure gains where the bound or the limit is let go by one.", goal.figure, bracketed(&goal.figure)),
-            "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "a unit brings"],
+            "about": format!("In the unit that each key names; alternatives by {}{}. The last column is the gain of the figure if the bound or limit is relaxed by one unit.", goal.figure, bracketed(&goal.figure)),
+            "headings": ["number, limit or alternative", "at the best", "at first", "from", "to", "1 % worse below", "1 % worse above", "gain per unit"],
             "rows": numbers.chain(limits).chain(alternatives).collect::<Vec<_>>(), "file": CSV,
         },
         "command": format!("slcbeam {command} {BEST}"),

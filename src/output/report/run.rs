@@ -44,15 +44,15 @@ pub fn data(place: &Place) -> Result<Page> {
         .map(f64::recip);
     let fields = place.path(FIELDS);
     // reads the fields in a thread
-    let (motion, told) = thread::scope(|scope| {
+    let (motion, recorded) = thread::scope(|scope| {
         let motion = begin(scope, || frames::read(&fields, frequency));
-        let told = History::read(Recorded::of(place.dir, place.history)).map(|history| {
+        let recorded = History::read(Recorded::of(place.dir, place.history)).map(|history| {
             let columns = history.json(beside(place, &history, frequency));
             (history, columns)
         });
-        (motion.join(), told)
+        (motion.join(), recorded)
     });
-    let (history, columns) = told?;
+    let (history, columns) = recorded?;
     let name = name.as_deref().unwrap_or("unnamed");
     let mut page = match &summary {
         Some(summary) => {
@@ -186,7 +186,7 @@ impl Shown {
 
     /// A figure of a quantity in a unit (`%` for a fraction) with its error; `figures` lists the candidates for its name.
     fn figure(summary: &Summary, (name, figures): (&str, &[&str]), value: f64, unit: &str) -> Self {
-        let told = |x: f64, digits: usize| match (unit, digits) {
+        let formatted = |x: f64, digits: usize| match (unit, digits) {
             ("%", 3) => percent(x),
             ("%", _) => format!("{} %", significant(100.0 * x, digits)),
             _ => quantity(x, unit, digits),
@@ -198,8 +198,8 @@ impl Shown {
         let band = bands::of(&summary.bands, name, figures, value);
         let error = figures.iter().find_map(|figure| summary.error(name, figure));
         Self {
-            text: error.map_or_else(|| told(value, 3), with),
-            band: band.map(|band| bands::beside(band, value, &told)),
+            text: error.map_or_else(|| formatted(value, 3), with),
+            band: band.map(|band| bands::beside(band, value, &formatted)),
         }
     }
 }

@@ -59,7 +59,7 @@ pub fn words(signal: &Signal, unit: &str) -> String {
 /// Replaces a long text by a reference to the case.
 fn brief(text: String) -> String {
     if text.chars().count() > LONGEST {
-        "varies as the case says".into()
+        "varies as given in the case".into()
     } else {
         text
     }

@@ -63,7 +63,7 @@ pub fn study(place: &Place) -> Result<Page> {
         "table": {
             "title": "Every setting",
             "about": format!("The error is the largest difference of {measure} from the best reference, over its largest value. \
-                      \"Judged\" says whether that reference is exact enough to tell."),
+                      \"Judged\": that reference is exact enough to judge the setting."),
             "headings": ["cells a segment", "method", "tolerance", "unknowns", "steps", "least wall time [s]", "largest error",
                          "judged", "worth using"],
             "rows": ran.map(row).collect::<Vec<_>>(), "file": study_files::CSV,
@@ -84,13 +84,13 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
         let name = format!("{cells}, {}", method(line.scheme));
         let point = |marker: &Marker| {
             let worth = if marker.front { "; worth using" } else { "" };
-            let told = if marker.judged {
+            let doubt = if marker.judged {
                 ""
             } else {
                 "; the reference is too coarse to judge it"
             };
             let words = format!(
-                "{cells} a segment, {}, tolerance {:e}: error {:.1e}, {}{worth}{told}",
+                "{cells} a segment, {}, tolerance {:e}: error {:.1e}, {}{worth}{doubt}",
                 method(line.scheme),
                 marker.rtol,
                 marker.error,
@@ -114,9 +114,9 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
         json!({
             "kind": "marks", "title": "Error and time",
             "about": format!(
-                "Each mark is one setting: a mesh, a method and a tolerance. The error is that of {}. Further left is more exact, further down is \
-                 faster; the settings worth using lie along the lower left edge, which is shaded as a line. Hollow marks, and what lies on the dark \
-                 ground at the left, the reference is too coarse to judge. Broken lines are one-step methods.",
+                "Each mark is one setting: a mesh, a method and a tolerance. The error is that of {}. Settings further left are more exact, \
+                 those further down are faster. The settings worth using lie on the shaded line along the lower left edge. For hollow marks, and \
+                 in the dark area at the left, the reference is too coarse to judge the error. Broken lines are one-step methods.",
                 data.measure
             ),
             "x": {"name": "relative error", "unit": "1"}, "y": {"name": "least wall time", "unit": "s"},

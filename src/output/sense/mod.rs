@@ -129,13 +129,13 @@ fn drawn(found: &Sensed) -> Option<String> {
         }
     }
     let about = match (found.rows.is_empty(), found.band) {
-        (true, _) => "what pressures tell of loads, by the number of sensors".into(),
+        (true, _) => "standard errors of the loads, by the number of sensors".into(),
         (false, band) => {
             let loads = match band {
                 BandKind::LocalMean => "means around places",
                 _ => "loads",
             };
-            format!("{loads} with bands of 95 %; pressures: rings measured, lines modelled, blue the upper row")
+            format!("{loads} with 95 % bands; pressures: rings measured, lines modelled, blue the upper row")
         }
     };
     let picture = Picture {

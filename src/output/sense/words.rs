@@ -53,7 +53,7 @@ pub fn about_sight(found: &Sensed) -> String {
     let loads: Vec<String> = found.loads.iter().map(ToString::to_string).collect();
     let bladders = counted(found.bladders.len() as u64, "bladder");
     let straight = match found.loads.iter().any(|load| matches!(load, Basis::Profile(_))) {
-        true => "; of loads that are straight between the places of the profile:",
+        true => "; loads are linear between the places of the profile:",
         false => "",
     };
     let mut text = format!(
@@ -61,51 +61,54 @@ pub fn about_sight(found: &Sensed) -> String {
         found.case,
         loads.join(" + "),
         match found.over_time {
-            Some(_) => "over time; of loads that do not change:",
+            Some(_) => "over time; for constant loads:",
             None => "at rest",
         }
     );
     if !found.own_loads.is_empty() {
         text += &format!(
-            "  the case's own loads act besides, as at t = {} s: {}; what is found comes on top of them\n",
+            "  the case's own loads act besides, as at t = {} s: {}; the loads found are in addition to them\n",
             trimmed(&significant(found.loads_at_s, 4)),
             found.own_loads.join(", ")
         );
     }
     let alone = |a: &&Unknown| a.error_per_pa.is_some();
-    let told: Vec<&Unknown> = found.amplitudes.iter().filter(alone).collect();
-    if told.len() > MANY {
-        text += &format!("  told, each by itself: {}\n", listed(&told));
+    let determined: Vec<&Unknown> = found.amplitudes.iter().filter(alone).collect();
+    if determined.len() > MANY {
+        text += &format!("  determined individually: {}\n", listed(&determined));
     } else {
-        text.extend(told.iter().filter_map(|a| {
+        text.extend(determined.iter().filter_map(|a| {
             let error = significant(a.error_per_pa?, 3);
             Some(format!(
-                "  {} is told: its standard error is {error} {} for each Pa of noise\n",
+                "  {} is determined: its standard error is {error} {} per Pa of noise\n",
                 a.name, a.unit
             ))
         }));
     }
     let lost: Vec<&Unknown> = found.amplitudes.iter().filter(|a| !alone(a)).collect();
     if !lost.is_empty() {
-        text += &format!("  not told by these pressures alone: {}\n", listed(&lost));
+        text += &format!("  not determined by these pressures alone: {}\n", listed(&lost));
     }
     let (together, blind) = (&found.seen.together, &found.seen.blind);
     if together.len() > MANY {
         let in_any = |k: usize| together.iter().any(|one| one.factors.get(k).is_some_and(|c| *c != 0.0));
         text += &format!(
-            "  told together: {} sums of {}\n",
+            "  determined only together: {} sums of {}\n",
             together.len(),
             listed(&of(found, &in_any))
         );
     } else {
         for one in together {
-            text += &format!("  told together: {} [{}], numbers in SI units\n", one.name, one.unit);
+            text += &format!(
+                "  determined only together: {} [{}], numbers in SI units\n",
+                one.name, one.unit
+            );
         }
     }
     if blind.len() > MANY {
         let in_any = |k: usize| blind.iter().any(|change| change.get(k).is_some_and(|c| *c != 0.0));
         text += &format!(
-            "  leave no trace: {} changes that do not follow from each other, of {}; sense.json has them\n",
+            "  not observable: {} independent combinations of {}; listed in sense.json\n",
             blind.len(),
             listed(&of(found, &in_any))
         );
@@ -116,7 +119,7 @@ pub fn about_sight(found: &Sensed) -> String {
         let parts: Vec<String> = parts
             .map(|(c, a)| format!("{} {} of {}", significant(*c, 4), a.unit, a.name))
             .collect();
-        text += &format!("  leaves no trace: {}\n", parts.join(" with "));
+        text += &format!("  not observable: {}\n", parts.join(" with "));
     }
     text
 }
@@ -142,15 +145,14 @@ fn listed(all: &[&Unknown]) -> String {
 }
 
 /// A load with the half width of its band.
-fn banded(one: Option<&Banded>, kind: BandKind) -> String {
+fn banded(one: Option<&Banded>) -> String {
     match one {
         Some(one) => format!(
             "{} ± {}",
             significant(one.value, 4),
             significant(one.high - one.value, 2)
         ),
-        None if kind == BandKind::LocalMean => "not determined".into(),
-        None => "not told".into(),
+        None => "not determined".into(),
     }
 }
 
@@ -174,13 +176,7 @@ pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
         let lines = names().zip(all).map(|((name, unit), one)| {
             let end = |x: Option<f64>| x.map_or("–".into(), |x| significant(x, 4));
             let (low, high) = one.as_ref().map(|one| (one.low, one.high)).unzip();
-            vec![
-                name.clone(),
-                banded(one.as_ref(), found.band),
-                end(low),
-                end(high),
-                unit.clone(),
-            ]
+            vec![name.clone(), banded(one.as_ref()), end(low), end(high), unit.clone()]
         });
         return (headings.into(), lines.collect());
     }
@@ -196,7 +192,7 @@ pub fn table(found: &Sensed) -> (Vec<String>, Vec<Vec<String>>) {
             .amplitudes
             .iter()
             .chain(&row.together)
-            .map(|one| banded(one.as_ref(), found.band));
+            .map(|one| banded(one.as_ref()));
         [first].into_iter().chain(all).collect()
     });
     (headings, lines.collect())
@@ -208,24 +204,22 @@ pub fn about_band(found: &Sensed) -> String {
         BandKind::AssumedForm => {
             let check = match &found.noise {
                 _ if !found.doubts.is_empty() => "The pressures do not fit that: loads may lie outside.",
-                Some(noise) if noise.from == NoiseFrom::Estimated => "What else acts is taken for noise.",
+                Some(noise) if noise.from == NoiseFrom::Estimated => "Other loads count as noise.",
                 Some(noise) if noise.freedom < 0.5 => "No pressure is left to check that.",
                 _ => "χ² checks that.",
             };
-            return format!(
-                "bands of 95 % assume loads that act where and as they are looked for: noise is the only error. {check}"
-            );
+            return format!("95 % bands assume loads of the given places and forms: noise is the only error. {check}");
         }
         BandKind::LocalMean => {
-            "bands of 95 % hold the mean of the load around each place, of pads, points, smooth and rough loads: its weight falls straight to 0 at the next \
-             places. Pressures do not determine the load at a point. Where a mean is not determined, its band would be that of assumptions"
+            "95 % bands contain the mean of the load around each place, for pads, points, smooth and rough loads. The weight of the mean falls linearly to 0 \
+             at the next places. Pressures do not determine the load at a point. A mean is not determined if only assumptions would bound it"
         }
         BandKind::AssumedSmoothness => {
-            "bands of 95 % hold only loads that are straight between the places and as smooth as assumed. Leave --smoothing out for bands of \
+            "95 % bands contain only loads that are linear between the places and as smooth as assumed. Omit --smoothing for bands of \
              loads of any shape"
         }
         BandKind::SmoothInTime => {
-            "bands of 95 % hold loads that act where they are looked for and change as smoothly as estimated. Loads that jump may lie outside"
+            "95 % bands contain loads of the given places that change as smoothly as estimated. Loads that jump may lie outside"
         }
     };
     text.into()
@@ -245,19 +239,19 @@ pub fn about_noise(found: &Sensed) -> String {
     };
     let mut text = match noise.from {
         NoiseFrom::Estimated => format!(
-            "noise: {sd}, estimated from what the loads leave of the pressures ({freedom} of freedom); bands are Student's"
+            "noise: {sd}, estimated from the residuals of the pressures ({freedom} of freedom); bands from Student's t-distribution"
         ),
         NoiseFrom::Given => format!("noise: {sd}, as given"),
-        NoiseFrom::Table => "noise: as the measurements give it".to_owned(),
+        NoiseFrom::Table => "noise: as given with the measurements".to_owned(),
     };
     if noise.from != NoiseFrom::Estimated {
         let sum = significant(noise.chi_square, 3);
         text += &match found.smoothing {
-            None => format!("; what is left has χ² = {sum} on {freedom} of freedom"),
+            None => format!("; the residuals have χ² = {sum} with {freedom} of freedom"),
             Some(_) => {
                 let values = found.rows.iter().flat_map(|row| &row.measured_pa).flatten().count();
                 format!(
-                    "; what is left of {} has χ² = {}, the roughness of the loads adds {}: {sum} on {freedom} of freedom",
+                    "; the residuals of {} have χ² = {}, the roughness of the loads adds {}: {sum} with {freedom} of freedom",
                     counted(values as u64, "pressure"),
                     significant(noise.misfit, 3),
                     significant(noise.roughness, 3)
@@ -267,34 +261,34 @@ pub fn about_noise(found: &Sensed) -> String {
     }
     text += &format!("\n{}", about_band(found));
     if let Some(smoothed) = &found.smoothing {
-        text += "\nknown before: ";
+        text += "\nprior: ";
         text += &match (smoothed.deviation_n_m, smoothed.load_deviation_n_m) {
             (_, Some(deviation)) => format!(
-                "the load is a Gaussian process of any scale and length, most likely of a standard deviation of {} N/m; bands include that scale and length \
-                 are not known",
+                "the load is a Gaussian process of unknown scale and length, most likely with a standard deviation of {} N/m; bands include this \
+                 uncertainty",
                 significant(deviation, 3)
             ),
             (Some(deviation), _) => format!(
-                "second differences of the profile have a standard deviation of {} N/m; bands include that",
+                "second differences of the profile have a standard deviation of {} N/m; bands include it",
                 significant(deviation, 3)
             ),
-            _ => "loads are smooth over time, as much as the pressures speak for; bands include that".into(),
+            _ => "loads are as smooth over time as the pressures suggest; bands include it".into(),
         };
     }
     if let Some(over_time) = &found.over_time {
-        let told = found.amplitudes.iter().zip(&over_time.told);
-        let told: Vec<String> = told
-            .map(|(a, told)| format!("{} of {}", significant(*told, 3), a.name))
+        let determined = found.amplitudes.iter().zip(&over_time.determined);
+        let determined: Vec<String> = determined
+            .map(|(a, count)| format!("{} of {}", significant(*count, 3), a.name))
             .collect();
         text += &format!(
-            "\nover time: {} values of each load, one every {} s, a smooth curve between; the pressures tell {}; {}",
+            "\nover time: {} values of each load, one every {} s, joined by a smooth curve; the pressures determine {}; {}",
             over_time.knots,
             significant(over_time.every_s, 3),
-            told.join(", "),
+            determined.join(", "),
             counted(u64::from(over_time.runs), "run")
         );
     } else if found.rows.iter().any(|row| row.t_s.is_some()) {
-        text += "\neach row is taken as at rest: inertia and flow are not in it";
+        text += "\neach row is treated as an equilibrium, without inertia and flow";
     }
     text
 }
@@ -317,7 +311,7 @@ fn sensors(found: &Sensed) -> String {
         line.extend(
             one.errors
                 .iter()
-                .map(|e| e.map_or("not told".into(), |e| significant(e, 3))),
+                .map(|e| e.map_or("not determined".into(), |e| significant(e, 3))),
         );
         line.push(list(&one.bladders));
         lines.push(line);
@@ -337,34 +331,27 @@ fn sensors(found: &Sensed) -> String {
 pub fn answer(found: &Sensed) -> String {
     match (found.rows.as_slice(), found.choice.first(), found.choice.last()) {
         ([row], ..) => {
-            let told = found.amplitudes.iter().zip(&row.amplitudes);
-            let told: Vec<String> = told
-                .filter_map(|(a, one)| {
-                    Some(format!(
-                        "{} {} {}",
-                        a.name,
-                        banded(Some(one.as_ref()?), found.band),
-                        a.unit
-                    ))
-                })
+            let loads = found.amplitudes.iter().zip(&row.amplitudes);
+            let loads: Vec<String> = loads
+                .filter_map(|(a, one)| Some(format!("{} {} {}", a.name, banded(Some(one.as_ref()?)), a.unit)))
                 .take(4)
                 .collect();
-            match told.is_empty() {
-                true => "These pressures tell no load by itself, only loads together.".into(),
+            match loads.is_empty() {
+                true => "These pressures determine no single load, only combinations of loads.".into(),
                 false if !found.doubts.is_empty() => format!(
-                    "Nothing to rely on: {}. What comes nearest is {}.",
+                    "The loads are not reliable: {}. The closest fit is {}.",
                     found.doubts.join("; "),
-                    told.join(", ")
+                    loads.join(", ")
                 ),
-                false => format!("The pressures are those of {}.", told.join(", ")),
+                false => format!("The pressures correspond to {}.", loads.join(", ")),
             }
         }
         ([], Some(least), Some(most)) => format!(
-            "Of {} most is told by {}; with all {} the errors are as small as they get.",
+            "The best set of {} to measure is {}. All {} together give the smallest errors.",
             counted(least.bladders.len() as u64, "bladder"),
             list(&least.bladders).replace(' ', ", "),
             most.bladders.len()
         ),
-        (rows, ..) => format!("Loads behind {} rows of pressures.", count(rows.len() as u64)),
+        (rows, ..) => format!("Loads from {} rows of pressures.", count(rows.len() as u64)),
     }
 }

@@ -28,7 +28,7 @@ pub const PICTURE: &str = "study.svg";
 
 /// Text of `study.json`; numbers that are not finite are null.
 pub fn json(study: &Study) -> String {
-    results::told(study, Some(&sentence(study)))
+    results::text_with(study, Some(&sentence(study)))
 }
 
 /// Writes the files into a folder; other files in it stay.

@@ -153,7 +153,7 @@ fn limits(study: &Study) -> String {
     if !study.left_out.is_empty() {
         let _ = writeln!(
             text,
-            "not compared, since prescribed or nothing beside others of its unit: {}",
+            "not compared (prescribed, or negligible beside others of the same unit): {}",
             study.left_out.join(", ")
         );
     }

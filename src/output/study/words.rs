@@ -12,7 +12,7 @@ pub fn spoken(name: &str) -> String {
 /// Closing sentence: `1 % of tip deflection costs 0.03 s (2 cells, rtol 1e-3); ...; looser than rtol 1e-3 costs more, not less.`
 pub fn sentence(study: &Study) -> String {
     let Some(measure) = study.measure() else {
-        return "Nothing can be said: no run finished.".into();
+        return "No accuracy is known: no run finished.".into();
     };
     let schemes: Vec<Scheme> = study.plan.schemes.clone();
     let mut parts: Vec<String> = vec![];

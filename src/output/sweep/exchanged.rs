@@ -7,7 +7,7 @@ use crate::results::sweep::Plan;
 use crate::study::sweep::exchanged::{Exchange, MOST, Swinging, exchanges};
 
 /// Largest number of exchanges listed.
-const TOLD: usize = 3;
+const LISTED: usize = 3;
 
 /// Exchanges of modes between designs that finished, as far as designs are compared.
 ///
@@ -36,15 +36,15 @@ pub fn warnings(all: &[Exchange]) -> Vec<String> {
             number(to)
         )
     };
-    let told: Vec<String> = all.iter().take(TOLD).map(one).collect();
-    let more = match all.len().saturating_sub(TOLD) {
+    let listed: Vec<String> = all.iter().take(LISTED).map(one).collect();
+    let more = match all.len().saturating_sub(LISTED) {
         0 => String::new(),
         n => format!("; and so between {n} more pairs of designs"),
     };
     let warning = || {
         Code::ModesExchanged.warning(format!(
             "modes change places: {}{more}; read damping_ratio beside each frequency",
-            told.join("; ")
+            listed.join("; ")
         ))
     };
     (!all.is_empty()).then(warning).into_iter().collect()

@@ -154,10 +154,10 @@ pub fn summarize(plan: &Plan, survey: &Survey) -> Result<Sweep> {
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, told: &Sweep, lean: bool) -> Result<()> {
-    table::write(folder, plan, survey, &told.columns)?;
-    arrays::write(folder, plan, survey, &told.columns)?;
-    folder.write(JSON, results::text(told).as_bytes())?;
+pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, sweep: &Sweep, lean: bool) -> Result<()> {
+    table::write(folder, plan, survey, &sweep.columns)?;
+    arrays::write(folder, plan, survey, &sweep.columns)?;
+    folder.write(JSON, results::text(sweep).as_bytes())?;
     let drawn = if lean { vec![] } else { pictures::draw(plan, survey)? };
     for name in PICTURES {
         match drawn.iter().find(|(own, _)| *own == name) {

@@ -119,7 +119,7 @@ fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
             Ok(())
         })?;
         if let Some((number, first, (name, [a, b]))) = conflict {
-            let told = |x: f64| {
+            let text = |x: f64| {
                 if x.is_nan() {
                     "missing".into()
                 } else {
@@ -129,9 +129,9 @@ fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
             return Err(Error::Usage(format!(
                 "design {number} is there twice, and its rows differ: {name} is {} in {} and {} in {}; merge only one of them, or compute one \
                  again",
-                told(a),
+                text(a),
                 all[first].0.display(),
-                told(b),
+                text(b),
                 dir.display()
             )));
         }

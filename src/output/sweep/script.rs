@@ -32,9 +32,9 @@ pub struct Jobs<'a> {
 }
 
 /// Text of the script.
-pub fn script(plan: &Plan, scheduler: Scheduler, told: &Jobs) -> String {
-    let program = quoted(&told.program.display().to_string());
-    let more = told.more.iter().map(|word| (*word).to_owned());
+pub fn script(plan: &Plan, scheduler: Scheduler, settings: &Jobs) -> String {
+    let program = quoted(&settings.program.display().to_string());
+    let more = settings.more.iter().map(|word| (*word).to_owned());
     let options: Vec<String> = plan
         .options()
         .into_iter()
@@ -42,8 +42,12 @@ pub fn script(plan: &Plan, scheduler: Scheduler, told: &Jobs) -> String {
         .map(|word| quoted(&word))
         .collect();
     let options = options.join(" ");
-    let (out, shards, jobs) = (quoted(&told.out.display().to_string()), told.shards, told.at_once);
-    let lean = if told.lean { " --lean" } else { "" };
+    let (out, shards, jobs) = (
+        quoted(&settings.out.display().to_string()),
+        settings.shards,
+        settings.at_once,
+    );
+    let lean = if settings.lean { " --lean" } else { "" };
     let merge = format!("\"$slcbeam\" merge {out}-shard-*{lean} --out {out}");
     let sweep = |shard: &str, jobs: &str| {
         format!(

@@ -12,14 +12,14 @@ use crate::study::analysis::word;
 use crate::study::sweep::designs::pairs;
 
 /// Largest number of designs without a full result that are listed.
-const TOLD: usize = 5;
+const LISTED: usize = 5;
 
 /// Number of designs by status, and the first that did not finish.
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
-    let (plan, rows) = (&told.plan, told.rows);
+pub fn words(sweep: &Sweep, survey: &Survey) -> Result<String> {
+    let (plan, rows) = (&sweep.plan, sweep.rows);
     let kinds = kinds(survey.statuses.iter().map(|(status, n)| (word(*status), n)));
     let shard = plan
         .shard
@@ -33,7 +33,7 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
     let pointers = plan.pointers();
     let mut first = vec![];
     survey.each(|row| {
-        if row.found.status != Status::Finished && first.len() < TOLD {
+        if row.found.status != Status::Finished && first.len() < LISTED {
             let values = pairs(&pointers, &row.values);
             let place = if values.is_empty() {
                 values
@@ -76,7 +76,7 @@ pub fn words(told: &Sweep, survey: &Survey) -> Result<String> {
             count((others - first.len()) as u64)
         );
     }
-    for warning in &told.warnings {
+    for warning in &sweep.warnings {
         let _ = writeln!(text, "  warning: {warning}");
     }
     Ok(text)

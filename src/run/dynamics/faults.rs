@@ -6,20 +6,33 @@ use crate::integrate::{IntegrationError, StartError};
 
 pub(super) fn fault(failure: &IntegrationError) -> SolverError {
     SolverError {
-        code: if failure.singular.is_some() { Code::Singular } else { Code::Integrator },
+        code: if failure.singular.is_some() {
+            Code::Singular
+        } else {
+            Code::Integrator
+        },
         at: At::Time(failure.time),
         what: failure.to_string(),
-        unknown: failure.worst.as_ref().map(|w| w.name.clone()).or_else(|| failure.singular.clone()),
+        unknown: failure
+            .worst
+            .as_ref()
+            .map(|w| w.name.clone())
+            .or_else(|| failure.singular.clone()),
         cause: Some(
             if failure.singular.is_some() {
-                "the equations lose their unique solution here: a buckled quasi-static beam, or a coupling that is not convex"
+                "the equations have no unique solution here: the quasi-static beam buckles, or the coupling is not \
+                 convex"
             } else {
-                "the solution changes faster than the smallest step: a bladder closing, an instability, or a tolerance \
-                 beyond double precision"
+                "the solution changes faster than the smallest step resolves: a closing bladder, an instability, or a \
+                 tolerance beyond double precision"
             }
             .into(),
         ),
-        hint: Some("look at the balances and fields up to this time; try another rtol, a wider kink_width, wider smoothing_pa or more leak of check valves, or damping".into()),
+        hint: Some(
+            "examine the balances and fields up to this time; try another rtol, a wider kink_width, a larger \
+             smoothing_pa or more leak of check valves, or damping"
+                .into(),
+        ),
     }
 }
 
@@ -36,14 +49,15 @@ fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverError {
 }
 
 pub(super) fn beyond(t: f64, what: String) -> SolverError {
-    let cause = "loads, pressures or flows beyond what the model describes, or a motion that grows without bounds";
-    let hint = "results stand up to this time; look at the fields before it, at the units of loads and flows";
+    let cause = "loads, pressures or flows exceed the range of the model, or the motion grows without bounds";
+    let hint = "results are valid up to this time; examine the fields before it, and check the units of loads and \
+                flows";
     at(t, Code::OutOfRange, [&what, cause, hint])
 }
 
 pub(super) fn too_many_steps(t: f64, step: f64) -> SolverError {
-    let what = format!("the number of steps allowed is used up at t = {t:.6} s, with steps of {step:.2e} s");
-    let cause = "fast waves that the tolerance asks to follow";
+    let what = format!("the allowed number of steps is used up at t = {t:.6} s, with steps of {step:.2e} s");
+    let cause = "fast waves that the tolerance requires to be resolved";
     at(
         t,
         Code::Steps,
@@ -56,12 +70,12 @@ pub(super) fn inconsistent(t: f64, failure: &StartError) -> SolverError {
         (
             "no consistent start".to_string(),
             "start values that contradict each other, or a model without a unique state",
-            "look at `slcbeam check`, and at /start and /ends of the case",
+            "run `slcbeam check`, and examine /start and /ends of the case",
         )
     } else {
         (
             format!("no consistent state after the switching time {t:.6} s"),
-            "what switches leaves the equations without a unique state",
+            "after the switch the equations have no unique state",
             "switch more slowly (a ramp with a duration)",
         )
     };
@@ -73,8 +87,8 @@ pub(super) fn inconsistent(t: f64, failure: &StartError) -> SolverError {
 
 pub(super) fn stalled(t: f64, step: f64) -> SolverError {
     let what =
-        format!("no progress: {STALL_STEPS} steps have hardly moved the time on from t = {t:.9} s (step {step:.2e} s)");
+        format!("no progress: {STALL_STEPS} steps hardly advanced the time from t = {t:.9} s (step {step:.2e} s)");
     let cause = "the solution changes ever faster towards this time: a closing bladder, an instability, a jump";
-    let hint = "look at the fields just before this time; damping or a smoother signal may help";
+    let hint = "examine the fields just before this time; damping or a smoother signal may help";
     at(t, Code::Integrator, [&what, cause, hint])
 }

@@ -18,7 +18,6 @@ use pace::Pace;
 
 use super::checkpoint::Checkpoint;
 use super::growth::Linear;
-use super::known;
 use super::method::{self, Integrator, Options};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
@@ -26,11 +25,8 @@ use super::schedule::{self, Outputs, Stop};
 use super::sensitivity::forward::{By, Forward};
 use super::strides::Strides;
 use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
-use super::wall::Laps;
-use super::waves;
-use crate::case::inherited;
-use crate::case::parameter::Parameter;
-use crate::case::schema::Case;
+use super::{known, wall::Laps, waves};
+use crate::case::{inherited, parameter::Parameter, schema::Case};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
 use crate::error::{Result, SolverError};
@@ -113,7 +109,7 @@ struct Run<'a> {
     forward: Option<Forward<'a>>,
     held: Option<String>,
     laps: Laps,
-    /// Where the last step ended.
+    /// State of progress at the end of the last step.
     latest: Progress,
     /// Time of the last output that was recorded [s].
     written: Option<f64>,
@@ -126,11 +122,11 @@ struct Run<'a> {
     earlier: Counters,
 }
 
-/// How a run left its loop.
+/// Outcome of the loop over steps.
 enum End {
     Finished,
     Stopped(String),
-    /// What lies beyond the model.
+    /// A validity limit was exceeded.
     Left(SolverError),
     Failed(SolverError),
 }

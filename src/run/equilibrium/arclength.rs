@@ -11,7 +11,7 @@ use crate::sparse::Pattern;
 /// F(s, y) = 0        d·(y, s) = a        the path follower chooses d and a
 /// ```
 ///
-/// Where the path turns back in s (a limit point) this system remains regular, unlike F alone. With `d = (0, 1)` it describes
+/// At a limit point, where the path turns back in s, this system remains regular, unlike F alone. With `d = (0, 1)` it describes
 /// equilibrium under the share a.
 pub struct Arclength {
     statics: StaticBeam,

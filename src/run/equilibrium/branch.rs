@@ -56,7 +56,7 @@ impl Follower<'_> {
             self.aside(&last, &direction)
         };
         let x = taken.map_err(|failure| {
-            let none = || KinsolError::own("the path that crosses here is not found");
+            let none = || KinsolError::own("the crossing path was not found");
             self.fail(&failure.unwrap_or_else(none), share)
         })?;
         self.orientation = self.solver.determinant_sign();

@@ -34,14 +34,12 @@ impl Follower<'_> {
             });
         }
         let what = format!(
-            "the load turns back at {} (limit point) after the range of the model has been left: {beyond}",
+            "the load turns back at {} (limit point), outside the range of the model: {beyond}",
             self.options.place(self.stage, &format!("{largest:.4}"))
         );
         End(SolverError {
-            cause: Some("loads beyond those that the beam can bear, or beyond those that the model describes".into()),
-            hint: Some(
-                "keep the loads below those at which the range is left (--load-factor), or stiffen the beam".into(),
-            ),
+            cause: Some("loads that the beam cannot carry, or that exceed the range of the model".into()),
+            hint: Some("keep the loads within the range of the model (--load-factor), or stiffen the beam".into()),
             ..fault(self.stage as f64 + largest, &what)
         })
     }
@@ -49,9 +47,7 @@ impl Follower<'_> {
     pub(super) fn lost(&self, share: f64) -> End {
         let points = counted(self.path.states.len() as u64, "point");
         let factor = self.stage as f64 + share;
-        let what = format!(
-            "the path does not come to the load factor that is asked for: it ends after {points} at {factor:.4}"
-        );
+        let what = format!("the path does not reach the requested load factor: it ends after {points} at {factor:.4}");
         End(fault(factor, &what))
     }
 
@@ -94,13 +90,14 @@ impl Follower<'_> {
 }
 
 /// Probable cause of the end of a path, and the one for a beam without fluid.
-const CAUSE: &str = "two paths that meet, a coupling that is not convex, a bladder that closes";
-const DRY_CAUSE: &str = "two paths that meet or pass close by each other, or loads beyond those that the beam can bear";
+const CAUSE: &str = "two paths that meet, a coupling that is not convex, or a bladder that closes";
+const DRY_CAUSE: &str = "two paths that meet or pass close to each other, or loads that the beam cannot carry";
 
 /// Probable cause and hint for a network with valves that open by pressure.
-const VALVE_CAUSE: &str = "a check valve or rectifier that opens over a pressure far below those that act; or two paths that meet, a coupling that is not convex, a bladder that closes";
-const VALVE_HINT: &str =
-    "a larger smoothing_pa of the valve, or the state after a run (slcbeam run); look at the states up to there";
+const VALVE_CAUSE: &str = "a check valve or rectifier whose smoothing_pa is far below the acting pressures; or two \
+                           paths that meet, a coupling that is not convex, or a bladder that closes";
+const VALVE_HINT: &str = "use a larger smoothing_pa of the valve, or the state after a run (slcbeam run); examine the \
+                          states up to this point";
 
 /// Replaces the cause in the error of a beam without fluid, which has neither bladders nor a coupling.
 pub(super) fn dry(mut fault: SolverError) -> SolverError {
@@ -117,11 +114,15 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
         what: what.into(),
         unknown: None,
         cause: Some(if share == 0.0 {
-            "nothing holds the beam, or a part of the network has neither bladder nor pressure".into()
+            "nothing holds the beam, or a part of the network has neither a bladder nor a prescribed pressure".into()
         } else {
             CAUSE.into()
         }),
-        hint: Some("look at the states up to there; a small load across tells which way a symmetric beam bends".into()),
+        hint: Some(
+            "examine the states up to this point; a small transverse load selects the direction in which a \
+             symmetric beam bends"
+                .into(),
+        ),
     }
 }
 

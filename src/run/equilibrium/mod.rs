@@ -159,7 +159,7 @@ impl Event {
         match self.kind {
             Kind::LimitPoint => "limit point: the load that the beam carries turns back here",
             Kind::Bifurcation => {
-                "bifurcation: the path loses its stability where another one crosses it; that one is followed"
+                "bifurcation: the path loses its stability where another one crosses it; the other path is followed"
             }
         }
     }
@@ -169,28 +169,29 @@ impl Path {
     /// Warnings of states outside the range of the model.
     pub fn warnings(&self) -> Vec<String> {
         let beyond = self.beyond.iter().map(|beyond| {
-            let what = format!("{beyond}; states from there on are not to be trusted");
+            let what = format!("{beyond}. Later states are not reliable.");
             Code::BeyondRange.warning(what)
         });
         let [reynolds, share] = self.reynolds;
         let fast = (reynolds > REYNOLDS).then(|| {
             Code::FastFlow.warning(format!(
-                "range of the model: the Reynolds number of steady flow in a tube reached {reynolds:.0} at load factor {share:.4} (above \
-                 {REYNOLDS}); flow is meant to creep"
+                "range of the model: the Reynolds number of steady flow in a tube reached {reynolds:.0} at load \
+                 factor {share:.4} (above {REYNOLDS}). The model assumes creeping flow."
             ))
         });
         let [mach, share] = self.mach;
         let choked = (mach > MACH).then(|| {
             Code::FastGas.warning(format!(
-                "range of the model: the Mach number of steady flow in a tube reached {mach:.2} at load factor {share:.4} (above {MACH}); a tube \
-                 passes no more than at 1, so that real flow is slower than this"
+                "range of the model: the Mach number of steady flow in a tube reached {mach:.2} at load factor \
+                 {share:.4} (above {MACH}). A tube passes at most Mach 1, so the real flow is slower than the \
+                 computed one."
             ))
         });
         let [strain, share] = self.strain;
         let strained = (strain > STRAIN).then(|| {
             Code::Strain.warning(format!(
-                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at load factor {share:.4} (above \
-                 {STRAIN}); strains are meant to be small"
+                "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at \
+                 load factor {share:.4} (above {STRAIN}). The model assumes small strains."
             ))
         });
         let trapped = self.trapped.clone();

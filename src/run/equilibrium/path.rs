@@ -239,7 +239,7 @@ impl Follower<'_> {
                 0.35
             };
             if step < SHORTEST {
-                let what = "what is found lies far from what was predicted, however short the step";
+                let what = "the solution is far from the prediction even with the shortest step";
                 let astray = || KinsolError::own(what);
                 return Err(self.fail(&solved.err().unwrap_or_else(astray), last[n]));
             }

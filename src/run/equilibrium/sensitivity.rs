@@ -136,7 +136,7 @@ fn changed(
         // a valve may close slightly earlier
         let stages = options.resolved(&case)?.stages();
         let Some(stage) = stages.get(number).filter(|_| stages.len() == count) else {
-            let what = "valves shut another number of times with it";
+            let what = "a small change of it changes the number of valve closures";
             return Err(Error::Usage(format!("{}: {what}", direction.name)));
         };
         let held = before.map(|(held, derivative)| Held {

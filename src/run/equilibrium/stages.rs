@@ -306,7 +306,7 @@ fn switch(
     let lost = |what: &str| {
         fault(
             stage as f64,
-            &format!("valves switch before stage {}: {what}", stage + 1),
+            &format!("the switching of valves before stage {} failed: {what}", stage + 1),
         )
     };
     if !statics.relax_from(&y) {
@@ -342,10 +342,10 @@ fn openings(system: &System) -> Vec<f64> {
 /// Error for a beam that is not supported in some directions.
 fn not_held(directions: &[&str]) -> SolverError {
     let directions = directions.join(" and ");
-    let what = format!("there is no equilibrium of a beam that nothing holds {directions}");
+    let what = format!("there is no equilibrium: the beam is free to move {directions}");
     SolverError {
         cause: Some(format!(
-            "nothing holds the beam {directions}: loads push it away as a whole"
+            "nothing holds the beam {directions}: loads move it as a rigid body"
         )),
         hint: Some("hold an end (/ends), or attach a spring to ground (/attachments)".into()),
         ..fault(0.0, &what)
@@ -357,21 +357,24 @@ fn fed(stage: usize, inflow: f64, shuts: Option<f64>) -> SolverError {
     let [what, hint] = match shuts {
         Some(t) => [
             format!(
-                "a valve shuts at t = {t} s while a closed network takes in {inflow:.3e} m^3/s: how much of it is behind the valve depends on how it flows"
+                "a valve shuts at t = {t} s while a closed network takes in {inflow:.3e} m^3/s: the volume behind the \
+                 valve depends on the transient flow"
             ),
-            "let the flow stop before the valve shuts; or take what a run has at that instant (slcbeam run)".into(),
+            "let the flow stop before the valve shuts, or use the state of a run at that instant (slcbeam run)".into(),
         ],
         None => [
             format!(
-                "there is no equilibrium while it pumps: a closed network takes in {inflow:.3e} m^3/s at that instant, and nothing lets it out"
+                "there is no equilibrium while a port pumps: a closed network takes in {inflow:.3e} m^3/s at that \
+                 instant, and has no outlet"
             ),
-            "ask for an instant at which the flow has stopped (--at): what went in before counts; or prescribe what went in by volume_m3, open \
-             the network by a port with pressure_pa, or let the flows sum to zero"
+            "choose an instant at which the flow has stopped (--at): the volume that entered before counts; or \
+             prescribe this volume by volume_m3, open the network by a port with pressure_pa, or let the flows sum to \
+             zero"
                 .into(),
         ],
     };
     SolverError {
-        cause: Some("a port of prescribed flow without one of prescribed pressure in the same network".into()),
+        cause: Some("a port with prescribed flow, and no port with prescribed pressure in the same network".into()),
         hint: Some(hint),
         ..fault(stage as f64, &what)
     }

@@ -93,8 +93,8 @@ fn few(stages: &[Span], at_s: f64) -> Result<()> {
     match stages.len() {
         0..=MOST => Ok(()),
         count => Err(Error::Usage(format!(
-            "valves shut off fluid {count} times before t = {at_s} s, and what is behind them then owes to all of these: more than the {MOST} stages \
-             that an equilibrium goes through; `slcbeam run` follows it"
+            "valves shut off fluid {count} times before t = {at_s} s (limit {MOST} stages of an equilibrium). The \
+             trapped volumes depend on all of these closures. Use `slcbeam run`"
         ))),
     }
 }
@@ -246,21 +246,22 @@ impl History {
             let (place, t) = (pointer(case, &valve.opening), rounded(before.to, 6));
             flows |= !before.of_start;
             let one = match before.of_start {
-                true => format!("{place}, shut since a start in equilibrium with it open under the loads at t = {t} s"),
-                false => format!("{place}, shut since t = {t} s"),
+                true => format!("{place} (open in the start equilibrium under the loads at t = {t} s, and shut since)"),
+                false => format!("{place} (shut since t = {t} s)"),
             };
             if !shut.contains(&one) {
                 shut.push(one);
             }
         }
         let still = if flows {
-            ": where it was still flowing then, only a run tells how much there is"
+            " If fluid was still flowing then, only `slcbeam run` computes the trapped volume."
         } else {
             ""
         };
         (!shut.is_empty()).then(|| {
             Code::Trapped.warning(format!(
-                "fluid is kept behind {}, as much as rests there under the loads of that instant{still}",
+                "fluid is trapped behind {}: its volume is that of the equilibrium under the loads of that \
+                 instant.{still}",
                 shut.join(", ")
             ))
         })

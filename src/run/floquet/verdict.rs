@@ -41,7 +41,7 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
         return Verdict {
             stability: Stability::Stable,
             growth_per_s: f64::NEG_INFINITY,
-            words: "stable: every disturbance has died after one period".into(),
+            words: "stable: every disturbance decays within one period".into(),
         };
     };
     let growth = first.growth_per_s;
@@ -50,7 +50,7 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
         (Stability::Unstable, unstable(first, driven))
     } else if growth > -threshold {
         let words = format!(
-            "neutral: {} neither grows nor decays (multiplier of modulus 1 to {:.0e})",
+            "neutral: {} neither grows nor decays (modulus of the multiplier 1 within {:.0e})",
             at(first),
             (first.modulus - 1.0).abs().max(1e-16)
         );
@@ -74,7 +74,7 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
 fn at(m: &Multiplier) -> String {
     match m.frequency_hz > 0.0 {
         true => format!("{} at {:.4} Hz", m.part, m.frequency_hz),
-        false => format!("{} without swinging", m.part),
+        false => format!("{} without oscillation", m.part),
     }
 }
 

@@ -175,7 +175,7 @@ fn real(modes: &[Mode], others: &[Mode], length: f64) -> Vec<(usize, usize, f64)
 }
 
 /// Largest number of modes that the warning names.
-const TOLD: usize = 4;
+const LISTED: usize = 4;
 
 /// Warns of modes that depend strongly on the meshes, or whose dependence is unknown.
 pub fn warning(found: &Modes) -> Option<String> {
@@ -193,29 +193,30 @@ pub fn warning(found: &Modes) -> Option<String> {
         }
     }
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let more = large.len().saturating_sub(TOLD);
-    let mut told: Vec<String> = large
+    let more = large.len().saturating_sub(LISTED);
+    let mut listed: Vec<String> = large
         .into_iter()
-        .take(TOLD)
-        .map(|(k, error, what)| format!("the {what} of mode {k} by about {:.0} %", 100.0 * error))
+        .take(LISTED)
+        .map(|(k, error, what)| format!("{what} of mode {k} about {:.0} %", 100.0 * error))
         .collect();
     if more > 0 {
-        told.push(format!("{more} more"));
+        listed.push(format!("{more} more"));
     }
     let mut sentences = vec![];
-    if !told.is_empty() {
-        sentences.push(format!("meshes may be off in {}", told.join(", ")));
+    if !listed.is_empty() {
+        sentences.push(format!("errors of the meshes: {}", listed.join(", ")));
     }
     if !unknown.is_empty() {
         let plural = if unknown.len() == 1 { "" } else { "s" };
         sentences.push(format!(
-            "what the mesh along bladders does to mode{plural} {} is not known",
+            "the effect of the mesh along bladders on mode{plural} {} is not known",
             unknown.join(", ")
         ));
     }
     (!sentences.is_empty()).then(|| {
         Code::ErrorEstimate.warning(format!(
-            "estimate: {}; more /mesh/cells_per_bladder or /mesh/cells_per_segment, or --accuracy, which refines both",
+            "estimate: {}. Increase /mesh/cells_per_bladder or /mesh/cells_per_segment, or use --accuracy, which \
+             refines both.",
             sentences.join("; ")
         ))
     })

@@ -46,7 +46,7 @@ pub fn differentiate(
                 .pairs
                 .into_iter()
                 .next()
-                .ok_or_else(|| Error::Usage("a mode is not found again".into()))
+                .ok_or_else(|| Error::Usage("a mode was not found again".into()))
         })
         .collect::<Result<_>>()?;
     let of = |parameter: &Parameter| -> Result<Sensitivity> {
@@ -59,7 +59,7 @@ pub fn differentiate(
                 None => linearise(&case, about.at, None)?,
             };
             if changed.dae.pattern() != about.dae.pattern() {
-                let what = "the unknowns, or what depends on what, change with it";
+                let what = "a small change of it changes the unknowns or the sparsity pattern";
                 return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
             }
             let weight = weight / (CHANGE * parameter.value);

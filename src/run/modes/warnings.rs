@@ -14,8 +14,8 @@ impl Modes {
         let state = &self.about;
         let moving = state.moving().then(|| {
             Code::NotAtRest.warning(format!(
-                "{about} is no equilibrium under the loads at t = {} s: unknowns would change at up to {} of their size a second; \
-                 the modes are those of the state held where it is",
+                "{about} is no equilibrium under the loads at t = {} s: unknowns would change at up to {} of their \
+                 size per second. The modes are those of the state held fixed.",
                 state.at,
                 significant(state.rate, 3)
             ))
@@ -33,8 +33,8 @@ impl Modes {
     pub fn missing(&self) -> Option<String> {
         (self.lost > 0).then(|| {
             Code::LostModes.warning(format!(
-                "{} of the modes that the beam has in the long term were not found again where it relaxes: they are damped too strongly to \
-                 swing, or lie far from where they were expected",
+                "{} of the long-term modes of the beam were not found again with its relaxation. They are damped too \
+                 strongly to oscillate, or lie far from their expected frequency.",
                 self.lost
             ))
         })
@@ -44,8 +44,9 @@ impl Modes {
     pub fn beside(&self) -> Option<String> {
         self.clustered.then(|| {
             Code::LostModes.warning(
-                "many decays have nearly the same rate, as those of an overdamped solid, and the search does not converge among them: decays beyond \
-                 the first ones are not listed, and oscillations beyond were searched along the imaginary axis; fewer cells, or --near, show more",
+                "many decays have nearly the same rate, as those of an overdamped solid, and the search does not \
+                 converge among them. Decays beyond the first ones are not listed, and oscillations beyond were \
+                 searched along the imaginary axis. Use fewer cells or --near to list more.",
             )
         })
     }
@@ -68,8 +69,9 @@ impl Modes {
             .fold(0.0, f64::max);
         (womersley.powi(4) / 1152.0 > FORGOTTEN).then(|| {
             Code::FastFlow.warning(format!(
-                "the fluid has the friction of steady profiles here, and Womersley numbers up to {womersley:.1}: frequencies and damping of modes that \
-                 move much fluid are off; {{\"unsteady_friction\": \"on\"}} has them right, its own decays among them"
+                "the fluid has the friction of steady profiles here, at Womersley numbers up to {womersley:.1}: \
+                 frequencies and damping of modes that move much fluid are inaccurate. Use {{\"unsteady_friction\": \
+                 \"on\"}}, which adds decays of its own."
             ))
         })
     }

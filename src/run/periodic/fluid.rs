@@ -206,7 +206,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
         z = equilibrium::at_start(case, &options, &mut before, &z).map_err(|mut fault| {
             if kept.is_some() {
                 fault.what = format!(
-                    "how much fluid is behind valves that have shut is not known: {}",
+                    "the volume of fluid behind valves that have shut is unknown: {}",
                     fault.what
                 );
             }
@@ -247,8 +247,8 @@ fn gathering(system: &System, case: &Case, parts: &[Part], period: f64) -> Resul
         if net.abs() > NOTHING * most {
             let whole = case.name.as_str();
             return Err(Error::Usage(format!(
-                "{whole} has no cycle: a closed network takes in {} each period, and nothing lets it out; let the flows of its ports sum \
-                 to nothing over a period, or open it by a port with pressure_pa",
+                "{whole} has no cycle: a closed network takes in {} each period, and has no outlet. Let the flows of \
+                 its ports sum to zero over a period, or open it by a port with pressure_pa",
                 quantity(net, "m^3", 4)
             )));
         }

@@ -148,7 +148,7 @@ impl Scene {
             times.push(solver.step(end).map_err(error)?.time);
             self.asked_to_end()?;
             if times.len() > self.periods * MOST_STEPS {
-                let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
+                let what = format!("the motion requires more than {MOST_STEPS} steps per period");
                 return Err(StepError::new(solver.time(), what));
             }
         }
@@ -189,7 +189,7 @@ impl Scene {
                 solver.step(end).map_err(error)?;
                 self.asked_to_end()?;
                 if solver.steps() - before > (self.periods * MOST_STEPS) as u64 {
-                    let what = format!("the motion asks for more than {MOST_STEPS} steps a period");
+                    let what = format!("the motion requires more than {MOST_STEPS} steps per period");
                     return Err(StepError::new(solver.time(), what));
                 }
             }
@@ -258,7 +258,7 @@ impl Scene {
         ] {
             if !held {
                 return Err(Error::Usage(format!(
-                    "{name}: nothing holds the beam {what}, so that every displaced cycle is a cycle too; hold one end"
+                    "{name}: nothing holds the beam {what}, so every displaced cycle is also a cycle. Hold one end"
                 )));
             }
         }
@@ -291,7 +291,7 @@ pub fn fault(error: StepError) -> Error {
         at: At::Time(error.time),
         what: error.what,
         unknown: None,
-        cause: Some("the motion could not be followed over a period".into()),
+        cause: Some("the motion could not be simulated over a period".into()),
         hint: Some(
             "a smaller amplitude, a tighter /solver/rtol, or damping may help; `slcbeam run` shows the motion".into(),
         ),
@@ -315,6 +315,6 @@ fn guess(system: &System, case: &Case, period: f64) -> Result<(Vec<f64>, Option<
             }
         }
     }
-    let told = fluid::fill(&mut dae, case, period, &mut y)?;
-    Ok((y, told))
+    let warning = fluid::fill(&mut dae, case, period, &mut y)?;
+    Ok((y, warning))
 }

@@ -101,14 +101,12 @@ fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<Bea
         let of = |(step, _): (f64, f64)| {
             let case = parameter.changed(case, parameter.value * (1.0 + step * CHANGE))?;
             let system = scene.like(&case)?;
-            let system = system.ok_or_else(|| refuse("changes which unknowns there are"))?;
+            let system = system.ok_or_else(|| refuse("changes the set of unknowns"))?;
             let own = scene.drive.period / scene.periods as f64;
             let asked = (!scene.drive.driven).then_some(own);
             match drive(&case, &system.model, asked) {
                 Ok(drive) if (drive.period / own - 1.0).abs() <= SAME_PERIOD * CHANGE => Ok(system),
-                _ => Err(refuse(
-                    "changes the period; differences of two cycles tell what it does",
-                )),
+                _ => Err(refuse("changes the period; use the difference of two cycles")),
             }
         };
         let [a, b, c, d] = STEPS.map(of);

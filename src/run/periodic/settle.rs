@@ -58,8 +58,8 @@ impl Refined {
     /// Description for messages.
     pub fn words(&self) -> String {
         format!(
-            "at rtol {:e} energies over the cycle were open by {:.0} % of a figure: found again at rtol \
-             {:e}, where it is {:.2} %",
+            "at rtol {:e} the energy balance over the cycle had an error of {:.0} % of a figure: found again at rtol \
+             {:e}, with an error of {:.2} %",
             self.from_rtol,
             100.0 * self.open[0],
             self.rtol,

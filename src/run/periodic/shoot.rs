@@ -118,14 +118,16 @@ pub(super) fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Re
                 Ok(_) | Err(_) if part > SHORTEST => part *= 0.5,
                 Ok(_) => {
                     return Err(lost(format!(
-                        "Newton's steps no longer come nearer to one, at {size:.1e} of the tolerance"
+                        "Newton's iteration stagnates at a residual of {size:.1e} times the tolerance"
                     )));
                 }
                 Err(error) => return Err(error),
             }
         }
     }
-    Err(lost(format!("none was reached in {ITERATIONS} Newton steps")))
+    Err(lost(format!(
+        "Newton's iteration did not converge in {ITERATIONS} steps"
+    )))
 }
 
 fn lost(how: String) -> StepError {

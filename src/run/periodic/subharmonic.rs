@@ -57,16 +57,16 @@ impl Periods {
             count => format!("after {count} periods, not sooner"),
         };
         let from = if *beside {
-            "beside the cycle of one period, which does not hold"
+            "from a disturbance of the cycle of one period, which is unstable"
         } else {
             "from the start of the case"
         };
         if shortest == asked {
-            return format!("comes back {times}; found {waited} periods on {from}");
+            return format!("recurs {times}; found after {waited} periods {from}");
         }
         format!(
-            "a cycle of {asked} periods was asked for, but the one found comes back {times}: {waited} periods on {from} nothing longer was \
-             found; another /start may lead there"
+            "a cycle of {asked} periods was requested, but the cycle found recurs {times}. No longer cycle was found \
+             within {waited} periods {from}. Another /start may lead to one."
         )
     }
 }
@@ -93,19 +93,19 @@ pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
 /// As [`find`], or a stop was requested.
 pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycle, Periods)> {
     if !(1..=MOST).contains(&asked) {
-        return Err(Error::Usage(format!("--periods {asked}: from 1 to {MOST}")));
+        return Err(Error::Usage(format!("--periods {asked}: must be from 1 to {MOST}")));
     }
     let single = Scene::new(case, None)?.heeding(stop);
     single.held(&case.name)?;
     let of_one = shoot(&single, None);
-    let told = |shortest, waited, beside| Periods {
+    let periods = |shortest, waited, beside| Periods {
         asked,
         shortest,
         waited,
         beside,
     };
     if asked == 1 {
-        return Ok((single, of_one.map_err(fault)?, told(1, 0, false)));
+        return Ok((single, of_one.map_err(fault)?, periods(1, 0, false)));
     }
     let scene = single.over(asked);
     let of_one = match of_one {
@@ -126,13 +126,13 @@ pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycl
             Err(error) if stop.raised() => return Err(fault(error)),
             Err(error) => last = error,
             Ok(cycle) => match shortest(&single, &cycle.y, asked).map_err(fault)? {
-                count if count == asked => return Ok((scene, cycle, told(asked, waited, off))),
+                count if count == asked => return Ok((scene, cycle, periods(asked, waited, off))),
                 count => {
                     let now = far(&scene, &y, &cycle.y);
                     nearer = if now < distance { nearer + 1 } else { 0 };
                     distance = now;
                     if now < SAME || nearer > NEARER {
-                        return Ok((scene, cycle, told(count, waited, off)));
+                        return Ok((scene, cycle, periods(count, waited, off)));
                     }
                     shorter = Some((cycle, count));
                 }
@@ -141,7 +141,7 @@ pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycl
     }
     let waited = TRIES * PATIENCE * asked;
     shorter.map_or(Err(fault(last)), |(cycle, count)| {
-        Ok((scene, cycle, told(count, waited, off)))
+        Ok((scene, cycle, periods(count, waited, off)))
     })
 }
 

@@ -170,7 +170,7 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
         let meant = case::nearest(input, known()).map_or_else(String::new, |near| format!("; nearest is {near}"));
         let listed = known().collect::<Vec<_>>().join(", ");
         return Err(Error::Usage(match all.len() {
-            0 => format!("--input {input}: the case has no signals: give a load, a moving end, a port or a valve"),
+            0 => format!("--input {input}: the case has no signals. Add a load, a moving end, a port or a valve"),
             _ => format!("--input {input}: the case has no such signal{meant}; its signals are {listed}"),
         }));
     };

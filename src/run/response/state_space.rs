@@ -105,7 +105,7 @@ impl StateSpace {
         for ([of_state, of_rate], direct_) in response.of_state.iter().zip(&response.direct) {
             let largest = of_rate.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
             if (0..n).any(|k| !dynamic[k] && of_rate[k].abs() > NOTHING * largest) {
-                return Err(fault("an output is the rate of an unknown that follows at once"));
+                return Err(fault("an output is the rate of an algebraic unknown"));
             }
             // z = C_d d + C_a a + D_d d'
             let part = |by: &[f64]| -> f64 {

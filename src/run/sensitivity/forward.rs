@@ -99,7 +99,7 @@ impl<'a> Forward<'a> {
             };
             let like = |case: &Case| {
                 let system = by.alike.map_or_else(|| dae.system().like(case), |alike| alike(case))?;
-                system.ok_or_else(|| refuse("changes which unknowns there are"))
+                system.ok_or_else(|| refuse("changes the set of unknowns"))
             };
             let changed = |value: f64| match by.changed {
                 Some(changed) => changed(k, value),
@@ -204,7 +204,7 @@ impl<'a> Forward<'a> {
             at: At::Time(t),
             what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
             unknown: None,
-            cause: Some("a state that is not unique: buckled, or with a coupling that is not convex".into()),
+            cause: Some("the state is not unique: the beam buckles, or the coupling is not convex".into()),
             hint: Some("run without --sensitivity".into()),
         })
     }

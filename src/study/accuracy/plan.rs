@@ -117,20 +117,20 @@ impl Plan {
     pub fn checked(mut self) -> Result<Self> {
         let wrong = |what: &str| Err(Error::Usage(what.into()));
         if self.rtols.is_empty() || self.rtols.iter().any(|t| !(1e-11..=0.1).contains(t)) {
-            return wrong("--rtol: tolerances from 1e-11 to 0.1, comma between them");
+            return wrong("--rtol: expected tolerances from 1e-11 to 0.1, separated by commas");
         }
         if self.cells.is_empty() || self.cells.iter().any(|k| !(1..=1000).contains(k)) {
-            return wrong("--cells: beam cells per segment from 1 to 1000, comma between them");
+            return wrong("--cells: expected beam cells per segment from 1 to 1000, separated by commas");
         }
         if self.schemes.is_empty() || self.schemes.iter().any(|s| !(1..=5).contains(&s.order)) {
-            return wrong("--orders: highest BDF orders from 1 to 5, comma between them");
+            return wrong("--orders: expected highest BDF orders from 1 to 5, separated by commas");
         }
         if self.repeats == 0 {
-            return wrong("--repeats: at least 1");
+            return wrong("--repeats: expected at least 1");
         }
         let size = self.budget.size();
         if size.is_nan() || size <= 0.0 {
-            return wrong("--budget: a time above zero, such as 120s or 2m");
+            return wrong("--budget: expected a time above zero, such as 120s or 2m");
         }
         self.rtols.sort_by(|a, b| b.total_cmp(a));
         self.rtols.dedup();

@@ -52,7 +52,7 @@ impl Scheme {
                 None => {
                     let known = ONE_STEP.map(|(_, known, _)| known).join(", ");
                     return Err(Error::Usage(format!(
-                        "--methods {name}: ida, {known}, comma between them"
+                        "--methods {name}: unknown method. Use ida, {known}, separated by commas"
                     )));
                 }
             }

@@ -110,7 +110,7 @@ impl Study {
 pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evaluations, watch: Watch) -> Result<Study> {
     if let Some(name) = measure.filter(|name| !signals::possible(name)) {
         return Err(Error::Usage(format!(
-            "--measure {name}: one of {}, or a figure such as tip_u1_m.max_abs",
+            "--measure {name}: unknown measure. Use one of {}, or a figure such as tip_u1_m.max_abs",
             signals::names()
         )));
     }
@@ -245,9 +245,12 @@ fn agree(trials: &mut [Trial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>)
 fn headline(names: &[String], wanted: Option<&str>) -> Result<usize> {
     let at = |name: &str| names.iter().position(|n| n == name);
     match wanted {
-        Some(name) if !names.is_empty() => {
-            at(name).ok_or_else(|| Error::Usage(format!("--measure {name}: this case has {}", names.join(", "))))
-        }
+        Some(name) if !names.is_empty() => at(name).ok_or_else(|| {
+            Error::Usage(format!(
+                "--measure {name}: not a measure of this case. It has {}",
+                names.join(", ")
+            ))
+        }),
         _ => Ok(at(Observable::TipU1.name())
             .or_else(|| at(Observable::TipU3.name()))
             .unwrap_or(0)),
@@ -325,27 +328,32 @@ fn notes(study: &Study) -> Vec<String> {
     let unjudged = judged.iter().filter(|j| !**j).count();
     if unjudged > 0 {
         notes.push(format!(
-            "not judged: {unjudged} of {}: the reference is not {BETTER} times better than they are (its own error \
-             in {} is {own:.1e}); a larger --budget or tighter --rtol and finer --cells improve it",
+            "not judged: {unjudged} of {}: the reference is not {BETTER} times more accurate than they are (its own \
+             relative error in {} is {own:.1e}). Improve it by a larger --budget, tighter --rtol and more --cells",
             counted(judged.len() as u64, "point"),
             measure.name
         ));
     }
     let known = |cells: &usize| study.references.iter().any(|r| r.cells == *cells);
     if !study.plan.cells.iter().all(known) {
-        notes.push("some meshes have no finished run: they are not in the comparison".into());
+        notes.push("some meshes have no finished run. The comparison omits them".into());
     }
     if study.references.len() == 1 {
-        notes.push("one mesh only: errors are those of the time integration, nothing is known of the mesh".into());
+        notes.push(
+            "only one mesh: errors include the time integration, but not the mesh. Give at least two numbers to \
+             --cells"
+                .into(),
+        );
     }
     if study.references.len() > 1 && measure.extrapolated_with.is_none() {
         notes.push(format!(
-            "the meshes do not converge in {} at a known order: the finest mesh stands for the limit",
+            "the meshes do not converge in {} at a known order. The finest mesh serves as the reference",
             measure.name
         ));
     } else if measure.order.is_some() && !measure.order_is_clean {
         notes.push(format!(
-            "the observed order of {} is not clean: errors in time are above a tenth of the differences between meshes",
+            "the observed order of {} is unreliable: time integration errors exceed a tenth of the differences \
+             between meshes",
             measure.name
         ));
     }
@@ -353,8 +361,8 @@ fn notes(study: &Study) -> Vec<String> {
         let k = study.headline;
         if r.checked_by.is_none() {
             notes.push(format!(
-                "{}: no run of another order or method is near enough to check the reference; its error is by its own \
-                 tolerances alone",
+                "{}: no run of another order or method is accurate enough to check the reference. Its error is \
+                 estimated only from its own tolerances",
                 counted(r.cells as u64, "cell")
             ));
         }
@@ -362,8 +370,8 @@ fn notes(study: &Study) -> Vec<String> {
             && r.own[k].max > t.max
         {
             notes.push(format!(
-                "{}: the two ways to judge the reference disagree ({:.1e} by its tolerances, {:.1e} by another scheme); \
-                 the larger one counts",
+                "{}: the two error estimates of the reference disagree ({:.1e} from its tolerances, {:.1e} from \
+                 another scheme). The larger one is used",
                 counted(r.cells as u64, "cell"),
                 t.max,
                 o.max

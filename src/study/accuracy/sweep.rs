@@ -134,10 +134,10 @@ impl Sweep<'_> {
         };
         let cap = left.min(POINT * budget.size());
         let reason = match expected {
-            _ if left <= 0.0 => Some("the part of the budget that is for points is used up".to_string()),
+            _ if left <= 0.0 => Some("the share of the budget for points is used up".to_string()),
             _ if hopeless => Some("looser tolerances were too slow already".to_string()),
             Some(cost) if cost > cap => Some(format!(
-                "expected to take {}, {} are left for it",
+                "expected cost {}, but only {} remain",
                 budget.words(cost),
                 budget.words(cap)
             )),

@@ -158,7 +158,7 @@ fn computed(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: 
         let (ending, reason) = if broken {
             (
                 Ending::Failed,
-                Some("the result has numbers that are not finite".to_string()),
+                Some("the result contains numbers that are not finite".to_string()),
             )
         } else {
             (ending, summary.reason)

@@ -23,7 +23,7 @@ pub struct Found {
     pub warnings: Vec<String>,
     /// Texts of the warnings, which tables do not contain.
     #[serde(skip)]
-    pub told: Vec<String>,
+    pub messages: Vec<String>,
 }
 
 impl Found {
@@ -35,13 +35,13 @@ impl Found {
             steps: None,
             figures: vec![],
             warnings: vec![],
-            told: vec![],
+            messages: vec![],
         }
     }
 
     /// Creates the result of a failed computation.
     pub fn failed(error: &Error) -> Self {
-        let told = match error {
+        let text = match error {
             Error::Solver(fault) => fault.what.clone(),
             Error::Case(fault) => fault.violations.first().map_or(String::new(), |v| {
                 let place = if v.pointer.is_empty() { "" } else { ": " };
@@ -51,7 +51,7 @@ impl Found {
         };
         Self {
             status: Status::Failed,
-            reason: Some(format!("{} {}", error.code().id(), visible(&told))),
+            reason: Some(format!("{} {}", error.code().id(), visible(&text))),
             ..Self::finished()
         }
     }
@@ -85,8 +85,8 @@ impl Found {
     /// Stores warnings and their codes, each once.
     pub fn warn(&mut self, warnings: &[String]) {
         for warning in warnings {
-            if !self.told.contains(warning) {
-                self.told.push(warning.clone());
+            if !self.messages.contains(warning) {
+                self.messages.push(warning.clone());
             }
             let code = warning.split(' ').next().unwrap_or_default();
             if !self.warnings.iter().any(|own| own == code) {

@@ -169,11 +169,11 @@ pub fn stored(
     found: impl FnOnce() -> Option<Found>,
 ) -> Option<Found> {
     let apart = |mut found: Found| {
-        let told = std::mem::take(&mut found.told);
-        (found, told)
+        let messages = std::mem::take(&mut found.messages);
+        (found, messages)
     };
-    let (found, told) = evaluations.get(key, stop, || found().map(apart))?;
-    Some(Found { told, ..found })
+    let (found, messages) = evaluations.get(key, stop, || found().map(apart))?;
+    Some(Found { messages, ..found })
 }
 
 /// Runs a case without recording histories and fields.

@@ -51,7 +51,7 @@ impl Analysis for Multipliers {
 }
 
 fn no_derivatives() -> Error {
-    Error::Usage("multipliers of a cycle have no derivatives by numbers of the case".into())
+    Error::Usage("derivatives of cycle multipliers with respect to numbers of the case are not available".into())
 }
 
 /// Computes the multipliers of a case, with errors estimated by comparing meshes on request.

@@ -73,7 +73,7 @@ pub fn of_run(summary: &Summary) -> Found {
         steps: Some(summary.solver.steps),
         figures: vec![],
         warnings: vec![],
-        told: vec![],
+        messages: vec![],
     };
     found.warn(&summary.warnings);
     // a run that never started has no figures, and zeros would look like results

@@ -163,7 +163,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap
     expected
 }
 
-/// Whether a looser tolerance makes the companion take larger steps, so that its figures tell of those of the run.
+/// True if a looser tolerance makes the companion take larger steps, so that its figures show the effect of the steps of the run.
 fn tolerance_binds(summary: &Summary) -> bool {
     let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
     steps as f64 <= BINDING * summary.solver.steps as f64

@@ -17,7 +17,7 @@ const LONGEST: u64 = 8;
 const TIGHTER: [f64; 3] = [1e1, 1e2, 1e4];
 const MORE_STEPS: f64 = 1.55;
 
-/// How runs with one change ended.
+/// Outcome of the runs with one change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Ended {
     All,

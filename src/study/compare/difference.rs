@@ -132,21 +132,25 @@ pub fn compare(a: &Recording, b: &Recording) -> Comparison {
             .and_then(|other| history((a, column), (b, other)))
         {
             Some(d) if d.size.max > NOTHING * largest(&column.unit) => out.histories.push(d),
-            Some(d) if d.size.max > 0.0 => out.left_out.push(format!("{}: round-off in both", column.name)),
+            Some(d) if d.size.max > 0.0 => out
+                .left_out
+                .push(format!("{}: only rounding errors in both", column.name)),
             Some(_) => {}
             None => out
                 .left_out
-                .push(format!("{}: not in both, or no time in common", column.name)),
+                .push(format!("{}: missing in one of them, or no common times", column.name)),
         }
     }
     for array in &a.fields {
         match b
             .field(&array.name)
-            .ok_or("not in both")
+            .ok_or("missing in one of them")
             .and_then(|other| field((a, array), (b, other)))
         {
             Ok(d) if d.size.max > NOTHING * largest_field(a, b, &array.name) => out.fields.push(d),
-            Ok(d) if d.size.max > 0.0 => out.left_out.push(format!("{}: round-off in both", array.name)),
+            Ok(d) if d.size.max > 0.0 => out
+                .left_out
+                .push(format!("{}: only rounding errors in both", array.name)),
             Ok(_) => {}
             Err(why) => out.left_out.push(format!("{}: {why}", array.name)),
         }
@@ -161,7 +165,7 @@ fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
         let every = one.times.windows(2).map(|t| t[1] - t[0]).fold(0.0, f64::max);
         (run - end > every * (1.0 + SAME)).then(|| {
             format!(
-                "{}: the history ends at t = {} s, the run did at {} s; what is missing is not compared",
+                "{}: the history ends at t = {} s, but the run ended at {} s. The missing part is not compared",
                 one.label,
                 rounded(end, 6),
                 rounded(run, 6)
@@ -171,7 +175,8 @@ fn remarks(a: &Recording, b: &Recording) -> Vec<String> {
     let [from, to] = [a, b].map(|one| one.summary.time_s);
     let apart = ((from - to).abs() > SAME * from.abs().max(to.abs())).then(|| {
         format!(
-            "{} ends at t = {} s, {} at {} s: figures at the end, of the window and of the whole run are of other instants",
+            "{} ends at t = {} s, {} at {} s. Figures at the end, of the window and of the whole run refer to \
+             different times",
             a.label,
             rounded(from, 6),
             b.label,
@@ -288,12 +293,12 @@ fn history((a, of_a): (&Recording, &Series), (b, of_b): (&Recording, &Series)) -
 fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Result<Difference, &'static str> {
     let (times, a_is_coarse) = shared(&a.field_times, &b.field_times);
     if times.is_empty() {
-        return Err("no time in common");
+        return Err("no common times");
     }
     let places = |r, f| Places::of(r, f).ok_or("its coordinate is missing");
     let (at_a, at_b) = (places(a, of_a)?, places(b, of_b)?);
     if !at_a.alike(&at_b) {
-        return Err("the networks are not the same");
+        return Err("the networks differ");
     }
     let coarse = if at_a.x.len() <= at_b.x.len() { &at_a } else { &at_b };
     let mut sum = Sum::default();

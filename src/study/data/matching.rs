@@ -29,7 +29,7 @@ impl Match {
     /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
         let wanted = || {
-            let what = "COLUMN=QUANTITY[@PLACE] is wanted, such as angle_deg=tip_angle or p_kpa=pressure@'bladder 3'";
+            let what = "expected COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle or p_kpa=pressure@'bladder 3'";
             Error::Usage(format!("--match '{text}': {what}"))
         };
         let (column, quantity) = text.rsplit_once('=').ok_or_else(wanted)?;
@@ -105,7 +105,7 @@ pub type Named = (String, String);
 /// without numbers; [`Error::Case`] for cells that are not numbers.
 pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Named]) -> Result<Vec<Matched>> {
     if matches.is_empty() {
-        let what = "nothing to compare: --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle";
+        let what = "nothing to compare. Use --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle";
         return Err(Error::Usage(what.into()));
     }
     let mut found: Vec<Matched> = vec![];
@@ -132,7 +132,7 @@ pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Na
         let scale = table.scale(column, unit, name)?;
         let values = table.numbers(column, scale)?;
         if values.iter().all(Option::is_none) {
-            return Err(wrong(format!("the column {} holds no number", asked.column)));
+            return Err(wrong(format!("the column {} contains no number", asked.column)));
         }
         found.push(Matched {
             asked: asked.clone(),

@@ -14,7 +14,8 @@ pub struct Placed {
 }
 
 /// Accepted positions, for messages.
-const WANTED: &str = "a share of the length from 0 to 1, tip, the name of a probe, `bladder 3`, `port NAME`, `accumulator NAME` or `contact NAME`";
+const WANTED: &str = "a share of the length from 0 to 1, tip, the name of a probe, `bladder 3`, `port NAME`, \
+                      `accumulator NAME` or `contact NAME`";
 
 /// Returns the column of a quantity at a position.
 ///
@@ -33,7 +34,7 @@ pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
     if let Ok(at) = place.parse::<f64>() {
         if !(0.0..=1.0).contains(&at) {
             return Err(wrong(format!(
-                "{at} is no share of the length, 0 at the root and 1 at the tip"
+                "{at} is not a share of the length (0 at the root to 1 at the tip)"
             )));
         }
         let probe = at_place(case, at);
@@ -48,7 +49,7 @@ pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
             let meant =
                 crate::case::nearest(place, names).map_or(String::new(), |meant| format!("; nearest is {meant}"));
             Err(wrong(format!(
-                "the case has no place {place}{meant}; wanted is {WANTED}"
+                "the case has no place {place}{meant}. Expected {WANTED}"
             )))
         }
     }
@@ -64,12 +65,12 @@ fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<P
     let number = number.filter(|n| *n != 0 && n.unsigned_abs() as usize <= count);
     let Some(number) = number else {
         return Err(format!(
-            "bladders are 1 to {count} of the upper row, -1 to -{count} of the lower"
+            "no such bladder. The upper row has bladders 1 to {count}, the lower row -1 to -{count}"
         ));
     };
     let end = match quantity {
         "pressure" | "pressure_pa" => ["pressure_lower", "pressure_upper"][usize::from(number > 0)],
-        _ => return Err("of a bladder there is pressure".into()),
+        _ => return Err("a bladder only has the quantity pressure".into()),
     };
     let at = (number.unsigned_abs() as f64 - 0.5) / count as f64;
     let probe = at_place(case, at);

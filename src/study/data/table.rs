@@ -53,7 +53,7 @@ impl Table {
         let source = Source::of(path, text);
         let mut lines = lines(text);
         let Some(header) = lines.next() else {
-            let what = "no headings; the first line names the columns, such as t_s, angle_deg";
+            let what = "no headings. The first line must name the columns, such as t_s, angle_deg";
             return Err(source.error(vec![Violation::new(Code::Table, "", what)]));
         };
         let separator = header.separator();
@@ -73,7 +73,7 @@ impl Table {
         }
         if Heading::are_numbers(headings.iter().map(|(heading, _)| *heading)) {
             let span = header.start..header.start + header.text.len();
-            let what = "numbers where headings are wanted; the first line names the columns, such as t_s, angle_deg";
+            let what = "numbers instead of headings. The first line must name the columns, such as t_s, angle_deg";
             faults.push(fault(span, what.into()));
         }
         let columns = headings.iter().map(|(heading, _)| Heading::of(heading)).collect();
@@ -83,7 +83,7 @@ impl Table {
             if all.len() != headings.len() {
                 let span = line.start..line.start + line.text.len();
                 let what = format!(
-                    "line {}: {} where there are {}",
+                    "line {}: {}, but the table has {}",
                     line.number,
                     counted(all.len() as u64, "cell"),
                     counted(headings.len() as u64, "heading")
@@ -98,7 +98,7 @@ impl Table {
             faults.push(Violation::new(
                 Code::Table,
                 "",
-                "no rows below the headings: nothing was measured",
+                "no rows below the headings: the table contains no measurements",
             ));
         }
         if !faults.is_empty() {
@@ -174,7 +174,7 @@ impl Table {
         self.columns.iter().position(called).ok_or_else(|| {
             let headings = self.columns.iter().map(|column| column.heading.as_str());
             Error::Usage(format!(
-                "{} has no column t_s or time_s; name that of time with --time, one of {}",
+                "{} has no column t_s or time_s. Name the column of time with --time, one of {}",
                 self.source.path.display(),
                 listed(headings)
             ))
@@ -198,17 +198,17 @@ impl Table {
             {
                 let heading = shown(&self.columns[column].heading);
                 let what = format!(
-                    "line {}, column {heading}: {number:e} is no measured value: {LARGEST:e} at most",
+                    "line {}, column {heading}: {number:e} is too large for a measured value (limit {LARGEST:e})",
                     row.line
                 );
                 faults.push(fault(span.clone(), what).hint("correct it, or leave the cell empty"));
             }
             if number.is_none() && faults.len() < MOST {
                 let (cell, heading) = (shown(cell), shown(&self.columns[column].heading));
-                let what = format!("line {}, column {heading}: \"{cell}\" is no finite number", row.line);
+                let what = format!("line {}, column {heading}: \"{cell}\" is not a finite number", row.line);
                 let hint = match cell.contains(',') {
-                    true => "decimals stand behind a point",
-                    false => "leave a cell empty where nothing was measured",
+                    true => "use a decimal point",
+                    false => "leave the cell empty if nothing was measured",
                 };
                 faults.push(fault(span.clone(), what).hint(hint));
             }
@@ -225,7 +225,7 @@ impl Table {
     pub fn all_numbers(&self, column: usize, scale: f64) -> Result<Vec<f64>> {
         let numbers = self.numbers(column, scale)?;
         let empty = (0..self.len()).filter(|row| numbers[*row].is_none()).take(MOST);
-        let faults = empty.map(|row| self.fault(row, column, "an empty cell, and every row needs this one"));
+        let faults = empty.map(|row| self.fault(row, column, "an empty cell. Every row needs a value in this column"));
         let faults = faults.collect();
         self.sound(faults).map(|()| numbers.into_iter().flatten().collect())
     }
@@ -240,8 +240,8 @@ impl Table {
         let mut faults = vec![];
         for (row, t) in times.iter().enumerate() {
             let what = match row.checked_sub(1).map(|before| times[before]) {
-                _ if *t < 0.0 => "a time before the start of the run, which is 0".to_owned(),
-                Some(before) if *t <= before => format!("{} s is not after {} s of the row before", t, before),
+                _ if *t < 0.0 => "a time before the start of the run (0 s)".to_owned(),
+                Some(before) if *t <= before => format!("{} s is not later than {} s of the previous row", t, before),
                 _ => continue,
             };
             if faults.len() < MOST {
@@ -324,18 +324,18 @@ mod tests {
             ("", "no headings"),
             ("t_s,a\n", "no rows"),
             ("t_s,t_s\n1,2\n", "a second column named t_s"),
-            ("0,1\n1,2\n", "numbers where headings are wanted"),
-            ("t_s,a\n1,2,3\n", "line 2: 3 cells where there are 2 headings"),
+            ("0,1\n1,2\n", "numbers instead of headings"),
+            ("t_s,a\n1,2,3\n", "line 2: 3 cells, but the table has 2 headings"),
             ("t_s,\n1,2\n", "column 2 has no heading"),
         ] {
             let said = faults(text, none);
             assert!(said.contains(what), "{said}");
         }
         for (text, what) in [
-            ("t_s,a\n1,2\n1,3\n", "line 3, column t_s: 1 s is not after 1 s"),
+            ("t_s,a\n1,2\n1,3\n", "line 3, column t_s: 1 s is not later than 1 s"),
             ("t_s,a\n-1,2\n", "line 2, column t_s: a time before the start"),
             ("t_s,a\n1,2\n,3\n", "line 3, column t_s: an empty cell"),
-            ("t_s,a\nsoon,2\n", "line 2, column t_s: \"soon\" is no finite number"),
+            ("t_s,a\nsoon,2\n", "line 2, column t_s: \"soon\" is not a finite number"),
             (
                 "t [furlong],a\n1,2\n",
                 "unit [furlong] of the column t [furlong] is not known",

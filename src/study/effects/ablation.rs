@@ -245,7 +245,7 @@ pub fn ablate(
     }
     let auto = runs.run("auto", auto_case)?;
     let given = match case.effects {
-        Effects::Chosen(_) => Some(runs.run("as the case says", case.clone())?),
+        Effects::Chosen(_) => Some(runs.run("as in the case", case.clone())?),
         _ => None,
     };
     runs.repeat();
@@ -301,7 +301,10 @@ fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
     if names.contains(&name) {
         return Ok(());
     }
-    Err(Error::Usage(format!("--measure {name}: one of {}", names.join(", "))))
+    Err(Error::Usage(format!(
+        "--measure {name}: unknown measure. Use one of {}",
+        names.join(", ")
+    )))
 }
 
 /// Returns the criteria of comparisons: every figure, or only those over the window if the integrator cannot follow the

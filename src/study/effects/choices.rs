@@ -106,7 +106,7 @@ pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
         let out = if !there {
             kept(plain.decision(effect).cause.to_string())
         } else if !Effect::CHOSEN.contains(&effect) {
-            kept("given by the case, and left out by not giving it".into())
+            kept("set by the case. Remove it from the case to leave it out".into())
         } else {
             leave_out(case, effect, &full)?.or_else(kept)
         };

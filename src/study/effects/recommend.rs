@@ -57,7 +57,7 @@ pub fn recommend(
     let mut dropped = vec![];
     for name in off.iter().copied().filter(|name| guarded(*name)) {
         let why = guard.map(|g| g.why.clone()).unwrap_or_default();
-        dropped.push((name, format!("{why}, which a run without disturbance does not show")));
+        dropped.push((name, format!("{why}. A run without disturbance does not show this")));
     }
     off.retain(|name| !guarded(*name));
     loop {
@@ -96,8 +96,8 @@ pub fn recommend(
             };
             let most = off.iter().copied().max_by(|a, b| change(*a).total_cmp(&change(*b)));
             let why = match run.and_then(|run| run.largest) {
-                Some((quantity, change)) => format!("all together change {quantity} by {change:.1e}"),
-                None => "the model without all of them does not run to the end".into(),
+                Some((quantity, change)) => format!("together they change {quantity} by {change:.1e}"),
+                None => "a run without all of them does not finish".into(),
             };
             (most, why)
         };

@@ -168,7 +168,7 @@ impl<'a> Runs<'a> {
             trial.reason = Some("the budget is used up".into());
             return trial;
         }
-        self.tell(what);
+        self.report(what);
         let (summary, wall) = match self.once(case, set, 0, left) {
             Ok(ran) => ran,
             Err(e) => {
@@ -193,7 +193,7 @@ impl<'a> Runs<'a> {
             .any(|q| q.figures().any(|f| !f.1.is_finite()));
         if broken {
             trial.ending = Ending::Failed;
-            trial.reason = Some("the result has numbers that are not finite".into());
+            trial.reason = Some("the result contains numbers that are not finite".into());
         }
         trial.summary = (trial.ending == Ending::Finished).then_some(summary);
         trial
@@ -216,7 +216,7 @@ impl<'a> Runs<'a> {
                     continue;
                 }
                 let (case, set, what) = (case.clone(), set.clone(), trial.what.clone());
-                self.tell(&format!("{what}, again"));
+                self.report(&format!("{what}, again"));
                 let again = self.once(&case, &set, round, self.left_s());
                 let trial = &mut self.all[k].2;
                 if let Ok((summary, wall)) = again
@@ -244,7 +244,7 @@ impl<'a> Runs<'a> {
         Ok(found)
     }
 
-    fn tell(&mut self, what: &str) {
+    fn report(&mut self, what: &str) {
         (self.watch)(&Event {
             what,
             done: self.done,

@@ -76,7 +76,7 @@ pub fn compare(
     let slack = 1e-9 * last.abs();
     let outside = (0..instants.len()).filter(|row| !(first - slack..=last + slack).contains(&instants[*row]));
     let faults = outside.take(1).map(|row| {
-        let what = format!("{} s is not within the run, from {first} s to {last} s", instants[row]);
+        let what = format!("{} s is outside the run ({first} s to {last} s)", instants[row]);
         table.fault(row, column, &what)
     });
     table.sound(faults.collect())?;
@@ -97,7 +97,8 @@ fn placed(one: &Match, case: Option<&Case>) -> Result<String> {
     match placed.probe {
         None => Ok(placed.name),
         Some(probe) => Err(Error::Usage(format!(
-            "--match {}: the run recorded nothing at {} of the length; give its case a probe there, {{\"name\": \"{}\", \"at\": {}}} in /probes",
+            "--match {}: the run has no record at {} of the length. Add a probe to /probes of its case: {{\"name\": \
+             \"{}\", \"at\": {}}}",
             one.words(),
             probe.at,
             probe.name,

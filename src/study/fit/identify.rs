@@ -56,11 +56,12 @@ pub fn unseen(seen: &Seen) -> Vec<Unseen> {
             all.push(Unseen {
                 numbers: vec![k],
                 words: format!(
-                    "the data do not see {}: {}",
+                    "the data do not determine {}: {}",
                     seen.spans[k].pointer,
                     match entirely {
-                        true => "nothing measured depends on it".to_owned(),
-                        false => "over all of its bounds what is measured changes by less than its noise".to_owned(),
+                        true => "no measured quantity depends on it".to_owned(),
+                        false =>
+                            "between its bounds the measured quantities change by less than their noise".to_owned(),
                     }
                 ),
                 entirely,
@@ -102,26 +103,27 @@ pub fn unseen(seen: &Seen) -> Vec<Unseen> {
         let names: Vec<&str> = parts.iter().map(|(k, _)| seen.spans[*k].pointer.as_str()).collect();
         let words = match parts[..] {
             [_] => format!(
-                "the data tell next to nothing of {}: its estimate spreads over half of its bounds",
+                "the data hardly determine {}: the uncertainty of its estimate exceeds half of its bounds",
                 names[0]
             ),
             [(_, a), (_, b)] => {
                 let power = -a / b;
                 match power {
                     p if (p - 1.0).abs() < 0.1 => {
-                        format!("of {} and {} the data see the product alone", names[0], names[1])
+                        format!("the data determine only the product of {} and {}", names[0], names[1])
                     }
                     p if (p + 1.0).abs() < 0.1 => {
-                        format!("of {} and {} the data see the ratio alone", names[0], names[1])
+                        format!("the data determine only the ratio of {} and {}", names[0], names[1])
                     }
                     p => format!(
-                        "of {0} and {1} the data see {0} times {1} to the power of {p:.2} alone",
+                        "the data determine only {0} times {1} to the power of {p:.2}",
                         names[0], names[1]
                     ),
                 }
             }
             _ => format!(
-                "the data do not tell {} apart: they may change together with little to be seen",
+                "the data do not determine {} separately: they can change together and leave the measured quantities \
+                 almost unchanged",
                 names.join(", ")
             ),
         };
@@ -158,21 +160,21 @@ mod tests {
     #[test]
     fn what_is_not_seen_is_named() {
         let both = [[10.0, 10.0], [20.0, 20.0], [5.0, 5.0]];
-        assert_eq!(words(&both, 1.0), ["of /a and /b the data see the product alone"]);
+        assert_eq!(words(&both, 1.0), ["the data determine only the product of /a and /b"]);
         let ratio = both.map(|[a, b]| [a, -b]);
-        assert_eq!(words(&ratio, 1.0), ["of /a and /b the data see the ratio alone"]);
+        assert_eq!(words(&ratio, 1.0), ["the data determine only the ratio of /a and /b"]);
         let root = both.map(|[a, b]| [2.0 * a, b]);
         assert_eq!(
             words(&root, 1.0),
-            ["of /a and /b the data see /a times /b to the power of 0.50 alone"]
+            ["the data determine only /a times /b to the power of 0.50"]
         );
         let none = [[10.0, 0.0], [20.0, 0.0]];
         assert_eq!(
             words(&none, 1.0),
-            ["the data do not see /b: nothing measured depends on it"]
+            ["the data do not determine /b: no measured quantity depends on it"]
         );
         let little = [[10.0, 0.1], [20.0, -0.1]];
-        assert!(words(&little, 1.0)[0].contains("less than its noise"));
+        assert!(words(&little, 1.0)[0].contains("less than their noise"));
         assert!(words(&[[10.0, 0.0], [0.0, 10.0]], 1.0).is_empty());
     }
 }

@@ -77,7 +77,7 @@ pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
         .collect()
 }
 
-/// Runs a fit. `tell` is called after every simulation with their number and the sum of squares. If `stop` becomes
+/// Runs a fit. `report` is called after every simulation with their number and the sum of squares. If `stop` becomes
 /// true, the result is the best so far and is marked as interrupted.
 ///
 /// # Errors
@@ -87,10 +87,10 @@ pub fn fit(
     asked: &Asked,
     data: (&str, u32),
     stop: &(dyn Fn() -> bool + Sync),
-    tell: &(dyn Fn(usize, f64) + Sync),
+    report: &(dyn Fn(usize, f64) + Sync),
 ) -> Result<Fitted> {
     let begin = Instant::now();
-    let search = Search::new(problem, asked, stop, tell);
+    let search = Search::new(problem, asked, stop, report);
     let reached = search.go()?;
     let interrupted = stop();
     let (values, count) = (&reached.values, problem.observations.len());
@@ -177,7 +177,8 @@ pub fn fit(
     if stop() && !fit.interrupted {
         fit.interrupted = true;
         fit.warnings.push(Code::Fit.warning(
-            "interrupted after the search: its minimum is found, what a finer mesh and the plain command say of it may be missing",
+            "interrupted after the search: the minimum is found, but its check on a finer mesh and by the plain \
+             command may be missing",
         ));
     }
     fit.wall_s = begin.elapsed().as_secs_f64();
@@ -261,12 +262,16 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Fit.warning(what));
     match ended {
-        _ if fit.interrupted => say("interrupted; estimates and errors are those of the best so far".into()),
+        _ if fit.interrupted => say("interrupted. Estimates and errors are those of the best fit so far".into()),
         Ended::Found => {}
-        Ended::Unfinished => say("the search ran out of steps; estimates are where it stood".into()),
+        Ended::Unfinished => say(
+            "the search reached its limit of steps before it converged. Estimates are those of the last step. Use \
+             them as starting values of another fit (--set)"
+                .into(),
+        ),
         Ended::Stuck => say(
-            "the search ended where no step lowers the sum of squares further, though its derivatives say so: the simulator's own error is \
-             larger than what is left; a smaller /solver/rtol may help"
+            "the search ended early: no step reduces the sum of squares, although its derivatives predict a \
+             reduction. The numerical error exceeds the remaining reduction. Use a smaller /solver/rtol"
                 .into(),
         ),
     }
@@ -280,7 +285,8 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
             Some(Bound::High) => format!("its upper bound {}", one.high),
         };
         say(format!(
-            "{} lies at {bound}: the data would take it further, and it has no error",
+            "{} lies at {bound}: the best fit is beyond it. Its error is not available. Widen this bound if the case \
+             allows it",
             one.pointer
         ));
     }
@@ -288,19 +294,23 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
     if known && n > 0.0 && (chi - n).abs() > UNLIKELY * (2.0 * n).sqrt() {
         let what = match chi > n {
             true => {
-                "the model does not follow the data within the noise that was given, or that is too small; errors are too small"
+                "the model does not fit the data within the given noise, or the given noise is too small. The \
+                 reported errors are too small"
             }
-            false => "the data lie closer to the model than the noise that was given",
+            false => "the residuals are smaller than the given noise. The given noise is probably too large",
         };
-        say(format!("chi-square over degrees of freedom is {:.3}: {what}", chi / n));
+        say(format!(
+            "chi-square over degrees of freedom is {:.3} (1 expected): {what}",
+            chi / n
+        ));
     }
     for column in &fit.columns {
         let Left { count, lag_1, .. } = column.left;
         if count >= 8 && lag_1 * (count as f64).sqrt() > TOGETHER {
             let wider = ((1.0 + lag_1) / (1.0 - lag_1)).sqrt();
             say(format!(
-                "what is left of {} is not independent from row to row (correlation {lag_1:.2}): the model bends another way than the data, or \
-                 noise lasts; errors may be {wider:.1} times as large",
+                "the residuals of {} are correlated from row to row (lag-1 correlation {lag_1:.2}): the model has a \
+                 systematic error, or the noise is correlated. Errors may be {wider:.1} times as large",
                 column.matched.column
             ));
         }
@@ -310,7 +320,8 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
             && change.abs() > 0.5 * error
         {
             say(format!(
-                "{} would move by {change:.2e}, {:.1} of its standard errors, with {}: mesh or tolerance are too coarse for these data",
+                "{} changes by {change:.2e} ({:.1} standard errors) with {}: mesh or tolerance are too coarse for \
+                 these data",
                 one.pointer,
                 change.abs() / error,
                 fit.simulator.finer
@@ -319,7 +330,7 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
     }
     if let Some(why) = &fit.simulator.unknown {
         say(format!(
-            "what mesh and tolerance do to the estimates is not known: {why}"
+            "the effect of mesh and tolerance on the estimates is unknown: {why}"
         ));
     }
     all
@@ -338,7 +349,7 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
     };
     let found = || analysis::found(case, ask, stop, &|case| analysis::run(case, ask, stop));
     let found = analysis::stored(&problem.evaluations, &"check", stop, found);
-    found.map_or(vec![], |found| found.told)
+    found.map_or(vec![], |found| found.messages)
 }
 
 /// Residuals and derivatives over the standard deviations, as the search needs them.

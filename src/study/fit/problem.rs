@@ -63,7 +63,8 @@ impl Drive {
                 pointer: pointer.into(),
             }),
             _ => Err(Error::Usage(format!(
-                "--drive '{text}': a column and a JSON pointer are wanted, such as pressure_kpa=/network/chains/0/ends/0/pressure_pa"
+                "--drive '{text}': expected a column and a JSON pointer, such as \
+                 pressure_kpa=/network/chains/0/ends/0/pressure_pa"
             ))),
         }
     }
@@ -138,7 +139,7 @@ impl Problem {
     /// Inconsistent input, found before anything is computed.
     pub fn new(case: &Case, table: &Table, asked: &Asked) -> Result<Self> {
         if asked.spans.is_empty() {
-            let what = "nothing to fit: --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
+            let what = "nothing to fit. Use --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
             return Err(Error::Usage(what.into()));
         }
         let set = asked.drives.iter().map(|drive| drive.pointer.as_str());
@@ -157,7 +158,7 @@ impl Problem {
         for one in &matched {
             let aside = ["t", "load_factor"].contains(&one.name.as_str());
             if aside || Observable::named(&one.name).is_some_and(|one| !one.has_derivative()) {
-                let what = "it does not depend on numbers of the case, so that nothing is fitted to it";
+                let what = "it does not depend on numbers of the case, so it cannot be fitted";
                 return Err(Error::Usage(format!("--match {}: {what}", one.asked.words())));
             }
         }
@@ -182,13 +183,13 @@ impl Problem {
         let (values, sought) = (observations.len(), asked.spans.len());
         if values < sought + usize::from(sigmas.iter().any(Option::is_none)) {
             return Err(Error::Usage(format!(
-                "{} cannot tell {} of the case{}",
+                "{} cannot determine {} of the case{}",
                 counted(values as u64, "measured value"),
                 counted(sought as u64, "number"),
                 if values < sought {
                     ""
                 } else {
-                    " and their own noise; give it with --noise"
+                    " and the noise of the data. Give the noise with --noise"
                 }
             )));
         }
@@ -303,7 +304,7 @@ fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<V
             let keys = resolved.pointer(parent).and_then(|parent| parent.as_object());
             let meant = keys.and_then(|keys| nearest(key, keys.keys().map(String::as_str)));
             let meant = meant.map_or(String::new(), |meant| format!("; nearest is {parent}/{meant}"));
-            return Err(wrong(format!("the case has nothing there{meant}")));
+            return Err(wrong(format!("the case has no such entry{meant}")));
         }
         let scale = match units::of_pointer(&drive.pointer) {
             Some(unit) => table.scale(column, unit.si, &drive.pointer)?,
@@ -331,7 +332,7 @@ fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> 
         .rsplit('/')
         .find(|key| key.parse::<usize>().is_err())
         .unwrap_or("");
-    let told = match (&column.unit, &column.unknown) {
+    let unit_name = match (&column.unit, &column.unknown) {
         (None, None) => return Ok(1.0),
         (Some(unit), _) => unit.name,
         (None, Some(unknown)) => unknown,
@@ -346,9 +347,10 @@ fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> 
         Some(share) => Ok(share.scale),
         None if same => Ok(1.0),
         None => Err(format!(
-            "the column {} is in {}, which is not known of {key}; convert it to the unit of the case and leave its unit out",
+            "the column {} has the unit {}, but the unit of {key} is unknown. Convert the column to the unit of the \
+             case and remove the unit from its heading",
             visible(&column.heading),
-            visible(told)
+            visible(unit_name)
         )),
     }
 }
@@ -371,7 +373,7 @@ fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Optio
         if let Some((name, sigma)) = given {
             if !(sigma.is_finite() && *sigma > 0.0) {
                 return Err(Error::Usage(format!(
-                    "--noise {name}={sigma}: a standard deviation above 0 is wanted"
+                    "--noise {name}={sigma}: the standard deviation must be above 0"
                 )));
             }
             return Ok(Some(vec![sigma * one.scale; table.len()]));
@@ -387,8 +389,7 @@ fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Optio
         let all = table.numbers(beside, scale)?;
         let wrong = |row: &usize| one.values[*row].is_some() && all[*row].is_none_or(|sigma| sigma <= 0.0);
         let faults = (0..table.len()).filter(wrong);
-        let faults =
-            faults.map(|row| table.fault(row, beside, "a standard deviation above 0 is wanted beside a value"));
+        let faults = faults.map(|row| table.fault(row, beside, "each value needs a standard deviation above 0"));
         table.sound(faults.collect())?;
         Ok(Some(all.into_iter().map(|sigma| sigma.unwrap_or(f64::NAN)).collect()))
     };

@@ -30,7 +30,7 @@ pub struct Search<'a> {
     problem: &'a Problem,
     asked: &'a Asked,
     stop: &'a (dyn Fn() -> bool + Sync),
-    tell: &'a (dyn Fn(usize, f64) + Sync),
+    report: &'a (dyn Fn(usize, f64) + Sync),
     simulations: AtomicUsize,
     fault: Mutex<Option<Error>>,
 }
@@ -77,13 +77,13 @@ impl<'a> Search<'a> {
         problem: &'a Problem,
         asked: &'a Asked,
         stop: &'a (dyn Fn() -> bool + Sync),
-        tell: &'a (dyn Fn(usize, f64) + Sync),
+        report: &'a (dyn Fn(usize, f64) + Sync),
     ) -> Self {
         Self {
             problem,
             asked,
             stop,
-            tell,
+            report,
             simulations: AtomicUsize::new(0),
             fault: Mutex::new(None),
         }
@@ -124,10 +124,10 @@ impl<'a> Search<'a> {
             .min_by(|a, b| a.minimum.at.cost().total_cmp(&b.minimum.at.cost()));
         let Some(mut best) = best else {
             if (self.stop)() {
-                let what = format!("{INTERRUPTED} before the data were simulated once; nothing is written");
+                let what = format!("{INTERRUPTED} before the first simulation finished. No results are written");
                 return Err(Error::Interrupted(what));
             }
-            return Err(self.fault(|| "the case cannot be simulated at any start".into()));
+            return Err(self.fault(|| "the simulation fails at every starting point".into()));
         };
         let unknown = given.iter().filter(|given| !**given).count();
         let again = self.asked.loss != Loss::Squares || unknown > 1;
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
             match self.minimise(&best.minimum.x, &scale(&sigmas, &weights), self.asked.jobs) {
                 Some(next) => best = next,
                 None if (self.stop)() => break,
-                None => return Err(self.fault(|| "the case can no longer be simulated".into())),
+                None => return Err(self.fault(|| "the simulation fails after the data are weighted again".into())),
             }
             steps += best.minimum.steps;
         }
@@ -176,7 +176,7 @@ impl<'a> Search<'a> {
                 }
             };
             let found = evaluation(&simulated, self.problem, &values, scale);
-            (self.tell)(self.simulations(), found.cost());
+            (self.report)(self.simulations(), found.cost());
             let finite = found
                 .residuals
                 .iter()

@@ -211,7 +211,7 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
     let fit = regression::fit(&columns(&points, |x| regressors(options, x)), &points.y).ok_or_else(|| {
         let needed = regressors(options, 1.0).len() + 1;
         Error::Usage(format!(
-            "too few for the fit: {} of {}; it takes {needed} and as many different values of {}",
+            "too few for the fit: {} of {}. The fit needs {needed}, with as many different values of {}",
             counted(points.x.len() as u64, "point"),
             y.name(),
             x.name()
@@ -275,7 +275,8 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
         if estimate.value <= 0.0 || sizes.iter().any(|size| !size.is_finite()) {
             let value = estimate.value;
             return Err(Error::Usage(format!(
-                "these data make {pointer} {value:.4e}, which is no positive number that a case can have: is a sign turned, or a unit wrong?"
+                "these data give {pointer} = {value:.4e}, but a case needs a finite positive number. Check signs and \
+                 units of the columns"
             )));
         }
     }
@@ -314,8 +315,9 @@ fn coefficients(
     let (l, h, w, young) = (beam.length_m, beam.height_m, beam.width_m, beam.young_modulus_pa);
     let bladders = || case.bladders.as_ref().ok_or_else(|| lacks("bladders"));
     let per_length = || bladders().map(|b| 1.0 / (options.bladders.map_or(b.per_row as f64, f64::from) * b.length_m));
-    let told = |estimate: Option<Estimate>| {
-        estimate.ok_or_else(|| Error::Usage("the slope is not told from zero: its interval holds both signs".into()))
+    let nonzero = |estimate: Option<Estimate>| {
+        let what = "the slope is not significantly different from zero: its interval contains both signs";
+        estimate.ok_or_else(|| Error::Usage(what.into()))
     };
     let one = |pointer, unit, estimate| Coefficient {
         pointer,
@@ -355,11 +357,11 @@ fn coefficients(
             ]
         }
         Experiment::ForceExtension => {
-            let factor = told(slope.under(l / (young * h * w)))?;
+            let factor = nonzero(slope.under(l / (young * h * w)))?;
             vec![one("/beam/axial_stiffness_factor", "1", factor)]
         }
         Experiment::MomentCurvature => {
-            let factor = told(slope.under(12.0 / (young * h.powi(3) * w)))?.upright();
+            let factor = nonzero(slope.under(12.0 / (young * h.powi(3) * w)))?.upright();
             vec![one("/beam/bending_stiffness_factor", "1", factor)]
         }
         Experiment::PressureCurvature => {

@@ -76,7 +76,7 @@ pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points>
     let mut lines = lines(text);
     let Some(header) = lines.next() else {
         let what = format!(
-            "no header; the first line names columns: {} [{}], {} [{}]",
+            "no header. The first line must name the columns: {} [{}], {} [{}]",
             x.name(),
             x.unit(),
             y.name(),
@@ -185,7 +185,7 @@ fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> 
     if let Some(again) = of_name.next() {
         let what = format!("a second column named {name}");
         return Err(Box::new(
-            fault(names[again].1.clone(), what).allowed("one, that which is meant"),
+            fault(names[again].1.clone(), what).allowed("one column of this name"),
         ));
     }
     let heading = &headings[at];
@@ -203,7 +203,7 @@ fn row(line: &Line, separator: char, columns: usize, wanted: [usize; 2]) -> Read
     let cells = cells(line, separator);
     if cells.len() != columns {
         let what = format!(
-            "line {}: {} where the header has {columns} columns",
+            "line {}: {}, but the header has {columns} columns",
             line.number,
             match cells.len() {
                 1 => "one cell".to_owned(),
@@ -217,11 +217,11 @@ fn row(line: &Line, separator: char, columns: usize, wanted: [usize; 2]) -> Read
         let number = cell.parse::<f64>().ok().filter(|x| x.is_finite());
         number.ok_or_else(|| {
             let what = format!(
-                "line {}: \"{}\" is no finite number",
+                "line {}: \"{}\" is not a finite number",
                 line.number,
                 crate::error::visible(cell)
             );
-            let hint = cell.contains(',').then(|| "decimals stand behind a point".to_owned());
+            let hint = cell.contains(',').then(|| "use a decimal point".to_owned());
             Box::new(Violation {
                 hint,
                 ..fault(span.clone(), what)

@@ -64,7 +64,7 @@ impl Bend {
     }
 
     /// Returns the second derivatives of the figure itself, with respect to numbers or their logarithms.
-    pub fn told(&self, problem: &Problem, reached: &Reached) -> Curvature {
+    pub fn curvature(&self, problem: &Problem, reached: &Reached) -> Curvature {
         let per = |k: usize| {
             let span = &problem.spans[k];
             match span.logarithmic() {

@@ -35,8 +35,10 @@ pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
     let (Some(begin), Some(end)) = (begin, of(best)) else {
         return vec![];
     };
-    let told = numbers.into_iter().filter_map(|number| told(number, &begin, &end));
-    told.map(|what| Code::ModesExchanged.warning(what)).collect()
+    let texts = numbers
+        .into_iter()
+        .filter_map(|number| description(number, &begin, &end));
+    texts.map(|what| Code::ModesExchanged.warning(what)).collect()
 }
 
 /// Number of the mode of a figure.
@@ -44,7 +46,8 @@ fn number(figure: &str) -> Option<usize> {
     figure.strip_prefix("mode_")?.split('.').next()?.parse().ok()
 }
 
-fn told(number: usize, begin: &[Mode], end: &[Mode]) -> Option<String> {
+/// Warning that mode `number` at the optimum is another one than at the start; `None` if it is the same.
+fn description(number: usize, begin: &[Mode], end: &[Mode]) -> Option<String> {
     let (from, to) = (begin.get(number - 1)?, end.get(number - 1)?);
     let hz = |mode: &Mode| format!("{:.4} Hz", mode.frequency_hz().unwrap_or_default());
     let like = |mode: &Mode| likeness(&from.shape, &mode.shape);
@@ -53,15 +56,17 @@ fn told(number: usize, begin: &[Mode], end: &[Mode]) -> Option<String> {
     let (other, further) = (place + 1, like(most));
     if other != number && further > ALIKE && further > own + BETTER {
         return Some(format!(
-            "mode_{number} is another mode at the best than to begin with: by its shape that of {} is mode_{other} there, {}; to stay with one mode hold others \
-             away from it (--subject-to), or narrow the bounds",
+            "mode_{number} at the optimum is another mode than at the start: by its shape, the start's mode of {} is \
+             mode_{other} there, at {}. To follow one mode, keep the others away from it (--subject-to), or narrow \
+             the bounds",
             hz(from),
             hz(most)
         ));
     }
     (own < APART).then(|| {
         format!(
-            "mode_{number} is another mode at the best than to begin with: its shape there, at {}, is unlike that at {}, and so are those of the others",
+            "mode_{number} at the optimum is another mode than at the start: its shape at {} differs from the start's \
+             shape at {}. No other mode at the optimum has that shape",
             hz(to),
             hz(from)
         )

@@ -30,9 +30,9 @@ pub struct Seen {
 }
 
 /// Callback after each design: values of the numbers, figures or the reason of a failure, wall time [s].
-pub type Tell<'a> = dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64) + 'a;
+pub type ReportDesign<'a> = dyn Fn(&[f64], &std::result::Result<Vec<f64>, String>, f64) + 'a;
 
-/// Evaluates a position between the bounds; `tell` is called after every design that is computed.
+/// Evaluates a position between the bounds; `report` is called after every design that is computed.
 ///
 /// # Errors
 /// Reason of the failure, as text.
@@ -40,10 +40,10 @@ pub fn look(
     problem: &Problem,
     places: &[f64],
     stop: &dyn Fn() -> bool,
-    tell: &Tell<'_>,
+    report: &ReportDesign<'_>,
 ) -> std::result::Result<Seen, String> {
     let mut known = None;
-    if let Some(found) = exactly(problem, places, stop, tell) {
+    if let Some(found) = exactly(problem, places, stop, report) {
         match found? {
             (_, Some(seen)) => return Ok(seen),
             (figures, None) => known = Some(figures),
@@ -53,7 +53,7 @@ pub fn look(
         let begin = Instant::now();
         let values = span::values(&problem.spans, places);
         let figures = plain(problem, &values, stop);
-        tell(&values, &figures, begin.elapsed().as_secs_f64());
+        report(&values, &figures, begin.elapsed().as_secs_f64());
         figures
     };
     let figures = known.map_or_else(|| plain(places), Ok)?;
@@ -84,7 +84,7 @@ pub fn look(
 type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
 
 /// Evaluates a position with exact derivatives; `None` if these are not available.
-fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Tell<'_>) -> Option<Exactly> {
+fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, report: &ReportDesign<'_>) -> Option<Exactly> {
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
     if problem.differences.is_some() || places.is_empty() || at_an_end(problem, &values) {
@@ -94,7 +94,7 @@ fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, tell: &Te
         Ok((figures, slopes)) => (Ok(figures), slopes),
         Err(reason) => (Err(reason), None),
     };
-    tell(&values, &figures, begin.elapsed().as_secs_f64());
+    report(&values, &figures, begin.elapsed().as_secs_f64());
     Some(figures.map(|figures| {
         let seen = slopes.map(|mut slopes| {
             for row in &mut slopes {
@@ -189,9 +189,9 @@ fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcom
 /// Selects the figures of goal and limits from the result of a design.
 fn wanted(problem: &Problem, found: &Found) -> std::result::Result<Vec<f64>, String> {
     if found.status != Status::Finished {
-        return Err(found.reason.clone().unwrap_or_else(|| "it did not finish".into()));
+        return Err(found.reason.clone().unwrap_or_else(|| "the run did not finish".into()));
     }
-    let of = |name: &str| found.figure(name).ok_or_else(|| format!("it has no {name}"));
+    let of = |name: &str| found.figure(name).ok_or_else(|| format!("the result has no {name}"));
     problem.figures().into_iter().map(of).collect()
 }
 

@@ -2,25 +2,25 @@
 //! figures.
 //!
 //! ```text
-//! names      figures by name
-//! problem    case, numbers to be optimized, goal and limits; rejects inconsistent input
-//! look       figures of one design, with derivatives
-//! search     search from the starts to the optimum
-//! exchanged  modes that differ at the optimum
-//! curvature  second derivatives at the optimum
-//! wiring     alternatives to choose from, in all combinations
-//! found      the result
-//! told       warnings about the result
+//! names        figures by name
+//! problem      case, numbers to be optimized, goal and limits; rejects inconsistent input
+//! look         figures of one design, with derivatives
+//! search       search from the starts to the optimum
+//! exchanged    modes that differ at the optimum
+//! curvature    second derivatives at the optimum
+//! wiring       alternatives to choose from, in all combinations
+//! found        the result
+//! diagnostics  warnings about the result
 //! ```
 
 mod curvature;
+mod diagnostics;
 mod exchanged;
 pub mod found;
 mod look;
 pub mod names;
 pub mod problem;
 mod search;
-mod told;
 pub mod wiring;
 
 use std::collections::BTreeMap;
@@ -34,10 +34,10 @@ use crate::study::analysis::Found;
 use crate::study::analysis::{self, Ask};
 use crate::study::span::Bound;
 use crate::study::sweep::pool;
+use diagnostics::{broken, warnings};
 use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
 use problem::{Asked, Limit, Problem};
 use search::{Reached, Search, better};
-use told::{broken, warnings};
 use wiring::Alternative;
 
 /// Distance of a figure from a limit, over its size, below which the limit is active.
@@ -65,7 +65,7 @@ pub struct Optimised {
     pub history: Vec<Design>,
 }
 
-/// Optimizes every candidate. `tell` is called after every design with their number and the best figure so far; `stop`
+/// Optimizes every candidate. `report` is called after every design with their number and the best figure so far; `stop`
 /// ends the search early.
 ///
 /// # Errors
@@ -74,12 +74,12 @@ pub fn optimise(
     candidates: &[Candidate],
     asked: &Asked,
     stop: &(dyn Fn() -> bool + Sync),
-    tell: &(dyn Fn(usize, Option<f64>) + Sync),
+    report: &(dyn Fn(usize, Option<f64>) + Sync),
 ) -> Result<Optimised> {
     let begin = Instant::now();
-    let tell_all = together(asked, tell);
+    let report_all = together(asked, report);
     let searches = candidates.iter().map(|one| &one.problem).enumerate();
-    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &tell_all)).collect();
+    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &report_all)).collect();
     // one search runs its starts in parallel; several searches run in parallel themselves
     let mut all = match &searches[..] {
         [search] => vec![search.go(asked.jobs)],
@@ -110,7 +110,7 @@ pub fn optimise(
 /// Counts the designs of all searches, and keeps the best figure of all.
 fn together<'a>(
     asked: &Asked,
-    tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+    report: &'a (dyn Fn(usize, Option<f64>) + Sync),
 ) -> impl Fn(usize, Option<f64>) + Sync + use<'a> {
     let sign = asked.goal.sign();
     let so_far = Mutex::new((0, None::<f64>));
@@ -119,7 +119,7 @@ fn together<'a>(
         so_far.0 += 1;
         let both = so_far.1.into_iter().chain(best);
         so_far.1 = both.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
-        tell(so_far.0, so_far.1);
+        report(so_far.0, so_far.1);
     }
 }
 
@@ -167,8 +167,8 @@ fn finish(
             .map(|k| variable(problem, &reached, bend.as_ref(), k))
             .collect(),
         limits: (0..problem.limits.len()).map(|i| held(problem, &reached, i)).collect(),
-        curvature: bend.as_ref().map(|bend| bend.told(problem, &reached)),
-        ended: (!minimum.x.is_empty()).then(|| told::ended(minimum.ended, stop()).into()),
+        curvature: bend.as_ref().map(|bend| bend.curvature(problem, &reached)),
+        ended: (!minimum.x.is_empty()).then(|| diagnostics::ended(minimum.ended, stop()).into()),
         derivatives: match exact {
             true => Derivatives::Exact,
             false => Derivatives::Differences,
@@ -188,12 +188,12 @@ fn finish(
         let broken = checked.iter().flat_map(|plain| broken(problem, plain));
         optimum.warnings.extend(broken);
     }
-    let own = checked.into_iter().flat_map(|plain| plain.told);
+    let own = checked.into_iter().flat_map(|plain| plain.messages);
     optimum.warnings.extend(own);
-    let flat = told::flat(problem, &optimum, &history);
+    let flat = diagnostics::flat(problem, &optimum, &history);
     if flat.is_none() && minimum.at.slope.iter().all(|slope| *slope == 0.0) && !minimum.x.is_empty() {
         let what = format!(
-            "{} does not change there with any number that was sought",
+            "the derivatives of {} with respect to all optimized numbers are zero at the optimum",
             problem.goal.figure
         );
         optimum.warnings.push(Code::Optimum.warning(what));

@@ -32,7 +32,7 @@ pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -
     let mut quantities: Vec<String> = names.iter().map(quantity).collect();
     quantities.dedup();
     let all = names.iter().chain(&quantities).map(String::as_str);
-    let told = match nearest(text, all) {
+    let hint = match nearest(text, all) {
         Some(meant) => format!("nearest is {meant}"),
         None => {
             let more = if quantities.len() > LISTED { ", .." } else { "" };
@@ -41,7 +41,7 @@ pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -
         }
     };
     Err(Error::Usage(format!(
-        "{option} {text}: `{}` tells no such figure; {told}",
+        "{option} {text}: `{}` computes no such figure; {hint}",
         what.word()
     )))
 }

@@ -66,7 +66,8 @@ impl Limit {
                 bound,
             }),
             _ => Err(Error::Usage(format!(
-                "--subject-to '{text}': a figure and its limit are wanted, such as 'max_pressure_pa<=2e4' or 'mode_1.frequency_hz>=12'"
+                "--subject-to '{text}': expected a figure and its limit, such as 'max_pressure_pa<=2e4' or \
+                 'mode_1.frequency_hz>=12'"
             ))),
         }
     }

@@ -34,7 +34,7 @@ pub struct Search<'a> {
     problem: &'a Problem,
     asked: &'a Asked,
     stop: &'a (dyn Fn() -> bool + Sync),
-    tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+    report: &'a (dyn Fn(usize, Option<f64>) + Sync),
     history: Mutex<Vec<Design>>,
     differences: AtomicBool,
     alternative: usize,
@@ -55,19 +55,19 @@ pub struct Reached {
 }
 
 impl<'a> Search<'a> {
-    /// Creates the search of a problem, one of several alternatives. `tell` is called after every design with their
+    /// Creates the search of a problem, one of several alternatives. `report` is called after every design with their
     /// number and the best figure that meets the limits.
     pub fn new(
         (alternative, problem): (usize, &'a Problem),
         asked: &'a Asked,
         stop: &'a (dyn Fn() -> bool + Sync),
-        tell: &'a (dyn Fn(usize, Option<f64>) + Sync),
+        report: &'a (dyn Fn(usize, Option<f64>) + Sync),
     ) -> Self {
         Self {
             problem,
             asked,
             stop,
-            tell,
+            report,
             history: Mutex::new(vec![]),
             differences: AtomicBool::new(false),
             alternative,
@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
         let best = ends.min_by(|(a, own), (b, other)| better((a, own[0]), (b, other[0])));
         if best.is_none() && (self.stop)() {
             return Err(Error::Interrupted(
-                "interrupted before a design was computed; nothing is written".into(),
+                "interrupted before the first design was computed. No results are written".into(),
             ));
         }
         let Some((minimum, sizes)) = best else {
@@ -131,10 +131,14 @@ impl<'a> Search<'a> {
             return Err(Error::Solver(Box::new(SolverError {
                 code: self.problem.what.analysis().fault(),
                 at: At::Time(0.0),
-                what: format!("no design at a start can be computed{why}"),
+                what: format!("the designs at all starts fail{why}"),
                 unknown: None,
                 cause: None,
-                hint: Some("look at the case alone with the command that designs go through; begin elsewhere (--set, --starts)".into()),
+                hint: Some(
+                    "run the case alone with the command that computes the designs, or use other starts (--set, \
+                     --starts)"
+                        .into(),
+                ),
             })));
         };
         Ok(Reached {
@@ -302,7 +306,7 @@ impl<'a> Search<'a> {
         let good = history.iter().filter(|one| one.held);
         let best = good.filter_map(|one| one.figures.as_ref().map(|figures| figures[0]));
         let best = best.min_by(|a, b| (sign * a).total_cmp(&(sign * b)));
-        (self.tell)(history.len(), best);
+        (self.report)(history.len(), best);
     }
 }
 

@@ -23,14 +23,14 @@ pub struct Alternative {
 /// [`Error::Usage`] with the expected form.
 pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     let wrong = |what: &str| Error::Usage(format!("--choose '{text}': {what}"));
-    let wanted = "a JSON pointer and alternatives are wanted, such as '/network/chains/0/bladders=[1, 2, 3]|[1, 3, 2]'";
+    let wanted = "expected a JSON pointer and alternatives, such as '/network/chains/0/bladders=[1, 2, 3]|[1, 3, 2]'";
     let (pointer, values) = text.split_once('=').ok_or_else(|| wrong(wanted))?;
     if !pointer.starts_with('/') {
         return Err(wrong(wanted));
     }
     let all: Vec<&str> = values.split('|').map(str::trim).collect();
     if all.len() < 2 || all.iter().any(|one| one.is_empty()) {
-        return Err(wrong("two alternatives at least, with | between them"));
+        return Err(wrong("expected at least two alternatives, separated by |"));
     }
     // 0.50 equals 0.5
     let read = |text: &str| match serde_json::from_str::<Value>(text) {
@@ -40,7 +40,7 @@ pub fn choices(text: &str) -> Result<Vec<Alternative>> {
     };
     for (k, one) in all.iter().enumerate() {
         if all[..k].iter().any(|before| read(before) == read(one)) {
-            return Err(wrong(&format!("{one} stands there twice")));
+            return Err(wrong(&format!("{one} is given twice")));
         }
     }
     let key = pointer.rsplit('/').next().unwrap_or(pointer);
@@ -90,7 +90,8 @@ pub fn crossings(case: &Case, most: usize) -> Result<Vec<Alternative>> {
     let opposite = chain.len() == other.len() && chain.iter().zip(&other).all(|(a, b)| *a == -*b);
     if chain.len() < 2 || !opposite {
         return Err(Error::Usage(
-            "--crossovers: the first two chains of /network have to hold opposite bladders, one beside the other: [1, 2, ..] and [-1, -2, ..]"
+            "--crossovers: the first two chains of /network must contain opposite bladders in the same order: [1, 2, \
+             ..] and [-1, -2, ..]"
                 .into(),
         ));
     }
@@ -145,6 +146,6 @@ fn wiring(chain: &[i64], after: &[usize]) -> Alternative {
 /// Error for more alternatives than [`MOST`].
 fn too_many(option: &str) -> Error {
     Error::Usage(format!(
-        "{option}: more than {MOST} alternatives, all of which would be computed: choose between fewer"
+        "{option}: too many alternatives (limit {MOST}). Each of them is computed. Choose between fewer"
     ))
 }

@@ -146,7 +146,7 @@ impl Meshes {
     pub fn words(&self) -> Option<String> {
         let (name, share) = self.worst()?;
         Some(format!(
-            "largest error: about {}, that of {name}{}",
+            "largest estimated error: about {} of {name}{}",
             percent(share.total()),
             share.parts()
         ))
@@ -155,23 +155,25 @@ impl Meshes {
     /// Warns of a large or unknown error.
     pub fn warning(&self) -> Option<String> {
         let large = self.worst().filter(|(_, share)| share.total() > LARGE);
-        let large = large.map(|(name, share)| {
+        let remedy = large.map(|(_, share)| {
             let by_meshes = share.beam.unwrap_or(0.0).max(share.bladders.unwrap_or(0.0));
-            let remedy = if share.effects.unwrap_or(0.0) > by_meshes {
-                "\"effects\": \"full\""
+            if share.effects.unwrap_or(0.0) > by_meshes {
+                "\"effects\": \"full\", or "
             } else if share.bladders > share.beam {
-                "more /mesh/cells_per_bladder"
+                "more /mesh/cells_per_bladder, or "
             } else {
-                "more /mesh/cells_per_segment"
-            };
+                "more /mesh/cells_per_segment, or "
+            }
+        });
+        let large = large.map(|(name, share)| {
             let many = self.quantities.values().filter(|share| share.total() > LARGE).count();
             let others = match many {
                 1 => String::new(),
-                2 => ", and another figure by more than 5 %".into(),
-                _ => format!(", and {} other figures by more than 5 %", many - 1),
+                2 => "; another figure has more than 5 %".into(),
+                _ => format!("; {} other figures have more than 5 %", many - 1),
             };
             format!(
-                "{name} may be off by about {} of itself{}{others}; {remedy}",
+                "{name} has a relative error of about {}{}{others}",
                 percent(share.total()),
                 share.parts()
             )
@@ -179,12 +181,13 @@ impl Meshes {
         let unknown = self
             .unknown
             .first()
-            .map(|why| format!("what a mesh does is not known, of the {why}"));
+            .map(|why| format!("the error is unknown for the {why}"));
         let all: Vec<String> = large.into_iter().chain(unknown).collect();
         (!all.is_empty()).then(|| {
             Code::ErrorEstimate.warning(format!(
-                "estimate: {}, or --accuracy, which refines the meshes",
-                all.join("; ")
+                "estimate: {}. Use {}--accuracy, which refines the meshes",
+                all.join("; "),
+                remedy.unwrap_or_default()
             ))
         })
     }

@@ -201,7 +201,7 @@ pub fn warning(found: &Accuracy) -> Option<String> {
     };
     (!found.reached).then(|| {
         Code::Accuracy.warning(format!(
-            "accuracy: {:e} is not reached with {}, {} a bladder and rtol {:e}: {what}",
+            "accuracy {:e} is not reached with {}, {} per bladder and rtol {:e}: {what}",
             found.asked,
             found.cells(),
             found.cells_per_bladder,

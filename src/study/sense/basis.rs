@@ -69,7 +69,8 @@ pub fn own(case: &Case, at_s: f64) -> Vec<String> {
 const MOST: usize = 200;
 
 /// Names of the loads, for error messages.
-const WANTED: &str = "tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places, point:S at a share S of the length";
+const WANTED: &str = "tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places, point:S at a \
+                      share S of the length";
 
 impl Basis {
     /// Parses the name of a load.
@@ -89,19 +90,19 @@ impl Basis {
         match name {
             "profile" => match number.parse() {
                 Ok(places @ 2..=MOST) => Ok(Self::Profile(places)),
-                _ => Err(wrong(format!("profile:N has from 2 to {MOST} places"))),
+                _ => Err(wrong(format!("profile:N needs from 2 to {MOST} places"))),
             },
             "point" => match number.parse() {
                 Ok(at) if (0.0..=1.0).contains(&at) => Ok(Self::Point(at)),
                 _ => Err(wrong(
-                    "point:S is a share of the length, 0 at the root and 1 at the tip".into(),
+                    "S of point:S must be a share of the length (0 at the root to 1 at the tip)".into(),
                 )),
             },
             _ => plain.into_iter().find(|one| one.to_string() == text).ok_or_else(|| {
                 let names = plain.map(|one| one.to_string());
                 let names = names.iter().map(String::as_str).chain(["profile:N", "point:S"]);
                 let meant = nearest(text, names).map_or(String::new(), |meant| format!("; nearest is {meant}"));
-                wrong(format!("there is no such load{meant}; there are {WANTED}"))
+                wrong(format!("unknown load{meant}. Known loads: {WANTED}"))
             }),
         }
     }
@@ -234,7 +235,7 @@ pub fn amplitudes(case: &Case, loads: &[Basis]) -> Result<Vec<Amplitude>> {
         }
         let profiles = |one: &&Basis| matches!(one, Basis::Profile(_));
         if loads[..=k].iter().filter(profiles).count() > 1 {
-            return wrong("one profile across is enough");
+            return wrong("only one profile across the beam is possible");
         }
         let held = match load {
             Basis::TipForce => matches!(tip.transverse, Translation::Displacement(_)),
@@ -243,7 +244,7 @@ pub fn amplitudes(case: &Case, loads: &[Basis]) -> Result<Vec<Amplitude>> {
             _ => false,
         };
         if held {
-            return wrong("the tip is held there: what acts on it goes into what holds it, and no bladder feels it");
+            return wrong("the tip is fixed in this direction: its support carries the load, and no bladder responds");
         }
     }
     Ok(loads.iter().flat_map(|load| load.amplitudes(case)).collect())

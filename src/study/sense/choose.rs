@@ -50,7 +50,7 @@ pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion
             let mut chosen = sensors.clone();
             chosen.sort_unstable();
             let alone = Seen::of(&rows_of(&chosen, matrix, before)).alone;
-            let spread = told(&chosen, matrix, before).spread;
+            let spread = posterior(&chosen, matrix, before).spread;
             let error = |k: usize| alone[k].then(|| spread[(k, k)].max(0.0).sqrt());
             all.push(Choice {
                 errors: (0..matrix.ncols()).map(error).collect(),
@@ -69,7 +69,7 @@ fn rows_of(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> DMatr
     })
 }
 
-fn told(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> Posterior {
+fn posterior(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> Posterior {
     let rows = rows_of(set, matrix, before);
     let right = DVector::zeros(rows.nrows());
     Linear::new(rows, right).posterior(&DMatrix::zeros(0, matrix.ncols()))
@@ -77,12 +77,12 @@ fn told(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> Posterio
 
 /// Number of undetermined directions, and the criterion; both are minimized.
 fn cost(rows: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> (usize, f64) {
-    let told = told(rows, matrix, before);
+    let posterior = posterior(rows, matrix, before);
     let size = match criterion {
-        Criterion::Variances => told.spread.trace().ln(),
-        Criterion::Volume => -told.log_determinant,
+        Criterion::Variances => posterior.spread.trace().ln(),
+        Criterion::Volume => -posterior.log_determinant,
     };
-    (matrix.ncols() - told.rank, size)
+    (matrix.ncols() - posterior.rank, size)
 }
 
 fn better(a: (usize, f64), b: (usize, f64)) -> bool {

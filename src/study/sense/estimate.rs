@@ -151,7 +151,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     };
     let chosen = rank > 0 && matches!(ask.smoothing, Smoothing::Likelihood | Smoothing::Discrepancy);
     if !ask.noise_known && ask.smoothing == Smoothing::Discrepancy {
-        let what = "--smoothing discrepancy leaves the pressures their noise, which must be known: give its deviation, --noise PA";
+        let what = "--smoothing discrepancy needs the noise of the pressures: give its deviation, --noise PA";
         return Err(Error::Usage(what.into()));
     }
     let before = |weight: f64| match rank {
@@ -272,7 +272,7 @@ fn stacked(upper: &DMatrix<f64>, lower: &DMatrix<f64>) -> DMatrix<f64> {
 fn few(states: &[State]) -> Error {
     let values = counted(states.iter().map(|state| state.measured.len() as u64).sum(), "pressure");
     Error::Usage(format!(
-        "{values} tell no more than the loads, and nothing is left to tell the noise by; give its deviation, --noise PA, or look for fewer loads"
+        "{values} determine only the loads. Give the deviation of the noise, --noise PA, or estimate fewer loads"
     ))
 }
 

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::{self, Amplitude, Basis};
 use super::choose::{self, Criterion};
+use super::diagnostics::{self, Left, alone, banded, doubts, left};
 use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
 use super::local_mean::{FineFound, FineLoad, local_band, local_means};
 use super::over_time;
@@ -11,7 +12,6 @@ use super::pressures::Measured;
 use super::rest::{AtRest, labels, probed};
 use super::sensed::{BandKind, Banded, Chosen, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
 use crate::numerics::inverse::{Seen, second_differences};
@@ -52,9 +52,11 @@ impl Asked {
     }
 }
 
-pub(super) fn nothing_told() -> Error {
-    let what = "no bladder that is measured feels any of these loads, since its pressure is that of a port, it holds no fluid, or it is joined with bladders that \
-                give up as much volume as it takes, as the two of a pair do where the beam bends: nothing of them can be told";
+/// Error that no measured pressure depends on the loads.
+pub(super) fn unobservable() -> Error {
+    let what = "the loads are not observable: no measured bladder responds to any of them. Such a bladder is at the \
+                pressure of a port, is empty, or is joined with bladders whose volume changes by the opposite amount \
+                (as in a pair under bending)";
     Error::Usage(what.into())
 }
 
@@ -101,7 +103,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         ..Sensed::default()
     };
     if seen.values.is_empty() {
-        return Err(nothing_told());
+        return Err(unobservable());
     }
     sight(&mut found, &amplitudes, &own);
     if let Some(measured) = measured {
@@ -196,7 +198,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
                 .map(|one| one.posterior.scale * spread(&amplitudes))
                 .max_by(f64::total_cmp),
         });
-        found.noise = Some(told::noise(asked, measured, &all_found));
+        found.noise = Some(diagnostics::noise(asked, measured, &all_found));
         let places: Vec<usize> = (0..all.len()).collect();
         let rows = problems.iter().zip(&all_found.found);
         let left: Vec<Left> = rows.flat_map(|(problem, one)| left(problem, one, &places)).collect();
@@ -269,7 +271,8 @@ fn aside(model: &AtRest, loads: &DVector<f64>, predicted: &DVector<f64>, line: u
         Ok(followed) => followed,
         Err(Error::Solver(fault)) => {
             return Ok(vec![Code::StateAside.warning(format!(
-                "line {line} of the measurements: the loads found there lead along their path from rest to no state: {}; look at the numbers of that line",
+                "line {line} of the measurements: the estimated loads have no equilibrium on their path from rest: \
+                 {}. Check the numbers of that line",
                 fault.what
             ))]);
         }
@@ -277,7 +280,8 @@ fn aside(model: &AtRest, loads: &DVector<f64>, predicted: &DVector<f64>, line: u
     };
     if (&followed - predicted).norm() > SAME * followed.norm() {
         warnings.push(Code::StateAside.warning(
-            "the loads found lead along their path from rest to other pressures than those that were fitted: the state of the fit is another one",
+            "the estimated loads, increased from rest, give other pressures than the fit: the fit is on another \
+             equilibrium branch",
         ));
     }
     Ok(warnings)

@@ -179,5 +179,5 @@ impl Forward for InTime<'_> {
 }
 
 pub(super) fn interrupted() -> Error {
-    Error::Interrupted("interrupted before the loads were found; nothing is written".into())
+    Error::Interrupted("interrupted before the loads were estimated. No results are written".into())
 }

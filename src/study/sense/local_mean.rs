@@ -11,13 +11,13 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Amplitude, Basis};
+use super::diagnostics::left;
 use super::estimate::{Estimate, Forward, Problem};
-use super::find::nothing_told;
+use super::find::unobservable;
 use super::load_prior::{LoadPrior, MixturePosterior};
 use super::misfit::Misfit;
 use super::rest::AtRest;
 use super::sensed::Banded;
-use super::told::left;
 use crate::error::Result;
 use crate::numerics::normal;
 
@@ -160,7 +160,7 @@ pub(super) fn local_means(
     for (problem, one) in problems.iter().zip(&mut estimate.found) {
         let start = &fine.interpolation * &one.mean;
         let found = find(model, problem, &prior, (start, noise), &fine.means);
-        let found = found.map_err(|error| problem.named(error))?.ok_or_else(nothing_told)?;
+        let found = found.map_err(|error| problem.named(error))?.ok_or_else(unobservable)?;
         one.mean = &fine.means * &found.amplitudes;
         one.predicted.clone_from(&found.predicted);
         one.jacobian = &found.jacobian * &fine.interpolation;

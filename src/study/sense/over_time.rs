@@ -12,14 +12,14 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{self, Amplitude};
+use super::diagnostics::{self, Left, alone, banded, doubts, left};
 use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
-use super::find::{Asked, differences as along_the_beam, nothing_told};
+use super::find::{Asked, differences as along_the_beam, unobservable};
 use super::in_time::{InTime, Knots};
 use super::pressures::Measured;
 use super::rest::{labels, probed};
 use super::sensed::{BandKind, OverTime, Row, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
-use super::told::{self, Left, alone, banded, doubts, left};
 use crate::case::schema::Case;
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result};
@@ -34,7 +34,7 @@ const USUAL: usize = 41;
 /// Largest number of amplitudes of all loads at all knots; each is a sensitivity parameter of every run.
 const ALL: usize = 400;
 /// Part of the knot values determined by the pressures above which the number of knots may be too small.
-const ALL_TOLD: f64 = 0.9;
+const ALL_DETERMINED: f64 = 0.9;
 /// Correlation, in standard errors, above which residuals are not white noise.
 const UNLIKELY: f64 = 4.0;
 
@@ -75,7 +75,7 @@ pub(super) fn find(
     };
     let lasting = constant(&first.1, amplitudes.len());
     if Seen::of(&lasting).values.is_empty() {
-        return Err(nothing_told());
+        return Err(unobservable());
     }
     sight(&mut found, &amplitudes, &lasting);
     let differences = differences(&amplitudes, &found, knots.at.len());
@@ -102,7 +102,7 @@ pub(super) fn find(
     let one = &estimate.found[0];
     sight(&mut found, &amplitudes, &constant(&one.jacobian, amplitudes.len()));
     found.rows = rows(&found, measured, (&knots, &amplitudes), &estimate);
-    found.noise = Some(told::noise(asked, measured, &estimate));
+    found.noise = Some(diagnostics::noise(asked, measured, &estimate));
     found.smoothing = estimate.deviation_of_differences.map(|_| Smoothed {
         by: asked.smoothing,
         deviation_n_m: None,
@@ -113,7 +113,7 @@ pub(super) fn find(
     found.over_time = Some(OverTime {
         knots: knots.at.len(),
         every_s: knots.every(),
-        told: resolved(one, &problems[0], &estimate, amplitudes.len()),
+        determined: resolved(one, &problems[0], &estimate, amplitudes.len()),
         correlation,
         runs: one.runs,
     });
@@ -128,7 +128,8 @@ pub(super) fn find(
     }
     if !one.settled {
         found.warnings.push(Code::UnexplainedPressures.warning(format!(
-            "the search ended before it settled, after {}: the loads told are not those that fit best; fewer knots, or more smoothing, make it sure",
+            "the search ended before it converged, after {}. The reported loads are not the best fit. Use fewer \
+             knots, or more smoothing",
             counted(u64::from(one.runs), "run")
         )));
     }
@@ -140,12 +141,12 @@ fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
     let usage = |what: String| Error::Usage(format!("--dynamic: {what}"));
     let Some(times) = &measured.times else {
         return Err(usage(
-            "the measurements have no instants; they stand in a column t_s, from the start of the run on".into(),
+            "the measurements have no times. Add a column t_s, with times from the start of the run".into(),
         ));
     };
     if times.len() < Knots::FEWEST {
         return Err(usage(format!(
-            "{}: too few to follow a load by; {} are the fewest",
+            "{}: too few to estimate a load over time (at least {})",
             counted(times.len() as u64, "instant"),
             Knots::FEWEST
         )));
@@ -153,7 +154,7 @@ fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
     let end = case.time.end_s;
     if let Some(late) = times.iter().position(|t| *t > end * (1.0 + 1e-12)) {
         return Err(usage(format!(
-            "line {}: {} s is after the end of the run at {end} s; --set /time/end_s={} runs that long",
+            "line {}: {} s is after the end of the run at {end} s. Extend the run with --set /time/end_s={}",
             measured.lines[late],
             times[late],
             times[times.len() - 1]
@@ -167,20 +168,22 @@ fn knot_count(asked: Option<usize>, rows: usize, loads: usize) -> Result<usize> 
     let count = asked.unwrap_or(USUAL.min(rows).min(room));
     if count > room {
         return Err(Error::Usage(format!(
-            "--knots {count}: {} have {} values at so many knots, and {ALL} is the most; at most {room} knots, or fewer loads",
+            "--knots {count}: {} have {} values at that many knots (limit {ALL}). Use at most {room} knots, or fewer \
+             loads",
             counted(loads as u64, "load"),
             count * loads
         )));
     }
     if count > rows {
         return Err(Error::Usage(format!(
-            "--knots {count}: the measurements have {rows} instants, and what is between them would be told by nothing; at most {rows} knots"
+            "--knots {count}: the measurements have only {rows} instants and do not determine values between them. \
+             Use at most {rows} knots"
         )));
     }
     match count >= Knots::FEWEST {
         true => Ok(count),
         false => Err(Error::Usage(format!(
-            "--dynamic: {loads} loads are too many: each needs {} knots, and {ALL} values is the most",
+            "--dynamic: {loads} loads are too many: each needs {} knots (limit {ALL} values in all)",
             Knots::FEWEST
         ))),
     }
@@ -263,17 +266,17 @@ fn correlation(left: &[Left]) -> f64 {
 
 /// Warns if the pressures determine nearly every knot value: the load may change faster than the spline.
 fn fast(found: &Sensed, over_time: &OverTime, rows: usize) -> Option<String> {
-    let told = found.amplitudes.iter().zip(&over_time.told);
-    let names = told.filter(|(_, told)| **told > ALL_TOLD * over_time.knots as f64);
+    let pairs = found.amplitudes.iter().zip(&over_time.determined);
+    let names = pairs.filter(|(_, determined)| **determined > ALL_DETERMINED * over_time.knots as f64);
     let names: Vec<&str> = names.map(|(a, _)| a.name.as_str()).collect();
     let remedy = match over_time.knots < rows.min(MOST) {
-        true => "more knots (--knots) show it",
-        false => "measurements at more instants would show it",
+        true => "Use more knots (--knots)",
+        false => "Measure at more instants",
     };
     (!names.is_empty()).then(|| {
         Code::FastLoad.warning(format!(
-            "{}: the pressures tell as good as every value at the {} knots, one every {:.3e} s, so that nothing shows whether the load changes faster; bands \
-             hold it only if it does not; {remedy}",
+            "{}: the pressures determine nearly every value at the {} knots (one every {:.3e} s). A faster change of \
+             the load is not visible, and bands are valid only without it. {remedy}",
             names.join(", "),
             over_time.knots,
             over_time.every_s
@@ -285,9 +288,10 @@ fn fast(found: &Sensed, over_time: &OverTime, rows: usize) -> Option<String> {
 fn coloured(found: &Sensed, correlation: f64, count: usize, knots: usize) -> Option<String> {
     (correlation * (count as f64).sqrt() > UNLIKELY).then(|| {
         Code::UnexplainedPressures.warning(format!(
-            "what {} with {knots} knots leaves of the pressures is no noise: neighbours in time go together (correlation {correlation:.2}); the load changes \
-             faster than the knots let it (--knots), or the model or the noise does it: bands are too narrow",
-            told::names(found)
+            "the residuals of {} with {knots} knots are correlated in time (lag-1 correlation {correlation:.2}): the \
+             load changes faster than the knots resolve, the model has an error, or the noise is correlated. Bands \
+             are too narrow. Use more knots (--knots)",
+            diagnostics::names(found)
         ))
     })
 }

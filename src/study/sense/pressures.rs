@@ -60,7 +60,8 @@ impl Measured {
             let Some(holds) = holds(&column.name, case) else {
                 if seems_a_bladder(&column.name) {
                     return Err(wrong(format!(
-                        "column {heading}: not understood as the pressure of a bladder, which is written pressure_3_pa or pressure_-3_kpa"
+                        "column {heading}: unknown name for the pressure of a bladder. Use a name such as \
+                         pressure_3_pa or pressure_-3_kpa"
                     )));
                 }
                 left_alone.push(column.heading.clone());
@@ -72,7 +73,8 @@ impl Measured {
             };
             let bladder = bladder_index(label, per_row).ok_or_else(|| {
                 wrong(format!(
-                    "column {heading}: there is no bladder {label}; there are 1 to {per_row} in the upper row and -1 to -{per_row} in the lower"
+                    "column {heading}: there is no bladder {label}. The upper row has bladders 1 to {per_row}, the \
+                     lower row -1 to -{per_row}"
                 ))
             })?;
             if list.iter().any(|(_, other)| *other == bladder) {
@@ -83,7 +85,8 @@ impl Measured {
         if pressures.is_empty() {
             let headings = table.columns.iter().map(|column| column.heading.as_str());
             return Err(wrong(format!(
-                "no column holds the pressure of a bladder, such as pressure_3_pa or pressure_-3_kpa; there are {}",
+                "no column contains the pressure of a bladder, such as pressure_3_pa or pressure_-3_kpa. The columns \
+                 are {}",
                 listed(headings)
             )));
         }
@@ -96,7 +99,7 @@ impl Measured {
         for ((column, _), values) in pressures.iter().zip(&columns) {
             if values.iter().all(Option::is_none) {
                 let heading = visible(&table.columns[*column].heading);
-                return Err(wrong(format!("column {heading} holds no number")));
+                return Err(wrong(format!("column {heading} contains no number")));
             }
         }
         let mut of_noise = vec![];
@@ -105,16 +108,16 @@ impl Measured {
             let own = deviations.iter().find(|(_, other)| other == bladder);
             let (column, _) = own.ok_or_else(|| {
                 wrong(format!(
-                    "bladder {label} has no column with its deviation, as others have"
+                    "bladder {label} has no column with its standard deviation, but others have one"
                 ))
             })?;
             let all = table.all_numbers(*column, table.scale(*column, "Pa", "a deviation of pressure")?)?;
             let none = all.iter().position(|deviation| *deviation <= 0.0);
             if let Some(row) = none {
                 return Err(table
-                    .sound(vec![table.fault(row, *column, "a deviation is above 0")])
+                    .sound(vec![table.fault(row, *column, "a standard deviation must be above 0")])
                     .err()
-                    .unwrap_or_else(|| wrong("a deviation is above 0".into())));
+                    .unwrap_or_else(|| wrong("a standard deviation must be above 0".into())));
             }
             of_noise.push(all);
         }
@@ -244,12 +247,12 @@ mod tests {
             ("pressure_1_mm\n1\n", "is in mm"),
             (
                 "tip_u1_m,max_pressure_pa\n1,2\n",
-                "no column holds the pressure of a bladder",
+                "no column contains the pressure of a bladder",
             ),
-            ("pressure_1_pa\n\"\"\n", "holds no number"),
+            ("pressure_1_pa\n\"\"\n", "contains no number"),
             (
                 "pressure_1_pa,pressure_2_pa,p1_sd_pa\n1,2,3\n",
-                "bladder 2 has no column with its deviation",
+                "bladder 2 has no column with its standard deviation",
             ),
         ];
         for (text, said) in cases {

@@ -22,7 +22,7 @@ pub fn probed(case: &Case) -> Result<(Case, Vec<String>)> {
         Some(bladders) if case.fluid.is_some() => bladders.per_row,
         _ => {
             return Err(Error::Usage(
-                "the case has no bladders with fluid in them: there are no pressures to measure".into(),
+                "the case has no fluid-filled bladders, so there are no pressures to measure".into(),
             ));
         }
     };
@@ -86,7 +86,7 @@ impl<'a> AtRest<'a> {
         let columns: Vec<usize> = names.iter().filter_map(place).collect();
         if columns.len() != names.len() {
             return Err(Error::Usage(
-                "the effects of the case leave out its fluid: there are no pressures to measure".into(),
+                "the effects of the case omit its fluid, so there are no pressures to measure".into(),
             ));
         }
         Ok(Self {

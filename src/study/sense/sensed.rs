@@ -155,7 +155,8 @@ pub struct OverTime {
     /// Spacing of the knots [s]. The first lies one spacing before the start of the run, the last one spacing after the last measurement.
     pub every_s: f64,
     /// Number of knot values of each load that the pressures determine; the smoothness prior determines the others.
-    pub told: Vec<f64>,
+    #[serde(rename = "told")]
+    pub determined: Vec<f64>,
     /// Lag-1 autocorrelation of the residuals of a pressure; about 0 for white noise.
     pub correlation: f64,
     /// Number of runs.

@@ -65,7 +65,7 @@ struct Step {
     state: Option<Vec<f64>>,
 }
 
-/// Finds the cycle of every case; `tell` is called with the number of finished cases. Cases not finished at a stop are
+/// Finds the cycle of every case; `report` is called with the number of finished cases. Cases not finished at a stop are
 /// missing. If turbines harvest, tolerances are tightened until the energies of each cycle add up, as for one cycle.
 /// Cycles stored in `evaluations` are not searched again.
 ///
@@ -76,7 +76,7 @@ pub fn along(
     cases: &[(f64, Case)],
     evaluations: &Evaluations,
     stop: &Stop,
-    tell: &dyn Fn(usize),
+    report: &dyn Fn(usize),
 ) -> Result<Along> {
     let mut found = Along {
         case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
@@ -113,12 +113,12 @@ pub fn along(
         if let Some(y) = step.state {
             before = Some((scene, y));
         }
-        tell(k + 1);
+        report(k + 1);
     }
     if let Some((value, warning)) = open.first() {
         let others = match open.len() - 1 {
             0 => String::new(),
-            n => format!("; so it is in kind at {n} of the other values"),
+            n => format!("; similar at {n} of the other values"),
         };
         found
             .warnings

@@ -99,7 +99,7 @@ pub fn shaking(case: &Case) -> Result<(f64, f64)> {
     match settled(axial(&whole(case)?.ends)) {
         Signal::Sine(sine) => Ok((sine.frequency_hz, sine.amplitude.abs())),
         _ => Err(Error::Usage(format!(
-            "{}: a map needs a root that is shaken along the beam by a sine, /ends/root/clamped/u3_m = \
+            "{}: the root does not oscillate along the beam, but a map needs a sine there: /ends/root/clamped/u3_m = \
              {{\"sine\": {{\"amplitude\": .., \"frequency_hz\": ..}}}}",
             case.name
         ))),
@@ -112,7 +112,7 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
     }
 }
 
-/// Computes the map; `tell` is called with the finished and the total number of columns. Points not finished at a stop
+/// Computes the map; `report` is called with the finished and the total number of columns. Points not finished at a stop
 /// have no result. Points stored in `evaluations` are not computed again.
 ///
 /// # Errors
@@ -122,7 +122,7 @@ pub fn map(
     plan: &Plan,
     evaluations: &Evaluations,
     stop: &Stop,
-    tell: &(dyn Fn(usize, usize) + Sync),
+    report: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Map> {
     let own = shaking(case)?;
     // another drive would have a period of its own
@@ -145,7 +145,7 @@ pub fn map(
             &evaluations.scoped(&k.to_string()),
             stop,
         );
-        tell(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
+        report(1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed), count);
         Some(made)
     });
     let mut all = all.into_iter().flatten().collect::<Result<Vec<_>>>()?.into_iter();

@@ -105,20 +105,22 @@ impl Designs {
             Draw::Grid if drawn > 0 => {
                 let one = varied.iter().find(|vary| vary.drawn());
                 return Err(Error::Usage(format!(
-                    "--vary {}={}: a distribution needs how many designs are drawn, --design latin:N or sobol:N",
+                    "--vary {}={}: a distribution needs the number of drawn designs. Use --design latin:N or sobol:N",
                     one.map_or("", |vary| &vary.pointer),
                     one.map_or("", |vary| &vary.spec),
                 )));
             }
             Draw::Latin(_) | Draw::Sobol(_) if drawn == 0 => {
                 return Err(Error::Usage(format!(
-                    "--design {}: nothing is drawn; give --vary POINTER=uniform:LOW:HIGH or normal:MEAN:SD, or leave it out",
+                    "--design {}: no number has a distribution. Use --vary POINTER=uniform:LOW:HIGH or \
+                     normal:MEAN:SD, or omit --design",
                     draw.words()
                 )));
             }
             Draw::Sobol(_) if drawn > sobol::MOST => {
                 return Err(Error::Usage(format!(
-                    "--design {}: Sobol's sequence is known here for {} numbers, and {drawn} are drawn; use latin:N",
+                    "--design {}: the Sobol sequence has at most {} dimensions, but {drawn} numbers are drawn. Use \
+                     latin:N",
                     draw.words(),
                     sobol::MOST
                 )));
@@ -213,7 +215,7 @@ fn bounded(cases: usize, lengths: impl IntoIterator<Item = usize>) -> Result<usi
     let product = lengths.into_iter().try_fold(cases, usize::checked_mul);
     product.filter(|n| *n <= MOST).ok_or_else(|| {
         Error::Usage(format!(
-            "more than {MOST} designs; vary fewer numbers at once, or draw with --design latin:N"
+            "more than {MOST} designs. Vary fewer numbers at once, or draw with --design latin:N"
         ))
     })
 }
@@ -227,7 +229,8 @@ fn apart(option: &str, pointers: &[String]) -> Result<()> {
             }
             if is_below(one, other) || is_below(other, one) {
                 return Err(Error::Usage(format!(
-                    "{option}: {one} and {other} are parts of each other; vary the larger one with whole values"
+                    "{option}: one of {one} and {other} contains the other. Vary only the outer one, with complete \
+                     values"
                 )));
             }
         }
@@ -314,9 +317,9 @@ mod tests {
     fn what_does_not_go_together_is_refused() {
         for (axes, draw, word) in [
             (vec!["/a=uniform:0:1"], Draw::Grid, "latin:N or sobol:N"),
-            (vec!["/a=1,2"], Draw::Latin(3), "nothing is drawn"),
+            (vec!["/a=1,2"], Draw::Latin(3), "no number has a distribution"),
             (vec!["/a=1,2", "/a=3"], Draw::Grid, "varied twice"),
-            (vec!["/a=1", "/a/b=3"], Draw::Grid, "parts of each other"),
+            (vec!["/a=1", "/a/b=3"], Draw::Grid, "contains the other"),
             (vec!["/a=lin:0:1:2000", "/b=lin:0:1:2000"], Draw::Grid, "more than"),
         ] {
             let why = Designs::crossed(1, &varied(&axes), draw, None)
@@ -329,7 +332,7 @@ mod tests {
             ("/a=lin:4:2:3", "not below"),
             ("/a=log:0:2:3", "no logarithm"),
             ("/a=normal:1:0", "above 0"),
-            ("/a=normal:1:nan", "no finite number"),
+            ("/a=normal:1:nan", "not a finite number"),
             ("/a=NaN", "JSON values"),
             ("/a=", "no values"),
             ("/a_m=0.1 m", "0.1 m is 0.1 here"),

@@ -24,7 +24,7 @@ impl Shard {
             .and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
         match parts {
             Some((index, of)) if (1..=of).contains(&index) => Ok(Self { index, of }),
-            _ => Err("I/N is wanted, I from 1 to N: 2/8 is the second of eight shards".into()),
+            _ => Err("expected I/N with I from 1 to N: 2/8 is the second of eight shards".into()),
         }
     }
 
@@ -129,7 +129,7 @@ impl Plan {
 
     /// Describes the first difference between two plans, except names of files.
     pub fn difference(&self, other: &Self) -> Option<String> {
-        let told = |what: &str, here: String, there: String| {
+        let differ = |what: &str, here: String, there: String| {
             (here != there).then(|| format!("{what} is {there} there and {here} here"))
         };
         let cases = |plan: &Self| {
@@ -145,26 +145,25 @@ impl Plan {
         };
         let optional = |text: Option<String>| text.unwrap_or_else(|| "none".into());
         let changed = self.cases.iter().zip(&other.cases).find(|(a, b)| a.crc32 != b.crc32);
-        told("--command", self.command.word().into(), other.command.word().into())
-            .or_else(|| told("the list of cases", cases(self), cases(other)))
-            .or_else(|| told("--vary", axes(self), axes(other)))
-            .or_else(|| told("--design", self.design.words(), other.design.words()))
+        differ("--command", self.command.word().into(), other.command.word().into())
+            .or_else(|| differ("the list of cases", cases(self), cases(other)))
+            .or_else(|| differ("--vary", axes(self), axes(other)))
+            .or_else(|| differ("--design", self.design.words(), other.design.words()))
             .or_else(|| {
                 let seed = |plan: &Self| optional(plan.seed.map(|seed| seed.to_string()));
-                told("--seed", seed(self), seed(other))
+                differ("--seed", seed(self), seed(other))
             })
-            .or_else(|| told("--set", optional_list(&self.sets), optional_list(&other.sets)))
+            .or_else(|| differ("--set", optional_list(&self.sets), optional_list(&other.sets)))
             .or_else(|| {
                 let accuracy = |plan: &Self| optional(plan.accuracy.map(|x| x.to_string()));
-                told("--accuracy", accuracy(self), accuracy(other))
+                differ("--accuracy", accuracy(self), accuracy(other))
             })
             .or_else(|| {
-                (self.mesh_errors != other.mesh_errors)
-                    .then(|| "--no-mesh-errors is given for one of them alone".into())
+                (self.mesh_errors != other.mesh_errors).then(|| "--no-mesh-errors is given for only one of them".into())
             })
             .or_else(|| {
                 let shard = |plan: &Self| optional(plan.shard.map(Shard::words));
-                told("--shard", shard(self), shard(other))
+                differ("--shard", shard(self), shard(other))
             })
             .or_else(|| {
                 let sum = |plan: &Self| plan.table.as_ref().map(|(_, crc32)| *crc32);
@@ -172,7 +171,7 @@ impl Plan {
             })
             .or_else(|| changed.map(|(case, _)| format!("the case {} has changed", case.name)))
             .or_else(|| {
-                told(
+                differ(
                     "the number of designs",
                     self.designs.to_string(),
                     other.designs.to_string(),

@@ -39,7 +39,7 @@ impl Table {
         let headings = reader.headers().map_err(|e| e.to_string())?;
         let pointers: Vec<String> = headings.iter().map(String::from).collect();
         if pointers.iter().all(String::is_empty) {
-            return Err("no columns; the first line names a JSON pointer for each".into());
+            return Err("no columns. The first line must contain a JSON pointer for each column".into());
         }
         for (k, pointer) in pointers.iter().enumerate() {
             check_pointer(pointer).map_err(|what| format!("column {} is `{pointer}`: {what}", k + 1))?;
@@ -53,13 +53,13 @@ impl Table {
             rows.push(row.map_err(|(pointer, cell)| match cell {
                 "" => format!("design {k} (row {} of the table) has no {pointer}", k + 2),
                 _ => format!(
-                    "design {k} (row {} of the table): {pointer} is `{cell}`, which is no JSON value",
+                    "design {k} (row {} of the table): {pointer} is `{cell}`, which is not a JSON value",
                     k + 2
                 ),
             })?);
         }
         if rows.is_empty() {
-            return Err("no designs; each is a line below the first".into());
+            return Err("no designs. Add one line per design below the first line".into());
         }
         Ok(Self {
             pointers,

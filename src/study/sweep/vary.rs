@@ -53,7 +53,7 @@ impl Draw {
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = || {
             Error::Usage(format!(
-                "--design {text}: grid, latin:N or sobol:N, such as latin:100; N from 1 to {MOST_VALUES}"
+                "--design {text}: expected grid, latin:N or sobol:N, such as latin:100 (N from 1 to {MOST_VALUES})"
             ))
         };
         let number = |n: &str| {
@@ -105,7 +105,7 @@ impl Vary {
         let wrong = |what: String| Error::Usage(format!("{option} '{text}': {what}"));
         let (pointer, spec) = text
             .split_once('=')
-            .ok_or_else(|| wrong("a JSON pointer and its values are wanted, such as /solver/rtol=1e-4,1e-5".into()))?;
+            .ok_or_else(|| wrong("expected a JSON pointer and its values, such as /solver/rtol=1e-4,1e-5".into()))?;
         check_pointer(pointer).map_err(wrong)?;
         Ok(Self {
             pointer: pointer.into(),
@@ -130,10 +130,14 @@ pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
     let zeros = |part: &str| part.len() > 1 && part.starts_with('0') && part.bytes().all(|b| b.is_ascii_digit());
     let other_name = |part: &&str| part.starts_with('+') || zeros(part);
     if pointer.split('/').any(|part| part == "*") {
-        Err("a pointer names one number; what changes in several places at once has a column for each in a table: slcbeam sweep --designs".into())
+        Err(
+            "a pointer names one number. To change several numbers together, use a table with a column for each: \
+             slcbeam sweep --designs"
+                .into(),
+        )
     } else if let Some(part) = pointer.split('/').find(other_name) {
         Err(format!(
-            "`{part}` is no place of an array: 0, 1, 2 and so on, without sign or zeros in front"
+            "`{part}` is not an array index. Use 0, 1, 2 and so on, without a sign or leading zeros"
         ))
     } else if pointer.starts_with('/') && pointer.len() > 1 {
         Ok(())
@@ -170,15 +174,15 @@ impl Values {
             "lin" | "log" => range(kind, rest).map(Self::Listed),
             "uniform" => match numbers(rest)?[..] {
                 [low, high] if low < high => Ok(Self::Uniform(low, high)),
-                [low, high] => Err(format!("{low} is not below {high}; uniform:LOW:HIGH")),
-                _ => Err("two numbers are wanted, uniform:LOW:HIGH".into()),
+                [low, high] => Err(format!("{low} is not below {high}. Use uniform:LOW:HIGH")),
+                _ => Err("expected two numbers, uniform:LOW:HIGH".into()),
             },
             "normal" => match numbers(rest)?[..] {
                 [mean, sd] if sd > 0.0 => Ok(Self::Normal(mean, sd)),
                 [_, sd] => Err(format!(
-                    "a standard deviation is above 0, and {sd} is not; normal:MEAN:SD"
+                    "the standard deviation {sd} is not above 0. Use normal:MEAN:SD"
                 )),
-                _ => Err("two numbers are wanted, normal:MEAN:SD".into()),
+                _ => Err("expected two numbers, normal:MEAN:SD".into()),
             },
             _ => listed(spec).map(Self::Listed),
         }
@@ -189,21 +193,21 @@ impl Values {
 pub(in crate::study) fn numbers(text: &str) -> std::result::Result<Vec<f64>, String> {
     let number = |part: &str| {
         let read = part.trim().parse().ok().filter(|x: &f64| x.is_finite());
-        read.ok_or_else(|| format!("`{part}` is no finite number; values are in the unit that the key names"))
+        read.ok_or_else(|| format!("`{part}` is not a finite number. Give values in the unit that the key names"))
     };
     text.split(':').map(number).collect()
 }
 
 /// Parses `lin:LOW:HIGH:COUNT`, `log:LOW:HIGH:COUNT`.
 fn range(kind: &str, text: &str) -> std::result::Result<Vec<Value>, String> {
-    let wanted = format!("{kind}:LOW:HIGH:COUNT, such as {kind}:0.1:1:10");
+    let wanted = format!("expected {kind}:LOW:HIGH:COUNT, such as {kind}:0.1:1:10");
     let (ends, count) = text.rsplit_once(':').ok_or_else(|| wanted.clone())?;
     let [low, high] = numbers(ends)?[..] else {
         return Err(wanted);
     };
     let count = count.trim().parse().ok().filter(|n| (2..=MOST_VALUES).contains(n));
     let Some(count) = count else {
-        return Err(format!("{wanted}; COUNT from 2 to {MOST_VALUES}"));
+        return Err(format!("{wanted}, with COUNT from 2 to {MOST_VALUES}"));
     };
     if low >= high {
         return Err(format!("{low} is not below {high}; {wanted}"));
@@ -245,13 +249,23 @@ fn listed(text: &str) -> std::result::Result<Vec<Value>, String> {
             Some(kind) if kind.bytes().all(|b| b.is_ascii_alphabetic() || b == b'-' || b == b'_') => {
                 // a typing error, not another word
                 let slip = |known: &&str| strsim::damerau_levenshtein(&kind.to_lowercase(), known) <= 2;
-                let meant = kinds.into_iter().filter(slip).min_by_key(|known| strsim::damerau_levenshtein(kind, known));
+                let meant = kinds
+                    .into_iter()
+                    .filter(slip)
+                    .min_by_key(|known| strsim::damerau_levenshtein(kind, known));
                 match meant {
                     Some(meant) => format!("did you mean {meant}:..?"),
-                    None => format!("there is no `{}:`, but {forms}; designs drawn otherwise go in as a table, slcbeam sweep --designs", short(kind)),
+                    None => format!(
+                        "unknown form `{}:`. Use {forms}. For other distributions, give a table of designs: slcbeam \
+                         sweep --designs",
+                        short(kind)
+                    ),
                 }
             }
-            _ => format!("JSON values with commas between are wanted, numbers without units, a text in double quotes inside single ones; or {forms}"),
+            _ => format!(
+                "expected JSON values separated by commas (numbers without units, text in double quotes inside single \
+                 quotes), or {forms}"
+            ),
         }
     })?;
     Ok(all.into_iter().map(plain).collect())

@@ -1,4 +1,4 @@
-//! What to refine next.
+//! Choice of the next refinement.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,9 +35,9 @@ const PAYS: f64 = -0.25;
 const PREFERRED: f64 = 0.8;
 /// Work without a smaller error, over that with the smallest.
 const PATIENCE: f64 = 4.0;
-/// Error over the smallest before, from which on that says nothing.
+/// Ratio of an error to the smallest before above which that smallest one is discarded.
 const SHOWN: f64 = 2.0;
-/// Error beyond which a figure does not tell how far it is off.
+/// Error above which its size is unreliable; larger errors count as this one in sums.
 const SATURATED: f64 = 0.3;
 /// Largest work (steps times unknowns) that a refinement is expected to do: so many times that of the first run, and so much.
 const LARGEST_WORK: (f64, f64) = (15.0, 3e6);
@@ -112,8 +112,8 @@ impl Levers {
         Ok(Some(Finer { case: finer, added }))
     }
 
-    /// Whether the error of a quantity is no longer worth the work; takes over what is. An error that a finer run shows to be much larger than
-    /// it was begins anew, once.
+    /// True if the error of a quantity is no longer worth the work; stores its best error. If a finer run shows a much larger error, that error
+    /// replaces the best one, once per quantity.
     fn is_stuck(&mut self, name: &str, work: f64, error: f64) -> bool {
         let best = self.best.entry(name.into()).or_insert((work, error));
         let falls = error <= best.1 * (work / best.0).powf(PAYS).min(1.0) || SATURATED < error && error < best.1;
@@ -158,7 +158,7 @@ impl Levers {
     }
 }
 
-/// What the errors of quantities are made of: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
+/// Parts of the errors of quantities by cause: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
 fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
     let causes = relative_by_cause(summary, floors);
     let of = |(name, error): (&String, &f64)| {

@@ -1,14 +1,14 @@
-//! The cheapest run that has an accuracy: mesh, tolerance and effects are refined where measured errors say so.
+//! The cheapest run that has an accuracy: mesh, tolerance and effects are refined where measured errors require it.
 //!
 //! ```text
 //! first     the setting to begin with, which sees every load
 //! effects   effects that are left out and measured to matter
-//! levers    what to refine next, by the causes of errors
-//! verdict   what is reached
+//! levers    next refinement, by the causes of errors
+//! verdict   accuracy reached
 //! ```
 //!
 //! Every run has a companion ([`companion`](super::companion)). Where that shows errors above the accuracy, each cause is measured by a
-//! run with one change; orders of methods tell how far each has to be refined, and the run is repeated there. A search ends where all
+//! run with one change; the orders of the methods give the refinement of each, and the refined run follows. A search ends where all
 //! errors are small enough, where a refinement does not make them smaller, or where the next one is too expensive.
 
 pub mod effects;
@@ -28,7 +28,7 @@ use crate::study::companion::Accurate;
 use crate::study::effects::full::full;
 use levers::Levers;
 
-/// Part of the accuracy asked that leaving out an effect may take by its number, unless the case says.
+/// Part of the accuracy asked that leaving out an effect may take by its number, unless the case sets it.
 const EFFECTS: f64 = 0.1;
 /// Most runs of a search.
 const RUNS: usize = 7;

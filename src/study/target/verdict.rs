@@ -1,4 +1,4 @@
-//! What is reached.
+//! Accuracy reached by a search.
 
 use std::collections::BTreeMap;
 
@@ -66,9 +66,9 @@ pub fn conclude(
 fn effects_in_words(case: &Case, added: &[Effect]) -> String {
     let left_out = full(case).ok().flatten().map_or(vec![], |full| full.left_out);
     let parts = [("added for what they change", added), ("left out", &left_out)];
-    let told = parts.into_iter().filter(|(_, effects)| !effects.is_empty());
-    let told: Vec<String> = told
+    let parts = parts.into_iter().filter(|(_, effects)| !effects.is_empty());
+    let parts: Vec<String> = parts
         .map(|(what, effects)| format!("{what}: {}", Effect::names(effects, ", ")))
         .collect();
-    told.join("; ")
+    parts.join("; ")
 }

@@ -31,7 +31,7 @@ pub fn slopes(
             return Ok(Ok(slopes));
         }
         let why = found.reason.unwrap_or_else(|| "the run did not finish".into());
-        Ok(Err(format!("the case about the means, with derivatives: {why}")))
+        Ok(Err(format!("the case at the means, with derivatives: {why}")))
     };
     exact().unwrap_or_else(|error: crate::error::Error| Err(error.to_string().replace("--sensitivity ", "")))
 }
@@ -40,7 +40,7 @@ fn by_differences(count: usize, difference: &dyn Fn(usize) -> Option<BTreeMap<St
     let mut all = Gathered::new(count);
     for k in 0..count {
         let Some(found) = difference(k) else {
-            return Err("a cycle beside the means was not found".into());
+            return Err("no cycle was found for a small change from the means".into());
         };
         found.into_iter().for_each(|(name, slope)| all.put(k, name, slope));
     }

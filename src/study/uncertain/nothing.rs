@@ -117,12 +117,12 @@ mod tests {
         let figures = all.map(|(name, x)| (name.to_owned(), of(x))).into();
         let own = Found::finished();
         let left = without_round_off(figures, &own, 0.1);
-        let told: Vec<&str> = left
+        let names: Vec<&str> = left
             .iter()
             .filter(|(_, one)| one.sd > 0.0)
             .map(|(name, _)| name.as_str())
             .collect();
-        assert_eq!(told, ["bladder_energy_j", "tip_u3_m"]);
+        assert_eq!(names, ["bladder_energy_j", "tip_u3_m"]);
         // the pressure of a port has no spread
         let held = Spread {
             sd: 1e-8,

@@ -38,19 +38,19 @@ impl Plan {
         let usage = |what: String| Err(Error::Usage(what));
         if let Some(listed) = inputs.iter().find(|one| !one.drawn()) {
             return usage(format!(
-                "--uncertain {}={}: a distribution is wanted, uniform:LOW:HIGH or normal:MEAN:SD",
+                "--uncertain {}={}: expected a distribution, uniform:LOW:HIGH or normal:MEAN:SD",
                 listed.pointer, listed.spec
             ));
         }
         if !(FEWEST..=MOST).contains(&samples) {
-            return usage(format!("--samples {samples}: from {FEWEST} to {MOST}"));
+            return usage(format!("--samples {samples}: expected from {FEWEST} to {MOST}"));
         }
         let wanted = inputs.len() * if indices { 2 } else { 1 };
         if wanted > sobol::MOST {
             let most = sobol::MOST * inputs.len() / wanted;
             let without = if indices { " with --indices" } else { "" };
             return usage(format!(
-                "--uncertain: {most} numbers at most{without}, and {} are given",
+                "--uncertain: at most {most} numbers are possible{without}, but {} are given",
                 inputs.len()
             ));
         }
@@ -169,10 +169,10 @@ mod tests {
         let eleven: Vec<String> = (0..11).map(|k| format!("/a{k}=uniform:0:1")).collect();
         let eleven: Vec<&str> = eleven.iter().map(String::as_str).collect();
         for (inputs, samples, indices, word) in [
-            (vec!["/a=1,2"], 64, false, "a distribution is wanted"),
+            (vec!["/a=1,2"], 64, false, "expected a distribution"),
             (vec!["/a=uniform:0:1"], 8, false, "from 16"),
             (vec!["/a=uniform:0:1", "/a=normal:0:1"], 64, false, "twice"),
-            (eleven, 64, true, "10 numbers at most with --indices"),
+            (eleven, 64, true, "at most 10 numbers are possible with --indices"),
         ] {
             let why = plan(&inputs, samples, indices).expect_err("refused").to_string();
             assert!(why.contains(word), "{why}");

@@ -199,14 +199,15 @@ fn warnings(
     let lost = samples.iter().filter(|one| one.status != Status::Finished).count();
     if lost > 0 {
         all.push(format!(
-            "{lost} of {} did not finish; spreads are those of the others, and may be too narrow",
+            "{lost} of {} did not finish. Spreads are those of the others and may be too narrow",
             counted(samples.len() as u64, "sample")
         ));
     }
     for (input, own) in inputs.iter().zip(own_values) {
         if let Some(own) = own.filter(|own| (own - input.mean).abs() > ELSEWHERE * input.sd) {
             all.push(format!(
-                "{} is {own:?} in the case and {:?} in the mean: the case's own figures are not in the middle of the spread",
+                "{} is {own:?} in the case, but its mean is {:?}. The figures of the case itself are not in the \
+                 middle of the spread",
                 input.pointer, input.mean
             ));
         }
@@ -215,7 +216,7 @@ fn warnings(
         let mut shares = figures.values().filter_map(|one| one.first_order.as_ref()).peekable();
         if shares.peek().is_some() && shares.all(|first| first.shares[k] == 0.0) {
             all.push(format!(
-                "no figure that has derivatives depends on {}, to first order",
+                "no figure with derivatives depends on {} to first order",
                 input.pointer
             ));
         }
@@ -231,29 +232,30 @@ fn warnings(
             n => format!(" and {n} more"),
         };
         if !names.is_empty() {
-            let told = names[..names.len().min(NAMED)].join(", ");
-            all.push(format!("{told}{more}: {what}"));
+            let listed = names[..names.len().min(NAMED)].join(", ");
+            all.push(format!("{listed}{more}: {what}"));
         }
     };
     named(
         &|one| one.samples + lost < samples.len(),
-        "not all samples have it, since what is called so changes with what is uncertain (modes that change places, parts of the motion that take over): its band is that of \
-         several things",
+        "not all samples have this figure. Its meaning varies between samples (modes change their order, another part \
+         of the motion dominates), and its band mixes several quantities",
     );
     named(
         &|one| {
             let first = one.first_order.as_ref();
             first.is_some_and(|first| (first.sd - one.sd).abs() > APART * one.sd_error.max(1e-3 * one.sd))
         },
-        "first order and samples differ by more than chance explains: the figure is no straight line over what is uncertain, and the samples are right; or it \
-         jumps from run to run by its numerical error, and neither is",
+        "first order and samples differ significantly. Either the figure is not linear in the uncertain numbers, and \
+         the samples are right, or its numerical error varies from run to run, and both are wrong",
     );
     named(
         &|one| {
             one.numerical_error
                 .is_some_and(|error| error > MATTERS * one.sd && one.sd > 0.0)
         },
-        "the numerical error is not small beside the spread; ask for an accuracy, a finer mesh or a smaller tolerance",
+        "the numerical error is not small compared with the spread. Use --accuracy, a finer mesh or a smaller \
+         tolerance",
     );
     all.extend(crossed(figures));
     all
@@ -273,8 +275,8 @@ fn crossed(figures: &BTreeMap<String, Spread>) -> Option<String> {
         .collect();
     (!names.is_empty()).then(|| {
         Code::ModesExchanged.warning(format!(
-            "{}: their bands meet, so that they may have changed places in some samples; the bands are then those of the lower and the higher \
-             frequency, not of one motion",
+            "{}: their bands overlap, so their order may differ between samples. Each band then belongs to the lower \
+             or the higher frequency, not to one mode shape",
             names.join(", ")
         ))
     })
@@ -305,10 +307,10 @@ mod tests {
         let all: Vec<Found> = (0..plan.count()).map(|k| found(q(&plan.values(k)))).collect();
         let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![3.0, 0.1])]));
         let own = found(q(&[2.0, 3.0]));
-        let told = judge(("case", 0.1), "run", &plan, &own, &[Some(2.0), None], &all, slopes);
-        assert_eq!(told.warnings, Vec::<String>::new());
-        assert_eq!((told.samples, told.finished), (512, 512));
-        let spread = &told.figures["q.final"];
+        let result = judge(("case", 0.1), "run", &plan, &own, &[Some(2.0), None], &all, slopes);
+        assert_eq!(result.warnings, Vec::<String>::new());
+        assert_eq!((result.samples, result.finished), (512, 512));
+        let spread = &result.figures["q.final"];
         let exact = (0.09 + 0.03_f64).sqrt();
         let first = spread.first_order.as_ref().expect("first order");
         assert!((first.sd - exact).abs() < 1e-12 && (first.shares[0] - 0.75).abs() < 1e-12);
@@ -319,7 +321,7 @@ mod tests {
             (indices[0].first - 0.75).abs() < 0.05 && (indices[1].total - 0.25).abs() < 0.05,
             "{indices:?}"
         );
-        assert!(told.figures.len() == 1);
+        assert!(result.figures.len() == 1);
     }
 
     /// Goal: an error relative to the largest figure of a quantity, as for cycles, is not smaller for a smaller figure of that quantity.
@@ -355,7 +357,7 @@ mod tests {
             ..found(1e9)
         };
         let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![0.0, 0.0])]));
-        let told = judge(
+        let result = judge(
             ("case", 0.1),
             "run",
             &plan,
@@ -364,16 +366,16 @@ mod tests {
             &all,
             slopes,
         );
-        let words = told.warnings.join("\n");
+        let words = result.warnings.join("\n");
         for part in [
             "1 of 512 samples did not finish",
-            "/a is 2.1 in the case and 2.0 in the mean",
-            "no straight line",
-            "no figure that has derivatives depends on /b, to first order",
+            "/a is 2.1 in the case, but its mean is 2.0",
+            "not linear in the uncertain numbers",
+            "no figure with derivatives depends on /b to first order",
         ] {
             assert!(words.contains(part), "{words}");
         }
-        assert_eq!((told.finished, told.unfinished["E041 no"]), (511, 1));
-        assert!(told.figures["q.final"].high < 10.0);
+        assert_eq!((result.finished, result.unfinished["E041 no"]), (511, 1));
+        assert!(result.figures["q.final"].high < 10.0);
     }
 }

@@ -80,7 +80,7 @@ fn in_time() -> Row {
         "frequency-in-time",
         [
             "eigenvalue of the linearised beam on the same mesh",
-            "small free vibrations started in the second mode swing as the linearisation says",
+            "small free vibrations started in the second mode have the frequency of the linearisation",
             "the phase that the integrator loses, below (w step)^2/3 = 5e-6 at rtol 1e-6",
         ],
         || {

@@ -44,7 +44,7 @@ pub fn rows() -> Vec<Row> {
         [
             "Hill system of six clamped-free modes of the published beam with its bladders drained, shaken along at 18 Hz: coupling \
              integrals by quadrature, the standing axial wave of the root's motion, rotary inertia, multipliers of the period map",
-            "where the principal tongue begins, over the length of the beam: 0.293; one mode of a beam that does not stretch says 0.313",
+            "where the principal tongue begins, over the length of the beam: 0.293; one mode of a beam that does not stretch gives 0.313",
             "second order: (beta h)^2 of 40 cells moves the frequency by 2e-4 of it, the onset by 8 times that, as it lies that far \
              from twice the frequency; the limit keeps rotary inertia in the stretched beam, 3e-4, and modes above the sixth",
         ],

@@ -112,7 +112,7 @@ fn a_wrong_key_beside_a_preset_and_with_another_unit_is_offered() {
         (
             r#""fluid": {"viscosity_cst": 300}"#,
             "viscosity_pa_s",
-            Some("cSt is of a viscosity over the density: times 1e-6 and density_kg_m3 it is in Pa s"),
+            Some("cSt is a unit of kinematic viscosity: multiply by 1e-6 and density_kg_m3 to obtain Pa s"),
         ),
         (
             r#""loads": [{"force_x_n_m": {"signal": {"sine": {"amplitude": 1, "omega": 62.83185307179586}}}}]"#,
@@ -146,12 +146,12 @@ fn remedies_are_of_what_is_wrong() {
         ),
         (
             "/fluid/viscosity_pa_s=0,5",
-            "decimals stand behind a point: --set '/fluid/viscosity_pa_s=0.5'",
+            "write decimals with a point: --set '/fluid/viscosity_pa_s=0.5'",
         ),
         ("/name=mine", "a text needs double quotes"),
         (
             "/network/chains/2/ends/0/pressure_pa=0",
-            "/network/chains is an array of 2, 0 to 1; `2` is none of these: /network/chains/- adds one",
+            "/network/chains is an array of 2 entries, indices 0 to 1; `2` is not an index of it. /network/chains/- adds an entry",
         ),
     ] {
         let found = set(given);
@@ -168,7 +168,7 @@ fn remedies_are_of_what_is_wrong() {
     };
     assert_eq!(
         hint(r#"{"time": {"end_s": 0,3}}"#, "a.json").1,
-        "write 0.3: decimals stand behind a point"
+        "write 0.3, with a decimal point"
     );
     assert!(
         hint(r#"{"time": {"end_s": 3s}}"#, "a.json")

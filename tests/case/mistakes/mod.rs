@@ -77,7 +77,7 @@ fn mistakes_in_an_argument_are_told_with_a_remedy() {
         (format!("{PUMP}=60 000"), format!("--set '{PUMP}=60000'")),
         (
             format!("{PUMP}=60 mm"),
-            "mm is no unit of what is wanted here, which is in Pa".into(),
+            "mm is a unit of another quantity; the number here is in Pa".into(),
         ),
         (format!("{PUMP}=1/2"), "write 0.5".into()),
         (
@@ -99,9 +99,9 @@ fn mistakes_in_an_argument_are_told_with_a_remedy() {
         ),
         (
             "/loads/2/gravity/x_m_s2=1".into(),
-            "/loads is an array of 2, 0 to 1; `2` is none of these: /loads/- adds one".into(),
+            "/loads is an array of 2 entries, indices 0 to 1; `2` is not an index of it. /loads/- adds an entry".into(),
         ),
-        ("/loads/2={\"gravity\": {}}".into(), "/loads/- adds one".into()),
+        ("/loads/2={\"gravity\": {}}".into(), "/loads/- adds an entry".into()),
     ] {
         match read(GOOD, &[&set]) {
             Err(Error::Usage(what)) => assert!(what.contains(&said), "{set}: {what}"),
@@ -167,18 +167,18 @@ fn mistakes_on_the_command_line_are_told_with_a_remedy() {
             "--uncertain '/beam/length_m=normal:0.1:0.001'",
         ),
         (vec!["sweep", &case, "--vary", "young_modulus_pa=1e6,2e6"], modulus),
-        (vec!["modes", &case, "--count", "2.5"], "a whole number is wanted"),
+        (vec!["modes", &case, "--count", "2.5"], "expected a whole number"),
         (
             vec!["run", &case, "--accuracy", "1mm"],
-            "a number such as 0.01, or 1%, is wanted",
+            "expected a number such as 0.01, or 1%",
         ),
-        (vec!["compare", &run, &modes], "holds the result of `slcbeam modes`"),
+        (vec!["compare", &run, &modes], "contains the result of `slcbeam modes`"),
         (
             vec!["compare", &run, &case],
-            "is a file, a case perhaps, and no result folder",
+            "is a file (perhaps a case), not a result folder",
         ),
-        (vec!["report", &case], "is a file, a case perhaps, and no result folder"),
-        (vec!["export", &modes], "holds the result of `slcbeam modes`"),
+        (vec!["report", &case], "is a file (perhaps a case), not a result folder"),
+        (vec!["export", &modes], "contains the result of `slcbeam modes`"),
         (vec!["check", &summary], "this is a result, not a case"),
     ] {
         let said = say(&arguments);

@@ -26,7 +26,7 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "\"60 mm\"",
         PUMP,
         "\"60 mm\"",
-        "mm is no unit of what is wanted here, which is in Pa",
+        "mm is a unit of another quantity; the number here is in Pa",
     ),
     (
         "60000",
@@ -41,7 +41,7 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "\"60,000 Pa\"",
         PUMP,
         "\"60,000 Pa\"",
-        "60,000 Pa may be 60 Pa or 60000 Pa: write the one that is meant",
+        "60,000 Pa is ambiguous: 60 Pa or 60000 Pa. Write the intended number",
     ),
     ("\"end_s\": 0.5", "\"end\": 0.5", "/time/end", "\"end\"", "end_s"),
     // what is no JSON
@@ -110,7 +110,7 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
     ),
     ("\"free\"},", "\"free\"}},", "", "}", "remove it"),
     ("0.001}\n}", "0.001}\n}}", "", "}", "remove it"),
-    ("0.5,", "0.5;", "/time", ";", "`,` between them"),
+    ("0.5,", "0.5;", "/time", ";", "separate members and entries by `,`"),
     // keys of other programs, of other objects, with other units
     (
         "\"ends\": {",
@@ -145,7 +145,7 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "\"beam\": {\"poisson_ratio\": 0.5}, \"ends\": {",
         "/beam/poisson_ratio",
         "\"poisson_ratio\"",
-        "/beam/shear_stiffness_n has the shear",
+        "/beam/shear_stiffness_n gives the shear stiffness",
     ),
     (
         "\"end_s\": 0.5",
@@ -268,21 +268,21 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "\"beam\": {\"height_m\": {\"taper\": [0.01, 0.005]}}, \"ends\": {",
         "/beam/height_m",
         "{\"taper\": [0.01, 0.005]}",
-        "one number is wanted: beam, bladders and fluid are the same all along",
+        "expected one number: beam, bladders and fluid are uniform along the beam",
     ),
     (
         "\"ends\": {",
         "\"beam\": {\"height_m\": [0.01, 0.005]}, \"ends\": {",
         "/beam/height_m",
         "[0.01, 0.005]",
-        "one number is wanted: beam, bladders and fluid are the same all along",
+        "expected one number: beam, bladders and fluid are uniform along the beam",
     ),
     (
         "0.5,",
         "[0, 2],",
         "/time/end_s",
         "[0, 2]",
-        "one number is wanted, without brackets",
+        "expected one number, without brackets",
     ),
     // files
     (

@@ -216,7 +216,7 @@ fn no_result_is_an_error_that_helps() {
     fs::create_dir(folder.path().join("empty")).expect("made");
     let empty = ask("empty");
     assert!(
-        empty.contains("holds no result") && empty.contains("summary.json (run)") && empty.contains("study.json"),
+        empty.contains("contains no result") && empty.contains("summary.json (run)") && empty.contains("study.json"),
         "{empty}"
     );
     let parent = ask("");

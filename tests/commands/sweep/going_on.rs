@@ -42,8 +42,7 @@ fn shards_and_threads_make_the_same_table() {
     let said = merge(&[&shards[0], &shards[2]]);
     assert_eq!(said.code, 5, "{}", said.err);
     assert!(
-        said.err
-            .contains("shard 2/3, of which no folder was given, lacks 5 designs"),
+        said.err.contains("shard 2/3 (no folder given) lacks 5 designs"),
         "{}",
         said.err
     );
@@ -90,7 +89,7 @@ fn shards_and_threads_make_the_same_table() {
     assert_eq!(said.code, 2, "{}", said.err);
     assert!(
         said.err
-            .contains("holds the result of `slcbeam sweep`, and one of run or periodic is wanted"),
+            .contains("contains the result of `slcbeam sweep`; a result of run or periodic is needed"),
         "{}",
         said.err
     );
@@ -175,7 +174,7 @@ fn an_interrupt_leaves_a_table() {
     let ended = child.wait_with_output().expect("ended");
     let said = String::from_utf8_lossy(&ended.stderr).into_owned();
     assert_eq!(ended.status.code(), Some(130), "{said}");
-    assert!(said.contains("with which the same command goes on"), "{said}");
+    assert!(said.contains("The same command continues with them"), "{said}");
     let told = json(&out, "sweep.json");
     let (there, missing) = (
         told["rows"].as_u64().expect("rows"),

@@ -20,7 +20,7 @@ fn what_makes_no_sense_is_refused() {
             "/beam/length_m,/beam/width_m\n0.1,\n",
             "design 0 (row 2 of the table) has no /beam/width_m",
         ),
-        ("/beam/length_m\nNaN\n", "no JSON value"),
+        ("/beam/length_m\nNaN\n", "not a JSON value"),
         ("/beam/length_m,/beam/width_m\n0.1\n", "fields"),
     ] {
         fs::write(&list, text).expect("written");
@@ -35,7 +35,7 @@ fn what_makes_no_sense_is_refused() {
     let negative = path(&dir, "negative.csv");
     fs::write(&negative, "/beam/length_m\n-0.1\n").expect("written");
     for (more, code, word) in [
-        (vec![], 2, "nothing varied"),
+        (vec![], 2, "no number is varied"),
         (
             vec!["--vary", "/beam/length_m=uniform:2:1", "--design", "latin:3"],
             2,
@@ -50,7 +50,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["--vary", "/beam/length_m=lognormal:1:2", "--design", "latin:3"],
             2,
-            "there is no `lognormal:`, but lin:LOW:HIGH:COUNT",
+            "unknown form `lognormal:`. Use lin:LOW:HIGH:COUNT",
         ),
         (
             vec!["--vary", "/beam/length_m=unifrom:1:2"],
@@ -65,7 +65,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["--vary", "/time/end_s=0.001,0.002"],
             2,
-            "without effect, since /time/end_s is varied",
+            "no effect, because /time/end_s is varied",
         ),
         (
             vec![
@@ -75,12 +75,12 @@ fn what_makes_no_sense_is_refused() {
                 "/start/pressures/00/pressure_pa=5",
             ],
             2,
-            "`00` is no place of an array",
+            "`00` is not an array index",
         ),
         (
             vec!["--vary", "/solver/rtol=1e-3,1e-5", "--accuracy", "0.05"],
             2,
-            "so that /solver/rtol would be without effect",
+            "so that /solver/rtol would have no effect",
         ),
         (vec!["--vary", "/beam/lenght_m=0.1"], 3, "E004"),
         (
@@ -132,7 +132,7 @@ fn folders_of_others_stay() {
     let before = table(&out);
     let said = swept(&out, &["--vary", &second]);
     assert!(
-        said.code == 2 && said.err.contains("holds another sweep: --vary is"),
+        said.code == 2 && said.err.contains("contains another sweep: --vary is"),
         "{}",
         said.err
     );
@@ -233,7 +233,7 @@ fn names_that_no_script_can_hold_are_refused() {
                 output.status.code() == Some(2) && output.stdout.is_empty(),
                 "{name:?}: {told}"
             );
-            let reason = ["holds no control characters", "cannot be named in a script"];
+            let reason = ["must not contain control characters", "cannot be named in a script"];
             assert!(reason.iter().any(|reason| told.contains(reason)), "{told}");
         }
     }

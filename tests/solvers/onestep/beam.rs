@@ -78,7 +78,7 @@ fn resumed_runs_repeat_uninterrupted_ones() {
             assert_eq!(outcome.summary.solver, resumed.summary.solver);
         }
         let chosen = &outcome.summary.effects["method"];
-        assert_eq!(chosen.reason, "as asked");
+        assert_eq!(chosen.reason, "as requested");
         assert_eq!(
             outcome.summary.effects["max_order"].value,
             outcome.summary.solver.max_order.to_string()

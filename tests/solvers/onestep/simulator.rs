@@ -183,9 +183,9 @@ fn ranges_are_refused_in_their_own_words() {
     let case = load("tour-actuator", &[]);
     for (pointer, range, what) in [
         (INLET, [0.0, f64::INFINITY], "finite"),
-        (INLET, [0.0, 0.0], "to a larger one"),
-        (INLET, [1.0, 2.0], "must hold the value"),
-        (CHAIN, [0.0, 2.0], "its range, 0 to 2, cannot be"),
+        (INLET, [0.0, 0.0], "must increase"),
+        (INLET, [1.0, 2.0], "must contain the initial value"),
+        (CHAIN, [0.0, 2.0], "its range, 0 to 2, is not allowed"),
     ] {
         let pointer = pointer.to_string();
         let error = Simulator::new(&case, &[Input { pointer, range }])

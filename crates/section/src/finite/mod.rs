@@ -103,7 +103,7 @@ impl FiniteCell {
     pub fn new(section: &Section, cell: Cell, law: Law) -> Result<Self, Error> {
         let side = section.width_m / section.bladders.length_m - 1.0;
         if side > 0.0 && !section.regions.is_empty() {
-            let what = "at finite strain a section with regions needs bladders as long as the beam is wide";
+            let what = "a section with regions at finite strain needs a bladder length equal to the beam's width";
             let place = "/bladders/length_m".to_owned();
             return Err(Error::Section(vec![crate::error::Fault {
                 place,

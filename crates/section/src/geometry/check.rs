@@ -28,14 +28,14 @@ pub fn check(section: &Section) -> Vec<Fault> {
     }
     let long = (section.pitch_m / section.height_m).max(section.height_m / section.pitch_m);
     if good && long > LONGEST {
-        let what = format!("is {long:.0} times as much as the other of pitch and height, at most {LONGEST} times");
+        let (place, other) = if section.pitch_m > section.height_m {
+            ("/pitch_m", "height")
+        } else {
+            ("/height_m", "pitch")
+        };
         rules.fault(
-            if section.pitch_m > section.height_m {
-                "/pitch_m"
-            } else {
-                "/height_m"
-            },
-            what,
+            place,
+            format!("is {long:.0} times the {other} (at most {LONGEST} times)"),
         );
     }
     if section.regions.len() > MOST / 4 {
@@ -49,7 +49,7 @@ pub fn check(section: &Section) -> Vec<Fault> {
     let length = section.bladders.length_m;
     if rules.positive("/bladders/length_m".to_owned(), length) && 0.0 < section.width_m && section.width_m < length {
         let what = format!(
-            "the bladders are longer, {length} m, than the beam is wide, {} m",
+            "the bladder length {length} m exceeds the beam's width {} m",
             section.width_m
         );
         rules.fault("/bladders/length_m", what);
@@ -85,7 +85,7 @@ pub fn check(section: &Section) -> Vec<Fault> {
         (Some(upper), Some(lower)) if upper < lower => {
             rules.fault(
                 "/bladders/upper/center_m",
-                format!("{upper} m is not above the lower row's {lower} m"),
+                format!("{upper} m is not above the lower row at {lower} m"),
             );
         }
         (Some(upper), None) if upper <= 0.0 && section.bladders.lower == Row::Mirrored => {
@@ -128,13 +128,13 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
         if size(0).min(size(1)) < least {
             rules.fault(
                 place.as_str(),
-                format!("is {:.1e} m small, at least {least:.1e} m", size(0).min(size(1))),
+                format!("has a size of {:.1e} m (at least {least:.1e} m)", size(0).min(size(1))),
             );
         }
         let most = |k: usize| outline.chords().iter().fold(0.0_f64, |m, p| m.max(p[k].abs()));
         if half[0] - most(0) < least {
             let what = format!(
-                "reaches {} m along the beam, its neighbour begins at half the pitch, {} m",
+                "reaches {} m along the beam (its neighbour begins at half the pitch, {} m)",
                 rounded(most(0)),
                 rounded(half[0])
             );
@@ -144,7 +144,7 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
             rules.fault(
                 place,
                 format!(
-                    "reaches {} m from the mid-plane, the beam's surface lies at {} m",
+                    "reaches {} m from the mid-plane (the beam's surface is at {} m)",
                     rounded(most(1)),
                     rounded(half[1])
                 ),
@@ -160,7 +160,7 @@ fn room(rules: &mut Rules, section: &Section, rows: &[(String, Outline)], region
             gap if gap > 0.0 => rules.fault(
                 place,
                 format!(
-                    "the wall to the upper bladder is {} m thick, less than {} m",
+                    "the wall to the upper bladder is {} m thick (at least {} m)",
                     rounded(gap),
                     rounded(least)
                 ),

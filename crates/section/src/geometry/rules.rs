@@ -61,7 +61,7 @@ impl Rules {
         let nu = material.poisson_ratio;
         if !(nu > -1.0 && nu < 0.5) {
             let hint = if nu >= 0.5 {
-                "; an incompressible material is well served by 0.4999"
+                "; use 0.4999 for an incompressible material"
             } else {
                 ""
             };
@@ -76,7 +76,7 @@ impl Rules {
         if points.len() > MOST {
             self.fault(
                 place,
-                format!("a polygon may have {MOST} corners, this one has {}", points.len()),
+                format!("the polygon has {} corners (at most {MOST})", points.len()),
             );
             return false;
         }
@@ -85,7 +85,7 @@ impl Rules {
             return false;
         }
         if points.len() < 3 {
-            self.fault(place, "a polygon needs three corners at least");
+            self.fault(place, "a polygon needs at least three corners");
             return false;
         }
         if !self.finite(place.to_owned(), points.as_flattened()) {
@@ -146,7 +146,7 @@ impl Rules {
             if !ordered(r) {
                 self.fault(
                     format!("{place}/{name}"),
-                    format!("must go from a smaller to a larger number, is {r:?}"),
+                    format!("must be two increasing numbers, is {r:?}"),
                 );
             }
             ordered(r)

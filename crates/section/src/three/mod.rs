@@ -90,7 +90,7 @@ impl Section {
         let mesh = self.meshes(&options)?;
         let (length, width) = (self.bladders.length_m, self.width_m);
         if length >= width * (1.0 - 1e-9) {
-            let what = "in three dimensions the bladders must be shorter than the beam is wide";
+            let what = "a section in three dimensions needs bladders shorter than the beam's width";
             return Err(Error::Section(vec![Fault {
                 place: "/bladders/length_m".to_owned(),
                 what: what.to_owned(),

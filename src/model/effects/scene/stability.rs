@@ -82,7 +82,7 @@ impl Scene<'_> {
             ));
         }
         if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(Attachment::follows) {
-            return Some("follower loads may make it flutter".into());
+            return Some("follower loads may cause flutter".into());
         }
         let shaken = self.ends.iter().find_map(|e| match &e.axial {
             Translation::Displacement(signal) if !signal.is_constant() => Some(signal),
@@ -95,7 +95,7 @@ impl Scene<'_> {
         }
         if let Some(growth) = self.pulsates() {
             return Some(format!(
-                "forces along pulsate and may make bending grow by a factor e^{}",
+                "pulsating axial forces may amplify bending by a factor e^{}",
                 significant(growth, 2)
             ));
         }
@@ -103,14 +103,14 @@ impl Scene<'_> {
             let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
             2.0 * sum * wet.area.moment_mean / self.compliances(wet)[0]
         });
-        (excess > 0.5).then(|| format!("pressure feeds {} of a bending moment back", significant(excess, 2)))
+        (excess > 0.5).then(|| format!("pressure feeds back {} of a bending moment", significant(excess, 2)))
     }
 
     /// Reason to keep bending effects under axial base motion: Mathieu's equation, with margins in amplitude, frequency
     /// and stiffness.
     fn tongue(&self, signal: &Signal) -> Option<String> {
         let Signal::Sine(sine) = signal else {
-            return Some("it is shaken along, by more than a sine".into());
+            return Some("axial shaking is not a single sine".into());
         };
         let omega = 2.0 * PI * sine.frequency_hz;
         let pull = MATHIEU_COUPLING * sine.amplitude.abs() * omega * omega / self.case.beam.length_m;
@@ -123,7 +123,7 @@ impl Scene<'_> {
                     let growth = mathieu_growth(stiffness * self.bending.powi(2), amplitude * pull, part * omega);
                     if growth > 0.0 {
                         return Some(format!(
-                            "shaking along grows bending at {growth:.1} 1/s, {amplitude} times as strong and {part} times as fast"
+                            "axial shaking at {amplitude} times its amplitude and {part} times its frequency amplifies bending at {growth:.1} 1/s"
                         ));
                     }
                 }

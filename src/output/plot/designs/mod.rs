@@ -94,7 +94,7 @@ impl Drawn {
 /// Largest number of points with text under the pointer. A text has some 300 bytes, and a page does not embed pictures that are too large.
 const SAID: usize = 1000;
 /// Largest number of curves named in the legend.
-const TOLD: usize = 8;
+const LISTED: usize = 8;
 
 impl Numbers {
     fn shown(&self, x: f64) -> f64 {
@@ -154,10 +154,10 @@ fn curves(data: &Drawn, along: &Numbers, figure: &Numbers) -> Vec<PictureSeries>
     let mut series = vec![];
     for (curve, name) in data.curves.iter().enumerate() {
         let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.2);
-        if data.curves.len() > 1 && curve <= TOLD {
-            series.push(match curve < TOLD {
+        if data.curves.len() > 1 && curve <= LISTED {
+            series.push(match curve < LISTED {
                 true => PictureSeries::line([], stroke).named(&**name),
-                false => PictureSeries::note(format!("and {} more", data.curves.len() - TOLD)),
+                false => PictureSeries::note(format!("and {} more", data.curves.len() - LISTED)),
             });
         }
         let mut own: Vec<usize> = (0..data.designs.len())

@@ -16,7 +16,7 @@ function unpackMotion(m) {
     out.ofBladder = new Float32Array(out.frames * 2 * half);
     for (let f = 0; f < out.frames; f++) for (let c = 0; c < out.cells; c++) out.ofBladder[f * 2 * half + of[c]] += out.pressure[f * out.cells + c] / number[of[c]];
     out.bladders = 2 * half;
-    // Colours tell pressures of the last cycle apart; a start that is many times wilder goes beyond the scale.
+    // The colour scale covers the pressures of the last cycle; much larger pressures at the start exceed it.
     const most = largest(out.pressure);
     const late = largest(out.pressure.subarray(out.cycle[0] * out.cells, (out.cycle.at(-1) + 1) * out.cells));
     out.pressureScale = out.whole ? robustLimit(out.pressure) : { limit: late > 0 && most > 1.6 * late ? late : most || 1, most };

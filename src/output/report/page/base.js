@@ -1,5 +1,5 @@
 "use strict";
-// What everything else stands on: the data, elements, numbers as people read them, sections.
+// Base of the page: data, elements, readable numbers, sections.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const calm = matchMedia("(prefers-reduced-motion: reduce)");

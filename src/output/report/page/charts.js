@@ -128,7 +128,7 @@ function showBars(part) {
   return { card, draw: null };
 }
 
-/** How lines go that share a colour, eight colours to each: forty are told apart. */
+/** Dash patterns of lines that share a colour: with eight colours, forty lines are distinguishable. */
 const DASHES = [null, [8, 4], [2, 3], [12, 3, 2, 3], [5, 2, 1, 2, 1, 2]];
 
 /** Histories of several runs over each other: a panel for each quantity that is chosen. */

@@ -11,18 +11,18 @@ function makeClock(times, cycle) {
     onTick(act) {
       this.listeners.push(act);
     },
-    tell() {
+    notify() {
       for (const act of this.listeners) act(this);
     },
     go(index) {
       this.index = Math.min(Math.max(Math.round(index), 0), last);
       this.time = times[this.index];
-      this.tell();
+      this.notify();
     },
     goTime(t) {
       this.time = Math.min(Math.max(t, times[0]), times[last]);
       this.index = frameAt(times, this.time);
-      this.tell();
+      this.notify();
     },
     play(on) {
       this.playing = on && last > 0;
@@ -31,13 +31,13 @@ function makeClock(times, cycle) {
         before = null;
         requestAnimationFrame(frame);
       }
-      this.tell();
+      this.notify();
     },
   };
   let before = null;
   function frame(now) {
     if (!clock.playing) return;
-    // Where less motion is wanted, four still pictures a second.
+    // With reduced motion, four still pictures per second.
     if (before !== null && calm.matches && now - before < 250) {
       requestAnimationFrame(frame);
       return;

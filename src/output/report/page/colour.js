@@ -1,4 +1,4 @@
-// Colours: blue - neutral - red for what has a sign, eight that every eye tells apart for what has a name.
+// Colours: blue - neutral - red for signed values, and eight for names, distinguishable by readers with colour blindness.
 
 const DIVERGING = {
   light: [[24, 74, 150], [120, 170, 220], [244, 242, 237], [238, 158, 128], [160, 22, 40]],
@@ -60,7 +60,7 @@ function robustLimit(values) {
   return { limit: usual > 0 && most > 1.6 * usual ? usual : most || 1, most };
 }
 
-/** A bar that tells what colours mean. */
+/** Colour bar with the values of its ends. */
 function colourBar(limit, most, unit) {
   const strip = el("i");
   const paint = () => (strip.style.background = divergingGradient());

@@ -1,23 +1,23 @@
-// What each kind of result shows between its title and its case.
+// Content of the page for each kind of result, between title and case.
 
 /** The cell of the section under its loads. */
 function showCell() {
   if (!data.cell?.length) return;
-  const body = section("cell", "The section under its loads", "One pitch of the beam from the side, as its coefficients are computed: at rest in grey, deformed in colour. Displacements are linear in the loads; a load as many times as large as the factor gives what is drawn.");
+  const body = section("cell", "The section under its loads", "One pitch of the beam from the side, as its coefficients are computed: at rest in grey, deformed in colour. Displacements are linear in the loads and are drawn magnified by the factor given.");
   body.append(el("div", { class: "grid4" }, ...data.cell.map(pictureCard)));
 }
 
-/** What uncertain numbers leave open of the figures. */
+/** Uncertainty of the figures from uncertain numbers. */
 function showUncertainty() {
   const part = data.uncertainty;
   if (!part) return;
-  const body = section("uncertainty", "How sure the figures are", part.about);
+  const body = section("uncertainty", "Uncertainty of the figures", part.about);
   for (const note of part.notes) body.append(el("p", { class: "answer", text: note }));
   for (const table of part.tables) body.append(tableCard(table));
 }
 
-/** The drawing with its words; `tell` gives the words of a bladder. */
-function showScene(tell) {
+/** The drawing with its texts; `describe` returns the text of a bladder. */
+function showScene(describe) {
   const scene = data.scene;
   if (!scene) return null;
   const half = scene.bladders?.per_row;
@@ -31,7 +31,7 @@ function showScene(tell) {
   const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Squares"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
   const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
   body.append(card);
-  const drawn = drawScene(scene, host, readout, tell || ((b, layout) => bladderWords(b, layout, scene)), scale);
+  const drawn = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
   const paint = () => legend.replaceChildren(...sceneWords(scene, drawn.layout).map(([mark, strong, text]) => el("li", {}, mark, el("span", {}, el("b", { text: strong }), ` ${text}`))));
   redrawn(paint);
   paint();
@@ -74,7 +74,7 @@ function sceneWords(scene, layout) {
   const shake = swatch(arrow(3, 7, 23, 7, css("--accent"), true));
   scene.ends.forEach((end, k) => {
     const which = k === 0 ? "Root" : "Tip";
-    const forms = { clamped: "clamped", pinned: "pinned, free to turn", free: "free", guided: "guided: its slope is held", conditions: "held as the case says" };
+    const forms = { clamped: "clamped", pinned: "pinned, free to turn", free: "free", guided: "guided: its slope is held", conditions: "held as given in the case" };
     out.push([wall.cloneNode(true), which, forms[end.form] || end.form]);
     for (const [key, words] of [["across", "moved across"], ["along", "moved along the beam"], ["slope", "turned"]]) if (end.moves[key]) out.push([shake.cloneNode(true), which, `${words}: ${end.moves[key]}`]);
     for (const [key, words] of [["across", "force across"], ["along", "force along"]]) if (end.force[key]) out.push([push.cloneNode(true), which, `${words}: ${end.force[key].words}`]);
@@ -94,7 +94,7 @@ function showRun() {
   if (motion && scene) {
     clock = makeClock(motion.times, motion.frequency_hz ? 1 / motion.frequency_hz : null);
   }
-  const tell = (b, layout) => {
+  const describe = (b, layout) => {
     let text = bladderWords(b, layout, scene);
     if (motion?.ofBladder) {
       const own = Array.from({ length: motion.frames }, (_, f) => motion.ofBladder[f * motion.bladders + b.index]);
@@ -104,14 +104,14 @@ function showRun() {
     }
     return text;
   };
-  const drawn = showScene(tell);
+  const drawn = showScene(describe);
   if (clock) {
     const body = section("motion", "How it moves", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
     const notes = [];
     if (motion.frames < motion.recorded) notes.push(`${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.`);
     if (motion.nodes < motion.nodes_recorded) notes.push(`Of ${count(motion.nodes_recorded)} nodes ${count(motion.nodes)} are shown.`);
     const inCycle = motion.frequency_hz ? (motion.frames - 1) / (motion.times.at(-1) - motion.times[0]) / motion.frequency_hz : Infinity;
-    if (inCycle < 12) notes.push(`A cycle of the drive holds about ${shortest(Math.round(inCycle * 10) / 10)} of the instants shown; what happens between them is not seen.`);
+    if (inCycle < 12) notes.push(`A cycle of the drive holds about ${shortest(Math.round(inCycle * 10) / 10)} of the instants shown; motion between them is not visible.`);
     const host = el("div", { class: "figure" });
     body.append(host);
     showAnimation(host, scene, motion, clock);
@@ -135,22 +135,22 @@ function showRun() {
   }
   const within = document.getElementById("motion") || document.getElementById("main");
   if (history) {
-    const part = section("histories", "Over time", "Every quantity that was recorded, at every output time.", within);
+    const part = section("histories", "Over time", "Every recorded quantity at every output time.", within);
     showHistories(part, history, clock);
   }
   if (data.ledger) {
-    const part = section("energy", "Where the energy went", "Energy is neither made nor lost by the equations, so the books must close.", within);
+    const part = section("energy", "Where the energy went", "The equations conserve energy, so the balance must close.", within);
     showLedger(part, data.ledger, history, clock);
   }
   for (const part of data.sections || []) {
     const body = section("cycle", part.title, null);
     body.append(el("p", { class: "answer", text: part.text }), tableCard(part.table));
   }
-  if (clock) clock.go(telling(motion, scene));
+  if (clock) clock.go(firstInstant(motion, scene));
 }
 
-/** The instant to begin with: of the last cycle, or the whole, that in which most is to be seen. */
-function telling(motion, scene) {
+/** The instant shown first: that of the largest values in the last cycle, or in the whole run. */
+function firstInstant(motion, scene) {
   const wet = motion.ofBladder && !motion.whole;
   const n = wet ? motion.bladders : motion.nodes;
   const values = wet ? motion.ofBladder : (largest(motion.u1) > 1e-9 * scene.length ? motion.u1 : motion.u3);

@@ -33,7 +33,7 @@ function chart(width, height, x, y, label) {
   const [fy, uy] = scaledUnit(Math.max(Math.abs(y.low), Math.abs(y.high)), y.unit);
   const marks = (a, factor, count) => {
     if (a.marks) return a.marks;
-    // one mark tells no size
+    // a single mark shows no scale
     let all = [];
     for (let more = 0; all.length < 2 && more < 8; more++) all = ticks(a.low, a.high, Math.max(2, count) + more);
     return tickTexts(all, factor).map((text, k) => [all[k], text]);
@@ -56,7 +56,7 @@ function chart(width, height, x, y, label) {
   return { node, area, px, py };
 }
 
-/** Outline through points; breaks where a value is no number or `gap(k)` says so. */
+/** Outline through points; breaks where a value is not a number or `gap(k)` is true. */
 function linePath(count, at, gap) {
   let text = "";
   let pen = false;

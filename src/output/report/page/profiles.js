@@ -26,7 +26,7 @@ function showProfiles(host, motion, clock, scene) {
     const slot = el("div");
     const part = curve.values.subarray(cycle[0] * curve.width, (cycle.at(-1) + 1) * curve.width);
     const [inside, all] = [extent(part), extent(curve.values)];
-    // What goes before may be many times larger; then the picture is about the last cycle alone.
+    // Earlier values may be many times larger; then the picture covers only the last cycle.
     const wide = all[1] - all[0] > 2 * (inside[1] - inside[0]);
     curve.range = wide ? inside : all;
     const beyond = wide ? " At other times it may leave the picture." : "";

@@ -1,6 +1,6 @@
-// What was simulated: the beam from the side, to scale.
+// Side view of the simulated beam, to scale.
 
-function drawScene(scene, host, readout, tell, scale) {
+function drawScene(scene, host, readout, describe, scale) {
   const layout = layOut(scene);
   const frame = el("div");
   host.append(frame);
@@ -40,7 +40,7 @@ function drawScene(scene, host, readout, tell, scale) {
     const old = frame.querySelector(".chosen");
     if (old) old.remove();
     frame.firstChild.mark(b);
-    readout.textContent = tell(layout.bladders[b], layout);
+    readout.textContent = describe(layout.bladders[b], layout);
     readout.classList.remove("dim");
   };
   redrawn(paint);
@@ -55,7 +55,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   const small = width < 560;
   const side = small ? 34 : 64;
   const scale = (width - 2 * side) / scene.length;
-  // A beam too thin to be seen is drawn thicker, and the caption says so.
+  // A beam too thin to be visible is drawn thicker, with a note in the caption.
   const thick = Math.max(scene.height * scale, 16);
   const thicker = thick / (scene.height * scale);
   const above = (across ? 64 : 14) + others * 26 + (layout.marks.some((m) => m.kind !== "sealed" && m.row > 0) ? 30 : 10);

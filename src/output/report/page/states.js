@@ -149,7 +149,7 @@ function showModes() {
       const size = Math.max(largest(part(a1, n)), largest(part(a3, n)), 1e-300);
       const factor = (0.11 * scene.length) / size;
       const oscillates = Boolean(modes[k].frequency_hz);
-      // What decays without swinging is drawn swinging too: its shape is what is to be seen.
+      // Modes that decay without oscillation are also drawn oscillating, to show their shape.
       const at = (a, f, i) => a[i] * Math.cos(2 * Math.PI * phase + (oscillates ? f[i] : Math.cos(f[i]) < 0 ? Math.PI : 0));
       const [u1, u3] = [new Float64Array(n), new Float64Array(n)];
       for (let i = 0; i < n; i++) {

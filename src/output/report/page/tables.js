@@ -15,10 +15,10 @@ function sortable(headings, rows, options = {}) {
   const blocks = headings.length <= MOST_OF_A_BLOCK && headings.some((_, k) => k > 0 && !numeric[k] && rows.some((r) => typeof r[k] === "string" && r[k] !== ""));
   const long = headings.map((h, k) => !numeric[k] && rows.some((r) => String(r[k] ?? "").length > 16));
   const role = (name) => (blocks ? name : null);
-  const told = (heading) => (heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "));
+  const title = (heading) => (heading.startsWith("/") ? heading : heading.replace(/ \[1\]$/, "").replace(/_/g, " "));
   const body = el("tbody", { role: role("rowgroup") });
   const cell = (x, k) => {
-    const of = { role: role(k === 0 ? "rowheader" : "cell"), "data-of": blocks && (k > 0 || numeric[0]) ? told(headings[k]) : null, class: [numeric[k] ? "n" : wordy[k] ? "why" : null, long[k] ? "long" : null, shown(x, k) === "–" ? "none" : null].filter(Boolean).join(" ") || null };
+    const of = { role: role(k === 0 ? "rowheader" : "cell"), "data-of": blocks && (k > 0 || numeric[0]) ? title(headings[k]) : null, class: [numeric[k] ? "n" : wordy[k] ? "why" : null, long[k] ? "long" : null, shown(x, k) === "–" ? "none" : null].filter(Boolean).join(" ") || null };
     if (k === 0 && options.leads) return el("td", { ...of, class: "n" }, lead(shown(x, k), options.leads[x]));
     return kinds.has(x) ? el("td", of, el("span", { class: `pill ${x}`, text: x })) : el("td", { ...of, text: shown(x, k) });
   };
@@ -26,7 +26,7 @@ function sortable(headings, rows, options = {}) {
   const fill = (list) => body.replaceChildren(...list.map((r) => el("tr", { role: role("row"), class: options.dim?.(r) ? "off" : null, id: options.leads ? `design-${r[0]}` : null }, r.map(cell))));
   const cells = headings.map((heading, k) => {
     const cell = el("th", { role: role("columnheader"), scope: "col", class: numeric[k] ? "n" : null, "aria-sort": "none" });
-    cell.append(el("button", { type: "button", text: told(heading), on: { click: () => sort(k) } }));
+    cell.append(el("button", { type: "button", text: title(heading), on: { click: () => sort(k) } }));
     return cell;
   });
   const sort = (k) => {
@@ -47,7 +47,7 @@ function sortable(headings, rows, options = {}) {
   return sideways(el("div", { class: blocks ? "scroll blocks" : "scroll", tabindex: "0", role: "region", "aria-label": options.label || "Table", "data-keys": "" }, table), "More columns stand to the right: scroll the table sideways.");
 }
 
-/** What scrolls sideways, below words that say so while there is more of it than is seen. */
+/** Content that scrolls sideways, with a note above while part of it is hidden. */
 function sideways(scroller, words) {
   const hint = el("p", { class: "hint", text: words, hidden: true });
   new ResizeObserver(() => (hint.hidden = scroller.scrollWidth <= scroller.clientWidth + 1)).observe(scroller);

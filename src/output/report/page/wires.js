@@ -1,6 +1,6 @@
 // The wiring in coordinates of the beam: `a` along it [m], `e` across it from its middle [m]. Drawing and animation share it.
 
-/** Where bladders are, and tubes, ports and turbines as lines between them. */
+/** Positions of bladders, with tubes, ports and turbines as lines between them. */
 function layOut(scene) {
   const out = { bladders: [], wires: [], marks: [] };
   if (!scene.bladders) return out;

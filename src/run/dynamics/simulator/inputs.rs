@@ -65,30 +65,28 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
             let meant = meant.map_or_else(String::new, |near| format!("; nearest is {near}"));
             let known: Vec<&str> = known.collect();
             return Err(usage(format!(
-                "no signal stands there{meant}; signals are {}",
+                "the case has no such signal{meant}; its signals are {}",
                 known.join(", ")
             )));
         };
         if !jumps {
             return Err(usage(
-                "it moves something, which must not jump; give a force, pressure, flow or opening".into(),
+                "it prescribes a motion, which must not jump; use a force, pressure, flow or opening".into(),
             ));
         }
         if held.iter().any(|one| one.input.pointer == *pointer) {
-            return Err(usage("it is there twice".into()));
+            return Err(usage("it is given twice".into()));
         }
         let ([low, high], value) = (input.range, signal.value(0.0));
         let range = format!("its range, {low} to {high}, must");
         if !(low.is_finite() && high.is_finite()) {
-            return Err(usage(format!("{range} be of finite numbers")));
+            return Err(usage(format!("{range} consist of finite numbers")));
         }
         if low >= high {
-            return Err(usage(format!("{range} lead from a number to a larger one")));
+            return Err(usage(format!("{range} increase")));
         }
         if !(low..=high).contains(&value) {
-            return Err(usage(format!(
-                "{range} hold the value with which the case begins, {value}"
-            )));
+            return Err(usage(format!("{range} contain the initial value of the case, {value}")));
         }
         // spans its range within the run, and differs from all other signals
         let end = case.time.end_s;
@@ -131,7 +129,7 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
 /// Converts an error about values of a substituted signal to one about the range of its input, which the user gave.
 fn of_range(error: Error, held: &[Held]) -> Error {
     let Error::Case(fault) = &error else { return error };
-    let told = fault.violations.iter().find_map(|violation| {
+    let text = fault.violations.iter().find_map(|violation| {
         let input = held.iter().map(|one| &one.input);
         let mut own = input.filter(|input| violation.pointer.starts_with(&input.pointer));
         own.next().map(|input| {
@@ -139,10 +137,13 @@ fn of_range(error: Error, held: &[Held]) -> Error {
             let allowed = violation.allowed.as_ref();
             let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed is {allowed}"));
             let what = format!("{}{allowed}", violation.what);
-            format!("input {}: its range, {low} to {high}, cannot be: {what}", input.pointer)
+            format!(
+                "input {}: its range, {low} to {high}, is not allowed: {what}",
+                input.pointer
+            )
         })
     });
-    told.map_or(error, Error::Usage)
+    text.map_or(error, Error::Usage)
 }
 
 /// Options of the one-step method that the case requests, else of ESDIRK46, which needs no history.
@@ -154,7 +155,9 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
     match Options::new(&case, system, &method::choose(&case, system), max_step) {
         Options::OneStep(options) => Ok(options),
         Options::Ida(_) => Err(Error::Usage(
-            "a simulator starts afresh at every change of its inputs, for which IDA is slow: give /solver/method esdirk46, or auto".into(),
+            "a simulator restarts its integrator at every change of its inputs, for which IDA is slow: set \
+             /solver/method to esdirk46 or auto"
+                .into(),
         )),
     }
 }
@@ -163,7 +166,7 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
 pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
     if values.len() != held.len() {
         return Err(Error::Usage(format!(
-            "{} for {}: one each is wanted, in their order",
+            "{} for {}: give one value for each input, in the order of the inputs",
             counted(values.len() as u64, "value"),
             counted(held.len() as u64, "input")
         )));
@@ -172,7 +175,7 @@ pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
         let [low, high] = input.range;
         if !(low..=high).contains(value) {
             return Err(Error::Usage(format!(
-                "{}: {value} lies outside of its range, {low} to {high}",
+                "{}: {value} is outside its range, {low} to {high}",
                 input.pointer
             )));
         }

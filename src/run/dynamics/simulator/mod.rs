@@ -179,7 +179,7 @@ impl Simulator {
         let (t, mut clock) = (self.time(), Instant::now());
         if !(until > t && until <= self.end * (1.0 + 1e-12)) {
             return Err(Error::Usage(format!(
-                "a step from t = {t} s to {until} s: it must lead on, and not beyond /time/end_s, which is {} s",
+                "a step from t = {t} s to {until} s: its end must be later than its start, and at most /time/end_s, {} s",
                 self.end
             )));
         }

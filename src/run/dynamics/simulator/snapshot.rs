@@ -44,10 +44,10 @@ impl Snapshot {
     /// # Errors
     /// [`Error::Usage`] if the text was changed, truncated, or is not a state.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self> {
-        let wrong = |why: &str| Error::Usage(format!("no state of a simulator: {why}"));
-        let (sum, json) = bytes.split_at_checked(8).ok_or_else(|| wrong("it is cut short"))?;
+        let wrong = |why: &str| Error::Usage(format!("not a state of a simulator: {why}"));
+        let (sum, json) = bytes.split_at_checked(8).ok_or_else(|| wrong("it is truncated"))?;
         if sum != format!("{:08x}", crc32fast::hash(json)).as_bytes() {
-            return Err(wrong("it is changed or cut short: its checksum differs"));
+            return Err(wrong("it is changed or truncated: its checksum differs"));
         }
         serde_json::from_slice(json).map_err(|error| wrong(&error.to_string()))
     }

@@ -93,7 +93,7 @@ pub(super) fn left<'a>(
 
 /// Ending of a warning if the loads explain too little of the pressures.
 const NO_NUMBERS: &str =
-    "; the numbers are no answer: other loads act, the units or signs of the pressures are others, or the case is";
+    ". Do not use these loads: other loads act, or the units or signs of the pressures, or the case, are wrong";
 
 /// Warnings that put the result in doubt: a misfit beyond known noise, with the worst bladder; a misfit so far below it that the given
 /// noise seems wrong; unexplained pressures taken for noise; implausibly large loads.
@@ -117,21 +117,28 @@ pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &
             .map(|(count, sum)| (sum / f64::from((*count).max(1))).sqrt());
         let worst = means.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or_default();
         all.push(format!(
-            "the pressures do not fit {}: what is left of them is {} times their noise, root mean square over {:.0} {}, {} % of what was measured; \
-             furthest off is bladder {}, by {} times its noise; bands are widened by as much{}",
+            "the pressures do not fit {}: the residual is {} times their noise (root mean square over {:.0} {}), or \
+             {} % of the measured pressures. The largest residual is at bladder {}, with {} times its noise. Bands \
+             are widened {} times{}",
             names(found),
             three(factor),
             estimate.misfit.judged()[1],
-            if estimate.misfit.by_discrepancy { "pressures" } else { "degrees of freedom" },
+            if estimate.misfit.by_discrepancy {
+                "pressures"
+            } else {
+                "degrees of freedom"
+            },
             three(100.0 * share),
             bladder_label(worst.0, bladders / 2),
             three(worst.1),
+            three(factor),
             if share > NO_ANSWER { NO_NUMBERS } else { "" }
         ));
     }
     if from == NoiseFrom::Estimated && share > MUCH {
         all.push(format!(
-            "{} % of the pressures are not explained by {}, and taken for noise since --noise is not given: bands hold only if so much of them is noise{}",
+            "{} % of the pressures are not explained by {}, and count as noise because --noise is not given. Bands \
+             are valid only if the noise is that large{}",
             three(100.0 * share),
             names(found),
             if share > NO_ANSWER { NO_NUMBERS } else { "" }
@@ -139,15 +146,16 @@ pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &
     }
     if let (NoiseFrom::Given | NoiseFrom::Table, Some(share)) = (from, estimate.misfit.below_chance()) {
         all.push(format!(
-            "the pressures lie {} times as close to {} as the noise that was given: bands are as wide as that noise makes them; look at its unit, which is \
-             the pascal for --noise and that of its heading for a column, or leave it out",
+            "the residual of the pressures is {} times smaller than the given noise, with {}. Bands follow the given \
+             noise. Check its unit (pascal for --noise, the unit of the heading for a column), or omit it",
             three(1.0 / share),
             names(found)
         ));
     }
     if times > NO_LOAD {
         all.push(format!(
-            "the loads are {} times what bends the beam by about its length: look at the units of the pressures, and at the case",
+            "the loads are {} times those that bend the beam by about its length. Check the units of the pressures \
+             and the case",
             three(times)
         ));
     }

@@ -24,7 +24,8 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
         let value = plain.figure(&limit.figure)?;
         (limit.beyond(value) > REACHED * limit.bound.abs()).then(|| {
             Code::Optimum.warning(format!(
-                "`slcbeam {}` gives {} {} at the best, which does not hold {} {}: a smaller /solver/rtol, or a stricter limit, helps",
+                "`slcbeam {}` gives {} = {} at the optimum, which violates the limit {} {}. Use a smaller \
+                 /solver/rtol or a stricter limit",
                 problem.what.word(),
                 limit.figure,
                 six(value),
@@ -40,10 +41,10 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
 pub(super) fn ended(ended: Ended, stopped: bool) -> &'static str {
     match ended {
         _ if stopped => "it was interrupted",
-        Ended::Found => "slopes lead nowhere better",
-        Ended::Stuck => "no step is better, though slopes say so",
-        Ended::Apart => "no step comes nearer to the limits",
-        Ended::Unfinished => "its steps ran out",
+        Ended::Found => "converged: derivatives predict no improvement",
+        Ended::Stuck => "no step improves the figure, although derivatives predict it",
+        Ended::Apart => "no step reduces the violation of the limits",
+        Ended::Unfinished => "it reached its limit of steps",
     }
 }
 
@@ -53,51 +54,55 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
     let mut say = |what: String| all.push(Code::Optimum.warning(what));
     let beyond: Vec<&Held> = found.limits.iter().filter(|held| held.beyond()).collect();
     match ended {
-        _ if stopped => say("interrupted; the best is that so far".into()),
+        _ if stopped => say("interrupted. The reported design is the best so far".into()),
         _ if !beyond.is_empty() => {
             let names: Vec<String> = beyond
                 .iter()
                 .map(|held| format!("{} {} {}", held.limit.figure, held.limit.sign(), held.limit.bound))
                 .collect();
             say(format!(
-                "no design was found that holds {}: what is told comes nearest",
+                "no design satisfies {}. The reported design violates the limits least",
                 names.join(" and ")
             ));
         }
         Ended::Found | Ended::Apart => {}
-        Ended::Unfinished => say("the search ran out of steps; the best is where it stood".into()),
+        Ended::Unfinished => say(
+            "the search reached its limit of steps before it converged. The reported design is that of the last step. \
+             Continue from it (--set)"
+                .into(),
+        ),
         Ended::Stuck if !found.failed.is_empty() => say(format!(
-            "the search ended where no step makes the figure better, though its derivatives say so, and {} of {} could not be computed: the best \
-             lies at the edge of what can, or the figure has a kink or ripples there; bounds that leave out what fails, or other starts (--starts), tell which",
+            "the search ended early: no step improves the figure, although its derivatives predict an improvement, \
+             and {} of {} could not be computed. The optimum lies at the edge of the computable designs, or the \
+             figure has a kink or ripples there. Use bounds that exclude failed designs, or other starts (--starts)",
             found.failed.values().sum::<usize>(),
             counted(found.evaluations as u64, "design")
         )),
         Ended::Stuck => say(
-            "the search ended where no step makes the figure better, though its derivatives say so: the simulator's own error is larger \
-             than what is left, or the figure has a kink or ripples there; a smaller /solver/rtol may help, or other starts (--starts)"
+            "the search ended early: no step improves the figure, although its derivatives predict an improvement. \
+             The numerical error exceeds the remaining improvement, or the figure has a kink or ripples there. Use a \
+             smaller /solver/rtol, or other starts (--starts)"
                 .into(),
         ),
     }
     if found.derivatives == Derivatives::Differences {
         let why = match &problem.differences {
             Some(why) => why.clone(),
-            None => {
-                "a figure has no exact ones, or none where a number stands at the end of what its key can be".into()
-            }
+            None => "a figure has no exact derivatives, or a number lies at the limit of its admissible range".into(),
         };
-        say(format!("derivatives are differences of designs: {why}"));
+        say(format!("derivatives are finite differences between designs: {why}"));
     }
     match found.plain {
         Some(plain) if (plain - found.value).abs() > SAME * found.value.abs() => say(format!(
-            "`slcbeam {}` gives {} {} at the best, where the search saw {}: steps of the one or effects of the other are too \
-             coarse to tell them apart; a smaller /solver/rtol may help",
+            "`slcbeam {}` gives {} = {} at the optimum, but the search computed {}. Their time steps or effects \
+             differ. Use a smaller /solver/rtol",
             problem.what.word(),
             found.goal.figure,
             six(plain),
             six(found.value)
         )),
         None if !stopped => say(format!(
-            "`slcbeam {}` does not come to an end at the best",
+            "`slcbeam {}` does not finish at the optimum",
             problem.what.word()
         )),
         _ => {}
@@ -133,8 +138,8 @@ pub(super) fn flat(problem: &Problem, found: &Optimum, history: &[Design]) -> Op
     let flat = high - low <= error && problem.spans.iter().enumerate().any(covers);
     flat.then(|| {
         Code::Optimum.warning(format!(
-            "{} does not depend on the numbers that were sought, within its error: over {} it differs by {:.1e}, and its error is {error:.1e}. The best is one of \
-             many; seek another figure or other numbers",
+            "{} does not depend on the optimized numbers within its error: over {} it varies by {:.1e} (error \
+             {error:.1e}). The optimum is one of many. Optimize another figure or other numbers",
             found.goal.figure,
             counted(finished().count() as u64, "design"),
             high - low,

@@ -24,7 +24,7 @@ impl Parser<'_> {
         }
         let fault = self.fault(
             start..self.at,
-            "a text without its closing quote: what ends it begins another",
+            "a text without its closing quote: the quote that ends it begins another text",
         );
         let end = text.find([':', ',', '}', ']']).unwrap_or(text.len());
         let hint = format!("write {}\"", short(text[..end].trim_end()));
@@ -42,7 +42,7 @@ impl Parser<'_> {
             Some(quote) => format!("it ends with {quote}; write a straight double quote in its place"),
             None => "end it with a double quote".to_owned(),
         };
-        let fault = self.fault(start..start + line, "text that is not closed in its line");
+        let fault = self.fault(start..start + line, "text without a closing quote in its line");
         self.fail(fault.hint(hint))
     }
 
@@ -65,10 +65,10 @@ impl Parser<'_> {
                 fault.hint("JSON has no comments; write a member whose key begins with //, such as \"// why\": \"...\"")
             }
             Some(b'\'') => fault.hint("text needs double quotes"),
-            Some(b';') => fault.hint("members and entries have `,` between them"),
+            Some(b';') => fault.hint("separate members and entries by `,`"),
             Some(b) if b.is_ascii_digit() && self.is_behind_decimal_comma() => {
                 let hint = misread::loosely(self.around());
-                fault.hint(hint.unwrap_or_else(|| "decimals stand behind a point".into()))
+                fault.hint(hint.unwrap_or_else(|| "write decimals with a point".into()))
             }
             _ => fault,
         };
