@@ -10,8 +10,8 @@ use slcbeam::dae::BeamDae;
 use slcbeam::discrete::residual::{self, fluid::bridge_drops};
 use slcbeam::discrete::{System, TimeData, Workspace};
 use slcbeam::functions;
-use slcbeam::model::network::CheckValve;
-use slcbeam::model::{AreaLaw, Coupling, Model, audit, bladder, duct, slowest};
+use slcbeam::model::network::CheckValveLaw;
+use slcbeam::model::{AreaLaw, CouplingLaw, Model, audit, bladder, duct, slowest};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
@@ -413,7 +413,7 @@ fn reciprocal_strains_and_areas_share_one_potential() {
             );
         }
     }
-    let published = Coupling::new(&load("wiring-2", &[]), load("wiring-2", &[]).bladders.as_ref().unwrap());
+    let published = CouplingLaw::new(&load("wiring-2", &[]), load("wiring-2", &[]).bladders.as_ref().unwrap());
     // (A.24), (A.26): 100 bladders a metre, 2 MPa.
     close(published.stretch(&law, 0.0, 3e3, 1e3), 100.0 * 0.01 * 4e3 / 2e6, 1e-15);
     close(
@@ -476,7 +476,7 @@ fn a_valve_is_in_series_with_its_half_cells() {
 }
 
 /// A valve with numbers of all sizes.
-const VALVE: CheckValve = CheckValve {
+const VALVE: CheckValveLaw = CheckValveLaw {
     cracking_pressure: 20.0,
     forward: 1e-9,
     reverse: 1e-13,

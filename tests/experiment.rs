@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use slcbeam::case::{self, Case};
-use slcbeam::run::equilibrium::{self, Options};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
 use slcbeam::run::record::Control;
 use slcbeam_section::cell::Cell;
 use slcbeam_section::coefficients::{Numbers, Options as Meshes};
@@ -285,7 +285,7 @@ fn the_case_has_the_numbers_of_its_section() {
 #[test]
 fn the_beam_bends_by_what_its_section_says() {
     let case = case();
-    let path = equilibrium::follow(&case, &Options::at(2.4), &mut |_| Control::Continue).unwrap();
+    let path = equilibrium::follow(&case, &EquilibriumOptions::at(2.4), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let columns = equilibrium::columns(&equilibrium::system(&case, 2.4).unwrap());
     let tip = |name: &str| path.last().row[columns.iter().position(|c| c.name == name).unwrap()];

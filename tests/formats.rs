@@ -12,10 +12,10 @@ use serde_json::Value;
 use slcbeam::case::{self, parameter::Parameter};
 use slcbeam::discrete::System;
 use slcbeam::output::folder::{CHECKPOINT, SUMMARY};
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder};
-use slcbeam::results::verify::Row;
-use slcbeam::results::{self, Kept, Provenance, run::Summary};
+use slcbeam::results::verify::VerifiedRow;
+use slcbeam::results::{self, Provenance, ResultFile, run::Summary};
 use slcbeam::run::{dynamics, record::Control, summary::Status};
 
 /// A wet beam, derivatives, a probe and step responses, a history with an envelope, checkpoints.
@@ -82,7 +82,7 @@ fn what_is_written_has_the_shape_of_its_format() {
         true => Control::Stop("enough".into()),
         false => Control::Continue,
     };
-    let folder = ResultFolder::claim(dir.path(), Kind::Run, false).expect("claimed");
+    let folder = ResultFolder::claim(dir.path(), FolderKind::Run, false).expect("claimed");
     let mut recorder = FolderRecorder::new(folder, labels, Box::new(hook));
     let outcome =
         dynamics::run_with(&case, System::new(&case).expect("a system"), &[by], &mut recorder).expect("a run");
@@ -136,8 +136,8 @@ fn what_is_missing_is_told_with_its_place() {
             r#"{{{more} "name": "n", "source": "s", "goal": "g", "tolerance_reason": "r", "passed": true, "figures": [{figure}]}}"#
         )
     };
-    let why = |text: String| results::read::<Row>(&text).expect_err("a fault").to_string();
-    let found = results::read::<Row>(&row("", figure)).expect("read");
+    let why = |text: String| results::read::<VerifiedRow>(&text).expect_err("a fault").to_string();
+    let found = results::read::<VerifiedRow>(&row("", figure)).expect("read");
     assert!(found.head.format.is_none() && found.head.words().contains("no format number"));
     assert!(found.result.figures.expect("figures")[0].exact.is_nan());
     let missing = why(row(r#""format": 1,"#, &figure.replace(r#""exact": null, "#, "")));
@@ -155,9 +155,9 @@ fn what_is_missing_is_told_with_its_place() {
 /// Goal: what is written is read back, and says what made it.
 #[test]
 fn what_is_written_says_what_made_it() {
-    let row = Row::default();
-    let found = results::read::<Row>(&results::text(&row)).expect("read");
-    assert_eq!((found.result, found.head.format), (row, Some(Row::FORMAT)));
+    let row = VerifiedRow::default();
+    let found = results::read::<VerifiedRow>(&results::text(&row)).expect("read");
+    assert_eq!((found.result, found.head.format), (row, Some(VerifiedRow::FORMAT)));
     assert_eq!(found.head.provenance, Some(Provenance::of(None)));
     assert!(found.head.words().contains("SUNDIALS 6."), "{}", found.head.words());
 }

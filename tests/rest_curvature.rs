@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use slcbeam::case;
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::Control;
 
 /// A strip 0.1 m long whose loads are these, with changes.
@@ -44,7 +44,7 @@ fn curved(signal: Value, profile: Value) -> Value {
 
 fn at_rest(case: Value) -> impl Fn(&str) -> f64 {
     let case = parse(&case);
-    let path = follow(&case, &Options::at(0.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(&case, &EquilibriumOptions::at(0.0), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let names = columns(&system(&case, 0.0).unwrap());
     let row = path.last().row.clone();

@@ -9,7 +9,7 @@ use slcbeam::case::parameter::Parameter;
 use slcbeam::discrete::System;
 use slcbeam::error::{Error, Result, SolverError};
 use slcbeam::output::folder::ResultFolder;
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::recorder::{FolderRecorder, Labels};
 use slcbeam::output::{report, summary};
 use slcbeam::run::dynamics::Outcome;
@@ -320,7 +320,7 @@ impl Recorded {
 
 impl Recorded {
     fn write(&self, dir: PathBuf, force: bool, arrays: &Given<'_>) -> PyResult<Result<()>> {
-        let folder = match ResultFolder::claim(&dir, Kind::Run, force) {
+        let folder = match ResultFolder::claim(&dir, FolderKind::Run, force) {
             Ok(folder) => folder,
             Err(error) => return Ok(Err(error)),
         };
@@ -340,7 +340,7 @@ impl Recorded {
 /// Asks whether a result may come into a folder, before hours are spent on it; what is there stays as it is.
 #[pyfunction]
 pub fn claimable(py: Python<'_>, dir: PathBuf) -> PyResult<()> {
-    ResultFolder::claim(&dir, Kind::Run, false)
+    ResultFolder::claim(&dir, FolderKind::Run, false)
         .map(drop)
         .map_err(|error| raised(py, &error))
 }

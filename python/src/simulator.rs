@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use slcbeam::run::dynamics::simulator::{self, Input, Snapshot};
+use slcbeam::run::dynamics::simulator::{self, SimulatorInput, Snapshot};
 use slcbeam::run::record::{Control, Progress};
 
 use crate::case::Case;
@@ -36,9 +36,9 @@ impl Simulator {
 impl Simulator {
     #[new]
     fn new(py: Python<'_>, case: &Case, inputs: Vec<(String, f64, f64)>) -> PyResult<Self> {
-        let inputs: Vec<Input> = inputs
+        let inputs: Vec<SimulatorInput> = inputs
             .into_iter()
-            .map(|(pointer, low, high)| Input {
+            .map(|(pointer, low, high)| SimulatorInput {
                 pointer,
                 range: [low, high],
             })

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::locate::{Node, Place, tokens};
+use super::locate::{JsonNode, JsonPlace, tokens};
 use crate::error::{CaseError, Code, Error, Violation};
 
 /// Part of a member at which a fault is shown.
@@ -147,7 +147,7 @@ impl Violations {
     }
 
     /// Returns all faults with their places, in the order of the text. Of very many, returns the first ones and the number of the others.
-    pub fn placed(self, source: &Source) -> Vec<Violation> {
+    pub fn placed(self, source: &CaseSource) -> Vec<Violation> {
         let more = self.more;
         let slipped = self.slipped;
         let follows = |fault: &Violation, mark: Mark| mark == Mark::Value && slipped.contains(&fault.pointer);
@@ -195,30 +195,30 @@ pub struct SetValue {
     /// Byte offset of the JSON text in the argument.
     pub json_at: usize,
     /// The value with places in the JSON text; none if the argument removes the member.
-    pub node: Option<Node>,
+    pub node: Option<JsonNode>,
 }
 
 /// Places where the parts of a case were written: in the file or on the command line. They are not part of the case: two cases with the
 /// same numbers are equal wherever they were written.
 #[derive(Clone, Debug, Default)]
-pub struct Source {
+pub struct CaseSource {
     /// Path of the text.
     pub path: PathBuf,
     /// The text.
     pub text: String,
     /// The parsed text with places.
-    pub file: Option<Node>,
+    pub file: Option<JsonNode>,
     /// The `--set` arguments in order.
     pub sets: Vec<SetValue>,
 }
 
-impl PartialEq for Source {
+impl PartialEq for CaseSource {
     fn eq(&self, _: &Self) -> bool {
         true
     }
 }
 
-impl Source {
+impl CaseSource {
     /// Creates a source from an unparsed text.
     pub fn of(path: &Path, text: &str) -> Self {
         Self {
@@ -268,7 +268,7 @@ impl Source {
         if fault.span.is_some() {
             return fault;
         }
-        let span_of = |place: Place| match (mark, place.key) {
+        let span_of = |place: JsonPlace| match (mark, place.key) {
             (Mark::Key, Some(key)) => key,
             // An object or array is shown by its opening bracket only.
             (Mark::Key, None) => place.value.start..place.value.start + 1,

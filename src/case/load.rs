@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::faults::{SetValue, Source, Violations, sort};
+use super::faults::{CaseSource, SetValue, Violations, sort};
 use super::origins::Origins;
 use super::presets::Preset;
 use super::scaling::{Given, LAWS, Sizes, may_change_sizes};
@@ -64,7 +64,7 @@ pub fn text(path: &Path) -> Result<String> {
     let Some(bytes) = bytes else {
         let what = "the case is larger than 64 MB";
         let fault = Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB");
-        return Err(Source::of(path, "").error(vec![fault]));
+        return Err(CaseSource::of(path, "").error(vec![fault]));
     };
     String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
@@ -99,7 +99,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
 /// # Errors
 /// As [`load`].
 pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varied: &[String]) -> Result<Case> {
-    let source = Source::of(path, text);
+    let source = CaseSource::of(path, text);
     let (file, mut violations) = json::parse(text);
     let Some(file) = file else {
         let table = path
@@ -128,7 +128,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
         return Err(source.error(vec![section::no_case()]));
     }
     let (sets, steps) = steps(&mut value, &file.to_value(), [sets, varied])?;
-    let source = Source {
+    let source = CaseSource {
         sets,
         file: Some(file),
         ..source
@@ -361,5 +361,5 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
         span: Some(valid..end),
         ..Violation::new(Code::Text, "", what).hint(hint)
     };
-    Source::of(path, &text).error(vec![violation])
+    CaseSource::of(path, &text).error(vec![violation])
 }

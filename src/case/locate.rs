@@ -7,16 +7,16 @@ use serde_json::{Map, Number, Value};
 
 /// A JSON value and its place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Node {
+pub struct JsonNode {
     /// Byte range of the value.
     pub span: Range<usize>,
     /// Kind and content of the value.
-    pub kind: Kind,
+    pub kind: JsonKind,
 }
 
 /// The kinds of JSON value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum JsonKind {
     /// `null`, and the replacement of an invalid number.
     Null,
     /// `true` or `false`.
@@ -26,41 +26,41 @@ pub enum Kind {
     /// A text.
     String(String),
     /// Values in order.
-    Array(Vec<Node>),
+    Array(Vec<JsonNode>),
     /// Members in order, no key twice.
-    Object(Vec<Member>),
+    Object(Vec<JsonMember>),
 }
 
 /// One member of an object.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Member {
+pub struct JsonMember {
     /// The key.
     pub key: String,
     /// Byte range of the key, with its quotes.
     pub key_span: Range<usize>,
     /// The value.
-    pub value: Node,
+    pub value: JsonNode,
 }
 
 /// Place of a value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place {
+pub struct JsonPlace {
     /// Byte range of the key, if the value is a member of an object.
     pub key: Option<Range<usize>>,
     /// Byte range of the value.
     pub value: Range<usize>,
 }
 
-impl Node {
+impl JsonNode {
     /// The value without places.
     pub fn to_value(&self) -> Value {
         match &self.kind {
-            Kind::Null => Value::Null,
-            Kind::Bool(b) => Value::Bool(*b),
-            Kind::Number(n) => Value::Number(n.clone()),
-            Kind::String(s) => Value::String(s.clone()),
-            Kind::Array(items) => items.iter().map(Node::to_value).collect(),
-            Kind::Object(members) => {
+            JsonKind::Null => Value::Null,
+            JsonKind::Bool(b) => Value::Bool(*b),
+            JsonKind::Number(n) => Value::Number(n.clone()),
+            JsonKind::String(s) => Value::String(s.clone()),
+            JsonKind::Array(items) => items.iter().map(JsonNode::to_value).collect(),
+            JsonKind::Object(members) => {
                 let members = members.iter().map(|m| (m.key.clone(), m.value.to_value()));
                 Value::Object(members.collect::<Map<_, _>>())
             }
@@ -68,8 +68,8 @@ impl Node {
     }
 
     /// Place of the value at a JSON pointer.
-    pub fn place(&self, pointer: &str) -> Option<Place> {
-        let mut place = Place {
+    pub fn place(&self, pointer: &str) -> Option<JsonPlace> {
+        let mut place = JsonPlace {
             key: None,
             value: self.span.clone(),
         };
@@ -77,14 +77,14 @@ impl Node {
         for token in tokens(pointer) {
             let key;
             (node, key) = match &node.kind {
-                Kind::Array(items) => (items.get(token.parse::<usize>().ok()?)?, None),
-                Kind::Object(members) => {
+                JsonKind::Array(items) => (items.get(token.parse::<usize>().ok()?)?, None),
+                JsonKind::Object(members) => {
                     let member = members.iter().find(|m| m.key == token)?;
                     (&member.value, Some(member.key_span.clone()))
                 }
                 _ => return None,
             };
-            place = Place {
+            place = JsonPlace {
                 key,
                 value: node.span.clone(),
             };

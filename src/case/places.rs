@@ -2,14 +2,14 @@
 
 /// Computes lines and columns of byte offsets in a text; offsets in ascending order need a single pass.
 #[derive(Clone, Debug)]
-pub struct Places<'t> {
+pub struct LineColumns<'t> {
     text: &'t str,
     at: usize,
     line: usize,
     column: usize,
 }
 
-impl<'t> Places<'t> {
+impl<'t> LineColumns<'t> {
     /// Starts at the beginning of a text.
     pub fn new(text: &'t str) -> Self {
         Self {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use textwrap::{Options, WordSplitter};
 
-use super::places::{Places, floor};
+use super::places::{LineColumns, floor};
 use crate::error::{CaseError, Violation, is_hidden, visible};
 
 /// Largest number of violations shown in full.
@@ -38,7 +38,7 @@ pub fn render(fault: &CaseError, colour: bool, width: usize) -> String {
     let paint = Paint(colour);
     let width = width.clamp(40, 400);
     let mut out = String::new();
-    let mut places = Places::new(&fault.text);
+    let mut places = LineColumns::new(&fault.text);
     for violation in fault.violations.iter().take(SHOWN) {
         one(fault, violation, &mut places, &paint, width, &mut out);
     }
@@ -66,7 +66,14 @@ fn named(fault: &CaseError) -> String {
     }
 }
 
-fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Paint, width: usize, out: &mut String) {
+fn one(
+    fault: &CaseError,
+    violation: &Violation,
+    places: &mut LineColumns,
+    paint: &Paint,
+    width: usize,
+    out: &mut String,
+) {
     let label = format!("fault[{}]:", violation.code.id());
     let _ = writeln!(
         out,
@@ -77,7 +84,7 @@ fn one(fault: &CaseError, violation: &Violation, places: &mut Places, paint: &Pa
     let text = violation.set.as_deref().unwrap_or(&fault.text);
     let span = violation.span.clone().filter(|span| span.end <= text.len());
     let excerpt = span.filter(|_| !text.is_empty()).map(|span| match &violation.set {
-        Some(set) => Excerpt::cut(&mut Places::new(set), span, width),
+        Some(set) => Excerpt::cut(&mut LineColumns::new(set), span, width),
         None => Excerpt::cut(places, span, width),
     });
     let name = match &violation.set {
@@ -158,7 +165,7 @@ struct Excerpt {
 
 impl Excerpt {
     /// The line around `span`, cut to the width, with `...` at the cuts.
-    fn cut(places: &mut Places, span: Range<usize>, width: usize) -> Self {
+    fn cut(places: &mut LineColumns, span: Range<usize>, width: usize) -> Self {
         let text = places.text();
         let start = floor(text, span.start);
         let (line, column) = places.of(start);

@@ -4,14 +4,16 @@ use std::ops::Range;
 
 use serde_json::Value;
 
-use super::locate::Kind;
+use super::locate::JsonKind;
 use super::parse::parse;
 
 /// Returns the text with another value of a top-level key; a missing key is added after the last one. None if the text is not a JSON
 /// object.
 pub fn rewrite(text: &str, key: &str, value: &Value) -> Option<String> {
     let root = parse(text).0?;
-    let Kind::Object(members) = &root.kind else { return None };
+    let JsonKind::Object(members) = &root.kind else {
+        return None;
+    };
     let value = spaced(value);
     // The span of a value may end with spaces.
     let bare = |span: &Range<usize>| span.start..span.start + text[span.clone()].trim_end().len();

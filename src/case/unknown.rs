@@ -20,7 +20,7 @@ const CLOSE: f64 = 0.93;
 const DEEPEST: usize = 9;
 
 /// Possible and written keys of an object.
-pub struct Known<'a> {
+pub struct KnownKeys<'a> {
     /// Possible keys, with their schemas.
     pub properties: &'a Map<String, Value>,
     /// The object as the user wrote it; a wrong key may mean one that only a preset supplies.
@@ -57,7 +57,7 @@ impl Meant {
     }
 }
 
-impl<'a> Known<'a> {
+impl<'a> KnownKeys<'a> {
     /// Finds the meaning of an unknown key: a key with another unit, a misspelling, a key of another object, or a synonym.
     pub fn meant(&self, key: &str, value: &Value) -> Meant {
         let absent = self.absent();

@@ -215,7 +215,7 @@ impl<'a> Walk<'a> {
     /// Reports an unknown key, and returns the keys of which one was probably meant.
     fn unknown_key(&mut self, key: &str, value: &Value, properties: &Map<String, Value>, pointer: &str) -> Vec<String> {
         let full = self.faults.is_full();
-        let known = unknown::Known {
+        let known = unknown::KnownKeys {
             properties,
             written: self.own.pointer(pointer),
             pointer,

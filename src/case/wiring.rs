@@ -8,7 +8,7 @@ use crate::functions::Signal;
 
 /// A point of the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Point {
+pub enum WiringPoint {
     /// An end of a bladder, `0..n`: upper row first.
     Bladder(usize, BladderEnd),
     /// A junction, by its place under `/network/junctions`.
@@ -17,9 +17,9 @@ pub enum Point {
 
 /// A tube.
 #[derive(Clone, Debug)]
-pub struct Tube<'a> {
+pub struct WiringTube<'a> {
     /// Start and end.
-    pub points: [Point; 2],
+    pub points: [WiringPoint; 2],
     /// Length `l_c` [m].
     pub length_m: f64,
     /// Source of its permeability.
@@ -71,9 +71,9 @@ pub enum Given<'a> {
 
 /// A port, or a prescribed condition at the end of a chain.
 #[derive(Clone, Debug)]
-pub struct Port<'a> {
+pub struct WiringPort<'a> {
     /// Point of the port.
-    pub at: Point,
+    pub at: WiringPoint,
     /// Name, if given.
     pub name: Option<&'a str>,
     /// Prescribed quantity.
@@ -90,17 +90,17 @@ pub struct Wiring<'a> {
     /// Bladders of every chain.
     pub chains: Vec<Vec<usize>>,
     /// Tubes of the chains.
-    pub chain_tubes: Vec<Tube<'a>>,
+    pub chain_tubes: Vec<WiringTube<'a>>,
     /// Ports at the ends of chains.
-    pub chain_ports: Vec<Port<'a>>,
+    pub chain_ports: Vec<WiringPort<'a>>,
     /// Single tubes.
-    pub tubes: Vec<Tube<'a>>,
+    pub tubes: Vec<WiringTube<'a>>,
     /// Ports.
-    pub ports: Vec<Port<'a>>,
+    pub ports: Vec<WiringPort<'a>>,
     /// Turbines, each with its two points.
-    pub turbines: Vec<([Point; 2], &'a Turbine)>,
+    pub turbines: Vec<([WiringPoint; 2], &'a Turbine)>,
     /// Accumulators, each with its point.
-    pub accumulators: Vec<(Point, &'a Accumulator)>,
+    pub accumulators: Vec<(WiringPoint, &'a Accumulator)>,
 }
 
 impl<'a> Wiring<'a> {
@@ -118,10 +118,10 @@ impl<'a> Wiring<'a> {
     }
 
     /// Name of a point: `inlet of bladder -3`, or that of the junction.
-    pub fn label(&self, point: Point) -> String {
+    pub fn label(&self, point: WiringPoint) -> String {
         match point {
-            Point::Bladder(bladder, end) => format!("{end} of bladder {}", bladder_label(bladder, self.per_row)),
-            Point::Junction(j) => self.junctions[j].clone(),
+            WiringPoint::Bladder(bladder, end) => format!("{end} of bladder {}", bladder_label(bladder, self.per_row)),
+            WiringPoint::Junction(j) => self.junctions[j].clone(),
         }
     }
 }

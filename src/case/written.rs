@@ -11,7 +11,7 @@ const INLINE: usize = 1000;
 
 /// Text of `case.json`, and the tables it refers to.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Written {
+pub struct CaseText {
     /// The case as JSON.
     pub json: String,
     /// Names and texts of the CSV files beside it.
@@ -29,9 +29,9 @@ impl Case {
     }
 
     /// The case as JSON text, with the files of its tables.
-    pub fn written(&self) -> Written {
+    pub fn written(&self) -> CaseText {
         let (json, tables) = self.set_apart();
-        Written {
+        CaseText {
             json,
             tables: tables.into_iter().map(|(name, points)| (name, csv(&points))).collect(),
         }

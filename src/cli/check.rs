@@ -12,7 +12,7 @@ use super::arguments::CheckArguments;
 use super::size;
 use crate::discrete::System;
 use crate::error::Result;
-use crate::model::effects::{Cause, Decision};
+use crate::model::effects::{Decision, DecisionCause};
 use crate::model::{audit, characteristic};
 use crate::output::columns::aligned;
 use crate::output::machine;
@@ -137,7 +137,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     }
     text += &listed(origins.into_iter());
     text += "\neffects\n";
-    let by_case = |cause: &Cause| matches!(cause, Cause::Given(_) | Cause::Filled(_)) && !asked.verbose;
+    let by_case =
+        |cause: &DecisionCause| matches!(cause, DecisionCause::Given(_) | DecisionCause::Filled(_)) && !asked.verbose;
     let (given, decided): (Vec<_>, Vec<_>) = system.model.effects.decisions.iter().partition(|d| by_case(&d.cause));
     text += &listed(decisions(&decided, asked.verbose).into_iter());
     for (on, what) in [(true, "  given: "), (false, "  not given: ")] {

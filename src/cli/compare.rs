@@ -12,14 +12,14 @@ use crate::case;
 use crate::error::{Error, Result};
 use crate::output::columns::{self, aligned};
 use crate::output::folder::{CASE, replace_alike};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::{percent, quantity, significant};
 use crate::output::{comparison, fit, reading, report};
 use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
-use crate::study::compare::{Beside, Comparison, Recording};
-use crate::study::data::{Match, Table};
+use crate::study::compare::{Comparison, ManyComparison, Recording};
+use crate::study::data::{DataTable, Match};
 use crate::study::fit::beside;
 
 /// Largest number of changes shown of each kind; the rest is counted.
@@ -48,7 +48,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
             file.display()
         ));
     }
-    if let Some(what) = asked.results.iter().find_map(|one| Kind::no_run(one)) {
+    if let Some(what) = asked.results.iter().find_map(|one| FolderKind::no_run(one)) {
         return usage(what);
     }
     if asked.results.len() > MOST {
@@ -71,7 +71,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         .iter()
         .map(|dir| recording(dir))
         .collect::<Result<Vec<_>>>()?;
-    let found = Beside::of(&all, reference);
+    let found = ManyComparison::of(&all, reference);
     let written = asked.out.as_ref().map_or(Ok(()), |path| {
         if picture(path) {
             let [one] = found.comparisons.as_slice() else {
@@ -104,7 +104,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
 
 /// Reads the result of a run, or of a cycle, which is a run over one period.
 fn recording(dir: &Path) -> Result<Recording> {
-    Kind::wanted("compare", dir, &[Kind::Run, Kind::Cycle])?;
+    FolderKind::wanted("compare", dir, &[FolderKind::Run, FolderKind::Cycle])?;
     Ok(reading::read(dir)?.without_gaps())
 }
 
@@ -124,7 +124,7 @@ fn ends(path: &Path, with: &str) -> bool {
 }
 
 /// Table with a column per result.
-fn several(found: &Beside) -> String {
+fn several(found: &ManyComparison) -> String {
     let letter = |k: usize| match u8::try_from(k) {
         Ok(k) if k < 26 => char::from(b'A' + k).to_string(),
         _ => format!("R{}", k + 1),
@@ -195,7 +195,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
             asked.results.len()
         )));
     };
-    let table = Table::read(data)?;
+    let table = DataTable::read(data)?;
     let run = recording(folder)?;
     let case = case::load(&folder.join(CASE), &[]).ok();
     let name = data.display().to_string();

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::EffectsArguments;
-use super::line::Shown;
+use super::line::ProgressLine;
 use super::{interrupt, journal, line, size, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
@@ -11,11 +11,11 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::output::effects as files;
 use crate::output::folder::replace;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::duration;
 use crate::output::report;
 use crate::study::effects::choices::with;
-use crate::study::effects::{Ablation, Event, Plan, ablate};
+use crate::study::effects::{Ablation, TrialEvent, TrialPlan, ablate};
 use crate::study::evaluations::Evaluations;
 
 /// Runs the models, writes the folder, prints the table and the recommendation, and writes it into the case on request.
@@ -23,22 +23,22 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let case = size::load(&asked.case)?;
     System::new(&case)?;
     System::new(&with(&case, Effects::Full))?;
-    let plan = Plan {
+    let plan = TrialPlan {
         repeats: asked.repeats,
         budget_s: super::study::seconds(&asked.budget)?,
     };
-    let mut folder = asked.result.place.claim(&case, Kind::Effects)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Effects)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("effects", &case, &format!("{plan:?}")))?;
     let flag = asked.result.wall.flag();
-    let progress = Shown::new(asked.result.quiet, line::PLAIN);
+    let progress = ProgressLine::new(asked.result.quiet, line::PLAIN);
     let found = ablate(&case, plan, asked.measure.as_deref(), &evaluations, &|event| {
         show(&progress, event);
     });
     drop(progress);
     let stopped = interrupt::raised(&flag);
     let found = journal::outcome(found, &folder, stopped)?;
-    let shown = files::Shown::choose(&found, asked.measure.as_deref());
+    let shown = files::ShownQuantity::choose(&found, asked.measure.as_deref());
     let written = files::write(&mut folder, &found, &shown).map(|_| ());
     let written = written.and(report::complete(&folder, &case));
     let mut written = journal::end(&evaluations, &folder, stopped, written);
@@ -82,7 +82,7 @@ fn write(case: &Case, found: &Ablation) -> Result<String> {
 }
 
 /// Shows a moving line on a terminal, and a line per model elsewhere.
-fn show(shown: &Shown, event: &Event) {
+fn show(shown: &ProgressLine, event: &TrialEvent) {
     let spent = format!("{} of {} used", duration(event.spent_s), duration(event.budget_s));
     if let Some(bar) = &shown.bar {
         bar.set_message(format!("{} · {spent}", event.what));

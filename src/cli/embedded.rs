@@ -20,12 +20,12 @@ thread_local! {
 
 struct Asked {
     stop: Arc<AtomicBool>,
-    answer: Answer,
+    answer: EmbeddedAnswer,
 }
 
 /// Answer of a command.
 #[derive(Debug, Default)]
-pub struct Answer {
+pub struct EmbeddedAnswer {
     /// Text that it would have printed to standard output.
     pub printed: String,
     /// Reason why it ended early, if it has reported its results until then.
@@ -40,7 +40,7 @@ pub struct Answer {
 /// # Errors
 ///
 /// Those of the command; [`Error::Usage`] if there is no such command.
-pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>) -> Result<Answer> {
+pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>) -> Result<EmbeddedAnswer> {
     let all: Vec<OsString> = std::iter::once("slcbeam".into()).chain(words).collect();
     let arguments = Arguments::try_parse_from(&all).map_err(|error| {
         let words = error.render().to_string();
@@ -49,7 +49,7 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
     })?;
     let asked = Asked {
         stop: Arc::clone(stop),
-        answer: Answer::default(),
+        answer: EmbeddedAnswer::default(),
     };
     ASKED.replace(Some(asked));
     let request = Halt::by(stop);
@@ -57,7 +57,7 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
     let done = act(&arguments.command, Instant::now());
     halt::deaf();
     let answer = ASKED.take().map(|asked| asked.answer).unwrap_or_default();
-    done.map(|_| Answer {
+    done.map(|_| EmbeddedAnswer {
         interrupted: request.was_seen(),
         ..answer
     })
@@ -82,7 +82,7 @@ pub(super) fn kept_fault(error: &Error) -> bool {
     })
 }
 
-fn with(keep: impl FnOnce(&mut Answer)) -> bool {
+fn with(keep: impl FnOnce(&mut EmbeddedAnswer)) -> bool {
     ASKED.with_borrow_mut(|asked| match asked {
         Some(asked) => {
             keep(&mut asked.answer);

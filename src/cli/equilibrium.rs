@@ -10,11 +10,11 @@ use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::error::{Error, Result};
 use crate::output::equilibrium as files;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::uncertainty as spread;
 use crate::results::run::Bands;
-use crate::run::equilibrium::{self, Options};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::record::Control;
 use crate::run::{known, slow};
 use crate::study::analysis::AnalysisKind;
@@ -29,9 +29,9 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let parameters = Parameter::all(case, &asked.sensitivity)?;
     let usual = at_s == case.time.end_s
         && options
-            == Options {
+            == EquilibriumOptions {
                 points: options.points,
-                ..Options::at(at_s)
+                ..EquilibriumOptions::at(at_s)
             };
     if !(usual && asked.accuracy.is_none() || asked.uncertain.uncertain.is_empty()) {
         let what = "--uncertain applies to the equilibrium under the loads at the end of the run: it cannot be \
@@ -46,7 +46,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         AnalysisKind::Equilibrium,
         asked.result.quiet,
     )?;
-    let mut folder = asked.result.place.claim(case, Kind::Equilibrium)?;
+    let mut folder = asked.result.place.claim(case, FolderKind::Equilibrium)?;
     let stop = asked.result.wall.flag();
     let begin = Instant::now();
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
@@ -86,7 +86,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
         _ => vec![],
     };
     let stages = options.resolved(case)?;
-    let mut found = files::Found {
+    let mut found = files::LoadPath {
         case,
         options: &stages,
         path: &path,
@@ -127,7 +127,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     }
 }
 
-fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<Options> {
+fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<EquilibriumOptions> {
     if !(asked.load_factor.is_finite() && asked.load_factor != 0.0 && at_s.is_finite()) {
         return Err(Error::Usage(
             "--load-factor must be a number other than 0, and --at a number of seconds".into(),
@@ -136,7 +136,7 @@ fn options(asked: &EquilibriumArguments, case: &Case, at_s: f64) -> Result<Optio
     if asked.points == 0 {
         return Err(Error::Usage("--points must be at least 1".into()));
     }
-    Ok(Options {
+    Ok(EquilibriumOptions {
         at_s,
         via_s: asked
             .via

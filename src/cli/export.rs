@@ -11,13 +11,13 @@ use super::response::cautions;
 use crate::case;
 use crate::error::{Code, Error, Result};
 use crate::output::columns::warnings;
-use crate::output::export::{self, Written, instants, tables, vtk};
+use crate::output::export::{self, ExportedFiles, instants, tables, vtk};
 use crate::output::folder::CASE;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::{counted, significant};
 use crate::output::state_space as files;
-use crate::run::record::Column;
-use crate::run::response::Response;
+use crate::run::record::HistoryColumn;
+use crate::run::response::LinearResponse;
 use crate::run::response::state_space::StateSpace;
 use crate::study::response::growing;
 
@@ -85,7 +85,7 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
     let chosen = instants::choose(&from.field_times, asked.times.as_deref(), asked.every as usize)?;
     let out = asked.out.as_deref().unwrap_or(&asked.dir);
     let elsewhere = fs::canonicalize(out).ok() != fs::canonicalize(&asked.dir).ok();
-    if let Some(kind) = Kind::within(out).filter(|_| elsewhere) {
+    if let Some(kind) = FolderKind::within(out).filter(|_| elsewhere) {
         return Err(Error::Usage(format!(
             "--out {}: it contains the result of `slcbeam {}`, and these files would seem to belong to that result; \
              name another folder",
@@ -93,7 +93,7 @@ pub fn export(asked: &ExportArguments) -> Result<ExitCode> {
             kind.command()
         )));
     }
-    let mut all: Vec<(&str, Written)> = vec![];
+    let mut all: Vec<(&str, ExportedFiles)> = vec![];
     if asked.format.contains(&Format::Csv) {
         all.push(("csv", tables::write(out, &from, &chosen)?));
     }
@@ -142,7 +142,7 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         )));
     }
     let case = case::load(&asked.dir, &asked.sets)?;
-    let response = Response::new(&case, input, &asked.output, asked.at)?;
+    let response = LinearResponse::new(&case, input, &asked.output, asked.at)?;
     if response.about.y.len() > MOST_STATES {
         return Err(Error::Usage(format!(
             "--state-space: {} are too many for full matrices (at most {MOST_STATES}); use fewer /mesh/cells_per_segment",
@@ -150,7 +150,7 @@ fn state_space(asked: &ExportArguments, file: &Path, input: &str) -> Result<Exit
         )));
     }
     let model = StateSpace::new(&response)?;
-    let outputs: Vec<String> = response.outputs.iter().map(Column::key).collect();
+    let outputs: Vec<String> = response.outputs.iter().map(HistoryColumn::key).collect();
     files::write(
         file,
         &case.name,

@@ -6,30 +6,30 @@ use super::arguments::{FitArguments, FittedThrough};
 use super::{interrupt, journal, line, size, sweep};
 use crate::error::{Error, Result};
 use crate::output::fit as files;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::{counted, significant};
 use crate::output::report;
 use crate::results;
-use crate::study::data::{Match, Table};
-use crate::study::fit::problem::{Asked, Drive, Problem};
+use crate::study::data::{DataTable, Match};
+use crate::study::fit::problem::{DrivenNumber, FitProblem, FitRequest};
 use crate::study::fit::{self as study, robust::Loss};
-use crate::study::span::Span;
+use crate::study::span::ParameterBounds;
 
 /// Reads, fits, writes the folder, prints.
 pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
-    let table = Table::read(&asked.data)?;
+    let table = DataTable::read(&asked.data)?;
     let wanted = wanted(asked)?;
     let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
     sweep::overridden(&asked.case.sets, &driven, |drive| format!("every row sets {drive}"))?;
-    let problem = Problem::new(&case, &table, &wanted)?;
+    let problem = FitProblem::new(&case, &table, &wanted)?;
     let flag = asked.result.wall.flag();
     let stop = || interrupt::raised(&flag);
-    let mut folder = asked.result.place.claim(&case, Kind::Fit)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Fit)?;
     let settings = format!(
         "{} {:?}",
         table.crc32,
-        Asked {
+        FitRequest {
             jobs: 0,
             ..wanted.clone()
         }
@@ -57,11 +57,11 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn wanted(asked: &FitArguments) -> Result<Asked> {
+fn wanted(asked: &FitArguments) -> Result<FitRequest> {
     let drives = asked
         .drive
         .iter()
-        .map(|text| Drive::parse(text))
+        .map(|text| DrivenNumber::parse(text))
         .collect::<Result<Vec<_>>>()?;
     match asked.command {
         Some(FittedThrough::Equilibrium) if drives.is_empty() => {
@@ -74,8 +74,12 @@ fn wanted(asked: &FitArguments) -> Result<Asked> {
         }
         _ => {}
     }
-    Ok(Asked {
-        spans: asked.vary.iter().map(|text| Span::parse(text)).collect::<Result<_>>()?,
+    Ok(FitRequest {
+        spans: asked
+            .vary
+            .iter()
+            .map(|text| ParameterBounds::parse(text))
+            .collect::<Result<_>>()?,
         matches: asked
             .matches
             .iter()

@@ -9,20 +9,20 @@ use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::columns::warnings;
 use crate::output::floquet as files;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::counted;
 use crate::output::report;
 use crate::results;
-use crate::results::cycles::Cycle;
+use crate::results::cycles::CycleResult;
 use crate::results::run::Bands;
 use crate::run::floquet;
 use crate::run::known;
 use crate::run::periodic::scene::{self, fault};
-use crate::run::periodic::{Scene, shoot};
+use crate::run::periodic::{PeriodicScene, shoot};
 use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes::Meshes};
-use crate::study::stability::tongue::{self, Plan};
+use crate::study::stability::tongue::{self, MapRange};
 
 /// Largest number of points of a map.
 const MOST_POINTS: usize = 100_000;
@@ -59,7 +59,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         AnalysisKind::Floquet,
         asked.result.quiet,
     )?;
-    let mut folder = asked.result.place.claim(case, Kind::Floquet)?;
+    let mut folder = asked.result.place.claim(case, FolderKind::Floquet)?;
     let stop = asked.result.wall.stop();
     let mut of = |case: &Case| refine::numbers::of_multipliers(case, asked.period, asked.count, &stop);
     let refined = accuracy
@@ -67,7 +67,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         .transpose();
     let refined = interrupt::before_a_cycle(refined, &stop)?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let scene = Scene::new(case, asked.period)?.heeding(&stop);
+    let scene = PeriodicScene::new(case, asked.period)?.heeding(&stop);
     scene.held(&case.name)?;
     let bar = line::line(asked.result.quiet);
     bar.set_message("searching for the cycle");
@@ -86,7 +86,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     warnings.extend(scene.trapped.clone());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.as_ref().and_then(refine::warning));
-    let mut found = Cycle {
+    let mut found = CycleResult {
         case: case.name.clone(),
         cycle: cycle.search,
         periods: None,
@@ -105,7 +105,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
         .and(uncertain::write(
             uncertainty.as_ref(),
             &folder,
-            &[(Kind::Floquet.sign(), &text)],
+            &[(FolderKind::Floquet.sign(), &text)],
         ))
         .and(report::complete(&folder, case));
     let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
@@ -120,7 +120,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
         )));
     }
     let plan = plan(asked, tongue::shaking(case)?)?;
-    let mut folder = asked.result.place.claim(case, Kind::Map)?;
+    let mut folder = asked.result.place.claim(case, FolderKind::Map)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("map", case, &format!("{plan:?}")))?;
     let stop = asked.result.wall.stop();
@@ -141,7 +141,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
 }
 
 /// Plan of the map, around the case's own frequency [Hz] and amplitude [m].
-fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
+fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
     let both = |text: &str| {
         text.split_once(',')
             .map(|(a, b)| (a.trim().to_owned(), b.trim().to_owned()))
@@ -166,7 +166,7 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<Plan> {
     if let Some(wrong) = asked.map.permeability.iter().find(|f| !(f.is_finite() && **f > 0.0)) {
         return Err(Error::Usage(format!("--permeability {wrong}: factors > 0")));
     }
-    Ok(Plan {
+    Ok(MapRange {
         frequencies_hz: line::spread(frequency.0, frequency.1, columns, false),
         amplitudes_m: line::spread(amplitude.0, amplitude.1, rows, false),
         permeability_factors: asked.map.permeability.clone(),

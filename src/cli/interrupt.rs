@@ -16,7 +16,7 @@ use super::{embedded, terminal};
 use crate::error::{Error, Result};
 use crate::integrate::halt::Halt;
 pub use crate::integrate::halt::raised;
-use crate::run::stop::{INTERRUPTED, Stop};
+use crate::run::stop::{INTERRUPTED, StopFlag};
 
 /// Offset of the exit codes of shells for a program that a signal ended.
 const SIGNAL: i32 = 128;
@@ -78,8 +78,8 @@ impl WallArguments {
     }
 
     /// The flag as a stop request, for computations that check it as they proceed.
-    pub fn stop(&self) -> Stop {
-        Stop::by(self.flag())
+    pub fn stop(&self) -> StopFlag {
+        StopFlag::by(self.flag())
     }
 }
 
@@ -179,7 +179,7 @@ fn cpu_time() -> Duration {
 }
 
 /// Replaces the error of a search for a cycle by that of an interruption, if a stop was requested.
-pub fn before_a_cycle<T>(found: Result<T>, stop: &Stop) -> Result<T> {
+pub fn before_a_cycle<T>(found: Result<T>, stop: &StopFlag) -> Result<T> {
     match found {
         Err(_) if stop.raised() => Err(Error::Interrupted(format!(
             "{INTERRUPTED} before a cycle was found; nothing is written"

@@ -28,14 +28,14 @@ pub fn styled(template: &str) -> ProgressBar {
 }
 
 /// Progress of a long computation: a bar on a terminal, lines elsewhere, nothing if quiet.
-pub struct Shown {
+pub struct ProgressLine {
     /// The bar.
     pub bar: Option<ProgressBar>,
     /// True if lines are printed.
     pub lines: bool,
 }
 
-impl Shown {
+impl ProgressLine {
     /// Creates a display whose bar has this template.
     pub fn new(quiet: bool, template: &str) -> Self {
         let terminal = std::io::stderr().is_terminal();
@@ -46,7 +46,7 @@ impl Shown {
     }
 }
 
-impl Drop for Shown {
+impl Drop for ProgressLine {
     fn drop(&mut self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

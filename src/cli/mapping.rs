@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
-use super::arguments::{MappingArguments, Table};
+use super::arguments::{MapTable, MappingArguments};
 use super::size;
 use crate::error::numbers::rounded;
 use crate::error::{Error, Result};
@@ -26,10 +26,10 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
                 .collect()
         };
         let mut all = serde_json::Map::new();
-        if asked.table != Some(Table::XfToTheta) {
+        if asked.table != Some(MapTable::XfToTheta) {
             all.insert("theta_to_xf".into(), rows(map.theta_to_xf(), ["theta_r", "x_f"]));
         }
-        if asked.table != Some(Table::ThetaToXf) {
+        if asked.table != Some(MapTable::ThetaToXf) {
             all.insert("xf_to_theta".into(), rows(map.xf_to_theta(), ["x_f", "theta"]));
         }
         super::print(&format!("{:#}\n", Value::Object(all)))?;
@@ -45,8 +45,8 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let theta = || table("theta_r,x_f,bladder", map.theta_to_xf());
     let xf = || table("x_f,theta,bladder", map.xf_to_theta());
     super::print(&match asked.table {
-        Some(Table::ThetaToXf) => theta(),
-        Some(Table::XfToTheta) => xf(),
+        Some(MapTable::ThetaToXf) => theta(),
+        Some(MapTable::XfToTheta) => xf(),
         None => format!("{}\n{}", theta(), xf()),
     })?;
     Ok(ExitCode::SUCCESS)

@@ -17,7 +17,7 @@ use crate::output::plot::colour::{Colour, PALETTE};
 use crate::output::plot::extent;
 use crate::output::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use crate::study::measure::table;
-use crate::study::measure::{Estimate, Experiment, Measured, Options, SIGNIFICANT, measure as fit};
+use crate::study::measure::{Experiment, MeasureOptions, MeasuredNumber, Measurement, SIGNIFICANT, measure as fit};
 
 /// `measure`.
 #[derive(Debug, Args)]
@@ -60,7 +60,7 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
     let case = case::load(&asked.of, &asked.sets)?;
     let [x, y] = experiment.columns();
     let points = table::read(&asked.data, &case::text(&asked.data)?, x, y)?;
-    let options = Options {
+    let options = MeasureOptions {
         through_zero: asked.through_zero,
         cubic: asked.cubic,
         bladders: asked.bladders,
@@ -80,7 +80,7 @@ pub fn measure(asked: &MeasureArguments) -> Result<ExitCode> {
 }
 
 /// The coefficients in the form of a case.
-fn keys(found: &Measured) -> Value {
+fn keys(found: &Measurement) -> Value {
     let mut all = json!({});
     for one in found
         .coefficients
@@ -96,11 +96,11 @@ fn keys(found: &Measured) -> Value {
     all
 }
 
-fn estimate(of: &Estimate) -> Value {
+fn estimate(of: &MeasuredNumber) -> Value {
     json!({"value": of.value, "standard_error": of.error, "interval_95": of.interval})
 }
 
-fn in_json(found: &Measured) -> Value {
+fn in_json(found: &Measurement) -> Value {
     let [_, y] = found.experiment.columns();
     let coefficients = found.coefficients.iter().map(|one| {
         let mut object = estimate(&one.estimate);
@@ -129,9 +129,9 @@ fn per(unit: &str, under: &str) -> String {
     format!("{}/{}", whole(unit), whole(under))
 }
 
-fn in_words(found: &Measured) -> String {
+fn in_words(found: &Measurement) -> String {
     let [x, y] = found.experiment.columns();
-    let line = |name: &str, of: &Estimate, unit: &str| {
+    let line = |name: &str, of: &MeasuredNumber, unit: &str| {
         let [low, high] = of.interval.map(|x| significant(x, 5));
         [
             name.to_owned(),
@@ -196,7 +196,7 @@ fn in_words(found: &Measured) -> String {
 }
 
 /// Data, fit with its band of 95 %, and residuals.
-fn picture(found: &Measured) -> Option<String> {
+fn picture(found: &Measurement) -> Option<String> {
     /// Points of the curve.
     const COUNT: usize = 100;
     const BAND: Colour = Colour(0xd5, 0xe3, 0xf0);

@@ -6,14 +6,14 @@ use std::process::ExitCode;
 
 use super::arguments::MergeArguments;
 use super::terminal;
-use crate::case::{self, Written};
+use crate::case::{self, CaseText};
 use crate::error::{Error, Result};
 use crate::output::folder::{CASE, ResultFolder, text_of};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::sweep::{self as files, parts, words};
 use crate::results;
-use crate::results::sweep::Plan;
+use crate::results::sweep::SweepPlan;
 
 /// Exit code if designs are missing.
 const INCOMPLETE: u8 = 5;
@@ -25,7 +25,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         return Err(Error::Usage("no folders".into()));
     };
     let plan = first.plan.whole();
-    let dir = asked.place.folder(&plan.case, Kind::Designs);
+    let dir = asked.place.folder(&plan.case, FolderKind::Designs);
     if let Some(part) = asked.parts.iter().find(|part| same(part, &dir)) {
         return Err(Error::Usage(format!(
             "--out {}: {} is one of the shards, whose rows would be overwritten; name another folder",
@@ -33,7 +33,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
             part.display()
         )));
     }
-    let mut folder = ResultFolder::claim(&dir, Kind::Designs, asked.place.force)?;
+    let mut folder = ResultFolder::claim(&dir, FolderKind::Designs, asked.place.force)?;
     match files::plan(&folder)? {
         Some(there) if asked.place.force && plan.difference(&there).is_some() => start(&mut folder, asked, &plan)?,
         Some(there) => {
@@ -85,14 +85,14 @@ fn same(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
-fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &Plan) -> Result<()> {
+fn start(folder: &mut ResultFolder, asked: &MergeArguments, plan: &SweepPlan) -> Result<()> {
     let case = asked.parts.iter().map(|dir| dir.join(CASE)).find(|path| path.exists());
     let written = match case {
-        None => Written::default(),
+        None => CaseText::default(),
         // a case of another version of the program may no longer be valid
         Some(path) => match case::load(&path, &[]) {
             Ok(case) => case.written(),
-            Err(_) => Written {
+            Err(_) => CaseText {
                 json: text_of(&path)?,
                 tables: vec![],
             },

@@ -9,14 +9,14 @@ use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::System;
 use crate::error::{Error, Result};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
 use crate::results::modes::About;
 use crate::results::run::Bands;
 use crate::run::equilibrium;
 use crate::run::known;
-use crate::run::modes::{self, Plan, Sort, sort};
+use crate::run::modes::{self, ModeOptions, Sort, sort};
 use crate::study::analysis::AnalysisKind;
 use crate::study::refine;
 
@@ -58,7 +58,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         AnalysisKind::Modes,
         asked.result.quiet,
     )?;
-    let mut folder = asked.result.place.claim(&case, Kind::Modes)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Modes)?;
     asked.result.wall.flag();
     if !asked.result.quiet {
         terminal::print_line(&format!("modes of {}", case.name));
@@ -80,7 +80,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     known.extend(known::instant(case, asked.at));
     known.extend(inherited::varied(case, asked.sensitivity.iter().map(String::as_str)));
     if let Some(at) = asked.at {
-        known.extend(equilibrium::trapped(case, &equilibrium::Options::at(at))?);
+        known.extend(equilibrium::trapped(case, &equilibrium::EquilibriumOptions::at(at))?);
     }
     let parameters = Parameter::all(case, &asked.sensitivity)?;
     let (mut found, wider) = sort::of_sort(about, &plan, kind)?;
@@ -117,7 +117,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
 /// Largest number of modes: a longer spectrum answers no question, and its shapes fill the memory.
 const MOST: usize = 1000;
 
-fn plan(asked: &ModesArguments) -> Result<Plan> {
+fn plan(asked: &ModesArguments) -> Result<ModeOptions> {
     let usage = |what: String| Err(Error::Usage(what));
     if !(1..=MOST).contains(&asked.count) {
         return usage(format!("--count {}: expected from 1 to {MOST} modes", asked.count));
@@ -129,7 +129,7 @@ fn plan(asked: &ModesArguments) -> Result<Plan> {
     if let Some(at) = asked.at.filter(|at| !(at.is_finite() && *at >= 0.0)) {
         return usage(format!("--at {at}: expected a time of 0 s or more"));
     }
-    Ok(Plan {
+    Ok(ModeOptions {
         count: asked.count,
         near_hz,
         limits: true,

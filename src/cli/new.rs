@@ -17,7 +17,7 @@ const SCHEMA: &str = "slcbeam.schema.json";
 #[derive(Debug, Args)]
 pub struct NewArguments {
     /// Kind of the starting case
-    pub kind: Kind,
+    pub kind: StarterCase,
     /// The file; the case is named like it [default: <kind>.json]
     #[arg(value_parser = super::line::output_path())]
     pub file: Option<PathBuf>,
@@ -34,7 +34,7 @@ pub struct NewArguments {
 
 /// Starting cases: those of the tours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
+pub enum StarterCase {
     /// Bladders joined in a wiring of your own, in a beam that is shaken
     Wiring,
     /// A beam that bends by pumping up one row of bladders
@@ -73,7 +73,7 @@ impl SectionKind {
     }
 }
 
-impl Kind {
+impl StarterCase {
     fn text(self, of: SectionKind) -> &'static str {
         match self {
             Self::Wiring => include_str!("../../cases/tour-wiring.json"),
@@ -110,14 +110,14 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         })
         .collect();
     let of = asked.of.unwrap_or(SectionKind::Honeycomb);
-    if asked.of.is_some() && asked.kind != Kind::Section {
+    if asked.of.is_some() && asked.kind != StarterCase::Section {
         return Err(Error::Usage(format!(
             "--of chooses a section, for `new section` only: write slcbeam new section --of NAME, not new {named}"
         )));
     }
     let text = asked.kind.text(of);
     // a section alone has no name
-    let alone = asked.kind == Kind::Section && of != SectionKind::Honeycomb;
+    let alone = asked.kind == StarterCase::Section && of != SectionKind::Honeycomb;
     let keys = [("name", name.as_str()), ("$schema", SCHEMA)];
     let text = keys
         .into_iter()

@@ -6,7 +6,7 @@ use super::arguments::OptimizeArguments;
 use super::{interrupt, journal, line, size, sweep};
 use crate::case::Case;
 use crate::error::{Error, Result};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::significant;
 use crate::output::optimum as files;
 use crate::output::report;
@@ -15,9 +15,9 @@ use crate::results;
 use crate::study::evaluations::Evaluations;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
-use crate::study::optimize::problem::{Asked, Goal, Limit, Problem};
+use crate::study::optimize::problem::{FigureLimit, Goal, OptimizationProblem, OptimizationRequest};
 use crate::study::optimize::wiring::{Alternative, choices, combinations, crossings};
-use crate::study::span::Span;
+use crate::study::span::ParameterBounds;
 
 /// Exit code if no design satisfies the limits: that of a computation without the requested result.
 const NOTHING_HOLDS: u8 = 4;
@@ -30,18 +30,18 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let candidate = |alternative: Alternative| {
         let evaluations = evaluations.scoped(&alternative.sets.join(" "));
         let problem = problem(asked, &case, &wanted, &alternative)?;
-        let problem = Problem { evaluations, ..problem };
+        let problem = OptimizationProblem { evaluations, ..problem };
         Ok(Candidate { alternative, problem })
     };
     let alternatives = alternatives(asked, &case, &wanted)?;
     let candidates: Vec<Candidate> = alternatives.into_iter().map(candidate).collect::<Result<_>>()?;
     let figure = &candidates[0].problem.goal.figure;
-    let mut folder = asked.result.place.claim(&case, Kind::Optimum)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Optimum)?;
     let settings = format!(
         "{:?} {:?} {:?}",
         asked.choose,
         asked.crossovers,
-        Asked {
+        OptimizationRequest {
             jobs: 0,
             ..wanted.clone()
         }
@@ -74,7 +74,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
 }
 
 /// All alternatives to choose from; the case itself if there are none.
-fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Result<Vec<Alternative>> {
+fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &OptimizationRequest) -> Result<Vec<Alternative>> {
     let lists = asked.choose.iter().map(|text| choices(text));
     let wirings = asked.crossovers.map(|most| crossings(case, most));
     let sets: Vec<_> = lists.chain(wirings).collect::<Result<_>>()?;
@@ -92,20 +92,25 @@ fn alternatives(asked: &OptimizeArguments, case: &Case, wanted: &Asked) -> Resul
 }
 
 /// Search problem of the case with an alternative.
-fn problem(asked: &OptimizeArguments, case: &Case, wanted: &Asked, alternative: &Alternative) -> Result<Problem> {
+fn problem(
+    asked: &OptimizeArguments,
+    case: &Case,
+    wanted: &OptimizationRequest,
+    alternative: &Alternative,
+) -> Result<OptimizationProblem> {
     if alternative.sets.is_empty() {
-        return Problem::new(case, wanted);
+        return OptimizationProblem::new(case, wanted);
     }
     let with = size::load_varied(
         &asked.case.case,
         [&asked.case.sets, &alternative.sets],
         asked.vary.len(),
     );
-    Problem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
+    OptimizationProblem::new(&with.map_err(|error| error.by("--choose", &alternative.sets))?, wanted)
 }
 
 /// Checks that chosen and varied values are in different parts of the case.
-fn apart(one: &Alternative, wanted: &Asked) -> Result<()> {
+fn apart(one: &Alternative, wanted: &OptimizationRequest) -> Result<()> {
     let chosen: Vec<&str> = one
         .sets
         .iter()
@@ -124,11 +129,15 @@ fn apart(one: &Alternative, wanted: &Asked) -> Result<()> {
     Ok(())
 }
 
-fn wanted(asked: &OptimizeArguments) -> Result<Asked> {
+fn wanted(asked: &OptimizeArguments) -> Result<OptimizationRequest> {
     let figure = asked.maximize.as_ref().or(asked.minimize.as_ref());
-    Ok(Asked {
+    Ok(OptimizationRequest {
         what: asked.command.into(),
-        spans: asked.vary.iter().map(|text| Span::parse(text)).collect::<Result<_>>()?,
+        spans: asked
+            .vary
+            .iter()
+            .map(|text| ParameterBounds::parse(text))
+            .collect::<Result<_>>()?,
         goal: Goal {
             figure: figure.cloned().unwrap_or_default(),
             largest: asked.maximize.is_some(),
@@ -136,7 +145,7 @@ fn wanted(asked: &OptimizeArguments) -> Result<Asked> {
         limits: asked
             .subject_to
             .iter()
-            .map(|text| Limit::parse(text))
+            .map(|text| FigureLimit::parse(text))
             .collect::<Result<_>>()?,
         starts: asked.starts as usize,
         jobs: sweep::jobs(asked.jobs)?,

@@ -11,17 +11,17 @@ use crate::error::{Error, Result};
 use crate::output::columns::warnings;
 use crate::output::floquet as stability;
 use crate::output::folder::SUMMARY;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::counted;
 use crate::output::periodic as files;
 use crate::output::recorder::{Finished, FolderRecorder, Labels};
 use crate::output::report;
 use crate::output::summary;
 use crate::results;
-use crate::results::cycles::Cycle;
+use crate::results::cycles::CycleResult;
 use crate::results::run::Bands;
 use crate::run::floquet;
-use crate::run::periodic::{Scene, Settled, record, scene, sensitivity, settle, subharmonic};
+use crate::run::periodic::{PeriodicScene, Settled, record, scene, sensitivity, settle, subharmonic};
 use crate::run::record::Control;
 use crate::run::summary::Status;
 use crate::study::analysis::AnalysisKind;
@@ -69,9 +69,9 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     )?;
     let parameters = Parameter::all(&case, &asked.sensitivities)?;
     if !parameters.is_empty() {
-        sensitivity::allowed(&case, &Scene::new(&case, None)?, &parameters)?;
+        sensitivity::allowed(&case, &PeriodicScene::new(&case, None)?, &parameters)?;
     }
-    let result = asked.result.place.claim(&case, Kind::Cycle)?;
+    let result = asked.result.place.claim(&case, FolderKind::Cycle)?;
     let out = result.dir().to_path_buf();
     let stop = asked.result.wall.stop();
     let bar = line::line(asked.result.quiet);
@@ -122,7 +122,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let by_mesh = meshes.as_ref().and_then(Meshes::warning);
     outcome.summary.warnings.extend(by_mesh.into_iter().chain(short));
     let finished = recorder.finish(&outcome.summary);
-    let mut document = Cycle {
+    let mut document = CycleResult {
         case: case.name.clone(),
         cycle: cycle.search,
         periods,
@@ -176,7 +176,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let Some((_, first)) = cases.first() else {
         return Err(Error::Usage(format!("--sweep {text}: no values")));
     };
-    let mut folder = asked.result.place.claim(first, Kind::Sweep)?;
+    let mut folder = asked.result.place.claim(first, FolderKind::Sweep)?;
     let first = first.clone();
     let evaluations = Evaluations::default();
     let settings = format!("{:?} {text}", asked.case.sets);

@@ -9,7 +9,7 @@ use super::terminal;
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::folder::{CASE, RAW_FIELDS, REPORT, ResultFolder, TABLES, VTK, fault, other_origin, text_of};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 
 /// A folder for results.
 #[derive(Clone, Debug, Default, Args)]
@@ -24,12 +24,12 @@ pub struct PlaceArguments {
 
 impl PlaceArguments {
     /// The requested folder, or the default one.
-    pub fn folder(&self, name: &str, kind: Kind) -> PathBuf {
+    pub fn folder(&self, name: &str, kind: FolderKind) -> PathBuf {
         let usual = || {
             PathBuf::from("out").join(match kind {
-                Kind::Run => name.into(),
-                Kind::Sweep => format!("{name}-cycles"),
-                Kind::Map => format!("{name}-map"),
+                FolderKind::Run => name.into(),
+                FolderKind::Sweep => format!("{name}-cycles"),
+                FolderKind::Map => format!("{name}-map"),
                 other => format!("{name}-{}", other.command()),
             })
         };
@@ -41,7 +41,7 @@ impl PlaceArguments {
     /// # Errors
     ///
     /// Those of [`ResultFolder::claim`]; or the case itself would be overwritten.
-    pub fn claim(&self, case: &Case, kind: Kind) -> Result<ResultFolder> {
+    pub fn claim(&self, case: &Case, kind: FolderKind) -> Result<ResultFolder> {
         let dir = self.folder(&case.name, kind);
         if overwritten(&dir, case, kind) {
             return Err(Error::Usage(format!(
@@ -52,7 +52,8 @@ impl PlaceArguments {
         }
         // the user knows the content of a folder that the user names; the default one has the name in the case, which copies of a file
         // share
-        if let Some(other) = other_origin(&dir, case).filter(|_| !self.force && Kind::within(&dir) == Some(kind)) {
+        if let Some(other) = other_origin(&dir, case).filter(|_| !self.force && FolderKind::within(&dir) == Some(kind))
+        {
             if self.out.is_none() {
                 let why = format!(
                     "it contains the result of another case file, {other}, with the same name \"{}\"; give this case \
@@ -69,7 +70,7 @@ impl PlaceArguments {
 
 /// True if a command would overwrite its case, or remove it with the files of an older result. A result's own case, as resolved, is written
 /// unchanged.
-fn overwritten(dir: &Path, case: &Case, kind: Kind) -> bool {
+fn overwritten(dir: &Path, case: &Case, kind: FolderKind) -> bool {
     let (Ok(dir), Ok(path)) = (fs::canonicalize(dir), fs::canonicalize(&case.source.path)) else {
         return false;
     };
@@ -82,5 +83,5 @@ fn overwritten(dir: &Path, case: &Case, kind: Kind) -> bool {
     let name = path.file_name().unwrap_or_default();
     let written = kind.files().into_iter().chain([CASE, REPORT]).any(|file| name == file);
     let same = || text_of(&path).is_ok_and(|text| text == case.written().json);
-    path.parent() == Some(&dir) && written && !(name == CASE && Kind::within(&dir) == Some(kind) && same())
+    path.parent() == Some(&dir) && written && !(name == CASE && FolderKind::within(&dir) == Some(kind) && same())
 }

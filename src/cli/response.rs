@@ -8,12 +8,12 @@ use super::arguments::{CaseArguments, ResultArguments};
 use super::{size, terminal};
 use crate::error::numbers::{counted, error_percent};
 use crate::error::{Code, Error, Result};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
 use crate::results;
-use crate::results::response::{About, Curve, Peak, Pole, Response};
-use crate::study::response::{self, Found, Request, respond};
+use crate::results::response::{About, ResponseCurve, ResponsePeak, ResponsePole, ResponseRecord};
+use crate::study::response::{self, BandResponse, Request, respond};
 
 /// `response`.
 #[derive(Debug, Args)]
@@ -58,7 +58,7 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let case = size::load(&asked.case)?;
     // an input or output that does not exist is reported before a folder is created
     let linear = request.of(&case)?;
-    let mut folder = asked.result.place.claim(&case, Kind::Response)?;
+    let mut folder = asked.result.place.claim(&case, FolderKind::Response)?;
     asked.result.wall.flag();
     if !asked.result.quiet {
         terminal::print_line(&format!("response of {}", case.name));
@@ -103,7 +103,7 @@ fn request(asked: &ResponseArguments) -> Result<Request> {
     })
 }
 
-fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
+fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<ResponseRecord> {
     let mut curves = found.curves.iter().map(curve);
     let Some(first) = curves.next() else {
         return Err(Error::Usage("--output: expected at least one".into()));
@@ -116,7 +116,7 @@ fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
             .iter()
             .map(|why| Code::ErrorEstimate.warning(format!("not known: {why}"))),
     );
-    let mut answer = Response {
+    let mut answer = ResponseRecord {
         case: case.into(),
         input: found.response.input.clone(),
         state: match request.at {
@@ -131,7 +131,7 @@ fn answer(case: &str, request: &Request, found: &Found) -> Result<Response> {
         poles: found.poles.iter().map(pole).collect(),
         warnings,
     };
-    let coarse = |curve: &Curve| {
+    let coarse = |curve: &ResponseCurve| {
         let [median, _] = curve.errors().filter(|[median, _]| *median > LARGE)?;
         Some(Code::ErrorEstimate.warning(format!(
             "error of {} by the mesh: {} in the median over frequencies. Use a finer mesh (/mesh/cells_per_segment, /mesh/cells_per_bladder) or a lower --to.",
@@ -162,14 +162,14 @@ pub fn cautions(growing: usize, moving: bool) -> Vec<String> {
     warnings
 }
 
-fn curve(curve: &response::Curve) -> Curve {
-    let peak = |peak: &response::Peak| Peak {
+fn curve(curve: &response::OutputResponse) -> ResponseCurve {
+    let peak = |peak: &response::BandPeak| ResponsePeak {
         frequency_hz: peak.frequency_hz,
         amplitude: peak.value.norm(),
         phase_deg: peak.value.arg().to_degrees(),
         damping_ratio: peak.damping_ratio,
     };
-    Curve {
+    ResponseCurve {
         output: curve.output.key(),
         unit: curve.output.unit.into(),
         real: curve.values.iter().map(|value| value.re).collect(),
@@ -179,8 +179,8 @@ fn curve(curve: &response::Curve) -> Curve {
     }
 }
 
-fn pole(pole: &response::Pole) -> Pole {
-    Pole {
+fn pole(pole: &response::BandPole) -> ResponsePole {
+    ResponsePole {
         re: pole.s.re,
         im: pole.s.im,
         frequency_hz: pole.s.im / std::f64::consts::TAU,

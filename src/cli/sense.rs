@@ -6,14 +6,14 @@ use super::arguments::SenseArguments;
 use super::{interrupt, line, size};
 use crate::error::{Error, Result};
 use crate::output::folder::CASE;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::{report, sense as files};
 use crate::results;
 use crate::study::sense::basis::{Basis, amplitudes};
 use crate::study::sense::choose::Criterion;
 use crate::study::sense::estimate::Smoothing;
-use crate::study::sense::find::{Asked, Dynamic, find};
-use crate::study::sense::pressures::Measured;
+use crate::study::sense::find::{Dynamic, SenseOptions, find};
+use crate::study::sense::pressures::PressureTable;
 use crate::study::sense::rest::probed;
 use crate::study::sweep::plan::quoted;
 
@@ -23,14 +23,14 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
     let question = question(asked, case.time.end_s)?;
     probed(case)?;
     amplitudes(case, &question.loads)?;
-    let measured = asked.pressures.as_ref().map(|path| Measured::read(path, case));
+    let measured = asked.pressures.as_ref().map(|path| PressureTable::read(path, case));
     let measured = measured.transpose()?;
     if question.noise_pa.is_some() && measured.as_ref().is_some_and(|one| one.deviations.is_some()) {
         let what = "--noise: the measurements contain columns with the standard deviation of each pressure; leave out \
                     one of the two";
         return Err(Error::Usage(what.into()));
     }
-    let mut folder = asked.result.place.claim(case, Kind::Sense)?;
+    let mut folder = asked.result.place.claim(case, FolderKind::Sense)?;
     let bar = line::line(asked.result.quiet);
     bar.set_message("searching for the loads");
     bar.tick();
@@ -79,7 +79,7 @@ fn again(asked: &SenseArguments) -> String {
     words.fold("slcbeam sense".into(), |text, word| text + " " + &quoted(&word))
 }
 
-fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
+fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
     if let Some(noise) = asked.noise.filter(|noise| !(1e-6..=1e9).contains(noise)) {
         return Err(Error::Usage(format!(
             "--noise {noise}: expected a standard deviation in Pa, from 1e-6 to 1e9"
@@ -124,7 +124,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<Asked> {
              Request one (--load profile:10, --dynamic), or leave --smoothing out"
         )));
     }
-    Ok(Asked {
+    Ok(SenseOptions {
         loads,
         noise_pa: asked.noise,
         smoothing,

@@ -5,25 +5,25 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use super::arguments::StudyArguments;
-use super::line::Shown;
+use super::line::ProgressLine;
 use super::{interrupt, journal, size, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::numerics::threads;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::{counted, duration};
 use crate::output::report;
 use crate::output::study as files;
-use crate::study::accuracy::trial::Role;
-use crate::study::accuracy::{Budget, Event, Plan, Scheme, study as run_study};
+use crate::study::accuracy::trial::RunPurpose;
+use crate::study::accuracy::{Budget, Scheme, StudyEvent, StudyPlan, study as run_study};
 use crate::study::evaluations::Evaluations;
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
     let case = &size::load(&asked.case)?;
     System::new(case)?;
-    let plan = Plan {
+    let plan = StudyPlan {
         rtols: asked.rtol.clone(),
         cells: asked.cells.clone(),
         schemes: Scheme::list(&asked.methods, &asked.orders)?,
@@ -32,7 +32,7 @@ pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
         parallel: asked.parallel,
     }
     .checked()?;
-    let mut folder = asked.result.place.claim(case, Kind::Study)?;
+    let mut folder = asked.result.place.claim(case, FolderKind::Study)?;
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("study", case, &format!("{plan:?}")))?;
     let flag = asked.result.wall.flag();
@@ -83,13 +83,13 @@ pub fn seconds(text: &str) -> Result<f64> {
 
 /// A bar on a terminal, a line per mesh and method elsewhere.
 struct Progress {
-    shown: Shown,
-    last: Mutex<Option<(usize, Scheme, Role)>>,
+    shown: ProgressLine,
+    last: Mutex<Option<(usize, Scheme, RunPurpose)>>,
 }
 
 impl Progress {
     fn new(quiet: bool) -> Self {
-        let shown = Shown::new(quiet, "{pos}/{len} {wide_bar:.blue/dim} {msg}");
+        let shown = ProgressLine::new(quiet, "{pos}/{len} {wide_bar:.blue/dim} {msg}");
         if let Some(bar) = &shown.bar
             && threads::granted()
         {
@@ -99,11 +99,11 @@ impl Progress {
         Self { shown, last }
     }
 
-    fn show(&self, event: &Event) {
+    fn show(&self, event: &StudyEvent) {
         let s = event.setting;
         let what = match event.role {
-            Role::Point => "",
-            Role::Reference => "reference, ",
+            RunPurpose::Point => "",
+            RunPurpose::Reference => "reference, ",
         };
         let expected = event
             .expected

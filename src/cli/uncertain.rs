@@ -17,19 +17,19 @@ use crate::output::uncertainty as files;
 use crate::results::run::Bands;
 use crate::results::uncertainty::Uncertainty;
 use crate::run::summary::{CompanionRun, Status};
-use crate::study::analysis::Found;
-use crate::study::analysis::{self, AnalysisKind, Ask};
+use crate::study::analysis::AnalysisOutcome;
+use crate::study::analysis::{self, AnalysisKind, AnalysisRequest};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::designs::pairs;
 use crate::study::sweep::{Vary, pool};
-use crate::study::uncertain::{self, Plan, Slopes};
+use crate::study::uncertain::{self, FirstOrderSlopes, SamplePlan};
 
 /// Step of a difference, relative to the standard deviation.
 const STEP: f64 = 0.1;
 
 /// A request for uncertainty, with checked samples.
 pub struct Uncertain {
-    plan: Plan,
+    plan: SamplePlan,
     path: PathBuf,
     text: String,
     sets: Vec<String>,
@@ -64,7 +64,7 @@ impl Uncertain {
         let read = |text: &String| Vary::parse_as("--uncertain", text);
         let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
         let one = Self {
-            plan: Plan::new(inputs, asked.samples, asked.seed, asked.indices)?,
+            plan: SamplePlan::new(inputs, asked.samples, asked.seed, asked.indices)?,
             jobs: sweep::jobs(asked.jobs)?,
             text: case::text(path)?,
             path: path.clone(),
@@ -118,8 +118,8 @@ impl Uncertain {
     }
 
     /// Figures of a case under its key, on request with the errors due to meshes; none if interrupted.
-    fn found(&self, key: &impl Serialize, case: &Case, meshes: bool) -> Option<Found> {
-        let ask = Ask {
+    fn found(&self, key: &impl Serialize, case: &Case, meshes: bool) -> Option<AnalysisOutcome> {
+        let ask = AnalysisRequest {
             what: self.what,
             accuracy: None,
             from: None,
@@ -140,14 +140,14 @@ impl Uncertain {
         };
         let mut counter = Counter::new(self.quiet, "samples done", self.plan.count());
         let all: Vec<usize> = (0..self.plan.count()).collect();
-        let mut samples: Vec<Option<Found>> = vec![None; all.len()];
+        let mut samples: Vec<Option<AnalysisOutcome>> = vec![None; all.len()];
         let work = |number: usize| {
             if self.stopped() {
                 return None;
             }
             let of = match self.case(self.plan.sets(number)) {
                 Ok(case) => self.found(&number, &case, false)?,
-                Err(error) => Found::failed(&error),
+                Err(error) => AnalysisOutcome::failed(&error),
             };
             Some((number, of))
         };
@@ -182,7 +182,7 @@ impl Uncertain {
     }
 
     /// Derivatives at the means; for cycles, which have no derivatives of their own, by differences of two cycles.
-    fn slopes(&self) -> Slopes {
+    fn slopes(&self) -> FirstOrderSlopes {
         let means = match self.case(self.plan.sets_at(|one| one[0])) {
             Ok(means) => means,
             Err(error) => return Err(format!("the case about the means: {error}")),

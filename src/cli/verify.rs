@@ -13,8 +13,8 @@ use crate::numerics::threads;
 use crate::output::columns;
 use crate::output::numbers::significant;
 use crate::results;
-use crate::results::verify::{Figure, Row};
-use crate::study::verify::{self, Measure};
+use crate::results::verify::{VerifiedFigure, VerifiedRow};
+use crate::study::verify::{self, ErrorMeasure};
 
 /// Computes all rows, or those whose name contains the requested one, and prints them as a table.
 pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
@@ -32,11 +32,11 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         bar.enable_steady_tick(Duration::from_millis(200));
     }
     let count = rows.len();
-    let rows: Vec<Row> = rows
+    let rows: Vec<VerifiedRow> = rows
         .iter()
         .map_while(|row| {
             bar.set_message(row.name.clone());
-            let found = Row::of(row, &row.figures());
+            let found = VerifiedRow::of(row, &row.figures());
             bar.inc(1);
             // an interrupted row has no answer
             (!interrupt::raised(&flag)).then_some(found)
@@ -54,7 +54,7 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
     Ok(ExitCode::from(exit_code(&rows)))
 }
 
-fn exit_code(rows: &[Row]) -> u8 {
+fn exit_code(rows: &[VerifiedRow]) -> u8 {
     if !rows.is_empty() && rows.iter().all(|row| row.passed) {
         0
     } else {
@@ -65,7 +65,7 @@ fn exit_code(rows: &[Row]) -> u8 {
 const HEADINGS: &str =
     "<name | <quantity | <computed | <exact | <error | <tolerance | <order | <limit | <estimate | <verdict";
 
-fn table(rows: &[Row]) -> String {
+fn table(rows: &[VerifiedRow]) -> String {
     let mut lines = vec![];
     for row in rows {
         lines.extend(row.figures.iter().flatten().map(|figure| line(row, figure)));
@@ -93,10 +93,10 @@ fn table(rows: &[Row]) -> String {
     text
 }
 
-fn line(row: &Row, figure: &Figure) -> [String; 10] {
+fn line(row: &VerifiedRow, figure: &VerifiedFigure) -> [String; 10] {
     let sign = match figure.error_is {
-        Measure::Relative => 'r',
-        Measure::Absolute => 'a',
+        ErrorMeasure::Relative => 'r',
+        ErrorMeasure::Absolute => 'a',
     };
     let or_nothing = |x: Option<f64>, shown: fn(f64) -> String| x.map_or_else(String::new, shown);
     [
@@ -117,19 +117,19 @@ fn line(row: &Row, figure: &Figure) -> [String; 10] {
 mod tests {
     use super::*;
     use crate::error::Error;
-    use crate::study::verify::Figure;
+    use crate::study::verify::ExactFigure;
 
-    fn row(figures: Result<Vec<Figure>>) -> Row {
-        let row = verify::Row::new("row", ["source", "goal", "reason"], || Ok(vec![]));
-        Row::of(&row, &figures)
+    fn row(figures: Result<Vec<ExactFigure>>) -> VerifiedRow {
+        let row = verify::SolvedProblem::new("row", ["source", "goal", "reason"], || Ok(vec![]));
+        VerifiedRow::of(&row, &figures)
     }
 
     /// Goal: rows that miss their tolerance, fail to run or compute nothing end the command with 4, and the table names them.
     #[test]
     fn failures_are_reported() {
-        let good = || row(Ok(vec![Figure::relative("x", 1.0, 1.0, 1e-9)]));
+        let good = || row(Ok(vec![ExactFigure::relative("x", 1.0, 1.0, 1e-9)]));
         assert_eq!(exit_code(&[good()]), 0);
-        let missed = row(Ok(vec![Figure::relative("x", 1.1, 1.0, 1e-9)]));
+        let missed = row(Ok(vec![ExactFigure::relative("x", 1.1, 1.0, 1e-9)]));
         let failed = row(Err(Error::Usage("it broke".into())));
         for bad in [missed, failed, row(Ok(vec![]))] {
             assert_eq!(exit_code(&[good(), bad]), 4);

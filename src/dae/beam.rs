@@ -7,7 +7,7 @@ use super::trace::Dependence;
 use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::residual::around::mean_direction;
-use crate::discrete::{State, System, TimeData, Workspace, ledger, residual};
+use crate::discrete::{CompleteState, System, TimeData, Workspace, ledger, residual};
 use crate::functions::signals::{Clock, Signal};
 use crate::model::Kinematics;
 use crate::numerics::{Dual, Planar, kernels, wide};
@@ -166,7 +166,7 @@ impl BeamDae {
     }
 
     /// Evaluates the model at a scaled state; returns time data and workspace, for balances and samples.
-    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
+    pub fn evaluate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, CompleteState<'_>) {
         self.unscale(t, y, yp);
         let b = &mut self.plain;
         residual::evaluate(&self.system, &self.now, &b.y, &b.yp, &mut b.workspace);
@@ -176,7 +176,7 @@ impl BeamDae {
 
     /// Like [`BeamDae::evaluate`], for a state that the integrator has just accepted at `t` [s]. If its integrands were the last
     /// evaluation, the workspace still contains them.
-    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, State<'_>) {
+    pub fn accepted(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (&System, &TimeData, CompleteState<'_>) {
         if self.held != Some(t) {
             return self.evaluate(t, y, yp);
         }

@@ -1,7 +1,7 @@
 //! Equilibrium as a system without derivatives; the load factor replaces time.
 
 use super::{BeamDae, Dae, EvaluationError, Pattern, Seeds};
-use crate::discrete::fluid_mesh::{FluidMesh, Place};
+use crate::discrete::fluid_mesh::{FluidMesh, LinkEnd};
 use crate::discrete::{System, ValveTangents};
 use crate::numerics::sets::Sets;
 
@@ -221,10 +221,10 @@ fn closed(beam: &mut BeamDae, start: &[f64]) -> Vec<Closed> {
     // Indices: cells, then junctions, then a common one for all prescribed pressures.
     let given = fluid.cells + fluid.junctions.len();
     let mut sets = Sets::new(given + 1);
-    let index = |place: Place| match place {
-        Place::Cell(c) => c,
-        Place::Junction(j) => fluid.cells + j,
-        Place::Port(_) => given,
+    let index = |place: LinkEnd| match place {
+        LinkEnd::Cell(c) => c,
+        LinkEnd::Junction(j) => fluid.cells + j,
+        LinkEnd::Port(_) => given,
     };
     fluid.creeping_faces().for_each(|[a, b]| sets.join(a, b));
     for (link, &conductance) in fluid.links.iter().zip(&now.conductance) {

@@ -2,8 +2,8 @@
 
 use super::residual::momentum;
 use super::turns::nearest;
-use super::{Mesh, System, TimeData, Workspace};
-use crate::model::{Attachment, Kinematics, Section};
+use super::{BeamMesh, System, TimeData, Workspace};
+use crate::model::{AttachedBody, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
 
 /// An attachment, at a place between nodes and between midpoints of cells.
@@ -53,7 +53,12 @@ pub struct Attached {
 impl Attached {
     /// Attachments of a model, ordered by place, and the masses of the nodes [kg], from the beam lengths [m] of the nodes and from the
     /// attachments.
-    pub fn all(attachments: &[Attachment], section: &Section, mesh: &Mesh, lengths: &[f64]) -> (Vec<Self>, Vec<f64>) {
+    pub fn all(
+        attachments: &[AttachedBody],
+        section: &Section,
+        mesh: &BeamMesh,
+        lengths: &[f64],
+    ) -> (Vec<Self>, Vec<f64>) {
         let mut all: Vec<_> = (0..attachments.len())
             .map(|number| Self::new(number, &attachments[number], section, mesh))
             .collect();
@@ -67,7 +72,7 @@ impl Attached {
         (all, masses)
     }
 
-    fn new(number: usize, attachment: &Attachment, section: &Section, mesh: &Mesh) -> Self {
+    fn new(number: usize, attachment: &AttachedBody, section: &Section, mesh: &BeamMesh) -> Self {
         let place = attachment.at * mesh.cells as f64;
         let (node, weights) = share(place, mesh.cells);
         let (first, last) = (0.5, mesh.cells as f64 - 0.5);

@@ -2,9 +2,9 @@
 
 use super::attached::share;
 use super::residual::solid;
-use super::{Mesh, System, TimeData, Workspace};
+use super::{BeamMesh, System, TimeData, Workspace};
 use crate::case::{ResolvedEnd, Rotation};
-use crate::model::{Attachment, Kinematics};
+use crate::model::{AttachedBody, Kinematics};
 use crate::numerics::{Planar, Scalar};
 
 /// A body on the beam: rotary inertia, and a mass with its center beside the beam's line.
@@ -70,13 +70,18 @@ struct Motion {
 
 impl Body {
     /// Rotating bodies of a model.
-    pub fn all(attachments: &[Attachment], ends: &[ResolvedEnd; 2], kinematics: Kinematics, mesh: &Mesh) -> Vec<Self> {
+    pub fn all(
+        attachments: &[AttachedBody],
+        ends: &[ResolvedEnd; 2],
+        kinematics: Kinematics,
+        mesh: &BeamMesh,
+    ) -> Vec<Self> {
         if kinematics == Kinematics::Bar {
             return vec![];
         }
         let turns = [&ends[0], &ends[1]].map(|end| matches!(end.rotation, Rotation::Moment(_)));
         let bodies = attachments.iter().enumerate().filter(|(_, one)| one.is_body());
-        let body = |(number, one): (usize, &Attachment)| {
+        let body = |(number, one): (usize, &AttachedBody)| {
             let place = one.at * mesh.cells as f64;
             let (node, hats) = share(place, mesh.cells);
             let (first, weights) = cells(place, mesh.cells, turns);

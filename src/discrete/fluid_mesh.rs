@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use super::let_in::{self, Share};
+use super::let_in::{self, InjectedShare};
 use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
-use crate::model::network::{AccumulatorLaw, CheckValve, FlowLaw, Link, LinkKind, Node};
+use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, Link, LinkKind, NetworkNode};
 use crate::model::{Storage, Wet};
 
 /// End of a link on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum LinkEnd {
     /// A cell; half of its resistance is in series.
     Cell(usize),
     /// An unknown junction pressure.
@@ -25,9 +25,9 @@ pub struct MeshLink {
     /// Number among the network's links; none for a face between cells.
     pub number: Option<usize>,
     /// Source of positive flow.
-    pub from: Place,
+    pub from: LinkEnd,
     /// Destination of positive flow.
-    pub to: Place,
+    pub to: LinkEnd,
     /// Resistance of the half cells at its ends [Pa s/m^3]; for a face the total resistance.
     pub half_cells: f64,
     /// Resistance in between, scaled by the opening of a valve [Pa s/m^3].
@@ -37,7 +37,7 @@ pub struct MeshLink {
     /// Number of the link's pump among all pumps.
     pub pump: Option<usize>,
     /// Check valve of the link.
-    pub check_valve: Option<CheckValve>,
+    pub check_valve: Option<CheckValveLaw>,
     /// Kind of the link; none for a face between cells.
     pub kind: Option<LinkKind>,
     /// Law of a flow that is not given by pressures alone.
@@ -73,7 +73,7 @@ pub struct MeshSource {
     /// Number among the network's sources.
     pub number: usize,
     /// Cell or junction that it enters.
-    pub into: Place,
+    pub into: LinkEnd,
     /// Resistance of the half cell behind the port [Pa s/m^3].
     pub half_cell: f64,
 }
@@ -97,9 +97,9 @@ pub struct MeshBridge {
     /// Number among the network's bridges.
     pub number: usize,
     /// One port.
-    pub from: Place,
+    pub from: LinkEnd,
     /// The other.
-    pub to: Place,
+    pub to: LinkEnd,
 }
 
 /// Cells of all bladders: bladder b has the cells from `b cells_per_bladder`, inlet to outlet; upper row first.
@@ -139,7 +139,7 @@ pub struct FluidMesh {
     /// Bridges of check valves.
     pub bridges: Vec<MeshBridge>,
     /// Cells and accumulators whose unknowns are relative to the volume from ports of prescribed volume.
-    pub shares: Vec<Share>,
+    pub shares: Vec<InjectedShare>,
     /// Accumulators; the unknowns of their junctions are volumes.
     pub accumulators: Vec<MeshAccumulator>,
     /// Links with a pump, in ascending order.
@@ -165,16 +165,16 @@ impl FluidMesh {
             .filter(|&j| wet.flows && !pooled(network.component_of_junction[j]))
             .collect();
         // End of a link; none in a bladder without flow.
-        let place = |node: Node| match node {
-            Node::Cell { bladder, .. } if !flows(bladder) => None,
-            Node::Cell { bladder, end } => Some(Place::Cell(match end {
+        let place = |node: NetworkNode| match node {
+            NetworkNode::Cell { bladder, .. } if !flows(bladder) => None,
+            NetworkNode::Cell { bladder, end } => Some(LinkEnd::Cell(match end {
                 BladderEnd::Inlet => bladder * cells_per_bladder,
                 BladderEnd::Outlet => (bladder + 1) * cells_per_bladder - 1,
             })),
-            Node::Junction(j) => junctions.binary_search(&j).ok().map(Place::Junction),
-            Node::Port(p) => wet.flows.then_some(Place::Port(p)),
+            NetworkNode::Junction(j) => junctions.binary_search(&j).ok().map(LinkEnd::Junction),
+            NetworkNode::Port(p) => wet.flows.then_some(LinkEnd::Port(p)),
         };
-        let half_of = |p: Place| if let Place::Cell(_) = p { half } else { 0.0 };
+        let half_of = |p: LinkEnd| if let LinkEnd::Cell(_) = p { half } else { 0.0 };
         let (mut count, mut branches) = (0, 0);
         let mut flow = |law: FlowLaw| {
             let (number, branch) = (count, branches);
@@ -186,10 +186,10 @@ impl FluidMesh {
         // a
         // junction remain creeping, so that the junction's pressure follows from flows.
         let along = network.along_bladders.as_ref();
-        let law = |link: &Link, ends: [Place; 2]| {
+        let law = |link: &Link, ends: [LinkEnd; 2]| {
             let own = link.tube.map(|tube| tube.law);
-            let cells = ends.iter().filter(|end| matches!(end, Place::Cell(_))).count();
-            let at_junction = ends.iter().any(|end| matches!(end, Place::Junction(_)));
+            let cells = ends.iter().filter(|end| matches!(end, LinkEnd::Cell(_))).count();
+            let at_junction = ends.iter().any(|end| matches!(end, LinkEnd::Junction(_)));
             match along.filter(|_| cells > 0 && (own.is_some() || !at_junction)) {
                 None => own,
                 Some(along) => Some(own.unwrap_or_default().behind(&along.over(0.5 * cells as f64 * ds))),
@@ -221,8 +221,8 @@ impl FluidMesh {
             let faces = faces(&flowing, cells_per_bladder);
             links.extend(faces.map(|[from, to]| MeshLink {
                 number: None,
-                from: Place::Cell(from),
-                to: Place::Cell(to),
+                from: LinkEnd::Cell(from),
+                to: LinkEnd::Cell(to),
                 half_cells: 1.0 / conductance,
                 resistance: 0.0,
                 of_pump: 0.0,
@@ -325,7 +325,7 @@ impl FluidMesh {
 
     /// Mean pressure at the other ends of the links at a junction, of cells and ports only [Pa].
     pub fn around(&self, junction: usize, cells: &[f64], ports: &[f64]) -> f64 {
-        let here = Place::Junction(junction);
+        let here = LinkEnd::Junction(junction);
         let known = self.links.iter().filter_map(|link| {
             let other = match here {
                 _ if link.from == here => link.to,
@@ -333,9 +333,9 @@ impl FluidMesh {
                 _ => return None,
             };
             match other {
-                Place::Cell(cell) => Some(cells[cell]),
-                Place::Port(port) => Some(ports[port]),
-                Place::Junction(_) => None,
+                LinkEnd::Cell(cell) => Some(cells[cell]),
+                LinkEnd::Port(port) => Some(ports[port]),
+                LinkEnd::Junction(_) => None,
             }
         });
         let (sum, count) = known.fold((0.0, 0), |(sum, count), pressure| (sum + pressure, count + 1));

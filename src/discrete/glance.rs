@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::quantities::look;
 use super::turns::tip_angle;
 use super::workspace::Motion;
-use super::{State, System, TimeData, Workspace, crossing, ledger, touching};
+use super::{CompleteState, System, TimeData, Workspace, crossing, ledger, touching};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::Kinematics;
@@ -94,7 +94,7 @@ impl Glance {
     }
 
     /// Evaluates the monitored values of a state.
-    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: State) -> Self {
+    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: CompleteState) -> Self {
         let w = &*w;
         let mut g = Self { t, ..Self::default() };
         let last = system.mesh.nodes - 1;

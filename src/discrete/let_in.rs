@@ -1,8 +1,8 @@
 //! Volume injected by ports of prescribed volume, and the unknowns that are relative to it.
 
-use super::fluid_mesh::{FluidMesh, MeshLink, Place};
+use super::fluid_mesh::{FluidMesh, LinkEnd, MeshLink};
 use super::{System, TimeData};
-use crate::model::network::{Feed, Network, Source};
+use crate::model::network::{Feed, PrescribedFlow, ResolvedNetwork};
 use crate::model::{LumpedKind, LumpedNetwork, Wet};
 use crate::numerics::sets::Sets;
 
@@ -17,7 +17,7 @@ pub enum Store {
 
 /// A store whose unknown is relative to a share of the volume injected by a source, [E22].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
+pub struct InjectedShare {
     /// Number among the network's sources.
     pub source: usize,
     /// Store that receives the share.
@@ -29,7 +29,7 @@ pub struct Share {
 /// Shares of all sources that prescribe a volume. The volume is distributed by compliance over the stores connected without valves, or,
 /// if there are none, over all connected stores. The unknown of each store is therefore small, and exact if a valve closes. There are no
 /// shares if a port of given pressure releases the volume again, because little of it may remain.
-pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
+pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<InjectedShare> {
     let network = &wet.network;
     let mut all = vec![];
     if network.still {
@@ -54,7 +54,7 @@ pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
             let stores = stores(fluid, wet, &places);
             let sum: f64 = stores.iter().map(|(_, compliance)| compliance).sum();
             if sum > 0.0 {
-                all.extend(stores.into_iter().map(|(store, compliance)| Share {
+                all.extend(stores.into_iter().map(|(store, compliance)| InjectedShare {
                     source: source.number,
                     store,
                     share: compliance / sum / if let Store::Cell(_) = store { fluid.ds } else { 1.0 },
@@ -67,17 +67,17 @@ pub fn shares(fluid: &FluidMesh, wet: &Wet) -> Vec<Share> {
 }
 
 /// True if a source prescribes a volume, and no port of given pressure releases it from its network.
-pub fn is_kept(network: &Network, source: usize) -> bool {
-    let Source { into, feed, .. } = &network.sources[source];
+pub fn is_kept(network: &ResolvedNetwork, source: usize) -> bool {
+    let PrescribedFlow { into, feed, .. } = &network.sources[source];
     matches!(feed, Feed::Volume(_)) && network.component_of(*into).is_some_and(|own| !network.lets_out(own))
 }
 
 /// For each cell, then each junction: true if links connect it to the place `to`; neighboring cells of a bladder are connected.
-fn joined(fluid: &FluidMesh, to: Place, links: impl Iterator<Item = (Place, Place)>) -> Vec<bool> {
-    let index = |place: Place| match place {
-        Place::Cell(c) => Some(c),
-        Place::Junction(j) => Some(fluid.cells + j),
-        Place::Port(_) => None,
+fn joined(fluid: &FluidMesh, to: LinkEnd, links: impl Iterator<Item = (LinkEnd, LinkEnd)>) -> Vec<bool> {
+    let index = |place: LinkEnd| match place {
+        LinkEnd::Cell(c) => Some(c),
+        LinkEnd::Junction(j) => Some(fluid.cells + j),
+        LinkEnd::Port(_) => None,
     };
     let mut sets = Sets::new(fluid.cells + fluid.junctions.len());
     for [a, b] in fluid.faces() {
@@ -127,7 +127,7 @@ pub fn count_from(system: &System, now: &TimeData, y: &mut [f64]) {
     };
     let l = &system.layout.network;
     let k = fluid.cells_per_bladder;
-    for &Share { source, store, share } in &fluid.shares {
+    for &InjectedShare { source, store, share } in &fluid.shares {
         let unknown = match store {
             Store::Vessel(k) => Some(l.junction.start + fluid.accumulators[k].junction),
             Store::Cell(c) => {

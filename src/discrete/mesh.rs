@@ -2,7 +2,7 @@
 
 /// Mesh with `K` equal cells in each of `segments` equal segments.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh {
+pub struct BeamMesh {
     /// Number of segments, `n/2` if there are bladders.
     pub segments: usize,
     /// Cells per segment `K`.
@@ -19,7 +19,7 @@ pub struct Mesh {
     pub fourth: bool,
 }
 
-impl Mesh {
+impl BeamMesh {
     /// Uniform mesh of a beam of the given length [m].
     pub fn new(length: f64, segments: usize, cells_per_segment: usize) -> Self {
         let cells = segments * cells_per_segment;

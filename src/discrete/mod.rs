@@ -38,13 +38,13 @@ pub use attached::Attached;
 pub use bodies::Body;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
-pub use mesh::Mesh;
-pub use quantities::Probe;
+pub use mesh::BeamMesh;
+pub use quantities::MeshProbe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
 pub use touching::Touching;
 pub use valve_tangents::ValveTangents;
-pub use workspace::{State, Workspace};
+pub use workspace::{CompleteState, Workspace};
 
 /// A model on a mesh: all data of the residual except time and state.
 #[derive(Clone, Debug)]
@@ -52,7 +52,7 @@ pub struct System {
     /// Physics.
     pub model: Model,
     /// Beam mesh.
-    pub mesh: Mesh,
+    pub mesh: BeamMesh,
     /// Bladder cells and links; absent in a dry beam.
     pub fluid: Option<FluidMesh>,
     /// Unknowns and equations.
@@ -66,7 +66,7 @@ pub struct System {
     /// Contact points of the beam, ordered by place.
     pub touching: Vec<Touching>,
     /// Recorded places.
-    pub probes: Vec<Probe>,
+    pub probes: Vec<MeshProbe>,
     /// Masses of the nodes [kg].
     pub masses: Vec<f64>,
     /// Lengths over which mass and surroundings act on the nodes [m].
@@ -123,7 +123,7 @@ impl System {
     pub fn nodal_masses(&self) -> Vec<f64> {
         let l = &self.layout;
         let mut masses = vec![0.0; l.len];
-        for (node, unknown, _) in l.lines.iter().flat_map(layout::Line::unknowns) {
+        for (node, unknown, _) in l.lines.iter().flat_map(layout::LineLayout::unknowns) {
             masses[unknown] = self.masses[node] * l.scales[unknown] / l.row_scales[unknown];
         }
         masses
@@ -229,7 +229,8 @@ impl System {
     }
 
     fn of(case: &Case, model: Model) -> Self {
-        let mesh = Mesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order());
+        let mesh =
+            BeamMesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order());
         let fluid = model
             .wet
             .as_ref()
@@ -249,7 +250,7 @@ impl System {
         Self {
             stands_alone: nothing_attached && !model.section.resists_motion() && model.surroundings.is_none(),
             model,
-            probes: Probe::all(case, &mesh),
+            probes: MeshProbe::all(case, &mesh),
             mesh,
             fluid,
             layout,

@@ -11,14 +11,14 @@ use crate::model::Kinematics;
 
 /// Output values of a fourth-order beam, [E77]; empty otherwise, and for values that equal those of the equations.
 #[derive(Clone, Debug, Default)]
-pub struct Readings {
+pub struct FourthOrderReadings {
     curvature: Vec<f64>,
     moment: Vec<f64>,
     normal: Vec<f64>,
     shear: Vec<f64>,
 }
 
-impl Readings {
+impl FourthOrderReadings {
     /// Allocates the values of a system.
     pub fn new(system: &System) -> Self {
         let mesh = &system.mesh;
@@ -87,7 +87,7 @@ pub fn read(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     w.readings = readings;
 }
 
-fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut Readings) {
+fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut FourthOrderReadings) {
     let (mesh, moment) = (&system.mesh, &w.forces.moment);
     let last = mesh.cells;
     for i in 0..=last {

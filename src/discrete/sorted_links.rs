@@ -1,7 +1,7 @@
 //! Links by type, so that an evaluation processes simple ones together and skips irrelevant ones.
 
-use super::fluid_mesh::{MeshLink, Place};
-use crate::model::Network;
+use super::fluid_mesh::{LinkEnd, MeshLink};
+use crate::model::ResolvedNetwork;
 
 /// Indices of links on the mesh, by type.
 #[derive(Clone, Debug)]
@@ -18,7 +18,7 @@ pub struct SortedLinks {
 
 impl SortedLinks {
     /// Sorts the links of a mesh.
-    pub(super) fn new(links: &[MeshLink], network: &Network) -> Self {
+    pub(super) fn new(links: &[MeshLink], network: &ResolvedNetwork) -> Self {
         let opens = |link: &MeshLink| {
             link.number
                 .is_some_and(|number| network.links[number].opening.is_some())
@@ -26,7 +26,7 @@ impl SortedLinks {
         let ends = |link: &MeshLink| {
             [link.from, link.to]
                 .into_iter()
-                .any(|place| matches!(place, Place::Port(_)))
+                .any(|place| matches!(place, LinkEnd::Port(_)))
         };
         let mut sorted = Self {
             between_cells: vec![],
@@ -36,7 +36,7 @@ impl SortedLinks {
         };
         for (k, link) in links.iter().enumerate() {
             match (link.from, link.to) {
-                (Place::Cell(from), Place::Cell(to)) if link.is_plain() => {
+                (LinkEnd::Cell(from), LinkEnd::Cell(to)) if link.is_plain() => {
                     sorted.between_cells.push([k, from, to].map(|number| number as u32));
                 }
                 _ => sorted.others.push(k),

@@ -5,7 +5,7 @@ use super::{Statics, System, ValveTangents, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Clock, Jet, Signal};
-use crate::model::Load;
+use crate::model::DistributedLoad;
 use crate::model::attachments::Acting;
 use crate::model::loads::LoadKind;
 use crate::model::network::Feed;
@@ -36,7 +36,7 @@ pub struct SampledLoad {
 
 impl SampledLoad {
     /// Discretizes a load on a mesh.
-    pub fn new(load: &Load, mesh: &super::Mesh) -> Self {
+    pub fn new(load: &DistributedLoad, mesh: &super::BeamMesh) -> Self {
         let mut shape = match load.kind {
             LoadKind::ForceX | LoadKind::ForceZ => forces_at_nodes(&load.profile, mesh),
             LoadKind::RestCurvature => shapes::at_nodes(&load.profile, mesh.cells),
@@ -52,7 +52,7 @@ impl SampledLoad {
 }
 
 /// Force per length `b_i` of each node.
-fn forces_at_nodes(profile: &Profile, mesh: &super::Mesh) -> Vec<f64> {
+fn forces_at_nodes(profile: &Profile, mesh: &super::BeamMesh) -> Vec<f64> {
     let mut values = shapes::at_nodes(profile, mesh.cells);
     if !mesh.fourth {
         return values;

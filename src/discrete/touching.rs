@@ -1,8 +1,8 @@
 //! Contact points with walls, on a mesh.
 
 use super::ledger::EnergyRate;
-use super::{Mesh, System, Workspace};
-use crate::model::Contact;
+use super::{BeamMesh, System, Workspace};
+use crate::model::ContactWall;
 use crate::model::contact::Pressed;
 use crate::numerics::{Planar, Scalar};
 
@@ -29,7 +29,7 @@ pub struct Touching {
 
 impl Touching {
     /// Contact points of a model, ordered by place.
-    pub fn all(contacts: &[Contact], mesh: &Mesh) -> Vec<Self> {
+    pub fn all(contacts: &[ContactWall], mesh: &BeamMesh) -> Vec<Self> {
         let mut all = vec![];
         for (number, contact) in contacts.iter().enumerate() {
             let mut push = |place: f64, measure: f64| {

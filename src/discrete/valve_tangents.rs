@@ -3,7 +3,7 @@
 use super::residual::fluid::{driving, over_bridge};
 use super::residual::rows::driven;
 use super::{System, TimeData, Workspace};
-use crate::model::network::CheckValve;
+use crate::model::network::CheckValveLaw;
 use crate::numerics::Scalar;
 
 /// Pressure drops [Pa] at which valves are replaced by their tangents; if empty, valves follow their characteristics.
@@ -61,7 +61,7 @@ impl ValveTangents {
 
     /// Flow through the valve of a link in series with a resistance, for the drop over both.
     #[inline]
-    pub fn behind<T: Scalar>(&self, link: usize, valve: &CheckValve, resistance: f64, drop: T) -> T {
+    pub fn behind<T: Scalar>(&self, link: usize, valve: &CheckValveLaw, resistance: f64, drop: T) -> T {
         match self.links.get(link) {
             None => valve.flow_behind(resistance, drop),
             Some(&[resistance, at]) => drop.lift(|drop| along(valve.flow_and_slope(resistance, at), drop - at)),
@@ -70,7 +70,7 @@ impl ValveTangents {
 
     /// Flows through the two pairs of valves of a bridge, for their drops.
     #[inline]
-    pub fn through<T: Scalar>(&self, bridge: usize, valve: &CheckValve, (forward, backward): (T, T)) -> (T, T) {
+    pub fn through<T: Scalar>(&self, bridge: usize, valve: &CheckValveLaw, (forward, backward): (T, T)) -> (T, T) {
         match self.bridges.get(bridge) {
             None => (valve.flow(forward), valve.flow(backward)),
             Some(&at) => {

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::fluid_mesh::Place;
+use super::fluid_mesh::LinkEnd;
 use super::{FluidMesh, System};
 use crate::case::schema::{Case, MaxOrder, Method};
 use crate::error::numbers::significant;
@@ -52,7 +52,7 @@ fn in_fluid(system: &System) -> impl Iterator<Item = [f64; 2]> + '_ {
             let law = link.flow.map(|flow| flow.law).filter(|law| law.inertance > 0.0)?;
             let cells = [link.from, link.to]
                 .into_iter()
-                .filter(|end| matches!(end, Place::Cell(_)))
+                .filter(|end| matches!(end, LinkEnd::Cell(_)))
                 .count();
             let stiffness = cells as f64 / (wet.compliance() * fluid.ds);
             let omega = (stiffness / law.inertance).sqrt();

@@ -1,7 +1,7 @@
 //! Intermediate quantities of one evaluation, stage by stage; allocated once, for each scalar type.
 
 use super::System;
-use super::readings::Readings;
+use super::readings::FourthOrderReadings;
 use super::residual::fourth;
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
@@ -10,19 +10,19 @@ use crate::numerics::{Planar, Scalar};
 #[derive(Clone, Debug)]
 pub struct Workspace<T> {
     /// Output values that differ from those of the equations.
-    pub readings: Readings,
+    pub readings: FourthOrderReadings,
     /// Motion of the nodes.
     pub motion: Motion<T>,
     /// Curvature and stretch of the beam.
-    pub shape: Shape<T>,
+    pub shape: BeamShape<T>,
     /// Relaxed strains of the solid.
     pub relaxed: Relaxed<T>,
     /// Section forces.
     pub forces: Forces<T>,
     /// Coupling variables of beam and bladders.
-    pub coupling: Coupling<T>,
+    pub coupling: CouplingVariables<T>,
     /// Pressures and flows.
-    pub fluid: Fluid<T>,
+    pub fluid: FluidState<T>,
 }
 
 /// Motion of nodes.
@@ -38,7 +38,7 @@ pub struct Motion<T> {
 
 /// Shape of the beam: curvatures at nodes, all others in cells.
 #[derive(Clone, Debug)]
-pub struct Shape<T> {
+pub struct BeamShape<T> {
     /// Director `d3 = (x', z')`.
     pub d3: Vec<Planar<T>>,
     /// `lambda`.
@@ -134,7 +134,7 @@ pub struct Forces<T> {
 
 /// Coupling variables of segments and bladders.
 #[derive(Clone, Debug)]
-pub struct Coupling<T> {
+pub struct CouplingVariables<T> {
     /// Mean moment.
     pub mean_moment: Vec<T>,
     /// Mean force.
@@ -159,7 +159,7 @@ pub struct Coupling<T> {
 
 /// State of the cells of bladders and of the network.
 #[derive(Clone, Debug)]
-pub struct Fluid<T> {
+pub struct FluidState<T> {
     /// Content of cells per length at ambient density [m^2]: their area changes, unless the fluid is compressible.
     pub area: Vec<T>,
     /// Rates of the contents [m^2/s].
@@ -211,16 +211,16 @@ pub struct Fluid<T> {
 /// A workspace with the complete state for balances and samples, including rates that appear in no equation. Only
 /// [`super::ledger::complete`] and [`super::ledger::complete_after_flows`] create one.
 #[derive(Clone, Copy, Debug)]
-pub struct State<'w>(pub(super) &'w Workspace<f64>);
+pub struct CompleteState<'w>(pub(super) &'w Workspace<f64>);
 
-impl std::ops::Deref for State<'_> {
+impl std::ops::Deref for CompleteState<'_> {
     type Target = Workspace<f64>;
     fn deref(&self) -> &Workspace<f64> {
         self.0
     }
 }
 
-impl<T: Scalar> Fluid<T> {
+impl<T: Scalar> FluidState<T> {
     /// Converts a flow along a link from ambient density to the link's mean density [m^3/s].
     #[inline]
     pub fn at_mean_density(&self, link: usize, flow: T) -> T {
@@ -246,7 +246,7 @@ impl<T: Scalar> Fluid<T> {
     }
 }
 
-impl<T> Coupling<T> {
+impl<T> CouplingVariables<T> {
     /// Strains by pressure: stretches of all segments, then curvatures.
     pub fn strains_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.pressure_stretch.iter_mut().chain(&mut self.pressure_curvature)
@@ -261,7 +261,7 @@ impl<T> Coupling<T> {
     }
 }
 
-impl Fluid<f64> {
+impl FluidState<f64> {
     /// Area changes of cells [m^2].
     pub fn area_changes(&self) -> &[f64] {
         match self.swelling.is_empty() {
@@ -295,13 +295,13 @@ impl<T: Scalar> Workspace<T> {
         // Constant values are set here.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
-            readings: Readings::new(system),
+            readings: FourthOrderReadings::new(system),
             motion: Motion {
                 u: vectors(n),
                 v: vectors(n),
                 a: vectors(n),
             },
-            shape: Shape {
+            shape: BeamShape {
                 d3: vectors(c),
                 stretch: vec![T::constant(1.0); c],
                 per_stretch: vec![T::constant(1.0); c],
@@ -350,7 +350,7 @@ impl<T: Scalar> Workspace<T> {
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },
-            coupling: Coupling {
+            coupling: CouplingVariables {
                 mean_moment: zeros(s),
                 mean_force: zeros(s),
                 mean_moment_rate: zeros(s),
@@ -362,7 +362,7 @@ impl<T: Scalar> Workspace<T> {
                 nonlinear_area: zeros(nonlinear * bladders),
                 nonlinear_energy: zeros(nonlinear * s),
             },
-            fluid: Fluid {
+            fluid: FluidState {
                 area: kept.iter().map(|&a| T::constant(a)).collect(),
                 area_rate: zeros(cells),
                 swelling: zeros(compressed * cells),

@@ -20,7 +20,7 @@ pub enum Interpolation {
 
 /// Points with the second derivatives of the curve at both ends of each piece.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Curve {
+pub struct PiecewiseCurve {
     at: Vec<f64>,
     values: Vec<f64>,
     second: Vec<[f64; 2]>,
@@ -31,7 +31,7 @@ pub struct Curve {
 /// Points beyond each end of a period included in its spline: their influence at least halves from point to point.
 const BEYOND: usize = 64;
 
-impl Curve {
+impl PiecewiseCurve {
     /// Curve through `(at, values)`; none unless `at` ascends strictly and both have the same length of at least 1.
     pub fn through(at: &[f64], values: &[f64], interpolation: Interpolation) -> Option<Self> {
         let ascending = at.windows(2).all(|w| w[0] < w[1]);
@@ -309,7 +309,7 @@ mod tests {
     #[test]
     fn monotone_cubics_are_those_of_pchip() {
         let (x, y) = ([0.0, 1.0, 3.0, 4.0, 6.0], [0.0, 1.0, 1.5, 4.0, 3.0]);
-        let curve = Curve::through(&x, &y, Interpolation::Monotone).expect("a curve");
+        let curve = PiecewiseCurve::through(&x, &y, Interpolation::Monotone).expect("a curve");
         for [x, value, rate] in [
             [0.5, 135.0 / 224.0, 121.0 / 112.0],
             [2.0, 69.0 / 56.0, 1.0 / 7.0],
@@ -332,7 +332,11 @@ mod tests {
     #[test]
     fn only_a_spline_swings_beyond_its_points() {
         let (x, y) = ([0.0, 1.0, 1.1, 2.0, 5.0], [0.0, 0.0, 1.0, 1.0, 0.9]);
-        let overshoot = |interpolation| Curve::through(&x, &y, interpolation).expect("a curve").overshoot();
+        let overshoot = |interpolation| {
+            PiecewiseCurve::through(&x, &y, interpolation)
+                .expect("a curve")
+                .overshoot()
+        };
         assert_eq!(overshoot(Interpolation::Linear), 0.0);
         assert!(overshoot(Interpolation::Monotone) < 1e-15);
         assert!(overshoot(Interpolation::Cubic) > 0.1);

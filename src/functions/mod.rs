@@ -19,7 +19,7 @@ mod number_or_object;
 pub mod profile;
 pub mod signals;
 
-pub use curve::{Curve, Interpolation};
+pub use curve::{Interpolation, PiecewiseCurve};
 pub use evaluate::MOST_KNOTS;
 pub use profile::Profile;
 pub use signals::{Clock, Jet, Ramp, RampShape, Signal};

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::curve::{Curve, Interpolation};
+use super::curve::{Interpolation, PiecewiseCurve};
 pub use super::jet::{Clock, Jet};
 use super::number_or_object::number_or_object;
 
@@ -132,7 +132,7 @@ pub struct Table {
     pub interpolation: Interpolation,
     /// True if the table repeats periodically in both directions.
     pub repeat: bool,
-    pub(super) curve: Curve,
+    pub(super) curve: PiecewiseCurve,
 }
 
 /// A curve through points: either `times_s` and `values`, or a CSV file with a heading for each column.
@@ -215,8 +215,8 @@ impl Table {
 
     fn repeated(times_s: Vec<f64>, values: Vec<f64>, interpolation: Interpolation, repeat: bool) -> Self {
         let curve = match repeat {
-            true => Curve::repeated(&times_s, &values, interpolation),
-            false => Curve::with_jumps(&times_s, &values, interpolation),
+            true => PiecewiseCurve::repeated(&times_s, &values, interpolation),
+            false => PiecewiseCurve::with_jumps(&times_s, &values, interpolation),
         };
         Self {
             times_s,
@@ -235,7 +235,7 @@ impl Table {
 
     /// True if the points define a curve.
     pub fn is_sound(&self) -> bool {
-        self.curve != Curve::default()
+        self.curve != PiecewiseCurve::default()
     }
 }
 

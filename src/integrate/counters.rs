@@ -62,7 +62,7 @@ impl Counters {
 
 /// Wall time spent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wall {
+pub struct SolverWallTimes {
     /// Residuals.
     pub residual: Duration,
     /// Jacobians.

@@ -17,9 +17,9 @@ pub mod sensitivity_start;
 pub mod start;
 pub mod tolerances;
 
-pub use counters::{Counters, Wall};
+pub use counters::{Counters, SolverWallTimes};
 pub(crate) use failure::not_finite;
 pub use failure::{IntegrationError, Worst};
 pub use sensitivity_start::consistent_sensitivities;
-pub use start::{Start, StartError, StartOptions, Starter, consistent_start};
+pub use start::{ConsistentStart, StartError, StartOptions, Starter, consistent_start};
 pub use tolerances::Absolute;

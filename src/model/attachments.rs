@@ -1,6 +1,6 @@
 //! Point masses, springs, dashpots and forces attached to the beam.
 
-use super::Load;
+use super::DistributedLoad;
 use super::loads::LoadKind;
 use crate::case::schema::{Attachment as Written, Case};
 use crate::functions::signals::Signal;
@@ -8,7 +8,7 @@ use crate::numerics::Planar;
 
 /// A point mass, springs and dashpots to ground, and forces, all at one place of the beam.
 #[derive(Clone, Debug)]
-pub struct Attachment {
+pub struct AttachedBody {
     /// Place `θ/l_s`.
     pub at: f64,
     /// Mass [kg].
@@ -51,7 +51,7 @@ pub struct PointForce {
     pub signal: Signal,
 }
 
-impl Attachment {
+impl AttachedBody {
     /// True if the attachment has rotary inertia or an eccentric mass.
     pub fn is_body(&self) -> bool {
         self.inertia > 0.0 || self.offset != Planar::default()
@@ -89,7 +89,7 @@ impl Attachment {
             .loads
             .iter()
             .filter(|load| written.mass_kg > 0.0 && load.is_body())
-            .flat_map(|load| Load::on(load, [written.mass_kg; 2]))
+            .flat_map(|load| DistributedLoad::on(load, [written.mass_kg; 2]))
             .map(|load| PointForce {
                 axis: usize::from(load.kind == LoadKind::ForceZ),
                 acting: Acting::Weight,

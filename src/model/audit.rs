@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Coupling, Model, Wet, hammer};
+use super::{CouplingLaw, Model, Wet, hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
@@ -12,7 +12,7 @@ use crate::error::{Code, Violation};
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct AuditFinding {
     /// Code of its warning.
     pub code: Code,
     /// Name in the table of `slcbeam check`.
@@ -35,7 +35,7 @@ pub struct Finding {
 /// 1 - 2 EI φ_b ψ' am/(E a_p) > 0,  1 - 2 EA φ_b ζ' aN+/(E a_p) > 0       published law solvable
 /// d_M ≥ EI φ_b l_b dm p_max/(1 - 2 EI φ_b l_b am²/a_p)                   kinked potential convex
 /// ```
-pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
+pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
     let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
         return vec![];
     };
@@ -58,7 +58,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
         } else {
             0.0
         };
-        found.push(Finding {
+        found.push(AuditFinding {
             code: Code::CouplingLaw,
             name,
             value,
@@ -80,7 +80,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
         ),
     ] {
         if value.is_finite() {
-            found.push(Finding {
+            found.push(AuditFinding {
                 code: Code::CouplingLaw,
                 name,
                 value,
@@ -99,8 +99,8 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<Finding> {
     found
 }
 
-fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
-    Finding {
+fn reciprocity(name: &'static str, value: f64, what: &str) -> AuditFinding {
+    AuditFinding {
         code: Code::Reciprocity,
         name,
         value,
@@ -114,7 +114,7 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> Finding {
 }
 
 /// One warning for all violated reciprocity conditions.
-fn not_reciprocal(findings: &[&Finding]) -> Option<String> {
+fn not_reciprocal(findings: &[&AuditFinding]) -> Option<String> {
     let first = findings.first()?;
     let numbers: Vec<String> = findings
         .iter()
@@ -134,8 +134,8 @@ fn not_reciprocal(findings: &[&Finding]) -> Option<String> {
     )))
 }
 
-fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, found: &mut Vec<Finding>) {
-    let Coupling::Published {
+fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, found: &mut Vec<AuditFinding>) {
+    let CouplingLaw::Published {
         stretch_per_pressure,
         curvature_per_pressure,
     } = wet.coupling
@@ -153,7 +153,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
             1.0 - 2.0 * ea * stretch_per_pressure * compression / ap,
         ),
     ] {
-        found.push(Finding {
+        found.push(AuditFinding {
             code: Code::CouplingLaw,
             name,
             value,
@@ -166,7 +166,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
 
 /// Largest sum of pressures `p_u + p_d` at which the kinked potential is convex, in bending and in stretch [Pa].
 pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
-    let Coupling::Reciprocal { length_ratio } = wet.coupling else {
+    let CouplingLaw::Reciprocal { length_ratio } = wet.coupling else {
         return (f64::INFINITY, f64::INFINITY);
     };
     let law = &wet.area;
@@ -194,7 +194,7 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
     )
 }
 
-fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
+fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<AuditFinding> {
     let (bending, stretch) = convex_up_to(model, wet);
     let expected = 2.0 * model.scales.pressure;
     [
@@ -202,7 +202,7 @@ fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<Finding> {
         ("convex in stretch up to p_u + p_d [Pa]", stretch),
     ]
     .into_iter()
-    .map(|(name, value)| Finding {
+    .map(|(name, value)| AuditFinding {
         code: Code::CouplingLaw,
         name,
         value,

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::Matrix2;
 
 use super::network::LinkKind;
-use super::{Attachment, Load, Model, Surroundings, each_signal, slowest, tongue};
+use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, each_signal, slowest, tongue};
 use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
@@ -19,7 +19,7 @@ pub const MATHIEU_COUPLING: f64 = 1.570_878_189_99;
 /// Parametric excitation of the first bending mode by axial base motion:
 /// `q'' + [ω1² - κ_1 a(t)/l_s] q = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mathieu {
+pub struct MathieuTongue {
     /// Amplitude of `a(t)` [m/s^2].
     pub acceleration: f64,
     /// Frequency of `a(t)` [Hz].
@@ -38,7 +38,7 @@ pub fn numbers(case: &Case, model: &Model) -> BTreeMap<String, f64> {
 }
 
 /// [`numbers`] with Mathieu's parameters given.
-pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&Mathieu>) -> BTreeMap<String, f64> {
+pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>) -> BTreeMap<String, f64> {
     let mut all = BTreeMap::new();
     let mut put = |name: &str, value: f64| {
         if value.is_finite() {
@@ -242,9 +242,20 @@ pub fn forcing_frequency(case: &Case) -> Option<f64> {
         }
     };
     let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-    let loads: Vec<Load> = case.loads.iter().flat_map(|load| Load::on(load, [1.0; 2])).collect();
-    let around = Surroundings::of(case);
-    each_signal(&ends, &loads, &Attachment::all(case), around.as_ref(), None, &mut hear);
+    let loads: Vec<DistributedLoad> = case
+        .loads
+        .iter()
+        .flat_map(|load| DistributedLoad::on(load, [1.0; 2]))
+        .collect();
+    let around = AmbientFluid::of(case);
+    each_signal(
+        &ends,
+        &loads,
+        &AttachedBody::all(case),
+        around.as_ref(),
+        None,
+        &mut hear,
+    );
     if let Some(network) = &case.network {
         for chain in &network.chains {
             hear(&chain.opening);
@@ -268,7 +279,7 @@ pub fn forcing_period(case: &Case) -> Option<f64> {
 }
 
 /// Mathieu's parameters of a cantilever with an axial sine motion of its root.
-pub fn mathieu(model: &Model) -> Option<Mathieu> {
+pub fn mathieu(model: &Model) -> Option<MathieuTongue> {
     // a relaxing solid has no single stiffness
     if !is_cantilever(model) || !model.effects.has(Effect::SolidInertia) || !model.relaxation.is_empty() {
         return None;
@@ -284,7 +295,7 @@ pub fn mathieu(model: &Model) -> Option<Mathieu> {
     let s = &model.section;
     let first = 1.875_104_068_712_f64.powi(2) / (model.length * model.length)
         * (s.bending_stiffness / s.mass_per_length).sqrt();
-    Some(Mathieu {
+    Some(MathieuTongue {
         acceleration,
         frequency: sine.frequency_hz,
         modulation: MATHIEU_COUPLING * acceleration / (model.length * first * first),

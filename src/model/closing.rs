@@ -18,7 +18,7 @@ const SHUT: f64 = 1e-3;
 /// `p + p_c` strains the walls and, through them, the beam. p_c and the contact energy grow without bound as x
 /// approaches 0. The area therefore stays positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closing {
+pub struct WallClosing {
     /// `A_0` [m^2].
     at_rest: f64,
     /// `ε`.
@@ -27,7 +27,7 @@ pub struct Closing {
     stiffness: f64,
 }
 
-impl Closing {
+impl WallClosing {
     /// Contact law of a case's bladders with a cross-section at rest [m^2].
     pub fn new(written: &Written, at_rest: f64) -> Self {
         Self {

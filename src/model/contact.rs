@@ -15,7 +15,7 @@ use crate::numerics::{Planar, Scalar, ramp};
 /// t is along the face. `m(y)` is y, smoothly kept above 0: a wall never pulls. k s(g) stores energy. Damping (Hunt &
 /// Crossley, J. Appl. Mech. 42 (1975) 440) and friction dissipate it: D ≥ 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Contact {
+pub struct ContactWall {
     /// Name.
     pub name: String,
     /// Place `θ/l_s` of the contact; none: along the whole beam.
@@ -49,7 +49,7 @@ pub struct Pressed<T> {
     pub friction: Planar<T>,
 }
 
-impl Contact {
+impl ContactWall {
     /// Returns all contacts of a case.
     pub fn all(case: &Case) -> Vec<Self> {
         let reach = 0.5 * case.beam.height_m;
@@ -140,7 +140,7 @@ fn not_below(x: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    const WALL: Contact = Contact {
+    const WALL: ContactWall = ContactWall {
         name: String::new(),
         at: None,
         point: Planar { x: 0.1, z: 0.0 },

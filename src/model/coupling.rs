@@ -14,7 +14,7 @@ use crate::numerics::Scalar;
 ///
 /// The reciprocal law and the areas derive from one potential g*(N, M, p), which conserves energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Coupling {
+pub enum CouplingLaw {
     /// The paper's coefficients.
     Published {
         /// `φ_b ζ'/E` [1/Pa].
@@ -29,7 +29,7 @@ pub enum Coupling {
     },
 }
 
-impl Coupling {
+impl CouplingLaw {
     /// Coupling of the case's bladders.
     pub fn new(case: &Case, bladders: &Bladders) -> Self {
         let density = bladders.per_row as f64 / case.beam.length_m;

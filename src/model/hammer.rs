@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::network::{Link, Node, TubeEnd};
-use super::{Compression, Model, Network};
+use super::network::{Link, NetworkNode, TubeEnd};
+use super::{Compression, Model, ResolvedNetwork};
 use crate::case::schema::{Case, Effect};
 use crate::error::Code;
 use crate::error::numbers::{counted, quantity};
@@ -53,7 +53,7 @@ fn length(tube: &Link) -> f64 {
 
 /// A closing of a valve in a tube with inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closing {
+pub struct ValveClosing {
     /// Number of the tube among the links of the network.
     pub link: usize,
     /// Begin and end of the valve's closing [s].
@@ -63,7 +63,7 @@ pub struct Closing {
 }
 
 /// Returns all closings of all valves, in order of links and time.
-pub fn closings(case: &Case, model: &Model) -> Vec<Closing> {
+pub fn closings(case: &Case, model: &Model) -> Vec<ValveClosing> {
     let links = model.wet.iter().flat_map(|wet| wet.network.links.iter().enumerate());
     let of = |(link, valve): (usize, &Link)| {
         let opening = valve.opening.as_ref().filter(|_| valve.inertance() > 0.0);
@@ -72,7 +72,7 @@ pub fn closings(case: &Case, model: &Model) -> Vec<Closing> {
             .unwrap_or_default();
         falls
             .into_iter()
-            .map(move |(times, shuts)| Closing { link, times, shuts })
+            .map(move |(times, shuts)| ValveClosing { link, times, shuts })
     };
     links.flat_map(of).collect()
 }
@@ -83,7 +83,7 @@ pub fn warnings(case: &Case, model: &Model) -> Vec<String> {
     let Some(line) = Line::new(case, model) else {
         return vec![];
     };
-    let of = |closing: Closing| line.hammer(&closing, None);
+    let of = |closing: ValveClosing| line.hammer(&closing, None);
     line.described(closings(case, model).into_iter().filter_map(of))
 }
 
@@ -100,7 +100,7 @@ pub fn confirmed(case: &Case, model: &Model, reached: f64, flows: &[f64]) -> Vec
 
 /// Data common to all valves of a network.
 struct Line<'a> {
-    network: &'a Network,
+    network: &'a ResolvedNetwork,
     /// Stiff ends of tubes.
     ends: Vec<TubeEnd>,
     /// Density [kg/m^3] and velocity of sound [m/s].
@@ -137,7 +137,7 @@ impl<'a> Line<'a> {
 
     /// Water hammer of a closing, if it stops a flow [m^3/s] before a wave returns. Without `flow`, uses the largest
     /// steady flow.
-    fn hammer(&self, closing: &Closing, flow: Option<f64>) -> Option<Hammer> {
+    fn hammer(&self, closing: &ValveClosing, flow: Option<f64>) -> Option<Hammer> {
         let (network, c) = (self.network, self.c);
         let valve = &network.links[closing.link];
         let sides = [valve.from, valve.to].map(|node| (node, column(network, &self.ends, valve, node)));
@@ -151,7 +151,7 @@ impl<'a> Line<'a> {
         let narrowest = tubes().map(area).fold(f64::INFINITY, f64::min);
         // the wave enters all tubes in front of the valve
         let front = match node {
-            Node::Junction(junction) if !column.tubes.is_empty() => {
+            NetworkNode::Junction(junction) if !column.tubes.is_empty() => {
                 let others = network.tubes_at(junction).filter(|tube| !std::ptr::eq(*tube, valve));
                 others.map(area).sum()
             }
@@ -219,7 +219,7 @@ struct Hammer {
 }
 
 impl Hammer {
-    fn describe(&self, network: &Network) -> String {
+    fn describe(&self, network: &ResolvedNetwork) -> String {
         let tube = network.tube(self.link) + 1;
         let when = match self.begins {
             Some(t) => format!("when the valve begins to shut at {}", quantity(t, "s", 3)),
@@ -286,9 +286,9 @@ fn falls(opening: &Signal, end: f64) -> Vec<([f64; 2], f64)> {
 }
 
 /// Tubes in series from one side of a valve, up to the first storage other than their own fluid.
-fn column<'a>(network: &'a Network, ends: &[TubeEnd], valve: &'a Link, side: Node) -> Column<'a> {
-    let (mut tubes, mut last, mut here): (Vec<&Link>, &Link, Node) = (vec![], valve, side);
-    while let Node::Junction(junction) = here {
+fn column<'a>(network: &'a ResolvedNetwork, ends: &[TubeEnd], valve: &'a Link, side: NetworkNode) -> Column<'a> {
+    let (mut tubes, mut last, mut here): (Vec<&Link>, &Link, NetworkNode) = (vec![], valve, side);
+    while let NetworkNode::Junction(junction) = here {
         if tubes.len() >= network.links.len() || !ends.iter().any(|end| end.junctions.contains(&junction)) {
             break;
         }
@@ -304,7 +304,7 @@ fn column<'a>(network: &'a Network, ends: &[TubeEnd], valve: &'a Link, side: Nod
 }
 
 /// Largest driving pressure difference [Pa], from ports, vessels, bladders at ambient pressure, and pumps.
-fn driving(case: &Case, network: &Network) -> f64 {
+fn driving(case: &Case, network: &ResolvedNetwork) -> f64 {
     let end = case.time.end_s;
     let ports = network.ports.iter().map(|port| port.pressure.range(0.0, end));
     let given = ports.flat_map(|range| [range.low, range.high]);

@@ -22,7 +22,7 @@ pub enum LoadKind {
 
 /// `factor signal(t) profile(θ/l_s)`.
 #[derive(Clone, Debug)]
-pub struct Load {
+pub struct DistributedLoad {
     /// Prescribed quantity.
     pub kind: LoadKind,
     /// Constant factor: 1 for contact loads, `m` for body forces.
@@ -33,7 +33,7 @@ pub struct Load {
     pub profile: Profile,
 }
 
-impl Load {
+impl DistributedLoad {
     /// `[E5]` (A.6, A.7) with `b` in N/m: contact loads as given, body forces times `m`, gravity times `m` less the
     /// mass of displaced fluid.
     pub fn resolve(written: &Written, section: &Section) -> Vec<Self> {

@@ -1,7 +1,7 @@
 //! The paper's coordinate of the network, `X_f`, and its maps to and from the beam (A.59-A.61, tables A.1 and A.2).
 
 use super::Wet;
-use super::network::Network;
+use super::network::ResolvedNetwork;
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_label;
 
@@ -44,7 +44,7 @@ impl NetworkCoordinate {
     }
 
     /// Coordinate of a network whose tubes have length `tube_length` [m] in the tables.
-    pub fn new(network: &Network, per_row: usize, bladder_length: f64, tube_length: f64) -> Self {
+    pub fn new(network: &ResolvedNetwork, per_row: usize, bladder_length: f64, tube_length: f64) -> Self {
         let n = 2 * per_row;
         let mut arrays = network.chains.clone();
         let mut seen = vec![false; n];

@@ -36,22 +36,22 @@ use crate::case::schema::{Bladders, Branch, Case, Effects, Formulation, Viscoela
 use crate::error::Result;
 use crate::numerics::Scalar;
 
-pub use attachments::Attachment;
+pub use attachments::AttachedBody;
 pub use beam::Section;
 pub use bladder::AreaLaw;
-pub use closing::Closing;
+pub use closing::WallClosing;
 pub use compression::Compression;
-pub use contact::Contact;
-pub use coupling::Coupling;
-pub use effects::{Decision, EffectSet, Scene};
+pub use contact::ContactWall;
+pub use coupling::CouplingLaw;
+pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
-pub use loads::Load;
-pub use network::Network;
+pub use loads::DistributedLoad;
+pub use network::ResolvedNetwork;
 pub use scales::Scales;
 pub use signals::each_signal;
 pub use storage::{LumpedKind, LumpedNetwork, Storage};
-pub use strain_energy::StrainEnergy;
-pub use surroundings::Surroundings;
+pub use strain_energy::StrainPotential;
+pub use surroundings::AmbientFluid;
 
 /// Bladders with their fluid and network.
 #[derive(Clone, Debug)]
@@ -65,15 +65,15 @@ pub struct Wet {
     /// Area change of a bladder cell; slopes of omitted effects are zero.
     pub area: AreaLaw,
     /// Contact between the walls of a bladder; none if omitted.
-    pub closing: Option<Closing>,
+    pub closing: Option<WallClosing>,
     /// Compression of the fluid; none for incompressible fluid.
     pub compression: Option<Compression>,
     /// Slopes by which pressure strains the beam; those of omitted effects are zero.
     pub strains: AreaLaw,
     /// Strains caused by pressure.
-    pub coupling: Coupling,
+    pub coupling: CouplingLaw,
     /// Tubes, junctions, ports, turbines.
-    pub network: Network,
+    pub network: ResolvedNetwork,
     /// True if fluid flows.
     pub flows: bool,
     /// Storage law of each bladder.
@@ -85,7 +85,7 @@ pub struct Wet {
     /// True if a law depends on mean forces, which are then unknowns.
     pub takes_forces: bool,
     /// Energy of the section beyond its quadratic part.
-    pub strain_energy: Option<StrainEnergy>,
+    pub strain_energy: Option<StrainPotential>,
 }
 
 /// `R` of the rows: upper, lower.
@@ -154,7 +154,7 @@ impl Wet {
     }
 
     /// Bladders of a case with all couplings.
-    fn new(case: &Case, bladders: &Bladders, section: &Section, network: Network, effects: &EffectSet) -> Self {
+    fn new(case: &Case, bladders: &Bladders, section: &Section, network: ResolvedNetwork, effects: &EffectSet) -> Self {
         let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
         let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
@@ -167,24 +167,24 @@ impl Wet {
             closing: bladders
                 .closing
                 .as_ref()
-                .map(|written| Closing::new(written, area_at_rest)),
+                .map(|written| WallClosing::new(written, area_at_rest)),
             compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
             strains: area,
-            coupling: Coupling::new(case, bladders),
+            coupling: CouplingLaw::new(case, bladders),
             network,
             flows: effects.has(Effect::Flow),
             storage,
             lumped,
             takes_moments: true,
             takes_forces: true,
-            strain_energy: bladders.strain_energy.as_ref().map(StrainEnergy::new),
+            strain_energy: bladders.strain_energy.as_ref().map(StrainPotential::new),
         }
     }
 
     /// Removes the couplings of omitted effects. Pressure strains the beam by its own slopes, which depend on M and N
     /// where these are kinked.
     fn reduce(&mut self, effects: &EffectSet) {
-        let reciprocal = matches!(self.coupling, Coupling::Reciprocal { .. });
+        let reciprocal = matches!(self.coupling, CouplingLaw::Reciprocal { .. });
         let bends = effects.has(Effect::PressureToCurvature) && reciprocal && self.strains.moment_half_difference > 0.0;
         let stretches =
             effects.has(Effect::PressureToStretch) && reciprocal && self.strains.force_half_difference > 0.0;
@@ -229,15 +229,15 @@ pub struct Model {
     /// Conditions at root and tip.
     pub ends: [ResolvedEnd; 2],
     /// Distributed loads.
-    pub loads: Vec<Load>,
+    pub loads: Vec<DistributedLoad>,
     /// Point masses, springs, dashpots and forces.
-    pub attachments: Vec<Attachment>,
+    pub attachments: Vec<AttachedBody>,
     /// Walls for contact.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<ContactWall>,
     /// Branches of a relaxing solid.
     pub relaxation: Vec<Branch>,
     /// Ambient fluid.
-    pub surroundings: Option<Surroundings>,
+    pub surroundings: Option<AmbientFluid>,
     /// Fluid and bladders; none for a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
@@ -254,20 +254,24 @@ impl Model {
     /// Returns the errors of [`Network::of`]: a name in the network that does not exist.
     pub fn new(case: &Case) -> Result<Self> {
         let section = Section::new(case);
-        let network = Network::of(case)?;
+        let network = ResolvedNetwork::of(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full {
             let whole = case.bladders.as_ref().zip(network.clone());
             let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
-            effects = EffectSet::choose(case, network.as_ref(), &Scene::new(case, &section, whole.as_ref()));
+            effects = EffectSet::choose(
+                case,
+                network.as_ref(),
+                &EffectScene::new(case, &section, whole.as_ref()),
+            );
         }
-        let network = network.map(|network| Network { paced: true, ..network });
+        let network = network.map(|network| ResolvedNetwork { paced: true, ..network });
         Ok(Self::of(case, section, network, effects))
     }
 
     /// Model with all effects that a checked case does not switch off by name; `inertia` includes inertia of the solid.
     pub fn whole(case: &Case, inertia: bool) -> Result<Self> {
-        let network = Network::of(case)?;
+        let network = ResolvedNetwork::of(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
         let effects = if inertia { effects } else { effects.at_rest() };
         Ok(Self::of(case, Section::new(case), network, effects))
@@ -277,7 +281,7 @@ impl Model {
     /// or unless fluid oscillates against a vessel too fast for Poiseuille's profile. The ten decay modes of unsteady
     /// friction per tube would crowd the spectrum.
     pub fn of_modes(case: &Case) -> Result<Self> {
-        let network = Network::of(case)?;
+        let network = ResolvedNetwork::of(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
         let whole = Self::of(case, Section::new(case), network.clone(), effects);
         if whole.wet.as_ref().is_some_and(Wet::swings_fast) {
@@ -289,7 +293,7 @@ impl Model {
     /// Model of a changed case with the effects and scales of this model.
     pub fn like(&self, case: &Case) -> Result<Self> {
         let paced = self.wet.as_ref().is_some_and(|wet| wet.network.paced);
-        let network = Network::of(case)?.map(|network| Network { paced, ..network });
+        let network = ResolvedNetwork::of(case)?.map(|network| ResolvedNetwork { paced, ..network });
         Ok(Self {
             scales: self.scales,
             ..Self::of(case, Section::new(case), network, self.effects.clone())
@@ -299,10 +303,10 @@ impl Model {
     /// Model of a case with the effects of this model, without inertia of the solid.
     pub fn at_rest(&self, case: &Case) -> Result<Self> {
         let effects = self.effects.clone().at_rest();
-        Ok(Self::of(case, self.section, Network::of(case)?, effects))
+        Ok(Self::of(case, self.section, ResolvedNetwork::of(case)?, effects))
     }
 
-    fn of(case: &Case, section: Section, network: Option<Network>, effects: EffectSet) -> Self {
+    fn of(case: &Case, section: Section, network: Option<ResolvedNetwork>, effects: EffectSet) -> Self {
         let mut wet = case
             .bladders
             .as_ref()
@@ -312,7 +316,7 @@ impl Model {
         let loads = case
             .loads
             .iter()
-            .flat_map(|load| Load::resolve(load, &section))
+            .flat_map(|load| DistributedLoad::resolve(load, &section))
             .collect();
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let scales = Scales::estimate(case, &section, wet.as_ref());
@@ -328,12 +332,12 @@ impl Model {
             effects,
             ends,
             loads,
-            attachments: Attachment::all(case),
-            contacts: Contact::all(case),
+            attachments: AttachedBody::all(case),
+            contacts: ContactWall::all(case),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),
-            surroundings: Surroundings::of(case),
+            surroundings: AmbientFluid::of(case),
             wet,
             scales,
             still: false,
@@ -351,7 +355,7 @@ impl Model {
 
     /// Bladders and the section's energy beyond its quadratic part, if simulated.
     #[inline]
-    pub fn strain_energy(&self) -> Option<(&Wet, &StrainEnergy)> {
+    pub fn strain_energy(&self) -> Option<(&Wet, &StrainPotential)> {
         let wet = self.wet.as_ref()?;
         Some((wet, wet.strain_energy.as_ref()?))
     }

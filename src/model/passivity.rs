@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4, SymmetricEigen};
 
-use super::{Coupling, Model, Wet};
+use super::{CouplingLaw, Model, Wet};
 use crate::error::numbers::quantity;
 
 /// Passivity of the local law.
@@ -93,10 +93,10 @@ impl Passivity {
     }
 
     /// Describes the result in words.
-    pub fn words(&self, coupling: &Coupling) -> String {
+    pub fn words(&self, coupling: &CouplingLaw) -> String {
         let name = match coupling {
-            Coupling::Published { .. } => "published",
-            Coupling::Reciprocal { .. } => "reciprocal",
+            CouplingLaw::Published { .. } => "published",
+            CouplingLaw::Reciprocal { .. } => "reciprocal",
         };
         let least = format!(
             "the smallest work of a load is {:.4} of its work without coupling",

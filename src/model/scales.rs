@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::attachments::Acting;
-use super::{Attachment, Section, Wet};
+use super::{AttachedBody, Section, Wet};
 use crate::case::schema::{Case, Distributed, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
@@ -40,7 +40,7 @@ pub struct Scales {
 
 /// Magnitudes of loads and prescribed motions.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Drive {
+pub struct DriveScales {
     /// Force per length across [N/m].
     pub transverse_load: f64,
     /// Force per length along [N/m].
@@ -69,7 +69,7 @@ pub struct Drive {
     pub frequency: f64,
 }
 
-impl Drive {
+impl DriveScales {
     /// Drive of a case with the given ends.
     pub fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
         let end = case.time.end_s;
@@ -102,7 +102,7 @@ impl Drive {
                 d.hear(&l.signal, end);
             }
         }
-        for attachment in Attachment::all(case) {
+        for attachment in AttachedBody::all(case) {
             for force in &attachment.forces {
                 if force.acting == Acting::Weight {
                     let arm = attachment.offset.x.hypot(attachment.offset.z);
@@ -172,7 +172,7 @@ impl Scales {
     /// [`Self::estimate`] with an additional pressure by pumping [Pa].
     pub fn pumped(case: &Case, section: &Section, wet: Option<&Wet>, pressure: f64) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-        let mut d = Drive::of(case, section, &ends);
+        let mut d = DriveScales::of(case, section, &ends);
         let l = case.beam.length_m;
         let (ea, ei, m) = (
             section.axial_stiffness,

@@ -1,6 +1,6 @@
 //! Iteration over all signals of a model, and their replacement.
 
-use super::{Attachment, Load, Model, Network, Surroundings};
+use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, ResolvedNetwork};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::{Clock, Jet, Signal};
 
@@ -78,10 +78,10 @@ impl Model {
 /// Visits all signals: of ends, loads, attachments, a stream, valves, ports, sources and pumps.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
-    loads: &[Load],
-    attachments: &[Attachment],
-    around: Option<&Surroundings>,
-    network: Option<&Network>,
+    loads: &[DistributedLoad],
+    attachments: &[AttachedBody],
+    around: Option<&AmbientFluid>,
+    network: Option<&ResolvedNetwork>,
     mut visit: impl FnMut(&Signal),
 ) {
     for end in ends {

@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::Wet;
-use super::network::{Component, Link, Network, Node};
+use super::network::{Component, Link, NetworkNode, ResolvedNetwork};
 use crate::case::wiring::bladder_label;
 use crate::functions::signals::Clock;
 
@@ -36,10 +36,10 @@ impl Slowest {
         let links = part.links.iter().map(|&link| &wet.network.links[link]);
         let open = links.filter_map(|link| Some((conductance(wet, link, t), link)).filter(|(g, _)| *g > 0.0));
         let (_, tightest) = open.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let name = |node: Node| match node {
-            Node::Cell { bladder, end } => format!("{end} of bladder {}", bladder_label(bladder, wet.per_row)),
-            Node::Junction(j) => wet.network.junctions[j].clone(),
-            Node::Port(port) => wet.network.ports[port].name.clone(),
+        let name = |node: NetworkNode| match node {
+            NetworkNode::Cell { bladder, end } => format!("{end} of bladder {}", bladder_label(bladder, wet.per_row)),
+            NetworkNode::Junction(j) => wet.network.junctions[j].clone(),
+            NetworkNode::Port(port) => wet.network.ports[port].name.clone(),
         };
         Some(Self {
             time,
@@ -53,7 +53,7 @@ fn conductance(wet: &Wet, link: &Link, t: f64) -> f64 {
     let half = 0.5 * wet.bladder_length / wet.network.bladder_mobility;
     let cells = [link.from, link.to]
         .iter()
-        .filter(|n| matches!(n, Node::Cell { .. }))
+        .filter(|n| matches!(n, NetworkNode::Cell { .. }))
         .count() as f64;
     let clock = Clock { t, within: t };
     let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
@@ -62,7 +62,7 @@ fn conductance(wet: &Wet, link: &Link, t: f64) -> f64 {
 
 fn time(wet: &Wet, component: &Component, t: f64) -> Option<f64> {
     const LARGEST: usize = 400;
-    let network: &Network = &wet.network;
+    let network: &ResolvedNetwork = &wet.network;
     let Component {
         bladders,
         junctions,
@@ -73,10 +73,10 @@ fn time(wet: &Wet, component: &Component, t: f64) -> Option<f64> {
     if nb == 0 || nb + nj > LARGEST {
         return None;
     }
-    let slot = |node: Node| match node {
-        Node::Cell { bladder, .. } => bladders.binary_search(&bladder).ok(),
-        Node::Junction(j) => junctions.binary_search(&j).ok().map(|k| nb + k),
-        Node::Port(_) => None,
+    let slot = |node: NetworkNode| match node {
+        NetworkNode::Cell { bladder, .. } => bladders.binary_search(&bladder).ok(),
+        NetworkNode::Junction(j) => junctions.binary_search(&j).ok().map(|k| nb + k),
+        NetworkNode::Port(_) => None,
     };
     let mut laplacian = DMatrix::<f64>::zeros(nb + nj, nb + nj);
     let mut grounded = false;

@@ -1,7 +1,7 @@
 //! Storage of fluid in bladders, and its unknowns.
 
-use super::network::{Component, LinkKind, Node};
-use super::{EffectSet, Network};
+use super::network::{Component, LinkKind, NetworkNode};
+use super::{EffectSet, ResolvedNetwork};
 use crate::case::schema::Case;
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_index;
@@ -56,13 +56,13 @@ pub enum LumpedKind {
 
 impl LumpedNetwork {
     /// Each network component as a lumped network, or the reason why it cannot be lumped.
-    pub fn all(network: &Network) -> impl Iterator<Item = Result<Self, String>> {
+    pub fn all(network: &ResolvedNetwork) -> impl Iterator<Item = Result<Self, String>> {
         let parts = Component::all(network).into_iter().enumerate();
         parts.map(|(component, part)| Self::new(network, component, part))
     }
 
     /// A network component as a lumped network, or the reason why it cannot be lumped.
-    fn new(network: &Network, component: usize, part: Component) -> Result<Self, String> {
+    fn new(network: &ResolvedNetwork, component: usize, part: Component) -> Result<Self, String> {
         let mut ports = vec![];
         let links = part.links.iter().map(|&link| &network.links[link]);
         for link in links.filter(|link| !link.is_shut()) {
@@ -79,7 +79,7 @@ impl LumpedNetwork {
                 return Err("a valve moves".into());
             }
             ports.extend([link.from, link.to].into_iter().filter_map(|node| match node {
-                Node::Port(p) => Some(p),
+                NetworkNode::Port(p) => Some(p),
                 _ => None,
             }));
         }
@@ -107,7 +107,7 @@ impl LumpedNetwork {
 }
 
 /// Storage law of every bladder, and the lumped networks.
-pub fn of_bladders(case: &Case, network: &Network, effects: &EffectSet) -> (Vec<Storage>, Vec<LumpedNetwork>) {
+pub fn of_bladders(case: &Case, network: &ResolvedNetwork, effects: &EffectSet) -> (Vec<Storage>, Vec<LumpedNetwork>) {
     let per_row = network.component_of_bladder.len() / 2;
     let uneven = |bladder: usize| {
         case.start.pressures.iter().any(|start| {

@@ -21,7 +21,7 @@ const ALL: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 /// All derivatives follow from one potential, so every polynomial conserves energy. Odd total powers of curvature and
 /// pressure difference (`k_2 + k_4`) do not occur in mirror-symmetric sections.
 #[derive(Clone, Debug, PartialEq)]
-pub struct StrainEnergy {
+pub struct StrainPotential {
     /// Lower and upper limits of `y`.
     limits: [[f64; 2]; 4],
     /// `1/g_1`, `1/g_2`, `1/2 g_3`.
@@ -66,7 +66,7 @@ struct Block {
 
 /// P and its derivatives by y.
 #[derive(Clone, Copy, Debug)]
-pub struct Slopes<T> {
+pub struct EnergySlopes<T> {
     /// P [N].
     pub energy: T,
     /// `P_1` [N].
@@ -99,7 +99,7 @@ fn slope<T: Scalar>(powers: &Powers<T>, k: usize) -> T {
     }
 }
 
-impl StrainEnergy {
+impl StrainPotential {
     /// Energy of a checked case.
     pub fn new(written: &Written) -> Self {
         let limits = written.limits();
@@ -136,7 +136,7 @@ impl StrainEnergy {
     }
 
     /// Evaluates P and its derivatives at y.
-    pub fn at<T: Scalar>(&self, [stretch, curvature, upper, lower]: [T; 4]) -> Slopes<T> {
+    pub fn at<T: Scalar>(&self, [stretch, curvature, upper, lower]: [T; 4]) -> EnergySlopes<T> {
         let [e, k] = [stretch * self.inverse[0], curvature * self.inverse[1]].map(powers);
         let [s, d] = [upper + lower, upper - lower].map(|p| powers(p * self.inverse[2]));
         let values = MONOMIALS.map(|[a, b]| e[a] * k[b]);
@@ -161,7 +161,7 @@ impl StrainEnergy {
             by_difference += s[a] * slope(&d, b) * value;
         }
         let [by_sum, by_difference] = [by_sum, by_difference].map(|by| by * self.inverse[2]);
-        Slopes {
+        EnergySlopes {
             energy,
             force: force * self.inverse[0],
             moment: moment * self.inverse[1],

@@ -7,7 +7,7 @@ use crate::functions::signals::Signal;
 
 /// Ambient fluid.
 #[derive(Clone, Debug)]
-pub struct Surroundings {
+pub struct AmbientFluid {
     /// Transverse drag constant `c = C_d ρ w/2` [kg/m^2].
     pub drag: f64,
     /// Transverse added mass `m_a = C_a π ρ w²/4` [kg/m].
@@ -18,7 +18,7 @@ pub struct Surroundings {
     pub stream: Option<[Signal; 2]>,
 }
 
-impl Surroundings {
+impl AmbientFluid {
     /// Surroundings of a case, if given.
     pub fn of(case: &Case) -> Option<Self> {
         case.surroundings.as_ref().map(|written| Self::new(written, &case.beam))

@@ -1,7 +1,7 @@
 //! Content of network vessels with compressible or incompressible fluid.
 
 use super::Wet;
-use super::network::{Accumulator, AccumulatorLaw};
+use super::network::{AccumulatorElement, AccumulatorLaw};
 use crate::numerics::Scalar;
 
 /// Error of Poiseuille's profile in a mode above which unsteady friction is included.
@@ -50,7 +50,7 @@ impl Wet {
     /// True if fluid in a tube oscillates against a vessel too fast for Poiseuille's profile: `Wo⁴/1152` above
     /// [`MEMORY`], `Wo² = r²/(ν √(I C))`.
     pub(super) fn swings_fast(&self) -> bool {
-        let fast = |one: &Accumulator| {
+        let fast = |one: &AccumulatorElement| {
             let compliance = self.vessel_compliance(&one.law, 0.0);
             self.network
                 .tubes_at(one.junction)

@@ -15,7 +15,7 @@ const ALIKE: f64 = 1e-6;
 
 /// A linear problem, reduced to as many rows as unknowns.
 #[derive(Clone, Debug)]
-pub struct Linear {
+pub struct ReducedProblem {
     a: DMatrix<f64>,
     b: DVector<f64>,
     /// Part of `|b|^2` that no x explains.
@@ -41,7 +41,7 @@ pub struct Posterior {
     pub rank: usize,
 }
 
-impl Linear {
+impl ReducedProblem {
     /// Problem of rows with errors of unit standard deviation.
     pub fn new(a: DMatrix<f64>, b: DVector<f64>) -> Self {
         let rows = a.nrows();
@@ -109,7 +109,7 @@ impl Pieces {
 
 /// Observability of unknowns by the rows of a matrix.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct Observability {
     /// Nonzero singular values, largest first.
     pub values: Vec<f64>,
     /// Independent observable combinations of unknowns, in reduced form: each has a 1 where the others have 0.
@@ -122,7 +122,7 @@ pub struct Seen {
     projector: DMatrix<f64>,
 }
 
-impl Seen {
+impl Observability {
     /// Observability by the rows of a matrix, for unknowns of comparable size.
     pub fn of(matrix: &DMatrix<f64>) -> Self {
         let n = matrix.ncols();
@@ -205,7 +205,7 @@ mod tests {
         });
         let b = DVector::from_fn(9, |i, _| (i as f64 * 0.9).cos());
         let r = second_differences(4) * 0.7;
-        let found = Linear::new(a.clone(), b.clone()).posterior(&r);
+        let found = ReducedProblem::new(a.clone(), b.clone()).posterior(&r);
         let normal = a.transpose() * &a + r.transpose() * &r;
         let off = &normal * &found.x - a.transpose() * &b;
         assert!(off.norm() < 1e-12, "{off}");
@@ -225,7 +225,7 @@ mod tests {
             1 => 2.0 + 2.0 * i as f64,
             _ => (i as f64).powi(2),
         });
-        let seen = Seen::of(&a);
+        let seen = Observability::of(&a);
         assert_eq!(seen.alone, [false, false, true]);
         let near = |a: &[Vec<f64>], b: &[&[f64]]| {
             a.len() == b.len()
@@ -239,7 +239,7 @@ mod tests {
             seen.observable
         );
         assert!(near(&seen.blind, &[&[1.0, -0.5, 0.0]]), "{:?}", seen.blind);
-        let whole = Seen::of(&DMatrix::identity(3, 3));
+        let whole = Observability::of(&DMatrix::identity(3, 3));
         assert_eq!((whole.alone, whole.blind.len()), (vec![true; 3], 0));
     }
 }

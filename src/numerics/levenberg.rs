@@ -14,14 +14,14 @@ use nalgebra::{DMatrix, DVector};
 
 /// Residuals and their derivatives at a point.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Evaluation {
+pub struct ResidualEvaluation {
     /// Residuals, n of them.
     pub residuals: DVector<f64>,
     /// Jacobian: n rows, one column per parameter.
     pub jacobian: DMatrix<f64>,
 }
 
-impl Evaluation {
+impl ResidualEvaluation {
     /// Sum of squared residuals.
     pub fn cost(&self) -> f64 {
         self.residuals.norm_squared()
@@ -30,7 +30,7 @@ impl Evaluation {
 
 /// Outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum LevenbergStatus {
     /// Converged to a minimum, to the accuracy of the data.
     Found,
     /// No step lowers the sum, although the derivatives predict it: they are inaccurate.
@@ -41,13 +41,13 @@ pub enum Ended {
 
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Minimum {
+pub struct LevenbergMinimum {
     /// Parameters.
     pub x: Vec<f64>,
     /// Residuals and Jacobian there.
-    pub at: Evaluation,
+    pub at: ResidualEvaluation,
     /// Outcome of the search.
-    pub ended: Ended,
+    pub ended: LevenbergStatus,
     /// Number of accepted steps.
     pub steps: usize,
     /// Number of evaluations.
@@ -70,14 +70,18 @@ const MOST_DAMPING: f64 = 1e12;
 const NOTHING: f64 = 1e-10;
 
 /// Function that evaluates residuals and Jacobian at a point; none if the point has no residuals.
-pub type Evaluate<'a, E> = dyn FnMut(&[f64]) -> Result<Option<Evaluation>, E> + 'a;
+pub type EvaluateResiduals<'a, E> = dyn FnMut(&[f64]) -> Result<Option<ResidualEvaluation>, E> + 'a;
 
 /// Searches from a start. Where `evaluate` returns none, the step is shortened. Returns none if the start has no
 /// residuals.
 ///
 /// # Errors
 /// Returns the first error of `evaluate`.
-pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>) -> Result<Option<Minimum>, E> {
+pub fn minimise<E>(
+    start: &[f64],
+    most_steps: usize,
+    evaluate: &mut EvaluateResiduals<E>,
+) -> Result<Option<LevenbergMinimum>, E> {
     let mut x: Vec<f64> = start.iter().map(|x| x.clamp(0.0, 1.0)).collect();
     let Some(mut at) = evaluate(&x)? else {
         return Ok(None);
@@ -87,10 +91,10 @@ pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>)
     let mut lengths = vec![0.0_f64; x.len()];
     let ended = loop {
         if settled(&x, &at, OFFSET) {
-            break Ended::Found;
+            break LevenbergStatus::Found;
         }
         if steps >= most_steps {
-            break Ended::Unfinished;
+            break LevenbergStatus::Unfinished;
         }
         if damping > MOST_DAMPING {
             break stopped(&x, &at);
@@ -104,7 +108,7 @@ pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>)
         let foretold = at.cost() - (&at.residuals + &at.jacobian * &moved).norm_squared();
         if moved.amax() < STEP {
             break if damping <= DAMPING {
-                Ended::Found
+                LevenbergStatus::Found
             } else {
                 stopped(&x, &at)
             };
@@ -127,7 +131,7 @@ pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>)
             }
         }
     };
-    Ok(Some(Minimum {
+    Ok(Some(LevenbergMinimum {
         x,
         at,
         ended,
@@ -137,7 +141,7 @@ pub fn minimise<E>(start: &[f64], most_steps: usize, evaluate: &mut Evaluate<E>)
 }
 
 /// Indices of parameters that are not held at a bound by the gradient.
-pub fn free(x: &[f64], at: &Evaluation) -> Vec<usize> {
+pub fn free(x: &[f64], at: &ResidualEvaluation) -> Vec<usize> {
     let slope = at.jacobian.tr_mul(&at.residuals);
     let held = |k: &usize| (x[*k] <= 0.0 && slope[*k] >= 0.0) || (x[*k] >= 1.0 && slope[*k] <= 0.0);
     (0..x.len()).filter(|k| !held(k)).collect()
@@ -155,14 +159,14 @@ pub fn newton(jacobian: &DMatrix<f64>, residuals: &DVector<f64>) -> DVector<f64>
 }
 
 /// Outcome of a search that no step can continue.
-fn stopped(x: &[f64], at: &Evaluation) -> Ended {
+fn stopped(x: &[f64], at: &ResidualEvaluation) -> LevenbergStatus {
     match settled(x, at, CLOSE) {
-        true => Ended::Found,
-        false => Ended::Stuck,
+        true => LevenbergStatus::Found,
+        false => LevenbergStatus::Stuck,
     }
 }
 
-fn settled(x: &[f64], at: &Evaluation, least: f64) -> bool {
+fn settled(x: &[f64], at: &ResidualEvaluation, least: f64) -> bool {
     let free = free(x, at);
     if free.is_empty() || at.cost() == 0.0 {
         return true;
@@ -184,7 +188,7 @@ fn settled(x: &[f64], at: &Evaluation, least: f64) -> bool {
 }
 
 /// Damped step by QR factorization of `J` stacked on `√λ D`.
-fn damped(x: &[f64], at: &Evaluation, lengths: &[f64], damping: f64) -> Vec<f64> {
+fn damped(x: &[f64], at: &ResidualEvaluation, lengths: &[f64], damping: f64) -> Vec<f64> {
     let free = free(x, at);
     let (n, m) = (at.residuals.len(), free.len());
     let mut step = vec![0.0; x.len()];
@@ -214,7 +218,7 @@ mod tests {
     use super::*;
     use std::convert::Infallible;
 
-    fn search(start: &[f64], of: impl Fn(&[f64]) -> Option<Evaluation>) -> Minimum {
+    fn search(start: &[f64], of: impl Fn(&[f64]) -> Option<ResidualEvaluation>) -> LevenbergMinimum {
         let found = minimise::<Infallible>(start, 200, &mut |x| Ok(of(x)));
         let Ok(found) = found;
         found.expect("a start")
@@ -226,13 +230,16 @@ mod tests {
     fn valleys_are_followed_to_their_end() {
         let rosenbrock = |x: &[f64]| {
             let [a, b] = [4.0 * x[0] - 1.0, 4.0 * x[1] - 1.0];
-            Evaluation {
+            ResidualEvaluation {
                 residuals: DVector::from_vec(vec![10.0 * (b - a * a), 1.0 - a]),
                 jacobian: DMatrix::from_row_slice(2, 2, &[-80.0 * a, 40.0, -4.0, 0.0]),
             }
         };
         let found = search(&[0.0, 0.9], |x| Some(rosenbrock(x)));
-        assert!(found.ended == Ended::Found && found.at.cost() < 1e-18, "{found:?}");
+        assert!(
+            found.ended == LevenbergStatus::Found && found.at.cost() < 1e-18,
+            "{found:?}"
+        );
         let found = search(&[0.0, 0.9], |x| (x[0] < 0.55).then(|| rosenbrock(x)));
         assert!(found.at.cost() < 1e-18 && found.evaluations < 100, "{found:?}");
     }
@@ -240,7 +247,7 @@ mod tests {
     /// Goal: a parameter that would leave its bounds stays at a bound, and the other one is optimal there.
     #[test]
     fn bounds_hold() {
-        let line = |x: &[f64]| Evaluation {
+        let line = |x: &[f64]| ResidualEvaluation {
             residuals: DVector::from_vec(vec![x[0] + 0.5, x[0] + x[1] - 0.25, 0.1]),
             jacobian: DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 1.0, 1.0, 0.0, 0.0]),
         };
@@ -252,7 +259,7 @@ mod tests {
 
     #[test]
     fn what_nothing_depends_on_stays() {
-        let line = |x: &[f64]| Evaluation {
+        let line = |x: &[f64]| ResidualEvaluation {
             residuals: DVector::from_vec(vec![x[0] - 0.3, 2.0 * x[0] - 0.6, 0.01]),
             jacobian: DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 2.0, 0.0, 0.0, 0.0]),
         };

@@ -5,7 +5,7 @@ use super::step_map::{StepError, StepMap};
 use crate::dae::Dae;
 
 /// Writes `∂F/∂σ` at a time [s], along a step of the given c_j [1/s], with values and rates.
-pub type Source<'a> = dyn FnMut([f64; 2], [&[f64]; 2], &mut [f64]) -> Result<(), String> + 'a;
+pub type ForcingDerivative<'a> = dyn FnMut([f64; 2], [&[f64]; 2], &mut [f64]) -> Result<(), String> + 'a;
 
 impl<D: Dae> StepMap<D> {
     /// `[E75]` Propagates a disturbance `d` of the differential unknowns to the last time, like [`StepMap::propagate`], along the last
@@ -24,7 +24,7 @@ impl<D: Dae> StepMap<D> {
         &mut self,
         [y, yp]: [&[f64]; 2],
         d: &mut [f64],
-        source: &mut Source<'_>,
+        source: &mut ForcingDerivative<'_>,
     ) -> Result<(), StepError> {
         let (n, s) = (y.len(), self.tableau.stages);
         let mask = self.mask.clone();

@@ -8,10 +8,10 @@ use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::{LEFTOVER, Tableau};
 use crate::dae::{Corotation, Dae};
-use crate::integrate::{Counters, IntegrationError, Wall, Worst, request};
+use crate::integrate::{Counters, IntegrationError, SolverWallTimes, Worst, request};
 use crate::numerics::kernels;
 use crate::sparse::Lu;
-use crate::sundials::Step;
+use crate::sundials::AcceptedStep;
 
 /// Failures of a first step after which the step size is limited according to the present rates.
 const BOLD: u16 = 3;
@@ -127,11 +127,11 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Performs one accepted step that does not pass `stop` [s]. A stop within the rounding error counts as reached.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
+    pub fn step(&mut self, stop: f64) -> Result<AcceptedStep, Box<IntegrationError>> {
         let order = self.options.method.order();
         if request::reached(self.time, stop)? {
             self.time = stop;
-            return Ok(Step {
+            return Ok(AcceptedStep {
                 time: stop,
                 size: 0.0,
                 order,
@@ -161,7 +161,7 @@ impl<D: Dae> OneStep<D> {
             match error {
                 Ok(error) if error <= 1.0 => {
                     self.accept(h, t1, error)?;
-                    return Ok(Step {
+                    return Ok(AcceptedStep {
                         time: t1,
                         size: h,
                         order,
@@ -308,8 +308,8 @@ impl<D: Dae> OneStep<D> {
     }
 
     /// Wall time spent in the equations and the linear solver.
-    pub fn wall(&self) -> Wall {
-        Wall {
+    pub fn wall(&self) -> SolverWallTimes {
+        SolverWallTimes {
             residual: self.equations.residual_wall,
             jacobian: self.equations.jacobian_wall,
             linear_solver: self.matrix.wall,

@@ -40,4 +40,4 @@ pub mod tableau;
 pub use integrator::OneStep;
 pub use options::OneStepOptions;
 pub use step_map::StepMap;
-pub use tableau::{Method, Tableau};
+pub use tableau::{Tableau, TableauMethod};

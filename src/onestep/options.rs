@@ -1,6 +1,6 @@
 //! Settings of a one-step method.
 
-use super::tableau::Method;
+use super::tableau::TableauMethod;
 use crate::case::schema;
 use crate::integrate::Absolute;
 
@@ -8,7 +8,7 @@ use crate::integrate::Absolute;
 #[derive(Clone, Debug, PartialEq)]
 pub struct OneStepOptions {
     /// Coefficients.
-    pub method: Method,
+    pub method: TableauMethod,
     /// Relative tolerance, > 0.
     pub relative: f64,
     /// Absolute tolerances, > 0.
@@ -29,7 +29,7 @@ pub struct OneStepOptions {
 impl Default for OneStepOptions {
     fn default() -> Self {
         Self {
-            method: Method::Esdirk34,
+            method: TableauMethod::Esdirk34,
             relative: 1e-4,
             absolute: Absolute::Same(1e-6),
             newton_tolerance: None,
@@ -42,13 +42,13 @@ impl Default for OneStepOptions {
 }
 
 /// Name of the method in a case.
-impl From<Method> for schema::Method {
-    fn from(method: Method) -> Self {
+impl From<TableauMethod> for schema::Method {
+    fn from(method: TableauMethod) -> Self {
         match method {
-            Method::TrBdf2 => Self::Trbdf2,
-            Method::Esdirk34 => Self::Esdirk34,
-            Method::Esdirk46 => Self::Esdirk46,
-            Method::Esdirk57 => Self::Esdirk57,
+            TableauMethod::TrBdf2 => Self::Trbdf2,
+            TableauMethod::Esdirk34 => Self::Esdirk34,
+            TableauMethod::Esdirk46 => Self::Esdirk46,
+            TableauMethod::Esdirk57 => Self::Esdirk57,
         }
     }
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::equations::{Equations, StageError};
 use super::stages::{add, values};
-use super::tableau::{Method, Tableau};
+use super::tableau::{Tableau, TableauMethod};
 use crate::dae::{Dae, Seeds};
 use crate::integrate::{StartOptions, consistent_start, halt};
 use crate::sparse::Klu;
@@ -104,7 +104,7 @@ impl<D: Dae> StepMap<D> {
     ///
     /// # Errors
     /// If the equations' matrix cannot be analyzed, or the factors would need too much memory.
-    pub fn new(dae: D, method: Method, times: Vec<f64>) -> Result<Self, StepError> {
+    pub fn new(dae: D, method: TableauMethod, times: Vec<f64>) -> Result<Self, StepError> {
         let tableau = method.tableau();
         let n = dae.len();
         let count = 1 + (times.len() - 1) * (tableau.stages - 1);

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// The methods, all L-stable; `p(q)s` are the order, the order of the estimate and the number of stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub enum TableauMethod {
     /// TR-BDF2, 2(3)3: Bank et al. 1985; Hosea & Shampine 1996.
     TrBdf2,
     /// ESDIRK3(2)4L\[2\]SA: Kennedy & Carpenter 2003, the implicit half of ARK3(2)4L\[2\]SA, with their embedding of 2019.
@@ -15,7 +15,7 @@ pub enum Method {
     Esdirk57,
 }
 
-impl Method {
+impl TableauMethod {
     /// All methods, by ascending order.
     pub const ALL: [Self; 4] = [Self::TrBdf2, Self::Esdirk34, Self::Esdirk46, Self::Esdirk57];
 
@@ -40,7 +40,7 @@ impl Method {
     }
 }
 
-impl fmt::Display for Method {
+impl fmt::Display for TableauMethod {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::TrBdf2 => "TR-BDF2",

@@ -1,7 +1,7 @@
 //! Text about a requested accuracy.
 
 use super::numbers::{counted, error_percent, significant};
-use crate::run::summary::{Accuracy, Estimate};
+use crate::run::summary::{Accuracy, ErrorEstimate};
 
 /// Largest number of errors listed.
 const LISTED: usize = 4;
@@ -38,7 +38,7 @@ pub fn setting(found: &Accuracy) -> String {
 
 /// The largest errors, with their contributions if known.
 pub fn largest(found: &Accuracy) -> Vec<String> {
-    let mut worst: Vec<(&String, &Estimate)> = found.quantities.iter().collect();
+    let mut worst: Vec<(&String, &ErrorEstimate)> = found.quantities.iter().collect();
     worst.sort_by(|a, b| b.1.total.unwrap_or(f64::MAX).total_cmp(&a.1.total.unwrap_or(f64::MAX)));
     let texts = worst.into_iter().take(LISTED).map(|(name, e)| {
         let Some(total) = e.total else {

@@ -16,9 +16,9 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::folder::{Whole, damaged, fault};
 use super::history::FLUSH;
-use super::stream::{Mark, Stream};
+use super::stream::{Stream, StreamMark};
 use crate::error::Result;
-use crate::run::record::{Axis, Field, Header};
+use crate::run::record::{Header, RecordedAxis, RecordedField};
 
 /// Name of the array of times.
 pub const TIMES: &str = "t_fields_s";
@@ -27,14 +27,14 @@ pub const TIMES: &str = "t_fields_s";
 const BLOCK: usize = 1 << 16;
 
 /// Part of each raw file that was safe on disk at a checkpoint.
-pub type Marks = BTreeMap<String, Mark>;
+pub type Marks = BTreeMap<String, StreamMark>;
 
 /// Streams fields into raw files and packs these.
 #[derive(Debug)]
 pub struct ArraysWriter {
     dir: PathBuf,
-    axes: Vec<Axis>,
-    fields: Vec<Field>,
+    axes: Vec<RecordedAxis>,
+    fields: Vec<RecordedField>,
     times: RawFile,
     raw: Vec<RawFile>,
     instants: u64,
@@ -76,7 +76,7 @@ impl ArraysWriter {
 
     /// Opens the verified raw files of an interrupted run and truncates them at the marks.
     pub fn reopen(dir: &Path, header: &Header, marks: &Marks) -> Result<Self> {
-        let mark = |name: &str| marks.get(name).copied().unwrap_or(Mark { bytes: 0, crc32: 0 });
+        let mark = |name: &str| marks.get(name).copied().unwrap_or(StreamMark { bytes: 0, crc32: 0 });
         let raw = header.fields.iter().map(|f| RawFile::reopen(dir, f.name, mark(f.name)));
         Ok(Self {
             dir: dir.to_path_buf(),
@@ -274,7 +274,7 @@ impl RawFile {
         Ok(Self::of(Stream::create(&Self::path(dir, name))?))
     }
 
-    fn reopen(dir: &Path, name: &str, mark: Mark) -> Result<Self> {
+    fn reopen(dir: &Path, name: &str, mark: StreamMark) -> Result<Self> {
         Ok(Self::of(Stream::reopen(&Self::path(dir, name), mark)?))
     }
 

@@ -14,7 +14,7 @@ use super::arrays::{ArraysWriter, Marks};
 use super::envelope::Remembered;
 use super::folder::{HISTORY, fault};
 use super::history::HistoryWriter;
-use super::stream::Mark;
+use super::stream::StreamMark;
 use crate::error::{Error, Result};
 
 /// Number of values in a batch.
@@ -27,7 +27,7 @@ const WAITING: usize = 1 << 18;
 
 /// The files of a folder that grow with a run.
 #[derive(Debug)]
-pub struct Growing {
+pub struct GrowingFiles {
     /// The history.
     pub history: HistoryWriter,
     /// History in memory, if it is complete and short.
@@ -53,14 +53,14 @@ pub struct Secured {
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
     /// The history.
-    pub history: Mark,
+    pub history: StreamMark,
     /// Statistics over output times that the history leaves out.
-    pub envelope: Option<Mark>,
+    pub envelope: Option<StreamMark>,
     /// Derivatives.
-    pub sensitivities: Option<Mark>,
+    pub sensitivities: Option<StreamMark>,
 }
 
-impl Growing {
+impl GrowingFiles {
     /// Syncs all files to the disk.
     pub fn secure(&mut self) -> Result<Secured> {
         let secured = |rows: &mut Option<HistoryWriter>| rows.as_mut().map(HistoryWriter::secure).transpose();
@@ -141,7 +141,7 @@ pub struct Behind {
     batch: Batch,
     handed: Instant,
     work: Option<SyncSender<Work>>,
-    thread: Option<JoinHandle<Result<Growing>>>,
+    thread: Option<JoinHandle<Result<GrowingFiles>>>,
 }
 
 impl Behind {
@@ -149,7 +149,7 @@ impl Behind {
     ///
     /// # Errors
     /// The system cannot start a thread.
-    pub fn new(files: Growing) -> Result<Self> {
+    pub fn new(files: GrowingFiles) -> Result<Self> {
         let batch = BATCH.max(files.arrays.numbers());
         let (work, todo) = mpsc::sync_channel((WAITING / batch).max(1));
         let thread = Builder::new().spawn(move || write(files, &todo));
@@ -199,7 +199,7 @@ impl Behind {
     }
 
     /// Waits until everything is written and returns the files.
-    pub fn close(mut self) -> Result<Growing> {
+    pub fn close(mut self) -> Result<GrowingFiles> {
         self.hand_over()?;
         self.end()
     }
@@ -227,7 +227,7 @@ impl Behind {
         self.end().and_then(|_| Err(gone()))
     }
 
-    fn end(&mut self) -> Result<Growing> {
+    fn end(&mut self) -> Result<GrowingFiles> {
         drop(self.work.take());
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(ended)) => ended,
@@ -246,7 +246,7 @@ impl Drop for Behind {
     }
 }
 
-fn write(mut files: Growing, todo: &Receiver<Work>) -> Result<Growing> {
+fn write(mut files: GrowingFiles, todo: &Receiver<Work>) -> Result<GrowingFiles> {
     for work in todo {
         match work {
             Work::Write(batch) => files.take(&batch)?,

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::arrays::Marks;
 use super::folder::{CHECKPOINT, CHECKPOINT_BEFORE, ResultFolder, damaged, fault, open};
-use super::stream::Mark;
+use super::stream::StreamMark;
 use crate::error::Result;
 use crate::run::checkpoint::Checkpoint;
 
@@ -23,13 +23,13 @@ const FORMAT: u32 = 14;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// Mark of `history.csv`.
-    pub history: Mark,
+    pub history: StreamMark,
     /// Mark of `envelope.csv`, if it exists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub envelope: Option<Mark>,
+    pub envelope: Option<StreamMark>,
     /// Mark of `sensitivities.csv`, if it exists.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sensitivities: Option<Mark>,
+    pub sensitivities: Option<StreamMark>,
     /// Marks of the raw files of fields.
     pub fields: Marks,
     /// The run.
@@ -44,7 +44,7 @@ struct Heading {
     build: String,
     /// Mark of the second line.
     #[serde(flatten)]
-    body: Mark,
+    body: StreamMark,
 }
 
 /// Writes a checkpoint completely or not at all; the previous one stays.
@@ -54,7 +54,7 @@ pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
     let heading = Heading {
         format: FORMAT,
         build: build(),
-        body: Mark::of(&body[..]).map_err(|e| fault("write", &path, e))?,
+        body: StreamMark::of(&body[..]).map_err(|e| fault("write", &path, e))?,
     };
     let mut text = serde_json::to_vec(&heading).map_err(|e| fault("write", &path, e.into()))?;
     text.push(b'\n');
@@ -104,7 +104,7 @@ fn one(path: &Path) -> Result<Option<Saved>> {
     if heading.format != FORMAT {
         return refused(&other(heading.format));
     }
-    if Mark::of(body).ok() != Some(heading.body) {
+    if StreamMark::of(body).ok() != Some(heading.body) {
         return refused("it is cut short or changed: its checksum differs");
     }
     if heading.build != build() {
@@ -119,7 +119,7 @@ fn one(path: &Path) -> Result<Option<Saved>> {
 pub fn build() -> String {
     static BUILD: OnceLock<String> = OnceLock::new();
     let name = || {
-        let program = std::env::current_exe().and_then(File::open).and_then(Mark::of);
+        let program = std::env::current_exe().and_then(File::open).and_then(StreamMark::of);
         let (bytes, sum) = program.map_or((0, 0), |mark| (mark.bytes, mark.crc32));
         format!("{} {bytes} {sum:08x}", env!("CARGO_PKG_VERSION"))
     };

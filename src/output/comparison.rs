@@ -3,7 +3,7 @@
 use super::plot::canvas::Stroke;
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use crate::discrete::quantities::{Observable, Role};
+use crate::discrete::quantities::{Observable, QuantityRole};
 use crate::study::compare::interpolate::cubic;
 use crate::study::compare::{Comparison, Recording};
 
@@ -12,7 +12,9 @@ const ROWS: usize = 1500;
 
 /// SVG of the picture; `None` if the recordings share no headline quantity.
 pub fn picture(a: &Recording, b: &Recording, comparison: &Comparison) -> Option<String> {
-    let headlines = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
+    let headlines = Observable::ALL
+        .iter()
+        .filter(|one| one.role() == QuantityRole::Headline);
     let shared = headlines.filter(|one| comparison.histories.iter().any(|d| d.name == one.name()));
     let panels = shared.filter_map(|one| pair(a, b, one.name())).flatten();
     let about = "below each quantity the first less the second";

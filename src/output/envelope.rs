@@ -65,13 +65,13 @@ impl Envelope {
 
     /// Reads a history. If not all of it was written, the envelope file replaces it before the window. Skips an incomplete last line of a
     /// killed run.
-    pub fn read(history: History, most: usize) -> Result<Self> {
+    pub fn read(history: HistorySource, most: usize) -> Result<Self> {
         let mut envelope = Self::new(vec![], most);
         each_row(history, |names, source, row| {
             if envelope.names.is_empty() {
                 envelope.names = names.to_vec();
             }
-            if source != Source::Covered {
+            if source != RowOrigin::Covered {
                 envelope.push(row);
             }
         })?;
@@ -168,7 +168,7 @@ impl Envelope {
 
 /// Origin of a row of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum RowOrigin {
     /// A drawn row of the history.
     History,
     /// A row of the history before the window; the envelope is more complete there.
@@ -210,14 +210,14 @@ impl Remembered {
 
 /// Location of a history.
 #[derive(Clone, Copy, Debug)]
-pub enum History<'a> {
+pub enum HistorySource<'a> {
     /// Tables in a folder.
     Folder(&'a Path),
     /// Memory, with the complete history.
     Memory(&'a Remembered),
 }
 
-impl<'a> History<'a> {
+impl<'a> HistorySource<'a> {
     /// History of a run that has just ended in a folder.
     pub fn of(dir: &'a Path, kept: Option<&'a Remembered>) -> Self {
         kept.map_or(Self::Folder(dir), Self::Memory)
@@ -226,12 +226,12 @@ impl<'a> History<'a> {
 
 /// Passes all rows of a history to `take`, with the names of their columns. Rows of the envelope precede: least values at the start of a
 /// stretch, greatest values at its end. Then follow all rows of the history, including those that the envelope covers.
-pub fn each_row(history: History, mut take: impl FnMut(&Names, Source, &[f64])) -> Result<()> {
+pub fn each_row(history: HistorySource, mut take: impl FnMut(&Names, RowOrigin, &[f64])) -> Result<()> {
     let dir = match history {
-        History::Folder(dir) => dir,
-        History::Memory(Remembered { names, numbers }) => {
+        HistorySource::Folder(dir) => dir,
+        HistorySource::Memory(Remembered { names, numbers }) => {
             let rows = numbers.chunks_exact(names.len().max(1));
-            rows.for_each(|row| take(names, Source::History, row));
+            rows.for_each(|row| take(names, RowOrigin::History, row));
             return Ok(());
         }
     };
@@ -252,18 +252,18 @@ pub fn each_row(history: History, mut take: impl FnMut(&Names, Source, &[f64])) 
                 values.push(row[k]);
                 values.extend(row[3..].chunks_exact(3).map(|of| of[k]));
             }
-            take(&names, Source::Rest, &both[0]);
+            take(&names, RowOrigin::Rest, &both[0]);
             if row[1] > row[0] {
-                take(&names, Source::Rest, &both[1]);
+                take(&names, RowOrigin::Rest, &both[1]);
             }
         }
     }
     while let Some(row) = rows.next()? {
         if row.len() == names.len() && !row.is_empty() {
             let source = if row[0] <= until {
-                Source::Covered
+                RowOrigin::Covered
             } else {
-                Source::History
+                RowOrigin::History
             };
             take(&names, source, row);
         }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::case::Places;
+use crate::case::LineColumns;
 use crate::error::{At, Code, Error, SolverError, Violation};
 
 /// JSON of an error, as printed by commands with `--json`.
@@ -12,7 +12,7 @@ pub fn json(error: &Error) -> Value {
         Error::Case(fault) => {
             object["status"] = "invalid".into();
             object["file"] = fault.path.display().to_string().into();
-            let mut places = Places::new(&fault.text);
+            let mut places = LineColumns::new(&fault.text);
             object["faults"] = fault.violations.iter().map(|v| violation(&mut places, v)).collect();
         }
         Error::Solver(fault) => {
@@ -29,9 +29,9 @@ pub fn json(error: &Error) -> Value {
     object
 }
 
-fn violation(places: &mut Places, violation: &Violation) -> Value {
+fn violation(places: &mut LineColumns, violation: &Violation) -> Value {
     let place = violation.span.as_ref().map(|span| match &violation.set {
-        Some(set) => Places::new(set).of(span.start),
+        Some(set) => LineColumns::new(set).of(span.start),
         None => places.of(span.start),
     });
     json!({

@@ -8,7 +8,7 @@ use super::journal::{Journal, Lines};
 use crate::case::Case;
 use crate::error::Result;
 use crate::results::Provenance;
-use crate::study::evaluations::{Evaluation, Evaluations, Write};
+use crate::study::evaluations::{Evaluations, JournalEvaluation, Write};
 
 /// Name of the journal file.
 pub const EVALUATIONS: &str = ".slcbeam.evaluations.jsonl";
@@ -39,14 +39,14 @@ pub fn begin(
     folder: &ResultFolder,
     (command, case, settings): (&str, &Case, &str),
 ) -> Result<Option<String>> {
-    let mut known: Vec<Evaluation> = vec![];
+    let mut known: Vec<JournalEvaluation> = vec![];
     let plan = plan(command, case, settings);
     let path = path(folder);
     let lines = Lines::read(&path, plan, false, |_, row| known.push(row))?;
     let damage = lines.damage("case or command");
     // created with the first row: a search that computes nothing leaves no file
     let mut journal: Option<Journal> = None;
-    let write: Write = Box::new(move |row: &Evaluation| match &mut journal {
+    let write: Write = Box::new(move |row: &JournalEvaluation| match &mut journal {
         Some(journal) => journal.put(row),
         None => journal.insert(Journal::go_on(path.clone(), &lines)?).put(row),
     });

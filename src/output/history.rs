@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 use super::folder::{fault, name_of, open};
 use super::numbers::shortest_in;
-use super::stream::{Mark, Stream};
+use super::stream::{Stream, StreamMark};
 use crate::error::Result;
-use crate::run::record::Column;
+use crate::run::record::HistoryColumn;
 
 /// Longest wall time until rows are in the file: a run can be watched, and loses little when killed.
 pub(crate) const FLUSH: Duration = Duration::from_millis(500);
 
 /// Names of columns with their units, `name [unit]`.
-pub fn headings(columns: &[Column]) -> Vec<String> {
+pub fn headings(columns: &[HistoryColumn]) -> Vec<String> {
     columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
 }
 
@@ -29,7 +29,7 @@ pub struct HistoryWriter {
 
 impl HistoryWriter {
     /// Creates the file with its headings, `name [unit]`.
-    pub fn create(path: &Path, columns: &[Column]) -> Result<Self> {
+    pub fn create(path: &Path, columns: &[HistoryColumn]) -> Result<Self> {
         Self::with_names(path, headings(columns))
     }
 
@@ -48,7 +48,7 @@ impl HistoryWriter {
     }
 
     /// Opens the verified file of an interrupted run and truncates it at the mark.
-    pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
+    pub fn reopen(path: &Path, mark: StreamMark) -> Result<Self> {
         let columns = || -> csv::Result<usize> {
             let mut reader = csv::Reader::from_reader(open(path)?);
             Ok(reader.headers()?.len())
@@ -62,7 +62,7 @@ impl HistoryWriter {
     }
 
     /// Syncs all rows to the disk and returns the mark.
-    pub fn secure(&mut self) -> Result<Mark> {
+    pub fn secure(&mut self) -> Result<StreamMark> {
         self.flush()?;
         self.out.get_ref().secure()
     }

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// Command that filled a folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FolderKind {
     /// `run`.
     Run,
     /// `equilibrium`.
@@ -40,7 +40,7 @@ pub enum Kind {
     Response,
 }
 
-impl Kind {
+impl FolderKind {
     /// All kinds. A cycle precedes the run in its folder; designs precede other kinds with a `sweep.json`.
     const ALL: [Self; 14] = [
         Self::Cycle,
@@ -200,7 +200,7 @@ impl Kind {
 
 /// Description of a file in place of a folder.
 fn file(path: &Path) -> String {
-    let around = path.parent().filter(|dir| Kind::within(dir).is_some());
+    let around = path.parent().filter(|dir| FolderKind::within(dir).is_some());
     match around {
         Some(dir) => format!("is a file of the result in {}: name this folder", dir.display()),
         None if path.extension().is_some_and(|x| x == "json") => {
@@ -213,7 +213,7 @@ fn file(path: &Path) -> String {
 const NOWHERE: &str = "there is no such folder";
 
 /// Error for an unsuitable folder, with a suitable result nearby.
-fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(Kind) -> bool) -> Error {
+fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(FolderKind) -> bool) -> Error {
     let hint = near(dir, fits).map_or(String::new(), |found| format!("; did you mean {found}?"));
     let kind = match dir.is_dir() {
         true => io::ErrorKind::InvalidData,
@@ -223,10 +223,10 @@ fn unfit(action: &'static str, dir: &Path, what: String, fits: &dyn Fn(Kind) -> 
 }
 
 /// A result inside the folder, or else the result beside it with the most similar name.
-fn near(dir: &Path, fits: &dyn Fn(Kind) -> bool) -> Option<String> {
+fn near(dir: &Path, fits: &dyn Fn(FolderKind) -> bool) -> Option<String> {
     let results = |of: &Path| -> Vec<PathBuf> {
         let mut all = entries(of).unwrap_or_default();
-        all.retain(|p| Kind::within(p).is_some_and(fits));
+        all.retain(|p| FolderKind::within(p).is_some_and(fits));
         all
     };
     if let Some(inside) = results(dir).first() {

@@ -2,8 +2,8 @@
 
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
-use super::plot::{self, Curve, Deflection, Energy, History, Pressure};
-use crate::discrete::quantities::{Axis, Field, Observable};
+use super::plot::{self, Deflection, Energy, HistoryPlot, PlottedCurve, Pressure};
+use crate::discrete::quantities::{BeamField, FieldAxis, Observable};
 use crate::error::Result;
 
 /// Number of curves in a picture over space.
@@ -12,13 +12,13 @@ const CURVES: usize = 24;
 pub const STRETCHES: usize = 1200;
 
 /// Name of a picture, and its SVG.
-pub type Picture = (&'static str, String);
+pub type NamedSvg = (&'static str, String);
 
 /// `history.svg` and `energy.svg`, if their columns exist.
-pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
-    let mut shown = History {
+pub fn over_time(case: &str, history: &Envelope) -> Vec<NamedSvg> {
+    let mut shown = HistoryPlot {
         case: case.to_string(),
-        ..History::default()
+        ..HistoryPlot::default()
     };
     let mut ledger = Energy {
         case: case.to_string(),
@@ -26,7 +26,7 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
     };
     for (k, (name, unit)) in history.names().iter().enumerate() {
         let Some(one) = Observable::named(name) else { continue };
-        let curve = || Curve {
+        let curve = || PlottedCurve {
             name: name.clone(),
             unit: unit.clone(),
             points: history.points(k),
@@ -46,28 +46,28 @@ pub fn over_time(case: &str, history: &Envelope) -> Vec<Picture> {
 }
 
 /// `deflection.svg` and `pressure.svg` over the last cycle of the drive, or over the whole run without one.
-pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) -> Result<Vec<Picture>> {
+pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) -> Result<Vec<NamedSvg>> {
     let all = arrays.times()?;
     let (span, instants) = plot::instants(&all, frequency_hz, CURVES);
     let times: Vec<f64> = instants.iter().map(|&i| all[i]).collect();
-    let axis = |axis: Axis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
+    let axis = |axis: FieldAxis| arrays.axis(axis.name()).map(<[f64]>::to_vec).unwrap_or_default();
     let integers = |x: Vec<f64>| x.into_iter().map(|x| x.round() as i64).collect();
     let deflection = Deflection {
         case: case.to_string(),
         span,
         times: times.clone(),
-        theta: axis(Axis::Nodes),
-        u1: arrays.read(Field::U1.name(), &instants)?.unwrap_or_default(),
-        u3: arrays.read(Field::U3.name(), &instants)?.unwrap_or_default(),
+        theta: axis(FieldAxis::Nodes),
+        u1: arrays.read(BeamField::U1.name(), &instants)?.unwrap_or_default(),
+        u3: arrays.read(BeamField::U3.name(), &instants)?.unwrap_or_default(),
     };
     let pressure = Pressure {
         case: case.to_string(),
         span,
         times,
-        x_f: axis(Axis::Network),
-        bladder: integers(axis(Axis::Bladder)),
-        network: integers(axis(Axis::Array)),
-        pressure: arrays.read(Field::Pressure.name(), &instants)?.unwrap_or_default(),
+        x_f: axis(FieldAxis::Network),
+        bladder: integers(axis(FieldAxis::Bladder)),
+        network: integers(axis(FieldAxis::Array)),
+        pressure: arrays.read(BeamField::Pressure.name(), &instants)?.unwrap_or_default(),
     };
     Ok(present([
         ("deflection.svg", plot::deflection::draw(&deflection)),
@@ -75,7 +75,7 @@ pub fn over_space(case: &str, frequency_hz: Option<f64>, arrays: &ArraysWriter) 
     ]))
 }
 
-fn present<const N: usize>(pictures: [(&'static str, Option<String>); N]) -> Vec<Picture> {
+fn present<const N: usize>(pictures: [(&'static str, Option<String>); N]) -> Vec<NamedSvg> {
     pictures
         .into_iter()
         .filter_map(|(name, text)| Some((name, text?)))

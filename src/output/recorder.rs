@@ -7,18 +7,18 @@ use std::thread;
 use std::time::Instant;
 
 use super::arrays::ArraysWriter;
-use super::behind::{Behind, Growing, Secured};
+use super::behind::{Behind, GrowingFiles, Secured};
 use super::checkpoint::{self, Saved};
-use super::envelope::{Envelope, History, Remembered};
+use super::envelope::{Envelope, HistorySource, Remembered};
 use super::folder::{
     CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
     SENSITIVITIES, SUMMARY, Wait, Whole, at_once,
 };
 use super::history::{HistoryWriter, headings};
-use super::pictures::{self, Picture, STRETCHES};
+use super::pictures::{self, NamedSvg, STRETCHES};
 use super::stream::Stream;
 use super::{report, summary};
-use crate::case::{Case, Written};
+use crate::case::{Case, CaseText};
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::model::characteristic;
@@ -37,7 +37,7 @@ pub struct Labels {
     /// Name of the case, for the pictures.
     pub case_name: String,
     /// The resolved case.
-    pub case: Written,
+    pub case: CaseText,
     /// Frequency of the drive [Hz]; pictures over space then show its last cycle.
     pub frequency_hz: Option<f64>,
 }
@@ -106,7 +106,7 @@ impl FolderRecorder {
             let path = folder.path(name);
             mark.map(|mark| HistoryWriter::reopen(&path, mark)).transpose()
         });
-        let files = Growing {
+        let files = GrowingFiles {
             history,
             kept: None,
             arrays,
@@ -129,7 +129,7 @@ impl FolderRecorder {
     ///
     /// A file cannot be written. If it is a table or an array, the summary has the status `failed` and the reason.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
-        let (mut laps, mut spent) = (Laps::since(Instant::now()), Spent::default());
+        let (mut laps, mut spent) = (Laps::since(Instant::now()), FolderWallTimes::default());
         let aside = match self.open {
             Some(_) => None,
             None => self.folder.set_aside()?,
@@ -178,7 +178,13 @@ impl FolderRecorder {
     }
 
     /// Syncs tables, arrays and summary to the disk, and draws the pictures meanwhile.
-    fn complete(&self, open: Behind, summary: &Summary, laps: &mut Laps, spent: &mut Spent) -> Result<Completed> {
+    fn complete(
+        &self,
+        open: Behind,
+        summary: &Summary,
+        laps: &mut Laps,
+        spent: &mut FolderWallTimes,
+    ) -> Result<Completed> {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
@@ -198,7 +204,7 @@ impl FolderRecorder {
         let (case, dir) = (&self.labels.case_name, self.folder.dir());
         let frequency = self.labels.frequency_hz;
         let over_time = || {
-            let rows = Envelope::read(History::of(dir, files.kept.as_ref()), STRETCHES)?;
+            let rows = Envelope::read(HistorySource::of(dir, files.kept.as_ref()), STRETCHES)?;
             Ok(pictures::over_time(case, &rows))
         };
         let drawn = thread::scope(|scope| {
@@ -227,7 +233,7 @@ impl FolderRecorder {
 #[derive(Default)]
 struct Completed {
     /// Pictures, or errors of drawing.
-    drawn: Vec<Result<Vec<Picture>>>,
+    drawn: Vec<Result<Vec<NamedSvg>>>,
     /// The history, if it is in memory.
     history: Option<Remembered>,
     /// CRC-32 of the tables.
@@ -254,7 +260,7 @@ fn put(
 
 /// Wall time of completing a folder [s].
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Spent {
+pub struct FolderWallTimes {
     /// Pictures.
     pub pictures: f64,
     /// Files.
@@ -270,7 +276,7 @@ pub struct Finished {
     resumable: bool,
     lean: bool,
     /// Wall time of the completion.
-    pub spent: Spent,
+    pub spent: FolderWallTimes,
     /// Folder to which an older result was moved.
     pub aside: Option<PathBuf>,
     /// CRC-32 of the tables, for rewriting the summary.
@@ -285,7 +291,7 @@ impl Finished {
             lean: false,
             folder,
             history: None,
-            spent: Spent::default(),
+            spent: FolderWallTimes::default(),
             aside: None,
             tables_crc32: BTreeMap::new(),
         }
@@ -349,7 +355,7 @@ impl Recorder for FolderRecorder {
         };
         // the complete history, for page and pictures
         let shown = !self.lean && header.envelope.is_empty();
-        let files = Growing {
+        let files = GrowingFiles {
             history,
             kept: shown.then(|| Remembered::new(&headings(&header.columns))),
             arrays,

@@ -14,7 +14,7 @@ use super::records;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::results;
-use crate::results::response::{Curve, Peak, Response};
+use crate::results::response::{ResponseCurve, ResponsePeak, ResponseRecord};
 
 /// One row per frequency.
 pub const CSV: &str = "response.csv";
@@ -24,8 +24,8 @@ pub const JSON: &str = "response.json";
 pub const PICTURE: &str = "response.svg";
 
 /// The text of `response.csv`.
-fn csv(found: &Response) -> String {
-    let columns = |curve: &Curve| {
+fn csv(found: &ResponseRecord) -> String {
+    let columns = |curve: &ResponseCurve| {
         let (name, unit) = (&curve.output, &curve.unit);
         let parts = ["real", "imaginary", "amplitude"].map(|part| format!("{part} {name} [{unit}/input]"));
         let error = (!curve.error.is_empty()).then(|| format!("error {name} [{unit}/input]"));
@@ -54,7 +54,7 @@ fn csv(found: &Response) -> String {
 }
 
 /// Table of the peaks, errors by the mesh, and number of poles.
-pub fn words(found: &Response) -> String {
+pub fn words(found: &ResponseRecord) -> String {
     let mut text = format!(
         "{}: response to {}, {} to {} Hz, {}\n\n",
         found.case,
@@ -90,7 +90,7 @@ pub fn words(found: &Response) -> String {
     text + &warnings(&found.warnings)
 }
 
-fn row(curve: &Curve, peak: &Peak) -> [String; 7] {
+fn row(curve: &ResponseCurve, peak: &ResponsePeak) -> [String; 7] {
     [
         String::new(),
         curve.output.clone(),
@@ -106,7 +106,7 @@ fn row(curve: &Curve, peak: &Peak) -> [String; 7] {
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &ResponseRecord) -> Result<Vec<PathBuf>> {
     let picture = picture(found).and_then(|picture| picture.svg());
     let mut files = vec![(CSV, csv(found)), (JSON, results::text(found))];
     files.extend(picture.map(|text| (PICTURE, text)));
@@ -117,14 +117,14 @@ pub fn write(folder: &mut ResultFolder, found: &Response) -> Result<Vec<PathBuf>
 const AROUND: f64 = 100.0;
 
 /// Picture of amplitude and phase over frequency.
-fn picture(found: &Response) -> Option<Picture> {
+fn picture(found: &ResponseRecord) -> Option<Picture> {
     let band = (*found.frequency_hz.first()?, *found.frequency_hz.last()?);
     let x = || {
         PictureAxis::new("frequency", "Hz", 8)
             .between(band.0, band.1)
             .logarithmic(true)
     };
-    let decibel = |curve: &Curve| -> Vec<f64> {
+    let decibel = |curve: &ResponseCurve| -> Vec<f64> {
         let parts = curve.real.iter().zip(&curve.imag);
         parts.map(|(re, im)| 20.0 * re.hypot(*im).log10()).collect()
     };

@@ -14,7 +14,7 @@ const BLOCK: usize = 1 << 16;
 
 /// The part of a file that was safe on disk at a checkpoint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Mark {
+pub struct StreamMark {
     /// Its length [byte].
     pub bytes: u64,
     /// CRC-32 (ISO-HDLC) of it.
@@ -30,7 +30,7 @@ pub struct Stream {
     sum: crc32fast::Hasher,
 }
 
-impl Mark {
+impl StreamMark {
     /// Mark of the entire content of a reader.
     pub fn of(mut from: impl Read) -> io::Result<Self> {
         let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, [0; BLOCK]);
@@ -66,7 +66,7 @@ impl Stream {
     /// # Errors
     ///
     /// The file is missing, too short, or has other content.
-    pub fn verify(path: &Path, mark: Mark) -> Result<()> {
+    pub fn verify(path: &Path, mark: StreamMark) -> Result<()> {
         let verify = || -> io::Result<()> {
             let file = open(path)?;
             let there = file.metadata()?.len();
@@ -76,7 +76,7 @@ impl Stream {
                     mark.bytes
                 )));
             }
-            if Mark::of(file.take(mark.bytes))? != mark {
+            if StreamMark::of(file.take(mark.bytes))? != mark {
                 return Err(damaged(
                     "its checksum differs from that at the checkpoint; the run cannot be resumed",
                 ));
@@ -87,7 +87,7 @@ impl Stream {
     }
 
     /// Opens a verified file and truncates it at the mark.
-    pub fn reopen(path: &Path, mark: Mark) -> Result<Self> {
+    pub fn reopen(path: &Path, mark: StreamMark) -> Result<Self> {
         let open = || -> io::Result<File> {
             let mut file = File::options().write(true).open(path)?;
             file.set_len(mark.bytes)?;
@@ -103,14 +103,14 @@ impl Stream {
     }
 
     /// Syncs the written content to the disk and returns its mark.
-    pub fn secure(&self) -> Result<Mark> {
+    pub fn secure(&self) -> Result<StreamMark> {
         self.file.sync_data().map_err(|e| fault("write", &self.path, e))?;
         Ok(self.mark())
     }
 
     /// Mark of all written content.
-    pub fn mark(&self) -> Mark {
-        Mark {
+    pub fn mark(&self) -> StreamMark {
+        StreamMark {
             bytes: self.bytes,
             crc32: self.sum.clone().finalize(),
         }

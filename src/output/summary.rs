@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::folder::{ResultFolder, SUMMARY, damaged, fault, open};
-use super::stream::Mark;
+use super::stream::StreamMark;
 use crate::error::Result;
 use crate::results::run::{Quantity, Summary};
-use crate::results::{self, Found};
+use crate::results::{self, StoredResult};
 
 /// First format with a complete wall time. Earlier totals exclude the time before and after the run.
 const WHOLE_WALL: u32 = 2;
@@ -53,8 +53,8 @@ pub fn read(dir: &Path) -> Result<Summary> {
 }
 
 /// Reads the summary of a result folder with its header.
-pub fn found(dir: &Path) -> Result<Found<Summary>> {
-    let mut found: Found<Summary> = super::folder::result(&dir.join(SUMMARY))?;
+pub fn found(dir: &Path) -> Result<StoredResult<Summary>> {
+    let mut found: StoredResult<Summary> = super::folder::result(&dir.join(SUMMARY))?;
     if found.head.format.is_none_or(|format| format < WHOLE_WALL) {
         let wall = &mut found.result.wall_s;
         wall.steps = wall.total - wall.known();
@@ -71,7 +71,9 @@ pub fn verify_table(dir: &Path, name: &str, summary: &Summary) -> Result<()> {
         return Ok(());
     };
     let path = dir.join(name);
-    let found = open(&path).and_then(Mark::of).map_err(|e| fault("read", &path, e))?;
+    let found = open(&path)
+        .and_then(StreamMark::of)
+        .map_err(|e| fault("read", &path, e))?;
     if found.crc32 != *expected {
         let why = "it was changed or cut short after the run: its checksum is not that in summary.json";
         return Err(fault("read", &path, damaged(why)));

@@ -8,7 +8,7 @@ use super::folder::ResultFolder;
 use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
 use crate::results;
-use crate::results::uncertainty::{Input, Spread, Uncertainty};
+use crate::results::uncertainty::{Spread, UncertainInput, Uncertainty};
 
 /// Name of the file.
 pub const UNCERTAINTY: &str = "uncertainty.json";
@@ -91,7 +91,7 @@ fn about(found: &Uncertainty) -> String {
 }
 
 /// The cells of a figure.
-fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
+fn row(name: &str, one: &Spread, inputs: &[UncertainInput]) -> [String; 7] {
     let size = one.value.abs();
     // no relative numbers for a value of 0
     let relative = |x: f64| match size {
@@ -115,7 +115,7 @@ fn row(name: &str, one: &Spread, inputs: &[Input]) -> [String; 7] {
 }
 
 /// Input with the largest share of the variance: by Sobol's total index, else by derivatives.
-fn mostly(one: &Spread, inputs: &[Input]) -> Option<String> {
+fn mostly(one: &Spread, inputs: &[UncertainInput]) -> Option<String> {
     if one.sd == 0.0 {
         return None;
     }
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_figure_is_told_beside_its_errors() {
-        let input = |pointer: &str| Input {
+        let input = |pointer: &str| UncertainInput {
             pointer: pointer.into(),
             distribution: "normal:1:0.1".into(),
             mean: 1.0,

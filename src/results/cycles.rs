@@ -2,24 +2,24 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Integrator, Kept};
+use super::{IntegratorRecord, ResultFile};
 use crate::run::band::Bands;
-pub use crate::run::floquet::{Floquet, Stability};
-pub use crate::run::periodic::Search;
+pub use crate::run::floquet::{CycleStability, Floquet};
+pub use crate::run::periodic::ShootingRecord;
 use crate::run::periodic::scene::METHOD;
 use crate::run::periodic::settle::Refined;
 use crate::run::periodic::subharmonic::Periods;
 use crate::run::summary::Accuracy;
 use crate::study::refine::meshes::Meshes;
-pub use crate::study::stability::{Along, Map};
+pub use crate::study::stability::{CyclePath, Map};
 
 /// A steady cycle and its stability.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Cycle {
+pub struct CycleResult {
     /// Name of the case.
     pub case: String,
     /// Search for the cycle.
-    pub cycle: Search,
+    pub cycle: ShootingRecord,
     /// Number of periods after which the cycle repeats, if several were requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub periods: Option<Periods>,
@@ -41,7 +41,7 @@ pub struct Cycle {
     pub meshes: Option<Meshes>,
 }
 
-impl Cycle {
+impl CycleResult {
     /// Relative error of a figure: that of the reached accuracy, or that of the mesh; `None` if unknown.
     pub fn error(&self, name: &str) -> Option<f64> {
         match &self.accuracy {
@@ -55,27 +55,27 @@ impl Cycle {
 }
 
 /// Method of all cycles.
-fn shooting() -> Option<Integrator> {
-    Some(Integrator {
+fn shooting() -> Option<IntegratorRecord> {
+    Some(IntegratorRecord {
         name: METHOD.into(),
         order: METHOD.order(),
     })
 }
 
-impl Kept for Cycle {
-    fn integrator(&self) -> Option<Integrator> {
+impl ResultFile for CycleResult {
+    fn integrator(&self) -> Option<IntegratorRecord> {
         shooting()
     }
 }
 
-impl Kept for Map {
-    fn integrator(&self) -> Option<Integrator> {
+impl ResultFile for Map {
+    fn integrator(&self) -> Option<IntegratorRecord> {
         shooting()
     }
 }
 
-impl Kept for Along {
-    fn integrator(&self) -> Option<Integrator> {
+impl ResultFile for CyclePath {
+    fn integrator(&self) -> Option<IntegratorRecord> {
         shooting()
     }
 }

@@ -2,18 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Kept;
+use super::ResultFile;
 use super::ordered::Ordered;
 use super::run::{Accuracy, Bands, Status};
 use crate::run::null;
 use crate::study::refine::meshes::Meshes;
 
 /// Numbers by name, which contains the unit; null if not finite.
-pub type Numbers = Ordered<Option<f64>>;
+pub type NamedNumbers = Ordered<Option<f64>>;
 
 /// A path of equilibria.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Equilibrium {
+pub struct EquilibriumPath {
     /// Name of the case.
     pub case: String,
     /// Status; `finished` if the path reached its end.
@@ -33,20 +33,20 @@ pub struct Equilibrium {
     /// Number of states on the path.
     pub states: usize,
     /// Quantities of the last state.
-    pub quantities: Option<Numbers>,
+    pub quantities: Option<NamedNumbers>,
     /// Uncertainty bands of the quantities.
     #[serde(default, skip_serializing_if = "Bands::is_empty")]
     pub bands: Bands,
     /// Stability of the last state, if known.
-    pub stability: Option<Stability>,
+    pub stability: Option<StabilityRecord>,
     /// Events on the path.
-    pub events: Vec<Event>,
+    pub events: Vec<PathEvent>,
     /// Derivatives of the quantities, by JSON pointers of numbers of the case.
-    pub sensitivities: Ordered<Derivatives>,
+    pub sensitivities: Ordered<EquilibriumDerivatives>,
     /// Work.
-    pub solver: Work,
+    pub solver: PathWork,
     /// Wall time.
-    pub wall_s: Wall,
+    pub wall_s: WallRecord,
     /// Warnings.
     pub warnings: Vec<String>,
     /// Estimated errors, if an accuracy was requested.
@@ -57,11 +57,11 @@ pub struct Equilibrium {
     pub meshes: Option<Meshes>,
 }
 
-impl Kept for Equilibrium {}
+impl ResultFile for EquilibriumPath {}
 
 /// Stability of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Stability {
+pub struct StabilityRecord {
     /// True if there is no unstable mode.
     pub stable: bool,
     /// Number of unstable modes.
@@ -72,7 +72,7 @@ pub struct Stability {
 
 /// An event on the path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Event {
+pub struct PathEvent {
     /// Load factor: share of the loads, plus 1 for every previous stage.
     pub load_factor: f64,
     /// Stage of the event, from 1, if there are several.
@@ -84,16 +84,16 @@ pub struct Event {
 
 /// Derivatives with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Derivatives {
+pub struct EquilibriumDerivatives {
     /// Value of the number.
     pub value: f64,
     /// Derivatives by quantity.
-    pub derivatives: Numbers,
+    pub derivatives: NamedNumbers,
 }
 
 /// Work along the path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Work {
+pub struct PathWork {
     /// Number of Newton steps.
     pub newton_iterations: u64,
     /// Number of residual evaluations.
@@ -109,7 +109,7 @@ pub struct Work {
 
 /// Wall time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Wall {
+pub struct WallRecord {
     /// Total [s].
     pub total: f64,
 }

@@ -1,9 +1,9 @@
 //! `fit.json`: numbers of a case estimated from measured data; and the output of `compare` for a run over data.
 
-use super::Kept;
-pub use crate::study::fit::beside::Beside;
+use super::ResultFile;
+pub use crate::study::fit::beside::DataComparison;
 pub use crate::study::fit::found::*;
 
-impl Kept for Fit {}
+impl ResultFile for Fit {}
 
-impl Kept for Beside {}
+impl ResultFile for DataComparison {}

@@ -41,23 +41,23 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-pub use provenance::{Integrator, Provenance};
+pub use provenance::{IntegratorRecord, Provenance};
 
 /// A result stored in a file.
-pub trait Kept: Serialize + DeserializeOwned {
+pub trait ResultFile: Serialize + DeserializeOwned {
     /// Format number. Increase it when a key is removed or changes its meaning, not when a key is added. Results without a number precede
     /// format 1.
     const FORMAT: u32 = 1;
 
     /// Method of time integration, if one method applies to the entire result.
-    fn integrator(&self) -> Option<Integrator> {
+    fn integrator(&self) -> Option<IntegratorRecord> {
         None
     }
 }
 
 /// Complete content of the file of a result.
 #[derive(Serialize)]
-struct Whole<'a, T: Kept> {
+struct Whole<'a, T: ResultFile> {
     format: u32,
     provenance: Provenance,
     #[serde(flatten)]
@@ -66,7 +66,7 @@ struct Whole<'a, T: Kept> {
     sentence: Option<&'a str>,
 }
 
-impl<'a, T: Kept> Whole<'a, T> {
+impl<'a, T: ResultFile> Whole<'a, T> {
     fn of(found: &'a T, sentence: Option<&'a str>) -> Self {
         Self {
             format: T::FORMAT,
@@ -78,24 +78,24 @@ impl<'a, T: Kept> Whole<'a, T> {
 }
 
 /// JSON text of a result.
-pub fn text<T: Kept>(found: &T) -> String {
+pub fn text<T: ResultFile>(found: &T) -> String {
     text_with(found, None)
 }
 
 /// JSON text of a result with a closing sentence about it.
-pub fn text_with<T: Kept>(found: &T, sentence: Option<&str>) -> String {
+pub fn text_with<T: ResultFile>(found: &T, sentence: Option<&str>) -> String {
     // Serialization fails only for keys that are not text, and there are none.
     serde_json::to_string_pretty(&Whole::of(found, sentence)).unwrap_or_default() + "\n"
 }
 
 /// JSON value of a result, as a part of something larger.
-pub fn value<T: Kept>(found: &T) -> Value {
+pub fn value<T: ResultFile>(found: &T) -> Value {
     serde_json::to_value(Whole::of(found, None)).unwrap_or_default()
 }
 
 /// A result that was read.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Found<T> {
+pub struct StoredResult<T> {
     /// The result.
     pub result: T,
     /// Header of the result.
@@ -130,7 +130,7 @@ impl Head {
 /// # Errors
 ///
 /// The text is not JSON, a key is missing or has another type, or a later version wrote it. The error names the place.
-pub fn read<T: Kept>(text: &str) -> io::Result<Found<T>> {
+pub fn read<T: ResultFile>(text: &str) -> io::Result<StoredResult<T>> {
     let head: Head = parse(text)?;
     if let Some(format) = head.format.filter(|format| *format > T::FORMAT) {
         return Err(damaged(format!(
@@ -139,7 +139,7 @@ pub fn read<T: Kept>(text: &str) -> io::Result<Found<T>> {
         )));
     }
     match parsed(text) {
-        Ok(result) => Ok(Found { result, head }),
+        Ok(result) => Ok(StoredResult { result, head }),
         Err(why) if head.format.is_none() => Err(damaged(format!(
             "{why}; it has no format number, so that a version before format 1 may have written it"
         ))),

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Kept;
+use super::ResultFile;
 use super::ordered::Ordered;
 use super::run::{Accuracy, Bands};
-pub use crate::run::modes::{Kind, Limit, Sort};
+pub use crate::run::modes::{LimitingMode, Sort, TimeBehavior};
 
 /// State about which a case is linearized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub enum About {
 
 /// Modes of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Modes {
+pub struct ModesRecord {
     /// Name of the case.
     pub case: String,
     /// State of linearization as text.
@@ -43,13 +43,13 @@ pub struct Modes {
     /// Stability in a sentence.
     pub verdict: String,
     /// The modes.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<ModeRecord>,
     /// Passivity of the coupling; null without bladders.
-    pub coupling: Option<Coupling>,
+    pub coupling: Option<CouplingPassivity>,
     /// Derivatives of all modes, by JSON pointers of numbers of the case.
-    pub sensitivities: Ordered<Derivatives>,
+    pub sensitivities: Ordered<ModeDerivatives>,
     /// Work.
-    pub solver: Work,
+    pub solver: SearchWork,
     /// Warnings.
     pub warnings: Vec<String>,
     /// Estimated errors, if an accuracy was requested.
@@ -57,13 +57,13 @@ pub struct Modes {
     pub accuracy: Option<Accuracy>,
 }
 
-impl Kept for Modes {}
+impl ResultFile for ModesRecord {}
 
 /// One mode; of a conjugate pair the one with positive frequency.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Mode {
+pub struct ModeRecord {
     /// Kind of the mode.
-    pub kind: Kind,
+    pub kind: TimeBehavior,
     /// Frequency [Hz], if the mode oscillates.
     pub frequency_hz: Option<f64>,
     /// Damping ratio, if the mode oscillates.
@@ -81,11 +81,11 @@ pub struct Mode {
     /// Transverse share of the motion.
     pub transverse_share: Option<f64>,
     /// Similar mode with every bladder sealed.
-    pub undrained: Option<Limit>,
+    pub undrained: Option<LimitingMode>,
     /// Similar mode with one pressure in each network.
-    pub drained: Option<Limit>,
+    pub drained: Option<LimitingMode>,
     /// Similar mode on half the cells.
-    pub on_half_the_cells: Option<Limit>,
+    pub on_half_the_cells: Option<LimitingMode>,
     /// Frequency extrapolated from both meshes [Hz].
     pub extrapolated_frequency_hz: Option<f64>,
     /// Growth rate extrapolated from both meshes [1/s].
@@ -101,7 +101,7 @@ pub struct Mode {
 
 /// Passivity of the coupling: whether loads and pressures can gain energy from it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Coupling {
+pub struct CouplingPassivity {
     /// True if loads and pressures cannot gain energy.
     pub passive: bool,
     /// Least eigenvalue of the symmetric part; 1 without coupling.
@@ -109,14 +109,14 @@ pub struct Coupling {
     /// Antisymmetric part, relative to the coupling.
     pub reciprocity_defect: f64,
     /// Loads that do the least work.
-    pub direction: Direction,
+    pub direction: LoadDirection,
     /// Verdict in a sentence.
     pub words: String,
 }
 
 /// Loads on a section.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Direction {
+pub struct LoadDirection {
     /// Moment [N m].
     pub moment_n_m: f64,
     /// Force [N].
@@ -129,7 +129,7 @@ pub struct Direction {
 
 /// Derivatives of all modes with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Derivatives {
+pub struct ModeDerivatives {
     /// Value of the number.
     pub value: f64,
     /// Derivatives of growth rates [1/s], mode after mode.
@@ -140,7 +140,7 @@ pub struct Derivatives {
 
 /// Work of the search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Work {
+pub struct SearchWork {
     /// Number of factorizations.
     pub factorizations: u64,
     /// Number of solves.

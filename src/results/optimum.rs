@@ -1,8 +1,8 @@
 //! `optimum.json`: the numbers of a case for which a figure is largest or smallest.
 
-use super::Kept;
+use super::ResultFile;
 pub use crate::study::optimize::found::*;
 
-impl Kept for Optimum {
+impl ResultFile for Optimum {
     const FORMAT: u32 = 2;
 }

@@ -24,19 +24,19 @@ pub struct Provenance {
     pub suitesparse: String,
     /// Method of time integration, if one method applies to the entire result.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub method: Option<Integrator>,
+    pub method: Option<IntegratorRecord>,
 }
 
 /// A method of time integration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Integrator {
+pub struct IntegratorRecord {
     /// Its name; never "auto".
     pub name: Method,
     /// Its order; for IDA the highest allowed order.
     pub order: u8,
 }
 
-impl Integrator {
+impl IntegratorRecord {
     /// Integrator recorded in counters.
     pub fn of(counters: &Counters) -> Option<Self> {
         let order = counters.max_order;
@@ -46,7 +46,7 @@ impl Integrator {
 
 impl Provenance {
     /// Origin of a result of this program.
-    pub fn of(method: Option<Integrator>) -> Self {
+    pub fn of(method: Option<IntegratorRecord>) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME").into(),
             version: env!("CARGO_PKG_VERSION").into(),

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Kept;
+use super::ResultFile;
 pub use super::modes::About;
 
 /// A frequency response of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Response {
+pub struct ResponseRecord {
     /// Name of the case.
     pub case: String,
     /// JSON pointer of the input.
@@ -22,28 +22,28 @@ pub struct Response {
     pub frequency_hz: Vec<f64>,
     /// Curve of the first output.
     #[serde(flatten)]
-    pub first: Curve,
+    pub first: ResponseCurve,
     /// Curves of further outputs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub further: Vec<Curve>,
+    pub further: Vec<ResponseCurve>,
     /// Poles in the band, the lowest first.
-    pub poles: Vec<Pole>,
+    pub poles: Vec<ResponsePole>,
     /// Warnings.
     pub warnings: Vec<String>,
 }
 
-impl Kept for Response {}
+impl ResultFile for ResponseRecord {}
 
-impl Response {
+impl ResponseRecord {
     /// All outputs.
-    pub fn curves(&self) -> impl Iterator<Item = &Curve> {
+    pub fn curves(&self) -> impl Iterator<Item = &ResponseCurve> {
         std::iter::once(&self.first).chain(&self.further)
     }
 }
 
 /// Transfer function to an output, in its unit over that of the input, for exp(i ω t).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Curve {
+pub struct ResponseCurve {
     /// Key of the output: `tip_u1_m`.
     pub output: String,
     /// Unit of the output.
@@ -56,10 +56,10 @@ pub struct Curve {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error: Vec<f64>,
     /// Local maxima of the amplitude.
-    pub peaks: Vec<Peak>,
+    pub peaks: Vec<ResponsePeak>,
 }
 
-impl Curve {
+impl ResponseCurve {
     /// Median of the relative error over frequencies, and largest error relative to the largest amplitude.
     pub fn errors(&self) -> Option<[f64; 2]> {
         let sizes = || self.real.iter().zip(&self.imag).map(|(re, im)| re.hypot(*im));
@@ -77,7 +77,7 @@ impl Curve {
 
 /// A local maximum of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Peak {
+pub struct ResponsePeak {
     /// Frequency [Hz].
     pub frequency_hz: f64,
     /// Amplitude.
@@ -90,7 +90,7 @@ pub struct Peak {
 
 /// A pole `s`; of a conjugate pair the one with positive imaginary part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pole {
+pub struct ResponsePole {
     /// Real part [1/s].
     pub re: f64,
     /// Imaginary part [1/s].

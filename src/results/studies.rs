@@ -1,14 +1,14 @@
 //! `study.json`, `effects.json`, and comparisons of runs.
 
-use super::Kept;
+use super::ResultFile;
 pub use crate::study::accuracy::Study;
 pub use crate::study::compare::Comparison;
-pub use crate::study::effects::{Ablation, Verdict};
+pub use crate::study::effects::{Ablation, EffectVerdict};
 
-impl Kept for Study {}
+impl ResultFile for Study {}
 
-impl Kept for Ablation {}
+impl ResultFile for Ablation {}
 
-impl Kept for Comparison {}
+impl ResultFile for Comparison {}
 
-impl Kept for crate::study::compare::Beside {}
+impl ResultFile for crate::study::compare::ManyComparison {}

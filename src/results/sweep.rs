@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::Kept;
-pub use crate::study::sweep::{Plan, Row, Shard};
+use super::ResultFile;
+pub use crate::study::sweep::{Shard, SweepPlan, SweepRow};
 
 /// Description and progress of a table of designs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,7 +13,7 @@ pub struct Sweep {
     /// Name of the first case.
     pub case: String,
     /// The requested plan.
-    pub plan: Plan,
+    pub plan: SweepPlan,
     /// True if every design of the plan, or of its shard, has a row.
     pub complete: bool,
     /// Number of rows.
@@ -23,7 +23,7 @@ pub struct Sweep {
     /// Number of rows by status.
     pub statuses: BTreeMap<String, usize>,
     /// Columns of the table, in its order.
-    pub columns: Vec<Column>,
+    pub columns: Vec<SweepColumn>,
     /// Warnings about the table as a whole.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -31,7 +31,7 @@ pub struct Sweep {
 
 /// A column of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct SweepColumn {
     /// Heading of the column.
     pub name: String,
     /// Name of its array in `sweep.npz`; null for text.
@@ -40,6 +40,6 @@ pub struct Column {
     pub unit: String,
 }
 
-impl Kept for Plan {}
+impl ResultFile for SweepPlan {}
 
-impl Kept for Sweep {}
+impl ResultFile for Sweep {}

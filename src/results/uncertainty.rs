@@ -1,6 +1,6 @@
 //! `uncertainty.json`: uncertainty of the figures from uncertain numbers of a case.
 
-use super::Kept;
-pub use crate::study::uncertain::{FirstOrder, Index, Input, Spread, Uncertainty};
+use super::ResultFile;
+pub use crate::study::uncertain::{FirstOrder, Index, Spread, UncertainInput, Uncertainty};
 
-impl Kept for Uncertainty {}
+impl ResultFile for Uncertainty {}

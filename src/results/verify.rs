@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Kept;
+use super::ResultFile;
 use crate::error;
 use crate::run::null;
-use crate::study::verify::{self, Measure};
+use crate::study::verify::{self, ErrorMeasure};
 
 /// An exact result, and the computed figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct VerifiedRow {
     /// Name.
     pub name: String,
     /// Source of the exact result.
@@ -22,17 +22,17 @@ pub struct Row {
     pub passed: bool,
     /// Figures, if they could be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub figures: Option<Vec<Figure>>,
+    pub figures: Option<Vec<VerifiedFigure>>,
     /// Reason why the figures could not be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub failure: Option<String>,
 }
 
-impl Kept for Row {}
+impl ResultFile for VerifiedRow {}
 
-impl Row {
+impl VerifiedRow {
     /// Combines a row and its figures.
-    pub fn of(row: &verify::Row, figures: &error::Result<Vec<verify::Figure>>) -> Self {
+    pub fn of(row: &verify::SolvedProblem, figures: &error::Result<Vec<verify::ExactFigure>>) -> Self {
         Self {
             name: row.name.clone(),
             source: row.source.into(),
@@ -40,8 +40,11 @@ impl Row {
             tolerance_reason: row.reason.into(),
             passed: figures
                 .as_ref()
-                .is_ok_and(|all| !all.is_empty() && all.iter().all(verify::Figure::passed)),
-            figures: figures.as_ref().ok().map(|all| all.iter().map(Figure::of).collect()),
+                .is_ok_and(|all| !all.is_empty() && all.iter().all(verify::ExactFigure::passed)),
+            figures: figures
+                .as_ref()
+                .ok()
+                .map(|all| all.iter().map(VerifiedFigure::of).collect()),
             failure: figures.as_ref().err().map(ToString::to_string),
         }
     }
@@ -49,7 +52,7 @@ impl Row {
 
 /// One number, computed and exact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figure {
+pub struct VerifiedFigure {
     /// Quantity with its unit.
     pub quantity: String,
     /// Computed value.
@@ -62,7 +65,7 @@ pub struct Figure {
     #[serde(deserialize_with = "null::number")]
     pub error: f64,
     /// Measure of the error: relative or absolute.
-    pub error_is: Measure,
+    pub error_is: ErrorMeasure,
     /// Largest error accepted.
     pub tolerance: f64,
     /// Order of convergence in the mesh size.
@@ -78,8 +81,8 @@ pub struct Figure {
     pub passed: bool,
 }
 
-impl Figure {
-    fn of(figure: &verify::Figure) -> Self {
+impl VerifiedFigure {
+    fn of(figure: &verify::ExactFigure) -> Self {
         Self {
             quantity: figure.quantity.clone(),
             computed: figure.computed,

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::observe::Observed;
-use super::sensitivity::kept::Kept;
+use super::sensitivity::kept::StoredSensitivities;
 use super::summary::Counters;
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -38,7 +38,7 @@ pub struct Checkpoint {
     pub observed: Observed,
     /// Sensitivities, if the run computes any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub forward: Option<Kept>,
+    pub forward: Option<StoredSensitivities>,
 }
 
 impl Checkpoint {

@@ -15,7 +15,7 @@ const ROUND_OFF: f64 = 37.0;
 
 /// Periodic excitation of a case in the long run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drive {
+pub struct PeriodicDrive {
     /// Common period [s].
     pub period: f64,
     /// True if any signal changes in the long run; otherwise the period is the requested one.
@@ -28,7 +28,7 @@ pub struct Drive {
 /// # Errors
 /// [`Error::Usage`]: a signal is not periodic, or the frequencies have no common period. Also if no signal is periodic and no valid
 /// period was requested, or if a period was requested although the case has its own.
-pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
+pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<PeriodicDrive> {
     let mut frequencies = vec![];
     let mut endless = None;
     model.each_signal(|s| {
@@ -58,7 +58,7 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
     }
     if frequencies.is_empty() {
         return match asked {
-            Some(period) if period.is_finite() && period > 0.0 => Ok(Drive { period, driven: false }),
+            Some(period) if period.is_finite() && period > 0.0 => Ok(PeriodicDrive { period, driven: false }),
             Some(period) => Err(Error::Usage(format!(
                 "--period {period}: must be a time > 0, in seconds"
             ))),
@@ -80,7 +80,7 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<Drive> {
         Some(asked) => Err(Error::Usage(format!(
             "--period {asked}: {name} has a period of its own, {period} s. Omit the option"
         ))),
-        None => Ok(Drive { period, driven: true }),
+        None => Ok(PeriodicDrive { period, driven: true }),
     }
 }
 

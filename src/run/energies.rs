@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 use super::schedule::SAME;
 use super::summary::{Absence, Quantity};
 use crate::case::schema::Case;
-use crate::discrete::quantities::{Group, Interest, Row};
+use crate::discrete::quantities::{Group, Interest, ObservableRow};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
@@ -92,7 +92,7 @@ impl Since {
 
 /// Accumulates the energies of a history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energies {
+pub struct EnergyAccumulator {
     window_start: f64,
     turbines: bool,
     last: Parts,
@@ -108,7 +108,7 @@ pub struct Energies {
     window: Since,
 }
 
-impl Energies {
+impl EnergyAccumulator {
     /// Creates the accumulator of a case in which energies below `floor` [J] are round-off.
     pub fn new(case: &Case, floor: f64) -> Self {
         Self {
@@ -120,7 +120,7 @@ impl Energies {
     }
 
     /// Adds one row of the history.
-    pub fn take(&mut self, row: &Row) {
+    pub fn take(&mut self, row: &ObservableRow) {
         let now = Parts {
             input: row.sum(Group::PutIn),
             harvested: row.sum(Group::Harvested),

@@ -14,14 +14,14 @@ use super::track::Track;
 use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::discrete::glance::{Glance, Watched};
-use crate::discrete::quantities::{Interest, Row, Source};
+use crate::discrete::quantities::{Interest, InterestSource, ObservableRow};
 
 /// Fraction of the characteristic size below which a value does not count as motion.
 const FLOOR: f64 = 1e-9;
 
 /// Accumulates the quantities of interest from the motion and the history.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
+pub struct FigureAccumulator {
     window_start: f64,
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
@@ -33,7 +33,7 @@ pub struct Figures {
     sizes: [f64; 2],
 }
 
-impl Figures {
+impl FigureAccumulator {
     /// Creates the figures of a case and its system.
     pub fn new(case: &Case, system: &System) -> Self {
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
@@ -52,14 +52,14 @@ impl Figures {
     }
 
     /// Adds one row of the history and the glance at the same state.
-    pub fn take(&mut self, row: &Row, glance: &Glance) {
+    pub fn take(&mut self, row: &ObservableRow, glance: &Glance) {
         let in_window = row.t() >= self.window_start;
         for (one, track) in self.each() {
             match one.source() {
-                Source::Motion(watched @ [_]) => track.take(value(glance, watched), in_window),
-                Source::Motion(watched) => track.take(value(glance, watched).abs(), in_window),
-                Source::Energy(group) => track.take(row.sum(group), in_window),
-                Source::Efficiency => {}
+                InterestSource::Motion(watched @ [_]) => track.take(value(glance, watched), in_window),
+                InterestSource::Motion(watched) => track.take(value(glance, watched).abs(), in_window),
+                InterestSource::Energy(group) => track.take(row.sum(group), in_window),
+                InterestSource::Efficiency => {}
             }
         }
     }
@@ -68,7 +68,7 @@ impl Figures {
     pub fn see(&mut self, glance: &Glance) {
         let in_window = glance.t >= self.window_start;
         for (one, track) in self.each() {
-            if let Source::Motion(watched) = one.source() {
+            if let InterestSource::Motion(watched) = one.source() {
                 track.see(value(glance, watched), glance.t, in_window);
             }
         }
@@ -85,16 +85,16 @@ impl Figures {
         let between = |which: &Watched| Cubic::new(sized(before, *which), sized(now, *which), h);
         for (one, track) in self.each() {
             let squares = match one.source() {
-                Source::Motion([which]) => {
+                InterestSource::Motion([which]) => {
                     let cubic = between(which);
                     cubic::integral(from, |x| cubic.at(x).powi(2))
                 }
-                Source::Motion(watched) => {
+                InterestSource::Motion(watched) => {
                     let cubics: Vec<Cubic> = watched.iter().map(between).collect();
                     let largest = |x| cubics.iter().fold(0.0, |most: f64, cubic| most.max(cubic.at(x).abs()));
                     cubic::integral(from, |x| largest(x).powi(2))
                 }
-                Source::Energy(_) | Source::Efficiency => continue,
+                InterestSource::Energy(_) | InterestSource::Efficiency => continue,
             };
             track.square(h * squares);
         }
@@ -106,7 +106,8 @@ impl Figures {
         let size = value.abs();
         let in_window = t >= self.window_start;
         let [length, modulus] = self.sizes;
-        let follows = |one: Interest| matches!(one.source(), Source::Motion(watched) if watched.contains(&which));
+        let follows =
+            |one: Interest| matches!(one.source(), InterestSource::Motion(watched) if watched.contains(&which));
         let Some((one, track)) = self.each().find(|(one, _)| follows(*one)) else {
             return false;
         };
@@ -145,7 +146,7 @@ impl Figures {
             ratio.is_finite().then_some(ratio)
         };
         let quantity = |one: Interest, t: &Track| match one.source() {
-            Source::Motion(watched) => {
+            InterestSource::Motion(watched) => {
                 let swing = t.swing(reached, self.window_time);
                 let of_sign = |extreme: Option<f64>| extreme.filter(|_| has_sign(watched));
                 Quantity {
@@ -154,13 +155,13 @@ impl Figures {
                     ..swing
                 }
             }
-            Source::Energy(_) => Quantity {
+            InterestSource::Energy(_) => Quantity {
                 last: Some(t.last()),
                 window: reached.then(|| t.increment()),
                 window_power_w: (self.window_time > 0.0).then(|| t.increment() / self.window_time),
                 ..Quantity::default()
             },
-            Source::Efficiency => Quantity {
+            InterestSource::Efficiency => Quantity {
                 last: ratio(Track::last),
                 window: ratio(Track::increment).filter(|_| reached),
                 ..Quantity::default()

@@ -7,7 +7,7 @@ use super::fit;
 use crate::discrete::TimeData;
 use crate::discrete::ledger::EnergyRate;
 use crate::error::numbers::quantity;
-use crate::model::characteristic::Mathieu;
+use crate::model::characteristic::MathieuTongue;
 
 /// Number of windows into which a run is divided.
 const WINDOWS: usize = 16;
@@ -68,7 +68,7 @@ impl Driver {
 
 /// A growing response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Growing {
+pub struct GrowingResponse {
     /// Growth rate of the largest deflection [1/s], fitted over the later three quarters of the run.
     pub rate_per_s: f64,
     /// Deflection at the end over that after the first quarter.
@@ -79,9 +79,9 @@ pub struct Growing {
 
 /// Properties of the scene from its linearization.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Linear {
+pub struct LinearProperties {
     /// Axial base motion.
-    pub mathieu: Option<Mathieu>,
+    pub mathieu: Option<MathieuTongue>,
     /// Euler's load [N].
     pub euler_load: Option<f64>,
 }
@@ -128,7 +128,7 @@ impl Growth {
     }
 
     /// Returns growth and causes if the deflection grows exponentially until the end. `length` [m] is the length of the beam.
-    pub fn judge(&self, length: f64, linear: &Linear) -> Option<Growing> {
+    pub fn judge(&self, length: f64, linear: &LinearProperties) -> Option<GrowingResponse> {
         let seen: Vec<&Window> = self.windows.iter().take_while(|w| w.samples > 0).collect();
         if seen.len() < WINDOWS / 2 {
             return None;
@@ -164,7 +164,7 @@ impl Growth {
         if !fit::is_exponential(&points) || follows(late) {
             return None;
         }
-        Some(Growing {
+        Some(GrowingResponse {
             rate_per_s: rate,
             factor,
             drivers: self.drivers(late, rate, linear),
@@ -173,7 +173,7 @@ impl Growth {
 
     /// Warns if a beam without inertia stayed straight although its compression exceeded Euler's load. This equilibrium is
     /// unstable, but the equations of a perfect column do not detect it.
-    pub fn straight_beyond_buckling(&self, length: f64, linear: &Linear) -> Option<String> {
+    pub fn straight_beyond_buckling(&self, length: f64, linear: &LinearProperties) -> Option<String> {
         let euler = linear.euler_load?;
         let largest = self.windows.iter().map(|w| w.deflection).fold(0.0, f64::max);
         (self.compression > euler && largest < 1e-6 * length).then(|| {
@@ -187,7 +187,7 @@ impl Growth {
         })
     }
 
-    fn drivers(&self, late: &[&Window], rate: f64, linear: &Linear) -> Vec<Driver> {
+    fn drivers(&self, late: &[&Window], rate: f64, linear: &LinearProperties) -> Vec<Driver> {
         let (first, last) = (late[0], late[late.len() - 1]);
         let gained = (last.bending_energy - first.bending_energy).max(f64::MIN_POSITIVE);
         let driver = |name: &str, evidence: String| Driver {
@@ -287,7 +287,7 @@ fn follows(late: &[&Window]) -> bool {
     })
 }
 
-impl Growing {
+impl GrowingResponse {
     /// Formats the growth as one warning.
     pub fn warning(&self) -> String {
         format!(

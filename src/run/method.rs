@@ -4,16 +4,16 @@ use super::order::{self, OrderChoice};
 use crate::case::schema::{self, Case, MaxOrder};
 use crate::dae::Dae;
 use crate::discrete::System;
-use crate::integrate::{Absolute, Counters, IntegrationError, Wall};
-use crate::onestep::{Method, OneStep, OneStepOptions};
+use crate::integrate::{Absolute, Counters, IntegrationError, SolverWallTimes};
+use crate::onestep::{OneStep, OneStepOptions, TableauMethod};
 use crate::sundials::IdaOptions;
-use crate::sundials::{Ida, Step};
+use crate::sundials::{AcceptedStep, Ida};
 
 /// Method and highest order of a case, with reasons.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MethodChoice {
     /// A one-step method; `None` for IDA.
-    pub one_step: Option<Method>,
+    pub one_step: Option<TableauMethod>,
     /// Reason for the method, as text.
     pub reason: String,
     /// Highest order.
@@ -35,7 +35,7 @@ const LOOSEST: f64 = 1e-2;
 pub fn choose(case: &Case, system: &System) -> MethodChoice {
     let (method, rtol) = (case.solver.method, case.solver.rtol);
     let bdf = || order::choose(case, system);
-    let one_step = |method: Method, reason: &str| MethodChoice {
+    let one_step = |method: TableauMethod, reason: &str| MethodChoice {
         one_step: Some(method),
         reason: reason.into(),
         order: OrderChoice {
@@ -50,10 +50,10 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
     };
     match method {
         schema::Method::Ida => ida("as requested", bdf()),
-        schema::Method::Trbdf2 => one_step(Method::TrBdf2, "as requested"),
-        schema::Method::Esdirk34 => one_step(Method::Esdirk34, "as requested"),
-        schema::Method::Esdirk46 => one_step(Method::Esdirk46, "as requested"),
-        schema::Method::Esdirk57 => one_step(Method::Esdirk57, "as requested"),
+        schema::Method::Trbdf2 => one_step(TableauMethod::TrBdf2, "as requested"),
+        schema::Method::Esdirk34 => one_step(TableauMethod::Esdirk34, "as requested"),
+        schema::Method::Esdirk46 => one_step(TableauMethod::Esdirk46, "as requested"),
+        schema::Method::Esdirk57 => one_step(TableauMethod::Esdirk57, "as requested"),
         schema::Method::Auto if case.solver.max_order != MaxOrder::Auto => {
             ida("max_order is set, which applies to BDF only", bdf())
         }
@@ -64,7 +64,7 @@ pub fn choose(case: &Case, system: &System) -> MethodChoice {
                 order,
             ),
             _ => one_step(
-                Method::Esdirk46,
+                TableauMethod::Esdirk46,
                 "undamped waves limit BDF to order 2; an L-stable method of order 4 needs a tenth of its steps",
             ),
         },
@@ -96,14 +96,14 @@ const NONLINEAR_STATIC: f64 = 1e-4;
 
 /// Settings of the integrator of a case.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Options {
+pub enum IntegratorOptions {
     /// IDA's settings.
     Ida(IdaOptions),
     /// Settings of a one-step method.
     OneStep(OneStepOptions),
 }
 
-impl Options {
+impl IntegratorOptions {
     /// Settings for a case and its chosen method.
     pub fn new(case: &Case, system: &System, choice: &MethodChoice, max_step: f64) -> Self {
         let solver = &case.solver;
@@ -163,15 +163,21 @@ macro_rules! either {
 
 impl<D: Dae> Integrator<D> {
     /// An integrator at time `t0` [s] with consistent values and derivatives.
-    pub fn new(dae: D, t0: f64, y0: &[f64], yp0: &[f64], options: &Options) -> Result<Self, Box<IntegrationError>> {
+    pub fn new(
+        dae: D,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        options: &IntegratorOptions,
+    ) -> Result<Self, Box<IntegrationError>> {
         match options {
-            Options::Ida(options) => Ida::new(dae, t0, y0, yp0, options).map(Self::Ida),
-            Options::OneStep(options) => OneStep::new(dae, t0, y0, yp0, options).map(Self::OneStep),
+            IntegratorOptions::Ida(options) => Ida::new(dae, t0, y0, yp0, options).map(Self::Ida),
+            IntegratorOptions::OneStep(options) => OneStep::new(dae, t0, y0, yp0, options).map(Self::OneStep),
         }
     }
 
     /// Makes one accepted step, which does not pass `stop` [s].
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
+    pub fn step(&mut self, stop: f64) -> Result<AcceptedStep, Box<IntegrationError>> {
         either!(self, one => one.step(stop))
     }
 
@@ -227,7 +233,7 @@ impl<D: Dae> Integrator<D> {
     }
 
     /// Wall time spent in the equations and the linear solver.
-    pub fn wall(&self) -> Wall {
+    pub fn wall(&self) -> SolverWallTimes {
         either!(self, one => one.wall())
     }
 

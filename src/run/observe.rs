@@ -6,25 +6,25 @@ use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
 use crate::discrete::glance::{Glance, Watched};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
-use crate::discrete::quantities::{self, Look, Observable, Row, probes, stations};
+use crate::discrete::quantities::{self, Look, Observable, ObservableRow, probes, stations};
 use crate::discrete::turns::Turns;
-use crate::discrete::{State, System, TimeData};
+use crate::discrete::{CompleteState, System, TimeData};
 use crate::error::Result;
 use crate::model::mapping::tube_length;
 
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
-use super::energies::Energies;
-use super::figures::{self, Figures};
+use super::energies::EnergyAccumulator;
+use super::figures::{self, FigureAccumulator};
 use super::floors::Floors;
 use super::growth::Growth;
 use super::range::{Limits, Range};
-use super::readings::{self, ProbeFigures, Readings};
-use super::record::{Axis, Column, Field, Header, Recorder, Sampled};
+use super::readings::{self, ProbeFigures, StepReadings};
+use super::record::{Header, HistoryColumn, RecordedAxis, RecordedField, Recorder, Sampled};
 use super::residuals::Residuals;
 use super::step_response::StepResponses;
-use super::stretch::{self, Stretch, Stretches};
+use super::stretch::{self, StretchStatistics, Stretches};
 use super::valves::ValveFlows;
 
 /// Quantities whose extrema between two steps are searched.
@@ -58,27 +58,27 @@ pub struct Observed {
     /// Balances.
     pub residuals: Residuals,
     /// Quantities of interest.
-    pub figures: Figures,
+    pub figures: FigureAccumulator,
     /// Figures at probes.
     pub probes: ProbeFigures,
     /// Step responses, if requested.
     pub steps: Option<StepResponses>,
     /// Errors of the energies among the quantities of interest.
-    pub energies: Energies,
+    pub energies: EnergyAccumulator,
     /// Growth of the response.
     pub growth: Growth,
     /// Waves that grow in the linearized equations.
-    #[serde(default, skip_serializing_if = "super::waves::Seen::is_empty")]
-    pub waves: super::waves::Seen,
+    #[serde(default, skip_serializing_if = "super::waves::SeenWaves::is_empty")]
+    pub waves: super::waves::SeenWaves,
     /// Angle unwrapping at the end of the last step.
     #[serde(default)]
     pub turns: Turns,
     /// The last sample.
     #[serde(default)]
-    pub row: Row,
+    pub row: ObservableRow,
     /// Statistics over the current stretch of outputs before the window.
     #[serde(default)]
-    stretch: Stretch,
+    stretch: StretchStatistics,
     /// Flows through valves as they close [m^3/s].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub valve_flows: Vec<f64>,
@@ -94,7 +94,7 @@ pub struct Observer {
     /// End of the last step, or start of the first step after a switch.
     before: Option<Glance>,
     turning: Vec<f64>,
-    readings: Readings,
+    readings: StepReadings,
     valves: ValveFlows,
     /// Accumulated observations.
     pub seen: Observed,
@@ -113,18 +113,18 @@ impl Observer {
             limits: Limits::new(case, system),
             before: None,
             turning: vec![],
-            readings: Readings::new(case),
+            readings: StepReadings::new(case),
             valves: ValveFlows::new(case, system),
             seen: Observed {
                 residuals: Residuals::new(system, case.solver.rtol, floors),
-                figures: Figures::new(case, system),
+                figures: FigureAccumulator::new(case, system),
                 probes: ProbeFigures::new(case, system),
                 steps: case
                     .step_response
                     .map(|step| StepResponses::new(readings::names(system), step.at_s)),
-                energies: Energies::new(case, floors.energy),
+                energies: EnergyAccumulator::new(case, floors.energy),
                 growth: Growth::new(case.time.end_s),
-                row: Row::of(system),
+                row: ObservableRow::of(system),
                 ..Observed::default()
             },
         }
@@ -132,21 +132,21 @@ impl Observer {
 
     /// Describes the recorded data.
     pub fn header(case: &Case, system: &System) -> Header {
-        let axis = |axis: quantities::Axis| Axis {
+        let axis = |axis: quantities::FieldAxis| RecordedAxis {
             name: axis.name(),
             unit: axis.unit(),
             about: axis.about(),
             values: axis.values(system, tube_length(case)),
         };
-        let field = |field: quantities::Field| Field {
+        let field = |field: quantities::BeamField| RecordedField {
             name: field.name(),
             unit: field.unit(),
             axis: field.axis().name(),
             about: field.about(),
             len: field.len(system),
         };
-        let own = Observable::of(system).into_iter().map(Column::from);
-        let columns: Vec<Column> = own
+        let own = Observable::of(system).into_iter().map(HistoryColumn::from);
+        let columns: Vec<HistoryColumn> = own
             .chain(stations::columns(system, false))
             .chain(probes::columns(system))
             .collect();
@@ -157,8 +157,8 @@ impl Observer {
         Header {
             columns,
             envelope,
-            axes: quantities::Axis::of(system).map(axis).collect(),
-            fields: quantities::Field::of(system).map(field).collect(),
+            axes: quantities::FieldAxis::of(system).map(axis).collect(),
+            fields: quantities::BeamField::of(system).map(field).collect(),
             sensitivities: vec![],
         }
     }
@@ -260,7 +260,7 @@ impl Observer {
         &mut self,
         system: &System,
         now: &TimeData,
-        w: State,
+        w: CompleteState,
         glance: &Glance,
         integrals: &[f64],
     ) -> EnergyBalance {
@@ -352,9 +352,9 @@ impl Observer {
         recorder.history(self.seen.row.values())?;
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
-            let ordered: Vec<Cow<[f64]>> = quantities::Field::of(system)
+            let ordered: Vec<Cow<[f64]>> = quantities::BeamField::of(system)
                 .map(|field| match field.axis() {
-                    quantities::Axis::Network => Cow::Owned(along(&field.values(&w))),
+                    quantities::FieldAxis::Network => Cow::Owned(along(&field.values(&w))),
                     _ => field.values(&w),
                 })
                 .collect();
@@ -373,7 +373,7 @@ impl Observer {
     }
 
     /// The last row of the history.
-    pub fn row(&self) -> &Row {
+    pub fn row(&self) -> &ObservableRow {
         &self.seen.row
     }
 

@@ -10,9 +10,9 @@ use super::schedule::SAME;
 use super::summary::Quantity;
 use super::track::Track;
 use crate::case::schema::Case;
-use crate::discrete::ledger::Energies;
-use crate::discrete::quantities::{Look, Observable, Read, Row, probes};
-use crate::discrete::{State, System, TimeData};
+use crate::discrete::ledger::StoredEnergies;
+use crate::discrete::quantities::{Look, Observable, ObservableRow, Read, probes};
+use crate::discrete::{CompleteState, System, TimeData};
 
 /// Quantities read at the tip.
 const TIP: [Observable; 3] = [Observable::TipU1, Observable::TipU3, Observable::TipAngle];
@@ -26,7 +26,7 @@ pub fn names(system: &System) -> Vec<String> {
 
 /// Readings of the current step.
 #[derive(Clone, Debug, Default)]
-pub struct Readings {
+pub struct StepReadings {
     follows: bool,
     /// Start and end of the step [s].
     span: [f64; 2],
@@ -34,7 +34,7 @@ pub struct Readings {
     values: [Vec<f64>; 4],
 }
 
-impl Readings {
+impl StepReadings {
     /// Creates the readings of a case; nothing is read without probes and step responses.
     pub fn new(case: &Case) -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Readings {
     }
 
     /// Reads the end of a step at `t` [s], which is the start of the next step. `first` marks the start of a smooth interval.
-    pub fn arrive(&mut self, t: f64, first: bool, system: &System, now: &TimeData, w: State) {
+    pub fn arrive(&mut self, t: f64, first: bool, system: &System, now: &TimeData, w: CompleteState) {
         if self.follows {
             self.span = [if first { t } else { self.span[1] }, t];
             self.values.swap(0, 3);
@@ -60,7 +60,7 @@ impl Readings {
     }
 
     /// Reads a state within the step, at the first or the second of [`Readings::times`].
-    pub fn within(&mut self, second: bool, system: &System, now: &TimeData, w: State) {
+    pub fn within(&mut self, second: bool, system: &System, now: &TimeData, w: CompleteState) {
         read(system, now, w, &mut self.values[1 + usize::from(second)]);
     }
 
@@ -72,8 +72,8 @@ impl Readings {
     }
 }
 
-fn read(system: &System, now: &TimeData, w: State, out: &mut Vec<f64>) {
-    let look = Look::new(system, now, w, Energies::default());
+fn read(system: &System, now: &TimeData, w: CompleteState, out: &mut Vec<f64>) {
+    let look = Look::new(system, now, w, StoredEnergies::default());
     out.clear();
     out.extend(TIP.iter().filter_map(|one| match one.read() {
         Read::State(read) => Some(read(&look)),
@@ -111,7 +111,7 @@ impl ProbeFigures {
     }
 
     /// Adds a sample.
-    pub fn take(&mut self, t: f64, row: &Row) {
+    pub fn take(&mut self, t: f64, row: &ObservableRow) {
         let in_window = t >= self.window_start;
         self.ports.take(t, row.at_stations(), in_window);
         for (track, value) in self.tracks.iter_mut().zip(row.at_probes()) {
@@ -121,7 +121,7 @@ impl ProbeFigures {
     }
 
     /// Adds a step: its ends, the extrema between, and the part that lies in the window.
-    pub fn step(&mut self, readings: &Readings) {
+    pub fn step(&mut self, readings: &StepReadings) {
         if self.tracks.is_empty() {
             return;
         }

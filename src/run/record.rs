@@ -1,12 +1,12 @@
 //! Interface between a run and its recorders. The run itself prints nothing and writes nothing.
 
 use super::checkpoint::Checkpoint;
-pub use crate::discrete::quantities::probes::Column;
+pub use crate::discrete::quantities::probes::HistoryColumn;
 use crate::error::Result;
 
 /// A fixed coordinate along which a field is sampled.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Axis {
+pub struct RecordedAxis {
     /// Array name, unit included: `theta_node_m`.
     pub name: &'static str,
     /// Unit.
@@ -19,7 +19,7 @@ pub struct Axis {
 
 /// An array over time and one axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct RecordedField {
     /// Array name, unit included: `u1_m`.
     pub name: &'static str,
     /// Unit.
@@ -36,11 +36,11 @@ pub struct Field {
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Header {
     /// Columns of the history; the first is `t [s]`.
-    pub columns: Vec<Column>,
+    pub columns: Vec<HistoryColumn>,
     /// Coordinates.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<RecordedAxis>,
     /// Fields.
-    pub fields: Vec<Field>,
+    pub fields: Vec<RecordedField>,
     /// Columns of the statistics over stretches of thinned outputs, names with units; empty if all outputs are written.
     pub envelope: Vec<String>,
     /// Columns of derivatives, names with units, the first `t [s]`; empty if none are requested.

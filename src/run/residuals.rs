@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::floors::Floors;
 use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::ledger::{self, EnergyRate, Invariants};
-use crate::discrete::{State, System, TimeData};
+use crate::discrete::{CompleteState, System, TimeData};
 use crate::error::Code;
 use crate::error::numbers::significant;
 
@@ -62,7 +62,7 @@ impl Residuals {
     pub fn take(
         &mut self,
         system: &System,
-        w: State,
+        w: CompleteState,
         balance: &EnergyBalance,
         [first, invariants]: [&Invariants; 2],
         integrals: &[f64],
@@ -111,7 +111,7 @@ impl Residuals {
     }
 
     /// Adds the reactions over a step of `dt` [s] that ends in the state `w`.
-    pub fn follow(&mut self, system: &System, now: &TimeData, w: State, dt: f64) {
+    pub fn follow(&mut self, system: &System, now: &TimeData, w: CompleteState, dt: f64) {
         for (sum, square) in self.reactions.iter_mut().zip(ledger::compared(system, now, w)) {
             *sum += dt * square;
         }

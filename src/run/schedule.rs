@@ -7,7 +7,7 @@ use crate::model::Model;
 
 /// A time at which the integrator stops and restarts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct ScheduledStop {
     /// Time [s].
     pub t: f64,
     /// True if a signal has a kink or jump here.
@@ -17,17 +17,17 @@ pub struct Stop {
 }
 
 /// All stops of a run in order, its end last.
-pub fn stops(case: &Case, model: &Model) -> Vec<Stop> {
+pub fn stops(case: &Case, model: &Model) -> Vec<ScheduledStop> {
     let end = case.time.end_s;
     let closest = 1e-9 * end;
     let mut switches = Vec::new();
     model.each_signal(|s| s.breaks(end, &mut switches));
-    let stop = |t, [switches, checkpoint]: [bool; 2]| Stop {
+    let stop = |t, [switches, checkpoint]: [bool; 2]| ScheduledStop {
         t,
         switches,
         checkpoint,
     };
-    let mut all: Vec<Stop> = switches.into_iter().map(|t| stop(t, [true, false])).collect();
+    let mut all: Vec<ScheduledStop> = switches.into_iter().map(|t| stop(t, [true, false])).collect();
     if let Some(interval) = case.time.checkpoint_interval_s {
         let count = (end / interval).ceil() as u64;
         all.extend((1..count).map(|k| stop(k as f64 * interval, [false, true])));

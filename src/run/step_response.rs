@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
-use super::readings::Readings;
+use super::readings::StepReadings;
 use crate::error::numbers::quantity;
 
 /// Fractions of the change between which the rise is timed.
@@ -176,7 +176,7 @@ impl StepResponses {
     }
 
     /// Adds a step of the run.
-    pub fn step(&mut self, readings: &Readings) {
+    pub fn step(&mut self, readings: &StepReadings) {
         let (span, cubics) = readings.step();
         self.take(span, cubics);
     }

@@ -9,9 +9,9 @@ pub use crate::integrate::halt::INTERRUPTED;
 
 /// A flag that requests work to stop, checked by the work; without a flag there is never a request.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Option<Arc<AtomicBool>>);
+pub struct StopFlag(Option<Arc<AtomicBool>>);
 
-impl Stop {
+impl StopFlag {
     /// Creates a stop request from a flag.
     pub fn by(flag: Arc<AtomicBool>) -> Self {
         Self(Some(flag))

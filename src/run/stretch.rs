@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::record::Column;
+use super::record::HistoryColumn;
 use super::schedule::SAME;
 use crate::case::schema::Case;
 use crate::model::characteristic;
@@ -18,8 +18,8 @@ const EDGE: f64 = 1e-6;
 const OWN: [&str; 3] = ["from [s]", "to [s]", "outputs [1]"];
 
 /// Names of the columns, units included; three for each column of the history.
-pub fn names(columns: &[Column]) -> Vec<String> {
-    let of = |c: &Column| ["least", "greatest", "mean"].map(|what| format!("{} {what} [{}]", c.name, c.unit));
+pub fn names(columns: &[HistoryColumn]) -> Vec<String> {
+    let of = |c: &HistoryColumn| ["least", "greatest", "mean"].map(|what| format!("{} {what} [{}]", c.name, c.unit));
     let own = OWN.map(String::from);
     own.into_iter().chain(columns.iter().skip(1).flat_map(of)).collect()
 }
@@ -57,7 +57,7 @@ impl Stretches {
 
 /// Statistics of the current stretch.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stretch {
+pub struct StretchStatistics {
     number: u64,
     count: u64,
     times: [f64; 2],
@@ -66,7 +66,7 @@ pub struct Stretch {
     sums: Vec<f64>,
 }
 
-impl Stretch {
+impl StretchStatistics {
     /// Adds a row of the history. Returns the row of the previous stretch if this row begins another.
     pub fn take(&mut self, number: Option<u64>, row: &[f64]) -> Option<Vec<f64>> {
         let before = if number == Some(self.number) {

@@ -3,7 +3,7 @@
 use super::schedule;
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::functions::bounds::{Stretch, merged};
+use crate::functions::bounds::{TimeStretch, merged};
 use crate::model::Model;
 
 /// Intervals whose largest steps differ by at most this factor share the smaller one.
@@ -37,7 +37,7 @@ impl Strides {
         let part = if strides { 0.1 } else { 0.01 };
         let parts = 16.0 * (1e-3 / case.solver.rtol.max(1e-3)).powf(0.25);
         let mut all = Self(vec![]);
-        for Stretch { to, scale } in stretches(&system.model, end) {
+        for TimeStretch { to, scale } in stretches(&system.model, end) {
             all.add(Stride {
                 to,
                 largest: (part * end).min(scale / parts),
@@ -84,8 +84,8 @@ impl Strides {
 }
 
 /// Shortest time scales of all signals on successive intervals, without kinks and jumps, which are stops.
-pub(super) fn stretches(model: &Model, end: f64) -> Vec<Stretch> {
-    let mut all = vec![Stretch {
+pub(super) fn stretches(model: &Model, end: f64) -> Vec<TimeStretch> {
+    let mut all = vec![TimeStretch {
         to: end,
         scale: f64::INFINITY,
     }];

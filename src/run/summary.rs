@@ -6,9 +6,9 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::band::Bands;
-use super::growth::Growing;
+use super::growth::GrowingResponse;
 use super::null;
-use super::sensitivity::figures::Sensitivity;
+use super::sensitivity::figures::FigureSensitivity;
 use super::step_response::StepResponse;
 pub use super::wall::WallTimes;
 use super::waves::GrowingWave;
@@ -203,7 +203,7 @@ pub struct Balances {
 
 /// A choice of the program and its reason.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Chosen {
+pub struct ProgramChoice {
     /// The choice: `on`, `off`.
     pub value: String,
     /// The number that decided.
@@ -212,7 +212,7 @@ pub struct Chosen {
 
 /// Errors of a quantity, relative to its largest figure; absent if unknown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct ErrorEstimate {
     /// Error of the time integration.
     pub time: Option<f64>,
     /// Error of the mesh.
@@ -263,7 +263,7 @@ pub struct Accuracy {
     #[serde(default)]
     pub effects: String,
     /// Errors by quantity, probe and port.
-    pub quantities: BTreeMap<String, Estimate>,
+    pub quantities: BTreeMap<String, ErrorEstimate>,
     /// The runs before the result.
     pub pilots: Vec<Pilot>,
 }
@@ -321,7 +321,7 @@ pub struct Summary {
     /// Wall time.
     pub wall_s: WallTimes,
     /// Effects.
-    pub effects: BTreeMap<String, Chosen>,
+    pub effects: BTreeMap<String, ProgramChoice>,
     /// Characteristic numbers.
     pub characteristic: BTreeMap<String, f64>,
     /// Origin of each coefficient, by its JSON pointer: `case`, `preset ...`, `--set`, `default` or `computed from ...`.
@@ -329,7 +329,7 @@ pub struct Summary {
     pub origins: BTreeMap<String, String>,
     /// Growth of the response and its causes, if it grows.
     #[serde(default)]
-    pub growth: Option<Growing>,
+    pub growth: Option<GrowingResponse>,
     /// A wave that grows in the equations linearized about states of the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub growing_wave: Option<GrowingWave>,
@@ -338,7 +338,7 @@ pub struct Summary {
     pub accuracy: Option<Accuracy>,
     /// Derivatives of the quantities, by the JSON pointers of the requested numbers.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub sensitivities: BTreeMap<String, Sensitivity>,
+    pub sensitivities: BTreeMap<String, FigureSensitivity>,
     /// CRC-32 of the tables beside the summary, by file; absent where no table was written.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub tables_crc32: BTreeMap<String, u32>,

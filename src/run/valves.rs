@@ -1,7 +1,7 @@
 //! Flows through valves as they close.
 
 use crate::case::schema::Case;
-use crate::discrete::{State, System};
+use crate::discrete::{CompleteState, System};
 use crate::model::hammer;
 
 /// Observes the flow through each valve as it closes, in the order of [`hammer::closings`].
@@ -14,7 +14,7 @@ impl ValveFlows {
     /// Creates the observer for the valves of a case.
     pub fn new(case: &Case, system: &System) -> Self {
         let links = system.fluid.as_ref().map_or(&[][..], |fluid| &fluid.links);
-        let of = |closing: hammer::Closing| {
+        let of = |closing: hammer::ValveClosing| {
             let link = links.iter().position(|link| link.number == Some(closing.link));
             (link, closing.times)
         };
@@ -24,7 +24,7 @@ impl ValveFlows {
     }
 
     /// Adds a state at time `t` [s]. Each of `flows` [m^3/s] is the last flow before its valve begins to close, then the largest one.
-    pub fn add(&self, t: f64, w: State, flows: &mut Vec<f64>) {
+    pub fn add(&self, t: f64, w: CompleteState, flows: &mut Vec<f64>) {
         flows.resize(self.closings.len(), 0.0);
         for ((link, [from, to]), flow) in self.closings.iter().zip(flows) {
             let now = link.map_or(0.0, |link| w.fluid.flow[link].abs());

@@ -9,8 +9,8 @@ use super::strides;
 use crate::case::schema::{Case, Formulation};
 use crate::dae::{BeamDae, Dae, Seeds};
 use crate::error::numbers::{quantity, significant};
-use crate::functions::bounds::Stretch;
-use crate::model::{Coupling, Model};
+use crate::functions::bounds::TimeStretch;
+use crate::model::{CouplingLaw, Model};
 use crate::spectral::{self, Bounds, Pencil};
 
 /// States that are examined, as parts of the run: multiples of the golden section modulo one, in order, which no period of a drive meets
@@ -57,12 +57,12 @@ struct Causes {
 
 /// Growing waves seen so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Seen {
+pub struct SeenWaves {
     states: Vec<Waves>,
     causes: Option<Causes>,
 }
 
-impl Seen {
+impl SeenWaves {
     /// True if there is none.
     pub fn is_empty(&self) -> bool {
         self.states.is_empty()
@@ -70,11 +70,11 @@ impl Seen {
 }
 
 /// Examines a run for growing waves.
-pub struct Watch {
+pub struct WaveWatch {
     end: f64,
     next: usize,
     /// Shortest time scales of signals.
-    stretches: Vec<Stretch>,
+    stretches: Vec<TimeStretch>,
     /// Lowest frequency of the beam at rest [1/s].
     first: f64,
 }
@@ -96,7 +96,7 @@ pub struct GrowingWave {
     pub drivers: Vec<super::growth::Driver>,
 }
 
-impl Watch {
+impl WaveWatch {
     /// For a run of a model until `end` [s]; None where no wave can grow by itself.
     pub fn new(model: &Model, end: f64) -> Option<Self> {
         let section = &model.section;
@@ -119,7 +119,15 @@ impl Watch {
     }
 
     /// Examines the state at the end of a step [s] that passed the time of one or more states.
-    pub fn examine(&mut self, case: &Case, dae: &BeamDae, t: f64, step: f64, [y, yp]: [&[f64]; 2], seen: &mut Seen) {
+    pub fn examine(
+        &mut self,
+        case: &Case,
+        dae: &BeamDae,
+        t: f64,
+        step: f64,
+        [y, yp]: [&[f64]; 2],
+        seen: &mut SeenWaves,
+    ) {
         let from = self.next;
         self.skip(t);
         let part = (from..self.next).map(share).sum();
@@ -158,7 +166,7 @@ impl Watch {
     }
 
     /// The wave that is amplified most, if that is worth a warning.
-    pub fn judge(&self, seen: &Seen) -> Option<GrowingWave> {
+    pub fn judge(&self, seen: &SeenWaves) -> Option<GrowingWave> {
         let exponent = |frequency: f64| -> f64 {
             let of_state = |state: &Waves| {
                 let same = state.found.iter().filter(|[_, f]| (f / frequency - 1.0).abs() < SAME);
@@ -282,7 +290,7 @@ fn published(model: &Model) -> bool {
 /// True if areas and strains share one potential.
 fn reciprocal(model: &Model) -> bool {
     let shared =
-        |wet: &crate::model::Wet| matches!(wet.coupling, Coupling::Reciprocal { .. }) && wet.strains == wet.area;
+        |wet: &crate::model::Wet| matches!(wet.coupling, CouplingLaw::Reciprocal { .. }) && wet.strains == wet.area;
     model.wet.as_ref().is_none_or(shared)
 }
 
@@ -294,7 +302,7 @@ fn make_reciprocal(model: &mut Model) {
     let length = model.length;
     if let Some(wet) = &mut model.wet {
         let length_ratio = wet.length_ratio(length);
-        wet.coupling = Coupling::Reciprocal { length_ratio };
+        wet.coupling = CouplingLaw::Reciprocal { length_ratio };
         wet.strains = wet.area;
     }
 }

@@ -12,7 +12,7 @@
 use nalgebra::{Complex, DMatrix};
 
 use super::pencil::Shifted;
-use super::{Options, SpectralError, schur};
+use super::{EigenvalueOptions, SpectralError, schur};
 use crate::integrate::halt;
 
 type C = Complex<f64>;
@@ -25,7 +25,11 @@ pub(super) const FINITE: f64 = 1e-14;
 const NEW: f64 = 1e-7;
 
 /// Eigenvalues and eigenvectors, nearest the shift first, and the number of restarts.
-pub(super) fn pairs(shifted: &mut Shifted, count: usize, options: &Options) -> Result<(Vectors, usize), SpectralError> {
+pub(super) fn pairs(
+    shifted: &mut Shifted,
+    count: usize,
+    options: &EigenvalueOptions,
+) -> Result<(Vectors, usize), SpectralError> {
     let n = shifted.differential.len();
     let wanted = count.min(n);
     let size = (2 * wanted + 20).min(n);

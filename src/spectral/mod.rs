@@ -51,7 +51,7 @@ pub const AT_LAST_DENSE: usize = 1000;
 
 /// Options of an eigenvalue computation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct EigenvalueOptions {
     /// Size of the operator up to which it is assembled and all its eigenvalues are computed.
     pub dense_up_to: usize,
     /// Size of the operator up to which this is done if the Krylov space does not converge.
@@ -63,7 +63,7 @@ pub struct Options {
     pub max_restarts: usize,
 }
 
-impl Default for Options {
+impl Default for EigenvalueOptions {
     fn default() -> Self {
         Self {
             dense_up_to: DENSE,
@@ -106,7 +106,7 @@ impl Pair {
 
 /// Eigenvalues nearest a shift, and the work of their computation.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Found {
+pub struct Eigenvalues {
     /// Eigenpairs, nearest first.
     pub pairs: Vec<Pair>,
     /// Upper limit of the number of finite eigenvalues.
@@ -173,7 +173,12 @@ impl std::error::Error for SpectralError {}
 ///
 /// # Errors
 /// [`SpectralError`].
-pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Options) -> Result<Found, SpectralError> {
+pub fn nearest(
+    pencil: &Pencil,
+    shift: Complex<f64>,
+    count: usize,
+    options: &EigenvalueOptions,
+) -> Result<Eigenvalues, SpectralError> {
     if !pencil.finite() {
         return Err(SpectralError::NotFinite);
     }
@@ -208,7 +213,7 @@ pub fn nearest(pencil: &Pencil, shift: Complex<f64>, count: usize, options: &Opt
     }
     let far = |pair: &Pair| (pair.s - shift).norm();
     refined.sort_by(|a, b| far(a).total_cmp(&far(b)));
-    Ok(Found {
+    Ok(Eigenvalues {
         pairs: refined,
         finite: size,
         factorizations: shifted.klu.factorizations,

@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 
 /// An evaluation as a line of a journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Evaluation {
+pub struct JournalEvaluation {
     /// Identity of the evaluation, as JSON.
     pub key: String,
     /// Its value.
@@ -22,7 +22,7 @@ pub struct Evaluation {
 }
 
 /// Stores an evaluation.
-pub type Write = Box<dyn FnMut(&Evaluation) -> Result<()> + Send>;
+pub type Write = Box<dyn FnMut(&JournalEvaluation) -> Result<()> + Send>;
 
 /// Evaluations of one search, shared by its threads. Without a journal, each is computed.
 #[derive(Clone, Default)]
@@ -56,7 +56,7 @@ impl fmt::Debug for Evaluations {
 
 impl Evaluations {
     /// Begins a journal with the evaluations of an interrupted search and a function that stores further ones.
-    pub fn begin(&self, known: impl IntoIterator<Item = Evaluation>, write: Write) {
+    pub fn begin(&self, known: impl IntoIterator<Item = JournalEvaluation>, write: Write) {
         let mut shared = self.shared();
         shared.known = known.into_iter().map(|one| (one.key, one.value)).collect();
         shared.write = Some(write);
@@ -139,7 +139,7 @@ impl Evaluations {
         if written.is_null() || T::deserialize(&written).ok().as_ref() != Some(value) {
             return;
         }
-        let one = Evaluation { key, value: written };
+        let one = JournalEvaluation { key, value: written };
         let mut shared = self.shared();
         let Some(write) = &mut shared.write else { return };
         match write(&one) {
@@ -163,10 +163,10 @@ mod tests {
     /// Goal: values are read back bit for bit; null values, values that JSON cannot represent and interrupted ones are computed again.
     #[test]
     fn values_come_back_bit_for_bit() {
-        let rows: Arc<Mutex<Vec<Evaluation>>> = Arc::default();
+        let rows: Arc<Mutex<Vec<JournalEvaluation>>> = Arc::default();
         let kept = Arc::clone(&rows);
         let first = Evaluations::default();
-        let write: Write = Box::new(move |one: &Evaluation| {
+        let write: Write = Box::new(move |one: &JournalEvaluation| {
             kept.lock().unwrap_or_else(PoisonError::into_inner).push(one.clone());
             Ok(())
         });
@@ -186,7 +186,7 @@ mod tests {
         let rows = rows.lock().unwrap_or_else(PoisonError::into_inner).clone();
         assert_eq!((rows.len(), first.counts()), (2, Counts { read: 0, stored: 2 }));
         let text: Vec<String> = rows.iter().map(|row| serde_json::to_string(row).unwrap()).collect();
-        let again: Vec<Evaluation> = text.iter().map(|row| serde_json::from_str(row).unwrap()).collect();
+        let again: Vec<JournalEvaluation> = text.iter().map(|row| serde_json::from_str(row).unwrap()).collect();
         let second = Evaluations::default();
         second.begin(again, Box::new(|_| Ok(())));
         let found = asked(&second, &vec![]);

@@ -6,7 +6,7 @@ use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
 
 /// A row: the value of each column, and for each parameter the derivatives of all columns.
-pub type Row = (Vec<f64>, Vec<Vec<f64>>);
+pub type FollowedRow = (Vec<f64>, Vec<Vec<f64>>);
 
 /// Recorder of chosen columns of a run.
 pub struct Followed<'a> {
@@ -20,7 +20,7 @@ pub struct Followed<'a> {
     stop: &'a dyn Fn() -> bool,
     places: Vec<usize>,
     slopes: Vec<Vec<usize>>,
-    rows: Vec<Row>,
+    rows: Vec<FollowedRow>,
 }
 
 impl<'a> Followed<'a> {
@@ -41,7 +41,7 @@ impl<'a> Followed<'a> {
     ///
     /// # Errors
     /// The run ended before the last row.
-    pub fn of(self, outcome: Outcome) -> Result<Vec<Row>> {
+    pub fn of(self, outcome: Outcome) -> Result<Vec<FollowedRow>> {
         if self.rows.len() == self.count && self.rows.iter().all(|row| row.1.len() == self.by.len()) {
             return Ok(self.rows);
         }

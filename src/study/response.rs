@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::numerics::threads;
 use crate::run::modes;
-use crate::run::record::Column;
-use crate::run::response::{Frequencies, Response};
-use crate::spectral::{self, Options};
+use crate::run::record::HistoryColumn;
+use crate::run::response::{Frequencies, LinearResponse};
+use crate::spectral::{self, EigenvalueOptions};
 
 /// Largest number of pole pairs to compute in the band.
 const POLES: usize = 48;
@@ -52,14 +52,14 @@ impl Request {
     ///
     /// # Errors
     /// Those of [`Response::new`].
-    pub fn of(&self, case: &Case) -> Result<Response> {
-        Response::new(case, &self.input, &self.outputs, self.at)
+    pub fn of(&self, case: &Case) -> Result<LinearResponse> {
+        LinearResponse::new(case, &self.input, &self.outputs, self.at)
     }
 }
 
 /// A pole in the band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pole {
+pub struct BandPole {
     /// `s` [1/s]; of a conjugate pair the pole with positive imaginary part.
     pub s: Complex<f64>,
     /// Bound of its numerical error [1/s].
@@ -68,7 +68,7 @@ pub struct Pole {
 
 /// A local maximum of the amplitude.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peak {
+pub struct BandPeak {
     /// Frequency [Hz].
     pub frequency_hz: f64,
     /// The response there.
@@ -79,27 +79,27 @@ pub struct Peak {
 
 /// The response of one output.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct OutputResponse {
     /// The output.
-    pub output: Column,
+    pub output: HistoryColumn,
     /// Its transfer function at each frequency.
     pub values: Vec<Complex<f64>>,
     /// Estimated absolute error by the meshes of beam and fluid; empty if unknown.
     pub errors: Vec<f64>,
     /// Its peaks.
-    pub peaks: Vec<Peak>,
+    pub peaks: Vec<BandPeak>,
 }
 
 /// A response over a band.
-pub struct Found {
+pub struct BandResponse {
     /// Linearization and its input.
-    pub response: Response,
+    pub response: LinearResponse,
     /// Frequencies [Hz].
     pub frequencies: Vec<f64>,
     /// One per output.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<OutputResponse>,
     /// Poles in the band, in ascending order of frequency.
-    pub poles: Vec<Pole>,
+    pub poles: Vec<BandPole>,
     /// Number of poles with positive real part.
     pub growing: usize,
     /// Reasons why poles or errors are unknown.
@@ -110,7 +110,7 @@ pub struct Found {
 ///
 /// # Errors
 /// A frequency that is a pole.
-pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Found> {
+pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Result<BandResponse> {
     let mut unknown = vec![];
     let found = poles(case, request.at, &response, request.band);
     let Poles { poles, growing, whole } = found.unwrap_or_else(|why| {
@@ -130,7 +130,7 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
     let mut curves = vec![];
     for (place, output) in response.outputs.iter().enumerate() {
         let values: Vec<_> = values.iter().map(|all| all[place]).collect();
-        curves.push(Curve {
+        curves.push(OutputResponse {
             output: output.clone(),
             peaks: peaks(&mut solver, place, &frequencies, &values, &poles)?,
             values,
@@ -155,7 +155,7 @@ pub fn respond(case: &Case, request: &Request, response: Response) -> Result<Fou
     if unknown.iter().any(|why| why.starts_with("errors")) {
         curves.iter_mut().for_each(|curve| curve.errors.clear());
     }
-    Ok(Found {
+    Ok(BandResponse {
         response,
         frequencies,
         curves,
@@ -186,14 +186,19 @@ fn meshes(case: &Case) -> Result<Vec<(Case, f64)>> {
 
 /// Poles in a band, and the number of poles with positive real part. The search omits the memory of unsteady friction, whose many decay
 /// modes would crowd it; each pole is corrected afterwards.
-fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> std::result::Result<Poles, String> {
+fn poles(
+    case: &Case,
+    at: Option<f64>,
+    response: &LinearResponse,
+    band: [f64; 2],
+) -> std::result::Result<Poles, String> {
     let words = |failure: spectral::SpectralError| failure.to_string();
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
     let tau = std::f64::consts::TAU;
     let [from, to] = band.map(|hz| tau * hz);
     let middle = Complex::new(0.0, (from.max(1e-3 * to) * to).sqrt());
-    let options = Options::default();
+    let options = EigenvalueOptions::default();
     let pairs = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &options)
         .map_err(words)?
         .pairs;
@@ -214,7 +219,7 @@ fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> s
         if s.re.abs() <= bound {
             s.re = 0.0;
         }
-        poles.push(Pole { s, bound });
+        poles.push(BandPole { s, bound });
     }
     poles.retain(|pole| (from..=to).contains(&pole.s.im));
     poles.sort_by(|a, b| a.s.im.total_cmp(&b.s.im));
@@ -225,7 +230,7 @@ fn poles(case: &Case, at: Option<f64>, response: &Response, band: [f64; 2]) -> s
 /// Poles in a band.
 #[derive(Default)]
 struct Poles {
-    poles: Vec<Pole>,
+    poles: Vec<BandPole>,
     growing: usize,
     /// False if the band may contain further poles.
     whole: bool,
@@ -250,15 +255,15 @@ fn growing_among(pairs: &[spectral::Pair]) -> usize {
 ///
 /// # Errors
 /// The poles cannot be computed.
-pub fn growing(case: &Case, at: Option<f64>, response: &Response) -> std::result::Result<usize, String> {
+pub fn growing(case: &Case, at: Option<f64>, response: &LinearResponse) -> std::result::Result<usize, String> {
     let apart = response.remembers.then(|| plain(case, at)).transpose()?;
     let plain = apart.as_ref().unwrap_or(&response.about);
     let middle = Complex::new(0.0, plain.frequency());
-    let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &Options::default());
+    let found = spectral::nearest(&plain.pencil(), middle, 2 * POLES, &EigenvalueOptions::default());
     Ok(growing_among(&found.map_err(|failure| failure.to_string())?.pairs))
 }
 
-fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
+fn all_at(response: &LinearResponse, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f64>>>> {
     let halves = frequencies.split_at(frequencies.len() / 2);
     let part = |part: &[f64]| -> Result<Vec<_>> {
         let mut solver = response.solver()?;
@@ -277,7 +282,7 @@ fn all_at(response: &Response, frequencies: &[f64]) -> Result<Vec<Vec<Complex<f6
 type Samples = (Vec<f64>, Vec<Vec<Complex<f64>>>);
 
 /// Samples a response on a grid, near poles, and between samples where it changes.
-fn sample(response: &Response, request: &Request, poles: &[Pole]) -> Result<Samples> {
+fn sample(response: &LinearResponse, request: &Request, poles: &[BandPole]) -> Result<Samples> {
     let [from, to] = request.band;
     let points = if from < to { request.points } else { 1 };
     let steps = (points.max(2) - 1) as f64;
@@ -322,8 +327,8 @@ fn peaks(
     place: usize,
     frequencies: &[f64],
     values: &[Complex<f64>],
-    poles: &[Pole],
-) -> Result<Vec<Peak>> {
+    poles: &[BandPole],
+) -> Result<Vec<BandPeak>> {
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut all = vec![];
@@ -353,8 +358,8 @@ fn peaks(
         let nearest = poles
             .iter()
             .min_by(|a, b| (a.s.im - s).abs().total_cmp(&(b.s.im - s).abs()));
-        let damping = |pole: &Pole| 0.0 - pole.s.re / pole.s.norm();
-        all.push(Peak {
+        let damping = |pole: &BandPole| 0.0 - pole.s.re / pole.s.norm();
+        all.push(BandPeak {
             frequency_hz,
             value: at(frequency_hz)?,
             damping_ratio: nearest.filter(|pole| (pole.s.im - s).abs() < 0.1 * s).map(damping),

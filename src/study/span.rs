@@ -26,7 +26,7 @@ pub enum Bound {
 
 /// A parameter of a search, with its bounds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Span {
+pub struct ParameterBounds {
     /// JSON pointer into the case.
     pub pointer: String,
     /// Lower bound, in the unit that the key names.
@@ -35,7 +35,7 @@ pub struct Span {
     pub high: f64,
 }
 
-impl Span {
+impl ParameterBounds {
     /// Parses `POINTER=LOW:HIGH`.
     ///
     /// # Errors
@@ -107,8 +107,8 @@ impl Span {
 }
 
 /// Values at places between the bounds. None is exactly 0, because differences are relative to the value.
-pub fn values(spans: &[Span], places: &[f64]) -> Vec<f64> {
-    let value = |(span, place): (&Span, &f64)| {
+pub fn values(spans: &[ParameterBounds], places: &[f64]) -> Vec<f64> {
+    let value = |(span, place): (&ParameterBounds, &f64)| {
         let (value, least) = (span.value(*place), 1e-6 * (span.high - span.low));
         match value.abs() < least {
             true if span.high > least => least,
@@ -123,7 +123,7 @@ pub fn values(spans: &[Span], places: &[f64]) -> Vec<f64> {
 ///
 /// # Errors
 /// [`Error::Usage`] for a pointer to no number of the model, and for two pointers that overlap.
-pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a str>) -> Result<Vec<f64>> {
+pub fn begin<'a>(case: &Case, spans: &'a [ParameterBounds], set: impl Iterator<Item = &'a str>) -> Result<Vec<f64>> {
     let all: Vec<&str> = spans.iter().map(|span| span.pointer.as_str()).chain(set).collect();
     for (k, pointer) in all.iter().enumerate() {
         if let Some(other) = all[..k]
@@ -135,7 +135,7 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
             )));
         }
     }
-    let start = |span: &Span| {
+    let start = |span: &ParameterBounds| {
         let find = |case: &Case| Ok(Parameter::find_as(OPTION, case, &span.pointer)?.value);
         let own = Parameter::number(OPTION, case, &span.pointer)?.value;
         let value = match own == 0.0 {
@@ -155,7 +155,7 @@ pub fn begin<'a>(case: &Case, spans: &'a [Span], set: impl Iterator<Item = &'a s
 ///
 /// # Errors
 /// Those of the case at a bound, and of `check`.
-pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) -> Result<()>) -> Result<()> {
+pub fn check(begin: &Case, spans: &[ParameterBounds], alone: bool, check: &dyn Fn(&Case) -> Result<()>) -> Result<()> {
     check(begin)?;
     for span in spans {
         let counts = |error: &Error| match error {
@@ -178,7 +178,7 @@ pub fn check(begin: &Case, spans: &[Span], alone: bool, check: &dyn Fn(&Case) ->
 ///
 /// # Errors
 /// [`Error::Usage`] for several places in more dimensions than the Sobol sequence has.
-pub fn places(spans: &[Span], begin: &[f64], count: usize) -> Result<Vec<Vec<f64>>> {
+pub fn places(spans: &[ParameterBounds], begin: &[f64], count: usize) -> Result<Vec<Vec<f64>>> {
     let count = count.max(1);
     if count > 1 && spans.len() > sobol::MOST {
         let what = format!(

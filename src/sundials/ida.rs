@@ -17,12 +17,12 @@ use crate::case::schema::Method;
 use crate::dae::Dae;
 use crate::integrate::IntegrationError;
 use crate::integrate::request;
-use crate::integrate::{Counters, Wall};
+use crate::integrate::{Counters, SolverWallTimes};
 use crate::sparse::Lu;
 
 /// An accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
+pub struct AcceptedStep {
     /// Time at the end of the step [s].
     pub time: f64,
     /// Size of the step [s].
@@ -153,10 +153,10 @@ impl<D: Dae> Ida<D> {
     /// Performs one accepted step that does not pass `stop` [s]. A stop within the rounding error counts as reached.
     ///
     /// Panics of the equations are resumed here.
-    pub fn step(&mut self, stop: f64) -> Result<Step, Box<IntegrationError>> {
+    pub fn step(&mut self, stop: f64) -> Result<AcceptedStep, Box<IntegrationError>> {
         if request::reached(self.time, stop)? {
             self.time = stop;
-            return Ok(Step {
+            return Ok(AcceptedStep {
                 time: stop,
                 size: 0.0,
                 order: self.last_order(),
@@ -199,7 +199,7 @@ impl<D: Dae> Ida<D> {
                 return Err(self.failure(flag));
             }
         }
-        Ok(Step {
+        Ok(AcceptedStep {
             time,
             size,
             order,
@@ -319,9 +319,9 @@ impl<D: Dae> Ida<D> {
     }
 
     /// Wall time spent in the equations and the linear solver.
-    pub fn wall(&self) -> Wall {
+    pub fn wall(&self) -> SolverWallTimes {
         let bridge = self.bridge.get();
-        Wall {
+        SolverWallTimes {
             residual: bridge.residual_wall,
             jacobian: bridge.jacobian_wall,
             linear_solver: self.solver.system().wall,

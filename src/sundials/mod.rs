@@ -33,7 +33,7 @@ pub mod sensitivities;
 mod shared;
 mod vector;
 
-pub use ida::{Ida, Step};
+pub use ida::{AcceptedStep, Ida};
 pub use kinsol::{Kinsol, KinsolError, KinsolOptions, Solution};
 pub use options::IdaOptions;
 

@@ -272,7 +272,7 @@ fn a_file_in_place_of_the_folder_stays() {
 #[test]
 fn links_are_replaced_and_leftovers_removed() {
     use slcbeam::output::folder::{ResultFolder, replace};
-    use slcbeam::output::kind::Kind;
+    use slcbeam::output::kind::FolderKind;
     let place = tempfile::tempdir().expect("a place");
     let (out, outside) = (place.path().join("out"), place.path().join("outside"));
     fs::create_dir(&outside).expect("a folder");
@@ -322,7 +322,7 @@ fn links_are_replaced_and_leftovers_removed() {
         left.iter().filter(|name| name.ends_with(".part")).collect::<Vec<_>>(),
         [".origin.7.part"]
     );
-    drop(ResultFolder::claim(&out, Kind::Run, false).expect("a folder"));
+    drop(ResultFolder::claim(&out, FolderKind::Run, false).expect("a folder"));
     // a file that the user names is written through a link, on purpose
     let (link, target) = (place.path().join("link.json"), place.path().join("target.json"));
     fs::write(&target, "old").expect("a file");

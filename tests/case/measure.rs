@@ -8,8 +8,8 @@ use serde_json::Value;
 use slcbeam::case::{self, Case};
 use slcbeam::error::Error;
 use slcbeam::numerics::regression;
-use slcbeam::study::measure::table::{self, Points, Quantity};
-use slcbeam::study::measure::{Experiment, Measured, Options, measure};
+use slcbeam::study::measure::table::{self, MeasuredQuantity, Points};
+use slcbeam::study::measure::{Experiment, MeasureOptions, Measurement, measure};
 
 use crate::chance::Random;
 
@@ -81,7 +81,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     let (mut held, mut cubic, mut kinked) = (0, 0, 0);
     for _ in 0..1000 {
         let points = over(places(-2e4, 2e4, 9), |p| slope * p + 5e-8 + 1e-7 * normal(&mut random));
-        let found = measure(Experiment::PressureVolume, points, &case, Options::default()).unwrap();
+        let found = measure(Experiment::PressureVolume, points, &case, MeasureOptions::default()).unwrap();
         let [low, high] = found.coefficients[0].estimate.interval;
         held += usize::from((low..high).contains(&1.75e-10));
         cubic += usize::from(found.cubic_chance.unwrap() < 0.05);
@@ -94,8 +94,8 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     );
 }
 
-fn exact(experiment: Experiment, points: Points) -> Measured {
-    measure(experiment, points, &case(), Options::default()).unwrap()
+fn exact(experiment: Experiment, points: Points) -> Measurement {
+    measure(experiment, points, &case(), MeasureOptions::default()).unwrap()
 }
 
 /// Goal: data made from the case's coefficients by the law of each experiment give these back. Tolerance: round-off.
@@ -188,26 +188,33 @@ fn curved_and_level_data_are_told() {
             0.8 * m + 0.2 * m.powi(3) + 1e-3 * normal(&mut random)
         })
     };
-    let line = measure(Experiment::MomentCurvature, curved(), &case, Options::default()).unwrap();
+    let line = measure(Experiment::MomentCurvature, curved(), &case, MeasureOptions::default()).unwrap();
     assert!(line.cubic_chance.unwrap() < 1e-6);
-    let options = Options {
+    let options = MeasureOptions {
         cubic: true,
-        ..Options::default()
+        ..MeasureOptions::default()
     };
     let cubic = measure(Experiment::MomentCurvature, curved(), &case, options).unwrap();
     let [low, high] = cubic.slope.interval;
     assert!(low < 0.8 && 0.8 < high && high - low < 0.01, "{low} {high}");
     let level = over(places(-1.0, 1.0, 21), |_| normal(&mut random));
-    let told = measure(Experiment::MomentCurvature, level, &case, Options::default());
+    let told = measure(Experiment::MomentCurvature, level, &case, MeasureOptions::default());
     assert!(matches!(told, Err(Error::Usage(text)) if text.contains("zero")));
     let few = over(vec![1.0, 2.0], |x| x);
-    assert!(measure(Experiment::MomentCurvature, few, &case, Options::default()).is_err());
+    assert!(measure(Experiment::MomentCurvature, few, &case, MeasureOptions::default()).is_err());
 }
 
 /// Goal: units are converted, whatever separates cells; each faulty row is told by its line, and an unknown unit with those that are known.
 #[test]
 fn tables_are_read_in_their_units() {
-    let read = |text: &str| table::read(Path::new("data.csv"), text, Quantity::Pressure, Quantity::Volume);
+    let read = |text: &str| {
+        table::read(
+            Path::new("data.csv"),
+            text,
+            MeasuredQuantity::Pressure,
+            MeasuredQuantity::Volume,
+        )
+    };
     let wanted = Points {
         x: vec![1e3, 2e3],
         y: vec![1e-6, 2e-6],
@@ -304,7 +311,7 @@ fn what_no_case_can_have_is_refused() {
         x: x.to_vec(),
         y: y.to_vec(),
     };
-    let of = |points| measure(Experiment::PressureVolume, points, &case(), Options::default());
+    let of = |points| measure(Experiment::PressureVolume, points, &case(), MeasureOptions::default());
     let x = [-1e4, 0.0, 1e4, 2e4];
     let falling = of(points(&x, &[8e-7, 1e-8, -8.1e-7, -1.6e-6])).unwrap_err();
     assert!(falling.to_string().contains("Check signs and units"), "{falling}");
@@ -313,6 +320,11 @@ fn what_no_case_can_have_is_refused() {
         "squares overflow"
     );
     let twice = "pressure [kPa],pressure [Pa],volume [ml]\n-10,1,-0.8\n0,2,0\n10,3,0.8\n";
-    let read = table::read(Path::new("d.csv"), twice, Quantity::Pressure, Quantity::Volume);
+    let read = table::read(
+        Path::new("d.csv"),
+        twice,
+        MeasuredQuantity::Pressure,
+        MeasuredQuantity::Volume,
+    );
     assert!(matches!(read, Err(Error::Case(fault)) if fault.violations[0].what.contains("second column")));
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use slcbeam::case::parameter::{self, Parameter};
 use slcbeam::case::{self, Case, inherited};
-use slcbeam::run::equilibrium::{Options, columns, differentiate, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, follow, system};
 use slcbeam::run::record::Control;
 
 use super::origins::{numbers, shipped};
@@ -227,9 +227,9 @@ fn a_softer_actuator_bends_further() {
         let set = [format!("{MODULUS}={modulus:e}")];
         case::load("cases/tour-actuator.json".as_ref(), &set).expect("a case")
     };
-    let options = |case: &Case| Options {
+    let options = |case: &Case| EquilibriumOptions {
         points: Some(1),
-        ..Options::at(case.time.end_s)
+        ..EquilibriumOptions::at(case.time.end_s)
     };
     let path = |case: &Case| follow(case, &options(case), &mut |_| Control::Continue).expect("a path");
     let case = read(2e6);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 use slcbeam::case::schema::{Case, MaxOrder};
-use slcbeam::case::{self, Places, Rotation, Translation, meanings, rewrite};
+use slcbeam::case::{self, LineColumns, Rotation, Translation, meanings, rewrite};
 use slcbeam::error::Error;
 use slcbeam::functions;
 
@@ -299,7 +299,7 @@ fn words_of(part: &serde_json::Value, place: &str, silent: &mut Vec<String>) {
 #[test]
 fn places_do_not_depend_on_what_was_asked_before() {
     let text = "ab\nä\n\nlast";
-    let mut places = Places::new(text);
+    let mut places = LineColumns::new(text);
     let all: Vec<_> = [0, 1, 3, 5, 7, 8, 100, 3, 6, 4].map(|at| places.of(at)).into();
     let wanted = [
         (1, 1),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, comparison, reading};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Control;
@@ -19,7 +19,7 @@ fn run_into(dir: &Path, text: &str, sets: &[&str]) -> compare::Recording {
         frequency_hz: None,
     };
     let mut recorder = FolderRecorder::new(
-        ResultFolder::claim(dir, Kind::Run, false).unwrap(),
+        ResultFolder::claim(dir, FolderKind::Run, false).unwrap(),
         labels,
         Box::new(|_| Control::Continue),
     );
@@ -221,7 +221,7 @@ fn several_are_compared_with_one() {
             )
         })
         .collect();
-    let found = compare::Beside::of(&all, 1);
+    let found = compare::ManyComparison::of(&all, 1);
     assert_eq!(found.comparisons[0], compare::compare(&all[1], &all[0]));
     assert_eq!(found.comparisons[1], compare::compare(&all[1], &all[2]));
     let said = |more: &[&str]| {

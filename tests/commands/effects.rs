@@ -9,11 +9,11 @@ use serde_json::{Value, json};
 use slcbeam::case::schema::Effect;
 use slcbeam::case::{self, Case};
 use slcbeam::output::ResultFolder;
-use slcbeam::output::effects::{self as files, Shown};
-use slcbeam::output::kind::Kind;
-use slcbeam::study::effects::change::{Measure, Size, judge, largest};
+use slcbeam::output::effects::{self as files, ShownQuantity};
+use slcbeam::output::kind::FolderKind;
+use slcbeam::study::effects::change::{ModelMeasure, Size, judge, largest};
 use slcbeam::study::effects::choices::{effects, without};
-use slcbeam::study::effects::{Ablation, Plan, Row, Verdict, ablate};
+use slcbeam::study::effects::{Ablation, AblationRow, EffectVerdict, TrialPlan, ablate};
 use slcbeam::study::evaluations::Evaluations;
 use tempfile::TempDir;
 
@@ -54,7 +54,7 @@ fn parsed(text: &str) -> Case {
 }
 
 fn ablated(text: &str, budget_s: f64) -> Ablation {
-    let plan = Plan { repeats: 0, budget_s };
+    let plan = TrialPlan { repeats: 0, budget_s };
     ablate(&parsed(text), plan, None, &Evaluations::default(), &|_| {}).unwrap()
 }
 
@@ -89,20 +89,24 @@ fn the_full_model_has_what_is_possible() {
     assert!(!set.has(Effect::Compressibility) && set.has(Effect::TubeInertia) && set.refusals.is_empty());
 }
 
-fn row(found: &Ablation, name: Effect) -> &Row {
+fn row(found: &Ablation, name: Effect) -> &AblationRow {
     found.rows.iter().find(|r| r.name == name).unwrap()
 }
 
 #[test]
 fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     let found = ablated(SLENDER, 600.0);
-    println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));
+    println!(
+        "{}\n{}",
+        files::table(&found, &ShownQuantity::Largest),
+        files::sentence(&found)
+    );
     let names: Vec<Effect> = found.rows.iter().map(|r| r.name).collect();
     assert_eq!(names, Effect::ALL, "every effect once, in the order of the table");
     for name in [Effect::RotaryInertia, Effect::FiniteRotation] {
         let verdict = row(&found, name).verdict;
         assert!(
-            matches!(verdict, Verdict::Harmless | Verdict::Saves),
+            matches!(verdict, EffectVerdict::Harmless | EffectVerdict::Saves),
             "{name}: {verdict:?}"
         );
     }
@@ -110,18 +114,18 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     let stretch = row(&found, Effect::AxialStretch);
     assert_eq!(stretch.without, [Effect::FiniteRotation]);
     assert_eq!(stretch.takes, [Effect::AxialInertia]);
-    assert_eq!(stretch.verdict, Verdict::Saves);
+    assert_eq!(stretch.verdict, EffectVerdict::Saves);
     let compared = stretch.left_out.as_ref().unwrap();
     assert_eq!(compared.against, "without finite_rotation");
     assert_eq!(compared.unknowns, -(found.full.unknowns as i64) / 2, "u3 and v3");
     let across = row(&found, Effect::TransverseMotion);
-    assert_eq!(across.verdict, Verdict::Kept);
+    assert_eq!(across.verdict, EffectVerdict::Kept);
     assert!(
         across.reason.as_ref().unwrap().contains("/loads/0"),
         "{:?}",
         across.reason
     );
-    assert_eq!(row(&found, Effect::Fluid).verdict, Verdict::Absent);
+    assert_eq!(row(&found, Effect::Fluid).verdict, EffectVerdict::Absent);
 
     // What is recommended is what was run: fewer unknowns, changes below the tolerance.
     let recommended = found.recommendation.as_ref().unwrap();
@@ -136,12 +140,12 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
     for &name in Effect::CHOSEN {
         if recommended.off.contains(&name) {
             assert!(!chosen.has(name), "{name} is recommended off");
-        } else if row(&found, name).verdict == Verdict::Needed || row(&found, name).auto {
+        } else if row(&found, name).verdict == EffectVerdict::Needed || row(&found, name).auto {
             let taken = recommended
                 .off
                 .iter()
                 .any(|off| row(&found, *off).takes.contains(&name));
-            let there = row(&found, name).verdict != Verdict::Absent;
+            let there = row(&found, name).verdict != EffectVerdict::Absent;
             assert!(chosen.has(name) == (there && !taken), "{name} stays on");
         }
     }
@@ -150,11 +154,11 @@ fn a_slender_beam_does_without_rotary_inertia_and_finite_rotations() {
 #[test]
 fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     let found = ablated(KINKED, 600.0);
-    let shown = Shown::choose(&found, None);
+    let shown = ShownQuantity::choose(&found, None);
     let table = files::table(&found, &shown);
     println!("{table}\n{}", files::sentence(&found));
     let asymmetry = row(&found, Effect::Asymmetry);
-    assert_eq!(asymmetry.verdict, Verdict::Needed);
+    assert_eq!(asymmetry.verdict, EffectVerdict::Needed);
     assert!(
         asymmetry.auto && asymmetry.number.contains("0.27, not below 0.001"),
         "{}",
@@ -164,10 +168,13 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert!(fluid.takes.contains(&Effect::Flow) && fluid.takes.contains(&Effect::Asymmetry));
     let recommended = found.recommendation.as_ref().unwrap();
     for off in &recommended.off {
-        assert_ne!(row(&found, *off).verdict, Verdict::Needed, "{off}");
+        assert_ne!(row(&found, *off).verdict, EffectVerdict::Needed, "{off}");
     }
     // What makes no difference is left to the program, but where it costs a third of the work: momentum and memory at every face along a bladder.
-    assert_eq!(row(&found, Effect::PressureToCurvature).verdict, Verdict::Harmless);
+    assert_eq!(
+        row(&found, Effect::PressureToCurvature).verdict,
+        EffectVerdict::Harmless
+    );
     assert_eq!(recommended.off, [Effect::FlowAlongBladders]);
     // Files: rows of equal length, everything in the picture, text that is JSON.
     let csv = files::csv(&found);
@@ -178,7 +185,7 @@ fn unequal_slopes_are_needed_and_nothing_that_is_needed_is_recommended_off() {
     assert_eq!(json["rows"].as_array().unwrap().len(), Effect::ALL.len());
     assert!(json["sentence"].as_str().unwrap().contains("\"effects\": "));
     let dir = TempDir::new().unwrap();
-    let mut folder = ResultFolder::claim(dir.path(), Kind::Effects, false).unwrap();
+    let mut folder = ResultFolder::claim(dir.path(), FolderKind::Effects, false).unwrap();
     let written = files::write(&mut folder, &found, &shown).unwrap();
     assert_eq!(written.len(), 3);
     let picture = fs::read_to_string(dir.path().join(files::PICTURE)).unwrap();
@@ -202,9 +209,13 @@ fn what_is_kept_for_stability_is_not_recommended_off() {
             .replace("0.05, \"freq", "2, \"freq"),
         600.0,
     );
-    println!("{}\n{}", files::table(&found, &Shown::Largest), files::sentence(&found));
+    println!(
+        "{}\n{}",
+        files::table(&found, &ShownQuantity::Largest),
+        files::sentence(&found)
+    );
     let across = row(&found, Effect::TransverseMotion);
-    assert_eq!(across.verdict, Verdict::Saves);
+    assert_eq!(across.verdict, EffectVerdict::Saves);
     assert!(across.number.contains("buckling load"), "{}", across.number);
     let recommended = found.recommendation.as_ref().unwrap();
     assert!(
@@ -222,7 +233,7 @@ fn what_is_kept_for_stability_is_not_recommended_off() {
 
 #[test]
 fn changes_are_judged_beside_the_integrators_own_error() {
-    let measure = |name: &str, own| Measure {
+    let measure = |name: &str, own| ModelMeasure {
         name: name.into(),
         size: 1.0,
         own: Some(own),
@@ -248,8 +259,8 @@ fn changes_are_judged_beside_the_integrators_own_error() {
 fn without_a_full_model_there_is_nothing_to_compare() {
     let found = ablated(SLENDER, 0.0);
     assert!(found.full.summary.is_none() && found.rows.is_empty() && found.recommendation.is_none());
-    assert!(files::table(&found, &Shown::Largest).contains("the budget is used up"));
-    let plan = Plan {
+    assert!(files::table(&found, &ShownQuantity::Largest).contains("the budget is used up"));
+    let plan = TrialPlan {
         repeats: 0,
         budget_s: 600.0,
     };

@@ -9,7 +9,7 @@ use serde_json::Value;
 use slcbeam::case;
 use slcbeam::output::ResultFolder;
 use slcbeam::output::evaluations::{self as files, EVALUATIONS};
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::study::evaluations::Evaluations;
 use tempfile::TempDir;
 
@@ -187,7 +187,7 @@ fn killed_samples_go_on() {
 #[test]
 fn changed_evaluations_are_not_used() {
     let dir = TempDir::new().expect("a folder");
-    let folder = ResultFolder::claim(dir.path(), Kind::Optimum, false).expect("claimed");
+    let folder = ResultFolder::claim(dir.path(), FolderKind::Optimum, false).expect("claimed");
     let load = |set: &str| case::load(Path::new("cases/two-bladders.json"), &[set.to_owned()]).expect("a case");
     let own = load("/time/end_s=0.005");
     let begin = |of: (&str, &case::Case, &str)| {

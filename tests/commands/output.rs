@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use slcbeam::case::Written;
-use slcbeam::output::envelope::{Envelope, History};
-use slcbeam::output::kind::Kind;
+use slcbeam::case::CaseText;
+use slcbeam::output::envelope::{Envelope, HistorySource};
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::recorder::Finished;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, folder, pictures, plot, report, summary};
-use slcbeam::run::record::{Axis, Column, Control, Field, Header, Progress, Recorder};
+use slcbeam::run::record::{Control, Header, HistoryColumn, Progress, RecordedAxis, RecordedField, Recorder};
 use slcbeam::run::summary::{Quantity, Status, Summary};
 
 const FREQUENCY: f64 = 20.0;
@@ -42,13 +42,13 @@ fn header() -> Header {
         }
     }
     x_f.iter_mut().for_each(|v| *v /= x);
-    let axis = |name, unit, values| Axis {
+    let axis = |name, unit, values| RecordedAxis {
         name,
         unit,
         about: "",
         values,
     };
-    let field = |name, unit, axis, len| Field {
+    let field = |name, unit, axis, len| RecordedField {
         name,
         unit,
         axis,
@@ -58,7 +58,7 @@ fn header() -> Header {
     Header {
         envelope: vec![],
         columns: COLUMNS
-            .map(|(name, unit)| Column {
+            .map(|(name, unit)| HistoryColumn {
                 name: name.into(),
                 unit,
                 about: String::new(),
@@ -135,13 +135,13 @@ fn sample(recorder: &mut dyn Recorder, header: &Header, t: f64, scale: f64) {
 fn recorder(dir: &Path) -> FolderRecorder {
     let labels = Labels {
         case_name: "wiring-3 <&>".to_string(),
-        case: Written {
+        case: CaseText {
             json: "{\"name\": \"wiring-3\"}\n".to_string(),
             tables: vec![],
         },
         frequency_hz: Some(FREQUENCY),
     };
-    let folder = ResultFolder::claim(dir, Kind::Run, false).expect("a folder");
+    let folder = ResultFolder::claim(dir, FolderKind::Run, false).expect("a folder");
     FolderRecorder::new(folder, labels, Box::new(|_| Control::Continue))
 }
 
@@ -279,7 +279,7 @@ fn what_was_kept_in_memory_is_what_files_say() {
     let page = read(out, "report.html");
     report::write(out, None).expect("the same page");
     assert!(page == read(out, "report.html"), "the page of the folder is another");
-    let rows = Envelope::read(History::Folder(out), pictures::STRETCHES).expect("rows");
+    let rows = Envelope::read(HistorySource::Folder(out), pictures::STRETCHES).expect("rows");
     let drawn = pictures::over_time("wiring-3 <&>", &rows);
     assert_eq!(drawn.len(), 2);
     for (name, picture) in drawn {
@@ -421,12 +421,12 @@ fn a_run_that_does_not_begin_moves_an_older_result_aside() {
 fn folders_with_other_files_are_refused() {
     let dir = tempfile::tempdir().expect("a place");
     fs::write(dir.path().join("case.json"), "{\"name\": \"mine\"}").expect("a file");
-    let refused = ResultFolder::claim(dir.path(), Kind::Run, false).expect_err("not a result");
+    let refused = ResultFolder::claim(dir.path(), FolderKind::Run, false).expect_err("not a result");
     assert_eq!(refused.exit_code(), 5);
     assert!(refused.to_string().contains("--out"), "{refused}");
     assert_eq!(read(dir.path(), "case.json"), "{\"name\": \"mine\"}");
     // Nor does a file make a folder.
-    assert!(ResultFolder::claim(&dir.path().join("case.json"), Kind::Run, false).is_err());
+    assert!(ResultFolder::claim(&dir.path().join("case.json"), FolderKind::Run, false).is_err());
 }
 
 #[test]
@@ -450,10 +450,10 @@ fn a_new_result_replaces_an_older_one_and_nothing_else() {
 #[test]
 fn the_hook_decides_whether_to_go_on() {
     let dir = tempfile::tempdir().expect("a place");
-    let folder = ResultFolder::claim(dir.path(), Kind::Run, false).expect("a folder");
+    let folder = ResultFolder::claim(dir.path(), FolderKind::Run, false).expect("a folder");
     let labels = Labels {
         case_name: "x".into(),
-        case: Written {
+        case: CaseText {
             json: "{}".into(),
             tables: vec![],
         },
@@ -536,7 +536,7 @@ fn pressure_curves_break_between_networks() {
     let x_f: Vec<f64> = header().axes[1].values.clone();
     let data = plot::Pressure {
         case: "two".into(),
-        span: plot::Span::WholeRun,
+        span: plot::TimeSpan::WholeRun,
         times: vec![0.0, 1.0],
         bladder: header().axes[2].values.iter().map(|&b| b as i64).collect(),
         network: Vec::new(),
@@ -556,10 +556,10 @@ fn pressure_curves_break_between_networks() {
 
 #[test]
 fn absent_data_make_no_picture() {
-    assert_eq!(plot::history::draw(&plot::History::default()), None);
+    assert_eq!(plot::history::draw(&plot::HistoryPlot::default()), None);
     assert_eq!(plot::energy::draw(&plot::Energy::default()), None);
     let dry = Header {
-        columns: vec![Column {
+        columns: vec![HistoryColumn {
             name: "t".into(),
             unit: "s",
             about: String::new(),
@@ -583,12 +583,12 @@ fn absent_data_make_no_picture() {
 fn instants_cover_the_last_cycle_or_everything() {
     let times: Vec<f64> = (0..=1000).map(|k| 5e-4 * f64::from(k)).collect();
     let (span, cycle) = plot::instants(&times, Some(20.0), 24);
-    assert_eq!((span, cycle.len()), (plot::Span::LastCycle, 24));
+    assert_eq!((span, cycle.len()), (plot::TimeSpan::LastCycle, 24));
     assert_eq!((cycle[0], cycle[23]), (900, 1000));
     let (span, all) = plot::instants(&times, None, 24);
-    assert_eq!((span, all[0], all[23]), (plot::Span::WholeRun, 0, 1000));
+    assert_eq!((span, all[0], all[23]), (plot::TimeSpan::WholeRun, 0, 1000));
     let (span, _) = plot::instants(&times, Some(0.5), 24);
-    assert_eq!(span, plot::Span::WholeRun, "less than a cycle was run");
+    assert_eq!(span, plot::TimeSpan::WholeRun, "less than a cycle was run");
     assert_eq!(plot::instants(&times[..3], None, 24).1, [0, 1, 2]);
     assert!(plot::instants(&[], None, 24).1.is_empty());
 }

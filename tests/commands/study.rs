@@ -1,18 +1,18 @@
 //! Studies of what accuracy costs. Work is counted in steps: no clock decides.
 
 use slcbeam::output::ResultFolder;
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::study as files;
-use slcbeam::study::accuracy::front::{self, Mark};
+use slcbeam::study::accuracy::front::{self, CostMark};
 use slcbeam::study::accuracy::study::Study;
-use slcbeam::study::accuracy::trial::{Ending, Role};
-use slcbeam::study::accuracy::{Budget, Plan, Scheme, study};
+use slcbeam::study::accuracy::trial::{Ending, RunPurpose};
+use slcbeam::study::accuracy::{Budget, Scheme, StudyPlan, study};
 use slcbeam::study::evaluations::Evaluations;
 
 use super::swung::{DRY, WET, parsed};
 
-fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
-    let plan = Plan {
+fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> StudyPlan {
+    let plan = StudyPlan {
         rtols: rtols.to_vec(),
         cells: cells.to_vec(),
         schemes: orders.iter().map(|&order| Scheme::ida(order)).collect(),
@@ -25,7 +25,7 @@ fn plan(rtols: &[f64], cells: &[usize], orders: &[u8], budget: Budget) -> Plan {
 
 const PLENTY: Budget = Budget::Steps(2_000_000);
 
-fn studied(text: &str, plan: Plan) -> Study {
+fn studied(text: &str, plan: StudyPlan) -> Study {
     study(&parsed(text, &[]), plan, None, &Evaluations::default(), &|_| {}).unwrap()
 }
 
@@ -103,7 +103,14 @@ fn a_wet_beam_is_studied_in_its_pressures_too() {
         assert!(names.contains(&wanted), "{wanted} is not among {names:?}");
     }
     assert!(found.left_out.contains(&"harvested".to_string()), "there is no turbine");
-    assert_eq!(found.points.iter().filter(|p| p.trial.role == Role::Point).count(), 8);
+    assert_eq!(
+        found
+            .points
+            .iter()
+            .filter(|p| p.trial.role == RunPurpose::Point)
+            .count(),
+        8
+    );
     let text = files::table(&found);
     assert!(
         text.contains("reference of each mesh") && text.contains("its tolerances"),
@@ -120,7 +127,7 @@ fn a_wet_beam_is_studied_in_its_pressures_too() {
         "{json}"
     );
     let dir = tempfile::tempdir().unwrap();
-    let mut folder = ResultFolder::claim(dir.path(), Kind::Study, false).unwrap();
+    let mut folder = ResultFolder::claim(dir.path(), FolderKind::Study, false).unwrap();
     assert_eq!(files::write(&mut folder, &found).unwrap().len(), 3);
 }
 
@@ -133,7 +140,11 @@ fn a_budget_is_kept_and_what_is_left_out_has_a_reason() {
     );
     let steps: u64 = found.points.iter().map(|p| p.trial.counters.steps).sum();
     assert!(steps <= budget && found.spent <= budget as f64, "{steps} of {budget}");
-    let points: Vec<_> = found.points.iter().filter(|p| p.trial.role == Role::Point).collect();
+    let points: Vec<_> = found
+        .points
+        .iter()
+        .filter(|p| p.trial.role == RunPurpose::Point)
+        .collect();
     assert_eq!(points.len(), 12, "a row each");
     let unfinished: Vec<_> = points.iter().filter(|p| p.trial.ending != Ending::Finished).collect();
     assert!(!unfinished.is_empty() && unfinished.len() < 12);
@@ -152,13 +163,13 @@ fn a_budget_too_small_for_anything_is_no_failure() {
 #[test]
 fn runs_at_once_find_the_same() {
     let one = plan(&[1e-3, 1e-4], &[2, 4], &[2], PLENTY);
-    let many = Plan {
+    let many = StudyPlan {
         parallel: true,
         ..one.clone()
     };
     let errors = |found: &Study| -> Vec<Option<f64>> {
         (0..found.points.len())
-            .filter(|&k| found.points[k].trial.role == Role::Point)
+            .filter(|&k| found.points[k].trial.role == RunPurpose::Point)
             .map(|k| found.error(k).and_then(|e| e.temporal).map(|t| t.max))
             .collect()
     };
@@ -174,27 +185,27 @@ fn runs_at_once_find_the_same() {
 fn senseless_plans_are_refused() {
     let good = plan(&[1e-3], &[2], &[2], PLENTY);
     let wrong = [
-        Plan {
+        StudyPlan {
             rtols: vec![],
             ..good.clone()
         },
-        Plan {
+        StudyPlan {
             rtols: vec![1.0],
             ..good.clone()
         },
-        Plan {
+        StudyPlan {
             cells: vec![0],
             ..good.clone()
         },
-        Plan {
+        StudyPlan {
             schemes: vec![Scheme::ida(6)],
             ..good.clone()
         },
-        Plan {
+        StudyPlan {
             repeats: 0,
             ..good.clone()
         },
-        Plan {
+        StudyPlan {
             budget: Budget::Wall(f64::NAN),
             ..good.clone()
         },
@@ -210,7 +221,7 @@ fn senseless_plans_are_refused() {
 #[test]
 fn one_step_methods_stand_beside_orders() {
     let names = ["ida", "esdirk34", "esdirk46"].map(String::from);
-    let plan = Plan {
+    let plan = StudyPlan {
         schemes: Scheme::list(&names, &[2]).unwrap(),
         ..plan(&[1e-3, 1e-4, 1e-5], &[2], &[2], PLENTY)
     };
@@ -233,8 +244,8 @@ fn one_step_methods_stand_beside_orders() {
     assert_eq!(Scheme::list(&["rk4".into()], &[2]).map_err(|e| e.exit_code()), Err(2));
 }
 
-fn marks(all: &[(f64, f64)]) -> Vec<Mark> {
-    all.iter().map(|&(error, cost)| Mark { error, cost }).collect()
+fn marks(all: &[(f64, f64)]) -> Vec<CostMark> {
+    all.iter().map(|&(error, cost)| CostMark { error, cost }).collect()
 }
 
 #[test]
@@ -294,7 +305,7 @@ fn the_sentence_says_what_an_accuracy_costs() {
     let (coarse, fine) = (at(&found, 2, 1e-3), at(&found, 4, 1e-4));
     found.points[coarse].trial.wall_min_s = 0.03;
     found.points[fine].trial.wall_min_s = 0.4;
-    let answer = |accuracy, point| front::Answer { accuracy, point };
+    let answer = |accuracy, point| front::CheapestPoint { accuracy, point };
     found.answers = vec![
         answer(1e-1, Some(coarse)),
         answer(1e-2, Some(coarse)),

@@ -5,7 +5,7 @@
 
 use assert_cmd::Command;
 use slcbeam::error::Error;
-use slcbeam::study::verify::{self, Figure};
+use slcbeam::study::verify::{self, ExactFigure};
 
 /// Computes one row by its full name and requires all of its figures.
 fn reproduces(name: &str) {
@@ -178,15 +178,15 @@ fn every_row_is_tested() {
 /// Goal: a figure passes only within its tolerance, at second order, with its limit; not a number never does.
 #[test]
 fn figures_judge() {
-    let figure = |computed| Figure::relative("x", computed, 2.0, 0.01);
+    let figure = |computed| ExactFigure::relative("x", computed, 2.0, 0.01);
     assert!(figure(2.019).passed() && !figure(2.021).passed() && !figure(f64::NAN).passed());
-    assert!(Figure::absolute("x", 0.009, 0.0, 0.01).passed());
+    assert!(ExactFigure::absolute("x", 0.009, 0.0, 0.01).passed());
     // Errors 0.16, 0.04, 0.01: second order, limit exact.
     assert!(figure(2.01).on_meshes([2.16, 2.04, 2.01], 1e-9).passed());
     // First order.
     assert!(!figure(2.01).on_meshes([2.04, 2.02, 2.01], 1.0).passed());
     // Errors that the meshes hide, but for round-off.
-    let shown = |estimate| Figure {
+    let shown = |estimate| ExactFigure {
         estimate: Some((estimate, 1e-4)),
         ..figure(2.01)
     };

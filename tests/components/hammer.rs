@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use slcbeam::case::schema::Effect;
 use slcbeam::discrete::System;
 use slcbeam::run::known;
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 
 use super::{RIG, read, run};
 
@@ -148,7 +148,7 @@ fn a_tube_that_ends_at_a_vessel_stores_in_it() {
         let vessel = GAUGE.replace("1e-17", &format!("{walls:e}"));
         let case = read(RIG, &[WATER, tube, port, &vessel, AUTO]);
         let expected = 1.0 / (TAU * (1000.0 * 10.0 / area * (walls + 5.0 * area / 2.2e9)).sqrt());
-        let plan = Plan {
+        let plan = ModeOptions {
             count: 3,
             near_hz: expected,
             limits: false,
@@ -175,7 +175,7 @@ fn modes_of_a_surge_tank_follow_the_plug() {
     let compliance = (160.0 / TAU).powi(2) / inertance;
     let tank = GAUGE.replace("1e-17", &format!("{compliance:e}"));
     let case = read(RIG, &[WITHOUT, tunnel, port, &tank, AUTO, r#"/plausibility="off""#]);
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 6,
         near_hz: 0.0,
         limits: false,

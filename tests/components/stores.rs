@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use slcbeam::numerics::gauss::Gauss;
 use slcbeam::run::equilibrium;
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Control;
 
 use super::valves::{fluid, resistance};
@@ -90,7 +90,7 @@ fn fluid_swings_between_two_vessels() {
     let off = apart(&memory.column("accumulator_a_pressure").unwrap(), &exact);
     assert!(off < 1e-6, "{off:e}");
     assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 1,
         near_hz: omega / TAU,
         limits: false,
@@ -153,7 +153,10 @@ fn equilibrium_knows_volumes() {
     ];
     let (memory, _) = run(text, &sets);
     let case = read(text, &sets);
-    let found = equilibrium::follow(&case, &equilibrium::Options::at(8.0), &mut |_| Control::Continue).unwrap();
+    let found = equilibrium::follow(&case, &equilibrium::EquilibriumOptions::at(8.0), &mut |_| {
+        Control::Continue
+    })
+    .unwrap();
     let last = found.last();
     let columns = equilibrium::columns(&equilibrium::system(&case, 8.0).unwrap());
     for name in [

@@ -2,12 +2,12 @@
 
 use std::f64::consts::{PI, TAU};
 
-use slcbeam::model::network::CheckValve;
+use slcbeam::model::network::CheckValveLaw;
 
 use super::{RIG, apart, integrated, run};
 
 /// As the cases below write it.
-const VALVE: CheckValve = CheckValve {
+const VALVE: CheckValveLaw = CheckValveLaw {
     cracking_pressure: 100.0,
     forward: 2e-9,
     reverse: 1e-11,
@@ -75,7 +75,7 @@ fn a_pump_works_against_a_relief_valve() {
     let drain = r#"/network/ports=[{"name": "tank", "at": {"junction": "a"}, "pressure_pa": 0}]"#;
     let (memory, summary) = run(RIG, &[pump, back, drain, VESSEL]);
     let resistance = resistance(fluid().1);
-    let relief = CheckValve {
+    let relief = CheckValveLaw {
         cracking_pressure: 900.0,
         reverse: 1e-14,
         ..VALVE

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use slcbeam::case::Case;
 use slcbeam::functions::signals::Clock;
 use slcbeam::run::modes::linearise;
-use slcbeam::run::periodic::{Scene, record, shoot};
+use slcbeam::run::periodic::{PeriodicScene, record, shoot};
 use slcbeam::run::record::Memory;
 
 use super::{apart, read, run};
@@ -124,7 +124,7 @@ fn a_syringe_has_a_cycle() {
     let mut case = filled(Into::Junction, "water", false);
     case["network"]["ports"][0]["volume_m3"] = json!({"sine": {"amplitude": 4e-7, "frequency_hz": 4}});
     let case = parsed(&case);
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
     let differential = scene.system.layout.differential.iter().filter(|d| **d).count();
     assert_eq!(scene.dimension(), differential - 1);

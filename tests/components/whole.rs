@@ -5,7 +5,7 @@ use slcbeam::case::schema::Effect;
 use slcbeam::dae::{BeamDae, Dae as _};
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
-use slcbeam::model::effects::{Cause, Keeps};
+use slcbeam::model::effects::{DecisionCause, Keeps};
 
 use super::differences::worst_difference;
 use super::{read, run};
@@ -160,7 +160,7 @@ fn what_alone_bends_a_beam_is_kept() {
     }"#;
     let system = System::new(&read(one_sided, &[])).unwrap();
     let decision = system.model.effects.decision(Effect::Flow);
-    assert_eq!(decision.cause, Cause::Kept(Keeps::RowsDiffer));
+    assert_eq!(decision.cause, DecisionCause::Kept(Keeps::RowsDiffer));
     // what loads the beam across bends it anyway: then it is weighed
     let loaded = r#"/loads=[{"force_x_n_m": {"signal": 1}}]"#;
     let system = System::new(&read(one_sided, &[loaded])).unwrap();

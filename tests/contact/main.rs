@@ -16,7 +16,7 @@ use slcbeam::dae::{BeamDae, Dae as _};
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::{Status, Summary};
 
@@ -60,7 +60,7 @@ fn a_stop_holds_a_cantilever() {
     let mut case = beam(json!("clamped"), json!({"free": {"force_x_n": 0.1}}), stop);
     case["effects"] = json!({"finite_rotation": "off", "axial_force_on_bending": "off"});
     let case = parse(&case);
-    let path = follow(&case, &Options::at(0.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(&case, &EquilibriumOptions::at(0.0), &mut |_| Control::Continue).unwrap();
     let row = &path.last().row;
     let columns = columns(&system(&case, 0.0).unwrap());
     let read = |name: &str| row[columns.iter().position(|c| c.name == name).unwrap()];

@@ -1,7 +1,7 @@
 //! Beams that come to lie on a wall: equilibria under their weight.
 
 use serde_json::{Value, json};
-use slcbeam::run::equilibrium::{Options, follow};
+use slcbeam::run::equilibrium::{EquilibriumOptions, follow};
 use slcbeam::run::record::Control;
 
 use super::{parse, run};
@@ -41,7 +41,7 @@ fn beams_come_to_lie_on_walls() {
         for stiffness in [2e3, 2e4, 1e6] {
             for smoothing in [1e-6, 1e-4] {
                 let case = parse(&lying(gap, stiffness, smoothing));
-                let path = follow(&case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+                let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
                 assert!(path.fault.is_none(), "{gap} {stiffness} {smoothing}: {:?}", path.fault);
                 let tip = *path.last().u1.last().unwrap();
                 let exact = -(gap + depth(stiffness, smoothing));

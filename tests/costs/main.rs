@@ -14,7 +14,7 @@ use std::time::Instant;
 use serde_json::Value;
 use slcbeam::case::{self, Case};
 use slcbeam::discrete::System;
-use slcbeam::output::kind::Kind;
+use slcbeam::output::kind::FolderKind;
 use slcbeam::output::{FolderRecorder, Labels, ResultFolder, checkpoint, summary};
 use slcbeam::run::dynamics;
 use slcbeam::run::observe::Observer;
@@ -197,7 +197,7 @@ fn record(folder: &Path, case: &Case, lean: bool, until: f64) {
         let outcome = dynamics::resume(case, system, &saved.run, &mut recorder).expect("a run");
         (recorder, outcome)
     } else {
-        let folder = ResultFolder::claim(folder, Kind::Run, false).expect("claimed");
+        let folder = ResultFolder::claim(folder, FolderKind::Run, false).expect("claimed");
         let mut recorder = FolderRecorder::new(folder, labels, hook).lean(lean);
         let outcome = dynamics::run_with(case, system, &[], &mut recorder).expect("a run");
         (recorder, outcome)

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
-use slcbeam::run::equilibrium::{self, Options, columns, follow, system};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::Control;
 
 pub fn parse(value: &Value) -> Case {
@@ -27,14 +27,14 @@ pub fn unit(cells: usize, factor: f64, tip: Value) -> Value {
     })
 }
 
-pub fn path_of(case: &Case, options: &Options) -> equilibrium::Path {
+pub fn path_of(case: &Case, options: &EquilibriumOptions) -> equilibrium::Path {
     follow(case, options, &mut |_| Control::Continue).unwrap()
 }
 
 /// A path that reaches its end, and a reader of its last state.
 pub fn solved(case: &Case) -> (equilibrium::Path, impl Fn(&str) -> f64 + use<>) {
     let at = case.time.end_s;
-    let path = path_of(case, &Options::at(at));
+    let path = path_of(case, &EquilibriumOptions::at(at));
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let (names, row) = (columns(&system(case, at).unwrap()), path.last().row.clone());
     (path, move |name: &str| {

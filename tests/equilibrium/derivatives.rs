@@ -1,7 +1,7 @@
 //! Derivatives with respect to numbers of the case.
 
 use slcbeam::case::parameter::Parameter;
-use slcbeam::run::equilibrium::{Options, columns, differentiate, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, system};
 
 use crate::common::{path_of, shipped};
 
@@ -35,7 +35,7 @@ fn sensitivities_are_those_of_differences() {
         ),
     ];
     for (case, pointers) in columns_and_case {
-        let options = Options::at(case.time.end_s);
+        let options = EquilibriumOptions::at(case.time.end_s);
         let base = path_of(&case, &options);
         let names = columns(&system(&case, options.at_s).unwrap());
         let parameters: Vec<Parameter> = pointers

@@ -6,7 +6,7 @@ use serde_json::json;
 use slcbeam::case::Case;
 use slcbeam::dae::{Dae as _, Seeds, StaticBeam};
 use slcbeam::discrete::start;
-use slcbeam::run::equilibrium::{Options, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, system};
 use slcbeam::run::record::Memory;
 use slcbeam::run::{dynamics, summary::Status};
 
@@ -157,7 +157,7 @@ fn plucked_beam_is_let_go() {
     let mut record = Memory::default();
     let outcome = dynamics::run(&case, &mut record).expect("memory");
     assert_eq!(outcome.summary.status, Status::Finished);
-    let held = path_of(&case, &Options::at(-1.0));
+    let held = path_of(&case, &EquilibriumOptions::at(-1.0));
     let tip = record.column("tip_u1").expect("a column");
     let last = held.last().u1.last().copied().expect("a node");
     assert!((tip[0] / last - 1.0).abs() < 1e-9, "{} {last}", tip[0]);
@@ -171,7 +171,7 @@ fn closed_network_that_is_fed_is_refused() {
     let with = |outlet: &str| {
         let ends = format!("/network/chains/1/ends=[{{\"flow_m3_s\":1e-7}},{outlet}]");
         let case = shipped("pluck", &[&ends, "/start={}"]);
-        path_of(&case, &Options::at(case.time.end_s))
+        path_of(&case, &EquilibriumOptions::at(case.time.end_s))
     };
     let fault = with("\"sealed\"").fault.expect("no equilibrium");
     assert!(fault.what.contains("1.000e-7 m^3/s"), "{}", fault.what);
@@ -187,7 +187,7 @@ fn a_flow_at_its_zero_is_none() {
         let chains = format!("/network/chains/0/ends/0={port}");
         path_of(
             &shipped("pluck", &[&chains, "/start={}", "/time/end_s=2"]),
-            &Options::at(at),
+            &EquilibriumOptions::at(at),
         )
     };
     let pumped = json!({"flow_m3_s": {"sine": {"amplitude": 1e-7 * PI, "frequency_hz": 0.5}}});

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 use slcbeam::error::At;
-use slcbeam::run::equilibrium::{self, Kind, Options};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions, EventKind};
 
 use crate::common::{parse, path_of, shipped, solved, unit};
 
@@ -54,16 +54,16 @@ fn column_buckles_onto_the_stable_branch() {
     let [event] = path.events.as_slice() else {
         panic!("{:?}", path.events)
     };
-    assert_eq!(event.kind, Kind::Bifurcation);
+    assert_eq!(event.kind, EventKind::Bifurcation);
     // (pi h/2)²/12 of the mesh: 5e-5
     assert!((5.0 * event.share - 1.0).abs() < 1e-4, "{event:?}");
     assert!(last("tip_angle").to_degrees() > 160.0 && last("tip_u1") > 0.0);
     assert!(path.states.iter().all(|s| s.stability.is_some_and(|s| s.unstable == 0)));
     let straight = path_of(
         &column,
-        &Options {
+        &EquilibriumOptions {
             branches: false,
-            ..Options::at(1.0)
+            ..EquilibriumOptions::at(1.0)
         },
     );
     assert!(straight.last().u1.iter().all(|u| u.abs() < 1e-12));
@@ -78,8 +78,8 @@ fn column_buckles_onto_the_stable_branch() {
 fn stubby_column_loses_load_as_it_buckles() {
     let column = parse(&unit(64, 1.05e-4, json!({"force_z_n": -8.0})));
     let (path, last) = solved(&column);
-    let kinds: Vec<Kind> = path.events.iter().map(|e| e.kind).collect();
-    assert_eq!(kinds, [Kind::Bifurcation, Kind::LimitPoint]);
+    let kinds: Vec<EventKind> = path.events.iter().map(|e| e.kind).collect();
+    assert_eq!(kinds, [EventKind::Bifurcation, EventKind::LimitPoint]);
     let stiffness = 12.6;
     let exact = 0.5 * stiffness * (1.0 - (1.0 - PI * PI / stiffness).sqrt());
     // The chain of links, (pi h/2)²/12 = 5e-5, amplified where load and compression almost balance.
@@ -88,7 +88,7 @@ fn stubby_column_loses_load_as_it_buckles() {
         "{:?} {exact}",
         path.events
     );
-    let unstable = |s: &&equilibrium::State| s.stability.is_some_and(|s| s.unstable == 1);
+    let unstable = |s: &&equilibrium::EquilibriumState| s.stability.is_some_and(|s| s.unstable == 1);
     assert!(path.states.iter().any(|s| unstable(&s)), "it falls back");
     assert!(last("tip_u1") > 0.6 && path.last().stability.is_some_and(|s| s.unstable == 0));
 }
@@ -98,7 +98,7 @@ fn stubby_column_loses_load_as_it_buckles() {
 fn beam_that_nothing_holds_is_refused() {
     let mut free = unit(8, 1.0, json!({"force_x_n": 1.0}));
     free["ends"]["root"] = json!("free");
-    let path = path_of(&parse(&free), &Options::at(1.0));
+    let path = path_of(&parse(&free), &EquilibriumOptions::at(1.0));
     let fault = path.fault.expect("no equilibrium");
     assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
     // an equilibrium has no time, so the error reports none
@@ -110,7 +110,7 @@ fn beam_that_nothing_holds_is_refused() {
 /// and larger loads would make it snap through.
 #[test]
 fn a_path_stops_where_a_step_passes_its_end() {
-    let path = path_of(&shipped("snap-arch", &[]), &Options::at(0.0));
+    let path = path_of(&shipped("snap-arch", &[]), &EquilibriumOptions::at(0.0));
     assert!(path.fault.is_none(), "{:?}", path.fault);
     assert!(path.states.iter().all(|state| state.share <= 1.0) && path.last().share == 1.0);
 }
@@ -135,7 +135,7 @@ fn a_path_that_turns_back_beyond_the_range_ends() {
         "network": {"chains": [row(1), row(-1)]}, "ends": {"root": "clamped", "tip": "free"},
         "effects": {"nonlinear_section": "on"}, "mesh": {"cells_per_segment": 2}, "time": {"end_s": 4}
     }));
-    let path = path_of(&case, &Options::at(4.0));
+    let path = path_of(&case, &EquilibriumOptions::at(4.0));
     let fault = path.fault.as_ref().expect("a fault");
     assert!(
         fault.what.contains("turns back at 0.8")
@@ -146,7 +146,7 @@ fn a_path_that_turns_back_beyond_the_range_ends() {
         fault.what
     );
     assert!(path.states.len() < 200, "{}", path.states.len());
-    assert_eq!(path.events.last().expect("an event").kind, Kind::LimitPoint);
+    assert_eq!(path.events.last().expect("an event").kind, EventKind::LimitPoint);
     let shares = path.states.iter().map(|state| state.share);
     assert!(shares.clone().all(|share| share >= 0.0) && path.last().share < shares.fold(0.0, f64::max));
 }

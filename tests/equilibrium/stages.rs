@@ -5,7 +5,9 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 use slcbeam::case::Case;
 use slcbeam::case::parameter::Parameter;
-use slcbeam::run::equilibrium::{Kind, Options, Path, State, columns, differentiate, system};
+use slcbeam::run::equilibrium::{
+    EquilibriumOptions, EquilibriumState, EventKind, Path, columns, differentiate, system,
+};
 use slcbeam::run::record::Memory;
 use slcbeam::run::{dynamics, summary::Status};
 
@@ -45,10 +47,10 @@ fn at_seconds(first: i32, values: &[f64]) -> Value {
 /// Path through the loads at t = 1, 2, .. in sequence.
 fn by_seconds(case: &Case, count: usize) -> Path {
     let via_s = (1..count).map(|k| k as f64).collect();
-    let options = Options {
+    let options = EquilibriumOptions {
         via_s,
         points: Some(16),
-        ..Options::at(count as f64)
+        ..EquilibriumOptions::at(count as f64)
     };
     let path = path_of(case, &options);
     assert!(path.fault.is_none(), "{:?}", path.fault);
@@ -81,13 +83,13 @@ fn stable(path: &Path) -> bool {
 fn pushed_column_gives_way_at_its_exact_load() {
     let full = 0.5;
     let case = strip(80, 0.0, &at_seconds(0, &[0.0, -CLOSER]), &at_seconds(1, &[0.0, -full]));
-    let options = Options {
+    let options = EquilibriumOptions {
         via_s: vec![1.0],
         points: Some(16),
-        ..Options::at(2.0)
+        ..EquilibriumOptions::at(2.0)
     };
     let path = path_of(&case, &options);
-    let crossings = path.events.iter().filter(|e| e.kind == Kind::Bifurcation);
+    let crossings = path.events.iter().filter(|e| e.kind == EventKind::Bifurcation);
     let crossings: Vec<(usize, f64)> = crossings.map(|e| (e.stage, e.share)).collect();
     let euler = PI * PI * EI / (LENGTH * LENGTH * EA) * LENGTH / CLOSER;
     let bent = CLOSER / LENGTH - 4.0 * PI * PI * EI / (EA * LENGTH * LENGTH);
@@ -114,7 +116,7 @@ fn strip_snaps_through_in_its_second_stage() {
     let bent = path.states.iter().rfind(|s| s.stage == 0).expect("a first stage");
     assert_eq!((bent.share, bent.load_factor()), (1.0, 1.0));
     assert!(bent.u1[20] > 0.0015 && bent.stability.is_some_and(|s| s.unstable == 0));
-    let turns: Vec<_> = path.events.iter().filter(|e| e.kind == Kind::LimitPoint).collect();
+    let turns: Vec<_> = path.events.iter().filter(|e| e.kind == EventKind::LimitPoint).collect();
     assert!(
         turns.len() >= 2 && turns.iter().all(|e| e.stage == 1),
         "{:?}",
@@ -139,10 +141,10 @@ fn strip_snaps_through_on_any_mesh() {
     let push = 16.0 * PI * PI / 3.0_f64.sqrt() * ei / (LENGTH * LENGTH) * bent.sqrt();
     for (cells, points) in [(40, 1), (80, 16), (160, 16), (320, 1)] {
         let case = shipped("snap-strip", &[&format!("/mesh/segments={cells}")]);
-        let options = Options {
+        let options = EquilibriumOptions {
             via_s: vec![-2.0, -1.0],
             points: Some(points),
-            ..Options::at(1.0)
+            ..EquilibriumOptions::at(1.0)
         };
         let path = path_of(&case, &options);
         assert!(path.fault.is_none(), "{cells} {points}: {:?}", path.fault);
@@ -256,10 +258,10 @@ fn a_valve_that_shuts_traps_its_volume() {
     // scales are those of the beam and the same in both stages
     let [before, after] = [filled, path.last()].map(|s| s.y[upper.clone()].iter().sum::<f64>());
     assert!((after / before - 1.0).abs() < 1e-9, "{before} {after}");
-    let lower = |s: &State| s.y[upper.end..areas.end].iter().sum::<f64>();
+    let lower = |s: &EquilibriumState| s.y[upper.end..areas.end].iter().sum::<f64>();
     assert!((lower(path.last()) / lower(filled) - 1.0).abs() > 0.1);
     assert!((path.last().row[pressure] / 5000.0 - 1.0).abs() > 1e-3);
-    let empty = path_of(&case, &Options::at(2.0));
+    let empty = path_of(&case, &EquilibriumOptions::at(2.0));
     assert!(empty.last().row[pressure] < 0.9 * path.last().row[pressure]);
 }
 
@@ -298,7 +300,7 @@ fn what_was_pumped_counts() {
     let with = |port: Value| {
         let chains = format!("/network/chains/0/ends/0={port}");
         let case = shipped("pluck", &[&chains, "/start={}", "/time/end_s=2"]);
-        let path = path_of(&case, &Options::at(2.0));
+        let path = path_of(&case, &EquilibriumOptions::at(2.0));
         assert!(path.fault.is_none(), "{:?}", path.fault);
         path.last().row.clone()
     };
@@ -332,7 +334,7 @@ fn bladders_have_pressures_and_derivatives() {
             "/time/end_s=2",
         ],
     );
-    let options = Options::at(2.0);
+    let options = EquilibriumOptions::at(2.0);
     let path = path_of(&case, &options);
     let names = columns(&system(&case, 2.0).unwrap());
     let place = |name: &str| names.iter().position(|c| c.name == name).expect("a column");
@@ -359,9 +361,9 @@ fn bladders_have_pressures_and_derivatives() {
 fn derivatives_go_through_the_stages() {
     let case = trapped();
     let base = by_seconds(&case, 2);
-    let options = Options {
+    let options = EquilibriumOptions {
         via_s: vec![1.0],
-        ..Options::at(2.0)
+        ..EquilibriumOptions::at(2.0)
     };
     let pointers = [
         "/bladders/area_per_pressure_m2_per_pa",

@@ -4,11 +4,11 @@ use serde_json::{Value, json};
 use slcbeam::case::Case;
 use slcbeam::case::parameter::Parameter;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, differentiate, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::study::sense::basis::Basis;
-use slcbeam::study::sense::find::{Asked, find};
-use slcbeam::study::sense::pressures::Measured;
+use slcbeam::study::sense::find::{SenseOptions, find};
+use slcbeam::study::sense::pressures::PressureTable;
 
 use crate::common::{parse, path_of};
 
@@ -39,7 +39,7 @@ fn filled(opening: &Value, pressure: &Value, more: &Value) -> Case {
 }
 
 /// A figure of the last state.
-fn last(case: &Case, options: &Options, name: &str) -> f64 {
+fn last(case: &Case, options: &EquilibriumOptions, name: &str) -> f64 {
     let path = path_of(case, options);
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let columns = columns(&system(case, options.at_s).expect("a system"));
@@ -53,7 +53,7 @@ fn what_a_port_had_filled_stays_behind_its_valve() {
     let case = filled(&ramp(1.0, 0.0, 2.0, 0.1), &ramp(0.0, 3000.0, 0.0, 0.2), &json!({}));
     let mut record = Memory::default();
     dynamics::run(&case, &mut record).expect("a run");
-    let at = Options::at(6.0);
+    let at = EquilibriumOptions::at(6.0);
     for name in ["tip_u1", "max_pressure", "middle_pressure_upper"] {
         let run = record.column(name).expect("a column")[record.column(name).expect("a column").len() - 1];
         let rest = last(&case, &at, name);
@@ -80,7 +80,7 @@ fn sensed(case: &Case, record: &Memory) {
     without.ends.tip = serde_json::from_value(json!("free")).expect("an end");
     let pressure = |name: &str| record.column(name).and_then(|all| all.last().copied());
     let names = ["near", "middle", "far"].map(|name| format!("{name}_pressure_upper"));
-    let measured = Measured {
+    let measured = PressureTable {
         times: None,
         bladders: vec![0, 5, 9],
         rows: vec![names.iter().map(|name| pressure(name)).collect()],
@@ -88,11 +88,11 @@ fn sensed(case: &Case, record: &Memory) {
         lines: vec![2],
         left_alone: vec![],
     };
-    let asked = Asked {
+    let asked = SenseOptions {
         loads: vec![Basis::TipForce],
         noise_pa: Some(2.0),
         at_s: 6.0,
-        ..Asked::default()
+        ..SenseOptions::default()
     };
     let found = find(&without, Some(&measured), &asked, &|| false).expect("loads");
     let told = found.rows[0].amplitudes[0].as_ref().expect("a force");
@@ -108,7 +108,7 @@ fn what_jumps_as_a_valve_shuts_comes_after() {
     let step = ramp(1.0, 0.0, 1.0, 0.0);
     let jumps = filled(&step, &ramp(3000.0, 0.0, 1.0, 0.0), &json!({}));
     let stays = filled(&step, &json!(3000), &json!({}));
-    let [jumps, stays] = [jumps, stays].map(|case| last(&case, &Options::at(6.0), "max_pressure"));
+    let [jumps, stays] = [jumps, stays].map(|case| last(&case, &EquilibriumOptions::at(6.0), "max_pressure"));
     assert!(stays > 3000.0 && (jumps / stays - 1.0).abs() < 1e-9, "{jumps} {stays}");
 }
 
@@ -117,7 +117,7 @@ fn what_jumps_as_a_valve_shuts_comes_after() {
 #[test]
 fn a_start_in_equilibrium_has_shut_valves_too() {
     let stays = filled(&ramp(1.0, 0.0, 1.0, 0.0), &json!(3000), &json!({}));
-    let stays = last(&stays, &Options::at(6.0), "max_pressure");
+    let stays = last(&stays, &EquilibriumOptions::at(6.0), "max_pressure");
     let shut = json!({"table": {"times_s": [-2, -1.9], "values": [1, 0], "interpolation": "linear"}});
     let falls = |times: &[f64], values: &[f64]| json!({"table": {"times_s": times, "values": values, "interpolation": "linear"}});
     let started = |pressure: Value, start: Value| filled(&shut, &pressure, &json!({"start": {"equilibrium": start}}));
@@ -130,7 +130,7 @@ fn a_start_in_equilibrium_has_shut_valves_too() {
         json!({"via_s": [-3], "loads_at_s": 0}),
     );
     for case in [before, stages] {
-        let options = Options::at(6.0);
+        let options = EquilibriumOptions::at(6.0);
         let rests = last(&case, &options, "max_pressure");
         assert!((rests / stays - 1.0).abs() < 1e-6, "{rests} {stays}");
         let warning = path_of(&case, &options).trapped.expect("a warning");
@@ -150,8 +150,8 @@ fn valves_that_trap_nothing_add_no_stages() {
     let again = json!({"sum": [ramp(1.0, 0.0, 1.0, 0.1), ramp(0.0, 1.0, 2.0, 0.1)]});
     for opening in [table, again, json!(0), ramp(0.0, 1.0, 1.0, 1.0)] {
         let case = filled(&opening, &json!(1000), &json!({}));
-        let resolved = Options::at(6.0).resolved(&case).expect("stages");
-        assert_eq!(resolved, Options::at(6.0), "{opening}");
+        let resolved = EquilibriumOptions::at(6.0).resolved(&case).expect("stages");
+        assert_eq!(resolved, EquilibriumOptions::at(6.0), "{opening}");
         assert_eq!(path_of(&case, &resolved).trapped, None);
     }
     // closed towards a second port while the row is open to the first
@@ -160,14 +160,17 @@ fn valves_that_trap_nothing_add_no_stages() {
     open.network.as_mut().expect("a network").chains[0].ends[1] =
         serde_json::from_value(json!({"pressure_pa": 500})).expect("an end");
     assert_eq!(
-        Options::at(6.0).resolved(&open).expect("stages").via_s,
+        EquilibriumOptions::at(6.0).resolved(&open).expect("stages").via_s,
         Vec::<f64>::new()
     );
     assert_eq!(
-        Options::at(1.0).resolved(&shut).expect("stages").via_s,
+        EquilibriumOptions::at(1.0).resolved(&shut).expect("stages").via_s,
         Vec::<f64>::new()
     );
-    assert_eq!(Options::at(6.0).resolved(&shut).expect("stages").via_s.len(), 1);
+    assert_eq!(
+        EquilibriumOptions::at(6.0).resolved(&shut).expect("stages").via_s.len(),
+        1
+    );
 }
 
 /// Goal: a pump of two valves. A vessel fills from a port of 2 kPa while the one is open, and empties into the closed row while the other
@@ -206,7 +209,7 @@ fn strokes_of_a_pump_add_up() {
             &json!({"network": network, "ends": {"root": "clamped", "tip": "free"}}),
         );
         // the row is open to the vessel from 1 to 2 s, from 3 to 4 s and from 5 s on
-        let options = Options::at(2.0 * count - 0.5);
+        let options = EquilibriumOptions::at(2.0 * count - 0.5);
         let resolved = options.resolved(&case).expect("stages");
         assert_eq!(resolved.via_s.len() as f64, 2.0 * count - 1.0, "{resolved:?}");
         last(&case, &options, "max_pressure") / 2000.0
@@ -231,7 +234,9 @@ fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
         network["chains"][0]["ends"][0] = json!({"flow_m3_s": ramp(1e-8, 0.0, until, 0.1)});
         filled(&json!(1), &json!(0), &json!({"network": network}))
     };
-    let fault = path_of(&fed(2.0), &Options::at(4.0)).fault.expect("no equilibrium");
+    let fault = path_of(&fed(2.0), &EquilibriumOptions::at(4.0))
+        .fault
+        .expect("no equilibrium");
     assert!(fault.what.starts_with("a valve shuts at t = 1.1 s"), "{}", fault.what);
     assert!(fault.hint.expect("a hint").contains("slcbeam run"));
     // nine valves close, each traps its share of the earlier inflow: as with open valves, until the push at 2.2 s
@@ -239,7 +244,7 @@ fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
     let mut open = case.clone();
     open.network.as_mut().expect("a network").chains[0].opening = slcbeam::functions::Signal::Constant(1.0);
     let names = ["near_pressure_upper", "middle_pressure_upper", "far_pressure_upper"];
-    let [shut, open] = [case, open].map(|case| names.map(|name| last(&case, &Options::at(2.0), name)));
+    let [shut, open] = [case, open].map(|case| names.map(|name| last(&case, &EquilibriumOptions::at(2.0), name)));
     for (shut, open) in shut.iter().zip(open) {
         assert!(open > 10.0 && (shut / open - 1.0).abs() < 1e-6, "{shut} {open}");
     }
@@ -249,7 +254,7 @@ fn a_pump_that_runs_as_a_valve_shuts_is_refused() {
 #[test]
 fn derivatives_know_when_a_valve_shuts() {
     let case = filled(&ramp(1.0, 0.0, 1.0, 0.5), &ramp(0.0, 3000.0, 0.0, 2.0), &json!({}));
-    let options = Options::at(6.0);
+    let options = EquilibriumOptions::at(6.0);
     let path = path_of(&case, &options);
     let pointers = [
         "/network/tubes/0/opening/ramp/duration_s",
@@ -296,13 +301,13 @@ fn too_many_strokes_are_refused() {
         "tubes": [{"from": {"junction": "source"}, "to": {"junction": "vessel"}, "opening": swinging},
                   {"from": {"junction": "vessel"}, "to": {"bladder": 1, "end": "inlet"}, "opening": other}]});
     let case = filled(&json!(1), &json!(0), &json!({"network": network}));
-    let error = follow(&case, &Options::at(6.0), &mut |_| Control::Continue).expect_err("too many stages");
+    let error = follow(&case, &EquilibriumOptions::at(6.0), &mut |_| Control::Continue).expect_err("too many stages");
     assert!(error.to_string().contains("valves shut off fluid"), "{error}");
     // a single valve to a port closes as often, but only the last closing counts
     let case = filled(&swinging, &json!(1000), &json!({}));
-    let resolved = Options::at(5.965).resolved(&case).expect("stages");
+    let resolved = EquilibriumOptions::at(5.965).resolved(&case).expect("stages");
     assert_eq!(resolved.via_s.len(), 0, "open then");
-    let resolved = Options::at(5.985).resolved(&case).expect("stages");
+    let resolved = EquilibriumOptions::at(5.985).resolved(&case).expect("stages");
     assert!(
         resolved.via_s.len() == 1 && (resolved.via_s[0] - 5.97).abs() < 1e-9,
         "{resolved:?}"

@@ -7,13 +7,13 @@ use slcbeam::case::parameter::with;
 use slcbeam::case::{self, Case};
 use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::normal;
-use slcbeam::run::equilibrium::{self, Options};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
 use slcbeam::run::record::{Control, Memory};
-use slcbeam::study::data::{Match, Table};
+use slcbeam::study::data::{DataTable, Match};
 use slcbeam::study::fit::fit;
-use slcbeam::study::fit::problem::{Asked, Problem};
+use slcbeam::study::fit::problem::{FitProblem, FitRequest};
 use slcbeam::study::fit::robust::Loss;
-use slcbeam::study::span::Span;
+use slcbeam::study::span::ParameterBounds;
 use tempfile::TempDir;
 
 pub use crate::program::say;
@@ -58,7 +58,7 @@ pub fn noise(seed: u64) -> impl FnMut() -> f64 {
 /// A quantity of the equilibrium with these numbers.
 pub fn at_rest(case: &Case, changes: &[(&str, f64)], quantity: &str) -> f64 {
     let case = with(case, changes).expect("a case");
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue).expect("a path");
     assert!(path.fault.is_none());
     let columns = equilibrium::columns(&equilibrium::system(&case, options.at_s).expect("a system"));
@@ -89,9 +89,9 @@ pub fn off(fit: &Value, number_of: usize, truth: f64) -> f64 {
 }
 
 /// Fits two numbers to data, and counts which intervals of 95 % hold the truth.
-pub fn count_held(case: &Case, asked: &Asked, data: &str, truth: [f64; 2], held: &mut [u32; 2]) {
-    let table = Table::parse("data.csv".as_ref(), data).expect("a table");
-    let problem = Problem::new(case, &table, asked).expect("a problem");
+pub fn count_held(case: &Case, asked: &FitRequest, data: &str, truth: [f64; 2], held: &mut [u32; 2]) {
+    let table = DataTable::parse("data.csv".as_ref(), data).expect("a table");
+    let problem = FitProblem::new(case, &table, asked).expect("a problem");
     let found = fit(&problem, asked, ("data.csv", 0), &|| false, &|_, _| {})
         .expect("a fit")
         .fit;
@@ -102,13 +102,13 @@ pub fn count_held(case: &Case, asked: &Asked, data: &str, truth: [f64; 2], held:
 }
 
 /// What is asked of a fit by squares, from one start: numbers between bounds, and columns that are matched.
-pub fn by_squares(spans: &[(&str, f64, f64)], matches: &[&str]) -> Asked {
-    let span = |(pointer, low, high): &(&str, f64, f64)| Span {
+pub fn by_squares(spans: &[(&str, f64, f64)], matches: &[&str]) -> FitRequest {
+    let span = |(pointer, low, high): &(&str, f64, f64)| ParameterBounds {
         pointer: (*pointer).into(),
         low: *low,
         high: *high,
     };
-    Asked {
+    FitRequest {
         spans: spans.iter().map(span).collect(),
         matches: matches
             .iter()

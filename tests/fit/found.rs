@@ -2,7 +2,7 @@
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::fit::problem::{Asked, Drive};
+use slcbeam::study::fit::problem::{DrivenNumber, FitRequest};
 
 use crate::common::*;
 
@@ -154,8 +154,8 @@ fn held(seeds: u64) -> [u32; 2] {
             )
         })
         .collect();
-    let asked = Asked {
-        drives: vec![Drive::parse(&format!("f_n={FORCE}")).expect("a drive")],
+    let asked = FitRequest {
+        drives: vec![DrivenNumber::parse(&format!("f_n={FORCE}")).expect("a drive")],
         ..by_squares(&[(YOUNG, 3e5, 1e7), (gravity, -20.0, -0.5)], &["u_mm=tip_u1"])
     };
     let mut held = [0; 2];

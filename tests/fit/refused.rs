@@ -1,6 +1,6 @@
 //! What does not fit together is told before anything is computed, and nothing is written.
 
-use slcbeam::study::data::Table;
+use slcbeam::study::data::DataTable;
 use slcbeam::study::fit::left_alone;
 
 use crate::common::*;
@@ -243,7 +243,7 @@ fn data_and_options_that_do_not_go_together() {
 #[test]
 fn columns_that_say_nothing_are_named() {
     let text = "t_s,u_mm,u_mm_sd,v_um,v_mm_sd\n0.0005,1,0.1,2,0.1\n0.001,1,0.1,2,0.1\n";
-    let table = Table::parse("data.csv".as_ref(), text).expect("a table");
+    let table = DataTable::parse("data.csv".as_ref(), text).expect("a table");
     let asked = by_squares(&[], &["u_mm=tip_u1", "v_um=tip_u3"]);
     assert_eq!(left_alone(&table, &asked), ["v_mm_sd"]);
 }

@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 
 use slcbeam::results;
 use slcbeam::results::fit::Fit;
-use slcbeam::study::data::Table;
-use slcbeam::study::evaluations::Evaluation;
+use slcbeam::study::data::DataTable;
+use slcbeam::study::evaluations::JournalEvaluation;
 use slcbeam::study::fit::fit;
-use slcbeam::study::fit::problem::{Asked, Drive, Problem};
+use slcbeam::study::fit::problem::{DrivenNumber, FitProblem, FitRequest};
 
 use crate::common::*;
 
@@ -60,15 +60,15 @@ fn a_coefficient_from_pressures_over_volumes() {
     assert!(found["unseen"].as_array().is_some_and(Vec::is_empty) && found.get("interrupted").is_none());
 }
 
-fn syringe() -> (Problem, Asked) {
+fn syringe() -> (FitProblem, FitRequest) {
     let case = load(ACTUATOR, &[&SYRINGE[..], &COARSE].concat());
-    let asked = Asked {
-        drives: vec![Drive::parse("volume_ml=/network/chains/0/ends/0/volume_m3").expect("a drive")],
+    let asked = FitRequest {
+        drives: vec![DrivenNumber::parse("volume_ml=/network/chains/0/ends/0/volume_m3").expect("a drive")],
         starts: 2,
         ..by_squares(&[(COMPLIANCE, 5e-11, 1e-9)], &["p_kpa=pressure@bladder -1"])
     };
-    let table = Table::read(Path::new("cases/actuator-pv.csv")).expect("a table");
-    let problem = Problem::new(&case, &table, &asked).expect("a problem");
+    let table = DataTable::read(Path::new("cases/actuator-pv.csv")).expect("a table");
+    let problem = FitProblem::new(&case, &table, &asked).expect("a problem");
     (problem, asked)
 }
 
@@ -104,7 +104,7 @@ fn a_fit_that_is_ended_after_its_search_says_so() {
     let (problem, asked) = syringe();
     let finer = Arc::new(AtomicBool::new(false));
     let seen = Arc::clone(&finer);
-    let write = move |row: &Evaluation| {
+    let write = move |row: &JournalEvaluation| {
         seen.fetch_or(row.key.starts_with("finer"), Relaxed);
         Ok(())
     };

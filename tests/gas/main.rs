@@ -17,8 +17,8 @@ use serde_json::{Value, json};
 use slcbeam::case::schema::Effect;
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::equilibrium::{self, Options};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Control;
 
 const AIR: f64 = 1.8e-5;
@@ -159,7 +159,7 @@ fn a_row_between_two_orifices() {
         let (memory, _) = finished(&case);
         let run = *memory.column("max_pressure").unwrap().last().unwrap();
         let case = parse(&case);
-        let path = equilibrium::follow(&case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+        let path = equilibrium::follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
         assert!(path.warnings().iter().any(|warning| warning.starts_with("W024")));
         let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
         let place = columns.iter().position(|column| column.name == "max_pressure").unwrap();
@@ -298,7 +298,7 @@ fn sealed_gas_softens_a_beam_by_its_compliance() {
         case["bladders"]["area_per_pressure_m2_per_pa"] = json!(per_pressure);
         case["ends"]["root"] = json!("clamped");
         case["beam"] = json!({"mass_factor": 1.0});
-        let plan = Plan {
+        let plan = ModeOptions {
             count: 1,
             near_hz: 12.0,
             limits: false,

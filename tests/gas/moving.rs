@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::equilibrium::{self, Options};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Control;
 
 use super::differences::worst_difference;
@@ -33,7 +33,7 @@ pub fn effects([inertia, memory, losses]: [&str; 3]) -> Value {
 
 /// The mode of a rig that is damped, nearest a frequency: nothing damps the beam beside it.
 fn mode(case: &Value, near_hz: f64) -> (f64, f64) {
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 4,
         near_hz,
         limits: false,
@@ -189,7 +189,7 @@ fn the_order_of_junctions_does_not_matter() {
         let mut case = rig(gas(1.0), network, 0.1);
         case["effects"] = effects(["on", "on", "on"]);
         let case = parse(&case);
-        let path = equilibrium::follow(&case, &Options::at(0.1), &mut |_| Control::Continue).unwrap();
+        let path = equilibrium::follow(&case, &EquilibriumOptions::at(0.1), &mut |_| Control::Continue).unwrap();
         assert!(path.fault.is_none(), "{order:?}: {:?}", path.fault);
         let columns = equilibrium::columns(&equilibrium::system(&case, 0.1).unwrap());
         let place = columns
@@ -206,9 +206,9 @@ fn the_order_of_junctions_does_not_matter() {
 fn a_valve_that_shuts_keeps_what_is_behind_it() {
     let text = std::fs::read_to_string("cases/tank-finger.json").unwrap();
     let case = parse(&serde_json::from_str(&text).unwrap());
-    let options = Options {
+    let options = EquilibriumOptions {
         via_s: vec![0.3],
-        ..Options::at(1.0)
+        ..EquilibriumOptions::at(1.0)
     };
     let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);

@@ -5,7 +5,7 @@ use crate::scene::{finished, parse};
 use serde_json::{Value, json};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
-use slcbeam::run::equilibrium::{self, Options};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
 use slcbeam::run::record::Control;
 
 /// Cross-section of a bladder at rest [m^2], and `a_p` [m^2/Pa]: without contact it would be gone at -61 kPa.
@@ -73,7 +73,7 @@ fn walls_hold_what_suction_leaves() {
                 }
             }
             let case = parse(&case);
-            let path = equilibrium::follow(&case, &Options::at(0.1), &mut |_| Control::Continue).unwrap();
+            let path = equilibrium::follow(&case, &EquilibriumOptions::at(0.1), &mut |_| Control::Continue).unwrap();
             assert!(path.fault.is_none(), "{:?}", path.fault);
             let columns = equilibrium::columns(&equilibrium::system(&case, 0.1).unwrap());
             let place = columns

@@ -11,7 +11,7 @@ use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{self, Options};
+use slcbeam::run::equilibrium::{self, EquilibriumOptions};
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Status, Summary};
 use slcbeam_section::cell::Cell;
@@ -39,7 +39,7 @@ fn run(sets: &[&str]) -> Summary {
 /// A quantity of the last state of rest under the loads at 1 s, and what the path is warned of.
 fn at_rest(sets: &[&str], name: &str) -> (f64, Option<String>) {
     let case = read(sets);
-    let path = equilibrium::follow(&case, &Options::at(1.0), &mut |_| {
+    let path = equilibrium::follow(&case, &EquilibriumOptions::at(1.0), &mut |_| {
         slcbeam::run::record::Control::Continue
     })
     .unwrap();

@@ -8,7 +8,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Status;
 
@@ -34,7 +34,7 @@ fn beam(root: Value, tip: Value, more: &Value) -> Case {
 
 /// Reads a quantity of the equilibrium under the loads at 0 s.
 fn at_rest(case: &Case) -> impl Fn(&str) -> f64 + use<> {
-    let path = follow(case, &Options::at(0.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(case, &EquilibriumOptions::at(0.0), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none());
     let row = path.last().row.clone();
     let names: Vec<String> = columns(&system(case, 0.0).unwrap())

@@ -10,11 +10,11 @@ use slcbeam::case::schema::{CrossSection, Effect};
 use slcbeam::case::{self, Case};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::model::effects::Cause;
-use slcbeam::model::network::{FlowLaw, Network};
+use slcbeam::model::effects::DecisionCause;
+use slcbeam::model::network::{FlowLaw, ResolvedNetwork};
 use slcbeam::model::{Model, duct};
 use slcbeam::run::dynamics;
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::Status;
 
@@ -52,7 +52,7 @@ fn rectangle(s: C, a: f64, b: f64, viscosity: f64, density: f64) -> C {
 
 /// What flow along 1 m of the bladders of a case has beyond the resistance of creeping flow.
 fn along(case: &Case) -> FlowLaw {
-    let network = Network::of(case).unwrap().unwrap();
+    let network = ResolvedNetwork::of(case).unwrap().unwrap();
     network.along_bladders.unwrap().over(1.0)
 }
 
@@ -133,7 +133,7 @@ fn fluid_swings_along_a_bladder() {
             let (law, resistance) = (along(&case), 1.0 / wet.network.bladder_mobility);
             let length = wet.bladder_length;
             let wave = (gamma_l / length).powi(2) / wet.area.per_pressure;
-            let plan = Plan {
+            let plan = ModeOptions {
                 count: 1,
                 near_hz: (wave / law.inertance).sqrt() / (2.0 * PI),
                 limits: false,
@@ -218,7 +218,7 @@ fn it_is_there_where_it_is_called_for() {
         let fluid = format!("/fluid/viscosity_pa_s={viscosity}");
         let case = case::parse(SHAKEN, Path::new("mine.json"), Path::new(""), &[shaken, fluid]).unwrap();
         let set = System::new(&case).unwrap().model.effects;
-        let Cause::Weighed(weighed) = set.decision(Effect::BladderInertia).cause else {
+        let DecisionCause::Weighed(weighed) = set.decision(Effect::BladderInertia).cause else {
             panic!("{:?}", set.decision(Effect::BladderInertia));
         };
         (weighed.on(), weighed.value)

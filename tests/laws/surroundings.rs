@@ -6,8 +6,8 @@ use crate::scene::{finished, parse};
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae};
 use slcbeam::discrete::System;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Control;
 
 /// A silicone strip 0.1 m long, 5 mm high, 50 mm wide, with changes.
@@ -39,7 +39,7 @@ fn frequencies_fall_with_the_added_mass() {
         let case = parse(&strip(
             json!({"surroundings": surroundings, "effects": {"rotary_inertia": "off"}}),
         ));
-        let plan = Plan {
+        let plan = ModeOptions {
             count: 9,
             near_hz: 0.0,
             limits: false,
@@ -85,7 +85,7 @@ fn a_strip_falls_through_water() {
 fn a_stream_bends_and_water_carries() {
     let tip = |sets: Value| {
         let case = parse(&strip(sets));
-        let path = follow(&case, &Options::at(0.0), &mut |_| Control::Continue).unwrap();
+        let path = follow(&case, &EquilibriumOptions::at(0.0), &mut |_| Control::Continue).unwrap();
         assert!(path.fault.is_none(), "{:?}", path.fault);
         let names = columns(&system(&case, 0.0).unwrap());
         path.last().row[names.iter().position(|c| c.name == "tip_u1").unwrap()]

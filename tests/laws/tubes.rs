@@ -13,7 +13,7 @@ use slcbeam::model::characteristic;
 use slcbeam::model::network::TubeFlow;
 use slcbeam::model::network::tube::friction_ratio;
 use slcbeam::run::dynamics;
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Status, Summary};
 
@@ -263,7 +263,7 @@ fn fluid_swings_between_bladders_as_in_a_u_tube() {
                 let z = (-s / viscous_rate).sqrt();
                 s * law.inertance / womersley(z) + half
             };
-            let plan = Plan {
+            let plan = ModeOptions {
                 count: 1,
                 near_hz: (k / (law.inertance * compliance)).sqrt() / TAU,
                 limits: false,

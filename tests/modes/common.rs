@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
-use slcbeam::run::modes::{self, Modes, Plan};
+use slcbeam::run::modes::{self, ModeOptions, Modes};
 
 /// A checked case.
 pub fn checked(case: &Value) -> Case {
@@ -19,8 +19,8 @@ pub fn slowest(case: &Value, count: usize) -> Modes {
 }
 
 /// The slowest modes.
-pub fn plan(count: usize) -> Plan {
-    Plan {
+pub fn plan(count: usize) -> ModeOptions {
+    ModeOptions {
         count,
         near_hz: 0.0,
         limits: true,

@@ -12,7 +12,7 @@ use slcbeam::case;
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::equilibrium;
-use slcbeam::run::modes::Kind;
+use slcbeam::run::modes::TimeBehavior;
 use slcbeam::run::record::Control;
 
 use super::common::{checked, slowest};
@@ -35,7 +35,7 @@ fn errors(case: &Value, exact: &[f64]) -> Vec<f64> {
     let swings = found
         .modes
         .iter()
-        .filter(|m| m.kind == Kind::Oscillation && m.s.im > 1.0);
+        .filter(|m| m.kind == TimeBehavior::Oscillation && m.s.im > 1.0);
     let found: Vec<f64> = swings.map(|m| m.s.im).collect();
     exact
         .iter()
@@ -180,7 +180,10 @@ fn tension_of_what_shears_is_of_fourth_order() {
 /// Shortening, deflection and angle of the tip at rest under the full load.
 fn at_rest(case: &Value) -> [f64; 3] {
     let case = checked(case);
-    let path = equilibrium::follow(&case, &equilibrium::Options::at(1.0), &mut |_| Control::Continue).unwrap();
+    let path = equilibrium::follow(&case, &equilibrium::EquilibriumOptions::at(1.0), &mut |_| {
+        Control::Continue
+    })
+    .unwrap();
     let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
     let last = |name: &str| path.last().row[columns.iter().position(|c| c.name == name).unwrap()];
     [-last("tip_u3"), last("tip_u1"), last("tip_angle")]
@@ -246,7 +249,10 @@ fn what_is_read_is_at_its_place() {
         case["probes"] = json!([{"name": "a", "at": 0.0}, {"name": "b", "at": 0.1}, {"name": "c", "at": 0.5}, {"name": "d", "at": 0.9},
                                 {"name": "e", "at": 1.0}]);
         let case = checked(&case);
-        let path = equilibrium::follow(&case, &equilibrium::Options::at(1.0), &mut |_| Control::Continue).unwrap();
+        let path = equilibrium::follow(&case, &equilibrium::EquilibriumOptions::at(1.0), &mut |_| {
+            Control::Continue
+        })
+        .unwrap();
         let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
         let row = path.last().row.clone();
         move |name: &str| row[columns.iter().position(|c| c.name == name).unwrap()]
@@ -273,7 +279,10 @@ fn normal_forces_beside_a_clamp_are_of_second_order() {
         case["ends"]["tip"] = json!({"free": {"force_x_n": 2.0}});
         case["probes"] = json!([{"name": "a", "at": 0.0}]);
         let case = checked(&case);
-        let path = equilibrium::follow(&case, &equilibrium::Options::at(1.0), &mut |_| Control::Continue).unwrap();
+        let path = equilibrium::follow(&case, &equilibrium::EquilibriumOptions::at(1.0), &mut |_| {
+            Control::Continue
+        })
+        .unwrap();
         let columns = equilibrium::columns(&equilibrium::system(&case, 1.0).unwrap());
         path.last().row[columns.iter().position(|c| c.name == "a_normal_force").unwrap()].abs()
     };

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use slcbeam::case::{self, parameter::Parameter};
 use slcbeam::model::{Model, passivity};
 use slcbeam::run::dynamics;
-use slcbeam::run::modes::{self, Kind, Mode, Modes, Shape, likeness};
+use slcbeam::run::modes::{self, Mode, ModeShape, Modes, TimeBehavior, likeness};
 use slcbeam::run::record::Memory;
 
 use crate::common::{across, chains, checked, plan, slowest, wet};
@@ -133,7 +133,7 @@ fn a_mirrored_case_moves_across_or_along() {
     }
     assert!(across > 2 && along > 1);
     // two closed chains conserve two volumes
-    assert_eq!(found.modes.iter().filter(|m| m.kind == Kind::Volume).count(), 2);
+    assert_eq!(found.modes.iter().filter(|m| m.kind == TimeBehavior::Volume).count(), 2);
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn a_free_beam_has_rigid_motions() {
     let found = slowest(&case, 2);
     assert!(found.about.system().mesh.cells == 80);
     // two translations and a rotation, each a position and a velocity
-    assert_eq!(found.modes.iter().filter(|m| m.kind == Kind::Rigid).count(), 6);
+    assert_eq!(found.modes.iter().filter(|m| m.kind == TimeBehavior::Rigid).count(), 6);
     // free-free: beta L = 4.7300, and 80 cells err by (beta h)^2/12 and beta h^2/4 for each end
     let w = 4.730_040_744_862_7_f64.powi(2) * found.about.frequency();
     let first = swinging(&found)[0].s;
@@ -168,7 +168,7 @@ fn a_column_beyond_its_load_diverges() {
     let found = slowest(&case, 3);
     let growing: Vec<_> = found.modes.iter().filter(|m| m.kind.grows()).collect();
     assert_eq!(growing.len(), 1);
-    assert_eq!(growing[0].kind, Kind::Divergence);
+    assert_eq!(growing[0].kind, TimeBehavior::Divergence);
     assert!(growing[0].s.re > 10.0 && growing[0].damping_ratio().is_none());
 }
 
@@ -189,7 +189,7 @@ fn the_buckled_column_swings() {
         let found = modes::of(modes::at_equilibrium(&case, share / 5.0).unwrap(), &plan(3)).unwrap();
         assert!(!found.about.moving(), "{:e}", found.about.rate);
         assert!(
-            found.modes.iter().all(|m| m.kind == Kind::Oscillation),
+            found.modes.iter().all(|m| m.kind == TimeBehavior::Oscillation),
             "stable at {share} Pcr"
         );
         swinging(&found)[0].s.im
@@ -205,7 +205,7 @@ fn the_buckled_column_swings() {
 
 #[test]
 fn shapes_are_alike_or_orthogonal() {
-    let shape = |f: &dyn Fn(f64) -> f64| Shape {
+    let shape = |f: &dyn Fn(f64) -> f64| ModeShape {
         u1: (0..=40).map(|i| Complex::new(f(i as f64 / 40.0), 0.0)).collect(),
         u3: vec![Complex::default(); 41],
         pressure: vec![],
@@ -334,7 +334,7 @@ fn no_error_is_told_of_half_a_mesh() {
 fn as_many_networks_as_bladders_keep_as_many_volumes() {
     // ten pairs: a tenfold eigenvalue of zero, besides the infinite ones by algebraic unknowns
     let found = slowest(&across(10, 0.1, 5e-6), 4);
-    let kept = found.modes.iter().filter(|m| m.kind == Kind::Volume).count();
+    let kept = found.modes.iter().filter(|m| m.kind == TimeBehavior::Volume).count();
     assert_eq!(kept, 10);
     assert_eq!(found.modes.len(), kept + 4);
 }

@@ -4,9 +4,9 @@
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
-use slcbeam::run::response::Response;
+use slcbeam::run::response::LinearResponse;
 use slcbeam::run::response::state_space::StateSpace;
-use slcbeam::run::stop::Stop;
+use slcbeam::run::stop::StopFlag;
 use slcbeam::study::refine::numbers;
 
 use super::common::checked;
@@ -24,7 +24,7 @@ fn beam(cells: usize, root: &Value, tip: &Value) -> Value {
 }
 
 fn at(case: &Value, input: &str, output: &str, hz: f64) -> Complex<f64> {
-    let response = Response::new(&checked(case), input, &[output.into()], None).unwrap();
+    let response = LinearResponse::new(&checked(case), input, &[output.into()], None).unwrap();
     response.solver().unwrap().at(hz).unwrap()[0]
 }
 
@@ -134,7 +134,7 @@ fn a_small_cycle_has_the_amplitude_of_the_response() {
             })
         };
         let cycle = checked(&case(json!({"sine": {"amplitude": amplitude, "frequency_hz": hz}})));
-        let found = numbers::of_cycle(&cycle, 1, &Stop::default()).unwrap();
+        let found = numbers::of_cycle(&cycle, 1, &StopFlag::default()).unwrap();
         let largest = found["tip_u1_m.window_max_abs"].value / amplitude;
         let linear = at(&case(json!(0.0)), "/ends/root/clamped/u1_m", "tip_u1", hz).norm();
         assert!(
@@ -152,7 +152,8 @@ fn check_valves_pass_a_slow_pressure_on() {
     for pressure in [0.0, 200.0, -200.0] {
         case["network"]["ports"][0]["pressure_pa"] = json!(pressure);
         let output = ["accumulator_vessel_pressure".to_owned()];
-        let response = Response::new(&checked(&case), "/network/ports/0/pressure_pa", &output, Some(0.0)).unwrap();
+        let response =
+            LinearResponse::new(&checked(&case), "/network/ports/0/pressure_pa", &output, Some(0.0)).unwrap();
         let gain = response.solver().unwrap().at(1e-8).unwrap()[0];
         assert!((gain - 1.0).norm() < 1e-3, "{gain} at {pressure} Pa");
     }
@@ -170,7 +171,7 @@ fn a_force_on_a_loaded_beam_is_carried_by_its_root() {
     case["start"] = json!({});
     case["ends"]["tip"]["free"]["force_z_n"] = json!(-2.0);
     let output = ["reaction_root_z".to_owned()];
-    let response = Response::new(&checked(&case), "/ends/tip/free/force_z_n", &output, Some(0.0)).unwrap();
+    let response = LinearResponse::new(&checked(&case), "/ends/tip/free/force_z_n", &output, Some(0.0)).unwrap();
     let straight = response.solver().unwrap().at(1e-3).unwrap()[0];
     assert!((straight + 1.0).norm() < 1e-5, "{straight}");
 }
@@ -214,7 +215,7 @@ fn inputs_begin_anywhere() {
 #[test]
 fn inputs_and_outputs_are_named() {
     let case = checked(&beam(4, &json!({"clamped": {"u1_m": 0.0}}), &json!("free")));
-    let refused = |input: &str, output: &str| match Response::new(&case, input, &[output.into()], None) {
+    let refused = |input: &str, output: &str| match LinearResponse::new(&case, input, &[output.into()], None) {
         Err(error) => error.to_string(),
         Ok(_) => panic!("{input} and {output} are accepted"),
     };
@@ -224,7 +225,7 @@ fn inputs_and_outputs_are_named() {
     let file = std::fs::read_to_string("cases/tour-actuator.json").unwrap();
     let tour = checked(&serde_json::from_str(&file).unwrap());
     let volume = ["port_inlet_of_bladder__1_volume".to_owned()];
-    let error = Response::new(&tour, "/network/chains/0/ends/0/pressure_pa", &volume, None)
+    let error = LinearResponse::new(&tour, "/network/chains/0/ends/0/pressure_pa", &volume, None)
         .err()
         .unwrap();
     assert!(error.to_string().contains("no such linear output"), "{error}");
@@ -247,7 +248,7 @@ fn a_state_space_model_has_the_same_response() {
         ("/network/chains/0/ends/1/pressure_pa", 0),
         ("/network/chains/0/opening", 0),
     ] {
-        let response = Response::new(&case, input, &outputs, None).unwrap();
+        let response = LinearResponse::new(&case, input, &outputs, None).unwrap();
         let model = StateSpace::new(&response).unwrap();
         assert_eq!(model.input_rate, input_rate, "{input}");
         let n = model.b.len();

@@ -1,6 +1,6 @@
 //! Work of computing twelve modes of twenty thousand unknowns.
 
-use slcbeam::run::modes::{self, Kind};
+use slcbeam::run::modes::{self, TimeBehavior};
 
 use crate::common::{chains, checked, plan};
 
@@ -18,7 +18,7 @@ fn work_does_not_grow_with_the_unknowns() {
         let unknowns = found.about.y.len();
         let moving = found.modes.iter().filter(|m| !m.kind.stays()).count();
         assert_eq!(moving, 12);
-        assert_eq!(found.modes.iter().filter(|m| m.kind == Kind::Volume).count(), 2);
+        assert_eq!(found.modes.iter().filter(|m| m.kind == TimeBehavior::Volume).count(), 2);
         assert!(found.modes.iter().all(|m| m.residual < 1e-12));
         work.push((unknowns, found.factorizations, found.solves, found.modes));
     }

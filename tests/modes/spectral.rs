@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use nalgebra::Complex;
 use slcbeam::run::modes::linearise;
 use slcbeam::sparse::Pattern;
-use slcbeam::spectral::{self, Found, Options, Pencil, SpectralError};
+use slcbeam::spectral::{self, EigenvalueOptions, Eigenvalues, Pencil, SpectralError};
 use slcbeam_dense::eigen;
 
 use crate::common::{chains, checked};
@@ -46,7 +46,7 @@ fn errors_are_within_their_bounds() {
         a: &k,
         b: &b,
     };
-    let found = spectral::nearest(&pencil, Complex::new(0.0, 0.0), 20, &Options::default()).unwrap();
+    let found = spectral::nearest(&pencil, Complex::new(0.0, 0.0), 20, &EigenvalueOptions::default()).unwrap();
     assert!(!found.dense && found.restarts > 0);
     let mut computed: Vec<f64> = found.pairs.iter().map(|p| p.s.re).collect();
     computed.sort_by(f64::total_cmp);
@@ -94,7 +94,7 @@ fn copies_come_at_once() {
 }
 
 /// Largest distance from an eigenvalue of one set to the nearest of the other.
-fn apart(a: &Found, b: &Found) -> f64 {
+fn apart(a: &Eigenvalues, b: &Eigenvalues) -> f64 {
     let nearest = |s: Complex<f64>| b.pairs.iter().map(|p| (p.s - s).norm()).fold(f64::INFINITY, f64::min);
     a.pairs.iter().map(|p| nearest(p.s)).fold(0.0, f64::max)
 }
@@ -106,9 +106,9 @@ fn dense_and_sparse_agree() {
     let about = linearise(&case, 0.0, None).unwrap();
     let pencil = about.pencil();
     for shift in [Complex::new(2.0, 0.0), Complex::new(0.0, 480.0)] {
-        let options = |dense_up_to| Options {
+        let options = |dense_up_to| EigenvalueOptions {
             dense_up_to,
-            ..Options::default()
+            ..EigenvalueOptions::default()
         };
         let dense = spectral::nearest(&pencil, shift, 24, &options(1000)).unwrap();
         let sparse = spectral::nearest(&pencil, shift, 24, &options(0)).unwrap();
@@ -120,7 +120,7 @@ fn dense_and_sparse_agree() {
             assert!((da - db).abs() <= 2.0 * (a.error + b.error) + 1e-12 * da, "{da} {db}");
         }
         let largest = dense.pairs.iter().map(|p| p.error).fold(0.0, f64::max);
-        let conjugate = |found: &Found| {
+        let conjugate = |found: &Eigenvalues| {
             let mut all = found.clone();
             all.pairs.iter_mut().for_each(|p| p.s.im = p.s.im.abs());
             all
@@ -135,7 +135,13 @@ fn dense_and_sparse_agree() {
 fn all_finite_eigenvalues_and_no_other() {
     let case = checked(&chains(2, 8.68e-4, 5e-6));
     let about = linearise(&case, 0.0, None).unwrap();
-    let found = spectral::nearest(&about.pencil(), Complex::new(2.0, 0.0), 1000, &Options::default()).unwrap();
+    let found = spectral::nearest(
+        &about.pencil(),
+        Complex::new(2.0, 0.0),
+        1000,
+        &EigenvalueOptions::default(),
+    )
+    .unwrap();
     // u1, u3, v1, v3 of 8 free nodes and 4 areas; means are algebraic
     assert_eq!((found.pairs.len(), found.finite), (36, 36));
     assert!(found.pairs.iter().all(|p| p.residual < 1e-12));
@@ -151,12 +157,12 @@ fn a_singular_pencil_is_told() {
         b: &[0.0; 4],
     };
     let one = Complex::new(1.0, 0.0);
-    let failed = spectral::nearest(&pencil, one, 1, &Options::default());
+    let failed = spectral::nearest(&pencil, one, 1, &EigenvalueOptions::default());
     assert!(matches!(failed, Err(SpectralError::Singular { .. })), "{failed:?}");
     let pencil = Pencil {
         a: &[f64::NAN, 1.0, 1.0, 1.0],
         ..pencil
     };
-    let failed = spectral::nearest(&pencil, one, 1, &Options::default());
+    let failed = spectral::nearest(&pencil, one, 1, &EigenvalueOptions::default());
     assert!(matches!(failed, Err(SpectralError::NotFinite)), "{failed:?}");
 }

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use slcbeam::case::parameter::with;
 use slcbeam::case::{self, Case};
-use slcbeam::study::analysis::{self, AnalysisKind, Ask};
+use slcbeam::study::analysis::{self, AnalysisKind, AnalysisRequest};
 
 use crate::common::*;
 
@@ -21,7 +21,7 @@ const POWER: &str = "harvested_power_w.mean";
 
 fn figure(case: &Case, what: AnalysisKind, changes: &[(&str, f64)], name: &str) -> f64 {
     let case = with(case, changes).expect("a case");
-    let ask = Ask {
+    let ask = AnalysisRequest {
         what,
         accuracy: None,
         from: None,

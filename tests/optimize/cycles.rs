@@ -5,7 +5,7 @@ use slcbeam::case::{self, Case};
 use slcbeam::error::Result;
 use slcbeam::run::dynamics::Outcome;
 use slcbeam::run::periodic::sensitivity::differentiate;
-use slcbeam::run::periodic::{Scene, Settled, record, settle, shoot};
+use slcbeam::run::periodic::{PeriodicScene, Settled, record, settle, shoot};
 use slcbeam::run::record::{Control, Unrecorded};
 use slcbeam::run::summary::{Status, Summary};
 
@@ -22,7 +22,7 @@ fn harvester(sets: &[&str]) -> Case {
 }
 
 fn cycle(case: &Case) -> Settled {
-    let scene = Scene::new(case, None).unwrap();
+    let scene = PeriodicScene::new(case, None).unwrap();
     let found = shoot(&scene, None).unwrap();
     settle(case, scene, found).unwrap()
 }

@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use serde_json::Value;
 use slcbeam::case;
 use slcbeam::study::analysis::AnalysisKind;
-use slcbeam::study::optimize::problem::{Asked, Goal, Problem};
+use slcbeam::study::optimize::problem::{Goal, OptimizationProblem, OptimizationRequest};
 use slcbeam::study::optimize::wiring::Alternative;
 use slcbeam::study::optimize::{Candidate, optimise};
-use slcbeam::study::span::Span;
+use slcbeam::study::span::ParameterBounds;
 
 use crate::common::*;
 
@@ -61,9 +61,9 @@ fn hollows_are_passed_over() {
 /// Goal: a search that is interrupted has the best so far.
 #[test]
 fn an_interrupted_search_has_the_best_so_far() {
-    let asked = Asked {
+    let asked = OptimizationRequest {
         what: AnalysisKind::Modes,
-        spans: vec![Span {
+        spans: vec![ParameterBounds {
             pointer: AT.into(),
             low: 0.1,
             high: 1.0,
@@ -83,7 +83,7 @@ fn an_interrupted_search_has_the_best_so_far() {
     let case = case::load(CANTILEVER.as_ref(), &sets.map(String::from)).expect("a case");
     let candidate = Candidate {
         alternative: Alternative::default(),
-        problem: Problem::new(&case, &asked).expect("a problem"),
+        problem: OptimizationProblem::new(&case, &asked).expect("a problem"),
     };
     let count = AtomicUsize::new(0);
     let early = optimise(&[candidate], &asked, &|| count.load(Relaxed) >= 3, &|_, _| {

@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use slcbeam::discrete::quantities::{Field, Interest, Observable};
+use slcbeam::discrete::quantities::{BeamField, Interest, Observable};
 
 fn pages() -> Vec<PathBuf> {
     let markdown = |folder: &str| {
@@ -283,7 +283,7 @@ fn every_quantity_is_told() {
     let columns = Observable::ALL
         .iter()
         .map(|one| format!("`{} [{}]`", one.name(), one.unit()));
-    let names = Field::ALL.into_iter().map(Field::name);
+    let names = BeamField::ALL.into_iter().map(BeamField::name);
     let names = names.chain(Interest::ALL.iter().map(|one| one.name()));
     let all = columns.chain(names.map(|name| format!("`{name}`")));
     let missing: Vec<String> = all.filter(|told| !page.contains(told)).collect();

@@ -6,7 +6,7 @@ use std::path::Path;
 use assert_cmd::Command;
 use serde_json::Value;
 use slcbeam::output::floquet::map_csv;
-use slcbeam::study::stability::tongue::{Map, Point, Sheet};
+use slcbeam::study::stability::tongue::{Map, MapPoint, Sheet};
 use tempfile::TempDir;
 
 const COARSE: [&str; 2] = ["--set", "/mesh/cells_per_segment=1"];
@@ -116,7 +116,7 @@ fn a_map_has_a_row_a_point_and_a_panel_a_permeability() {
 #[test]
 fn words_in_a_table_read_back_as_they_are() {
     let words = "no cycle: a \"tooth\" jumps, twice";
-    let point = Point {
+    let point = MapPoint {
         growth_per_s: None,
         multiplier: Some((0.5, -0.25)),
         stability: None,

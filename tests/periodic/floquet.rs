@@ -8,9 +8,9 @@ use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::error::Error;
 use slcbeam::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
-use slcbeam::run::floquet::{self, Floquet, Stability, shape::Part};
+use slcbeam::run::floquet::{self, CycleStability, Floquet, shape::EnergyPart};
 use slcbeam::run::modes;
-use slcbeam::run::periodic::{Scene, shoot};
+use slcbeam::run::periodic::{PeriodicScene, shoot};
 
 fn case_of(value: &Value) -> Case {
     case::parse(&value.to_string(), Path::new("test.json"), Path::new(""), &[]).unwrap()
@@ -21,8 +21,8 @@ fn shipped(name: &str, sets: &[&str]) -> Case {
     case::load(format!("cases/{name}.json").as_ref(), &sets).unwrap()
 }
 
-fn stability(case: &Case, period: Option<f64>, count: usize) -> (Scene, Floquet) {
-    let scene = Scene::new(case, period).unwrap();
+fn stability(case: &Case, period: Option<f64>, count: usize) -> (PeriodicScene, Floquet) {
+    let scene = PeriodicScene::new(case, period).unwrap();
     let mut cycle = shoot(&scene, None).unwrap();
     let found = floquet::multipliers(&scene, &mut cycle, count);
     (scene, found)
@@ -66,7 +66,7 @@ fn carried_disturbances_are_differences_of_the_period_map() {
         "wiring-2",
         &["/mesh/cells_per_segment=2", "/bladders/coupling=\"reciprocal\""],
     );
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let mut start = scene.guess.clone();
     for (k, y) in start.iter_mut().enumerate() {
         *y += 0.01 * (k as f64).sin();
@@ -104,7 +104,7 @@ fn carried_disturbances_are_differences_of_the_period_map() {
 #[test]
 fn conserved_volumes_are_multipliers_of_one() {
     let case = shipped("wiring-2", &["/mesh/cells_per_segment=2"]);
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     assert_eq!(scene.conserved.len(), 1, "the sealed chain; the other is open");
     let mut march = scene.map(scene.dae(), &scene.guess).unwrap();
     let (mut y, mut yp) = (scene.guess.clone(), vec![0.0; scene.guess.len()]);
@@ -134,8 +134,8 @@ fn growth_in_the_tongue_is_mathieus() {
             "{ratio}: {} against {exact}",
             first.growth_per_s
         );
-        assert_eq!(first.part, Part::Bending(1));
-        assert_eq!(found.verdict.stability, Stability::Unstable);
+        assert_eq!(first.part, EnergyPart::Bending(1));
+        assert_eq!(found.verdict.stability, CycleStability::Unstable);
         assert!(
             found
                 .verdict
@@ -154,7 +154,7 @@ fn growth_in_the_tongue_is_mathieus() {
 fn beside_the_tongue_disturbances_decay() {
     let (zeta, w) = (0.01, FIRST * FIRST);
     let (_, found) = stability(&case_of(&shaken(24, 2.0 * zeta / w, 1.15, 0.2)), None, 6);
-    assert_eq!(found.verdict.stability, Stability::Stable);
+    assert_eq!(found.verdict.stability, CycleStability::Stable);
     assert!(
         (found.verdict.growth_per_s / (-zeta * w) - 1.0).abs() < 0.05,
         "{}",
@@ -162,7 +162,12 @@ fn beside_the_tongue_disturbances_decay() {
     );
     // without damping nothing decays, and nothing grows
     let (_, found) = stability(&case_of(&shaken(24, 0.0, 1.15, 0.2)), None, 6);
-    assert_eq!(found.verdict.stability, Stability::Neutral, "{}", found.verdict.words);
+    assert_eq!(
+        found.verdict.stability,
+        CycleStability::Neutral,
+        "{}",
+        found.verdict.words
+    );
 }
 
 /// Source: `exp(s T)` of the modes of the linearized equations, an eigenvalue problem without steps. Tolerance: the error of steps of order
@@ -177,7 +182,7 @@ fn multipliers_of_what_nothing_drives_are_those_of_its_modes() {
     let period = 0.02;
     let (_, found) = stability(&case, Some(period), 14);
     assert!(!found.driven);
-    let plan = modes::Plan {
+    let plan = modes::ModeOptions {
         count: 60,
         near_hz: 0.0,
         limits: false,
@@ -200,7 +205,7 @@ fn multipliers_of_what_nothing_drives_are_those_of_its_modes() {
 /// Goal: a case without a period is rejected, with the reason.
 #[test]
 fn what_has_no_period_is_refused() {
-    let refusal = |u3: Value, period| match Scene::new(&case_of(&dry(10, 0.0, u3)), period) {
+    let refusal = |u3: Value, period| match PeriodicScene::new(&case_of(&dry(10, 0.0, u3)), period) {
         Err(Error::Usage(words)) => words,
         other => panic!("{:?}", other.map(|_| ())),
     };
@@ -212,7 +217,7 @@ fn what_has_no_period_is_refused() {
     assert!(refusal(json!(0.0), Some(-1.0)).contains("> 0"));
     // a smooth start and a ramp that ends both come to rest
     let ramp = json!({"sum": [{"ramp": {"to": 0.01, "duration_s": 2.0}}, sine(4.0)]});
-    let scene = Scene::new(&case_of(&dry(10, 0.0, ramp)), None).unwrap();
+    let scene = PeriodicScene::new(&case_of(&dry(10, 0.0, ramp)), None).unwrap();
     assert_eq!(scene.drive.period, 0.25);
 }
 
@@ -222,7 +227,7 @@ fn what_has_no_period_is_refused() {
 #[test]
 fn the_motion_along_the_beam_keeps_its_frequency() {
     let at_rest = shipped("shaken-sealed", &["/ends/root/clamped/u3_m=0"]);
-    let plan = modes::Plan {
+    let plan = modes::ModeOptions {
         count: 4,
         near_hz: 90.0,
         limits: false,
@@ -246,7 +251,7 @@ fn the_motion_along_the_beam_keeps_its_frequency() {
         let named = found
             .multipliers
             .iter()
-            .find(|m| m.part == Part::Along)
+            .find(|m| m.part == EnergyPart::Along)
             .expect("one of them");
         assert!((named.frequency_hz / own - 1.0).abs() < 0.01, "{drive}: {named:?}");
     }
@@ -262,7 +267,7 @@ fn a_mode_of_a_bent_beam_keeps_its_name() {
         let (_, found) = stability(&shipped("tour-wiring", &sets), None, 2);
         let first = &found.multipliers[0];
         assert!(
-            first.part == Part::Bending(1) && first.share > 0.9,
+            first.part == EnergyPart::Bending(1) && first.share > 0.9,
             "{frequency}: {first:?}"
         );
         // near a mode of 12.4 Hz, within the shift by a drive of this strength

@@ -9,10 +9,10 @@ use slcbeam::functions::Signal;
 use slcbeam::functions::signals::Sine;
 use slcbeam::run::drive::{common_period, settled};
 use slcbeam::run::dynamics;
-use slcbeam::run::floquet::{self, Stability};
-use slcbeam::run::periodic::{Scene, record, sensitivity, settle, shoot};
+use slcbeam::run::floquet::{self, CycleStability};
+use slcbeam::run::periodic::{PeriodicScene, record, sensitivity, settle, shoot};
 use slcbeam::run::record::Memory;
-use slcbeam::run::stop::Stop;
+use slcbeam::run::stop::StopFlag;
 use slcbeam::run::summary::Status;
 use slcbeam::study::evaluations::Evaluations;
 use slcbeam::study::stability::along;
@@ -42,11 +42,11 @@ fn the_cycle_is_the_tail_of_a_long_run() {
         Status::Finished
     );
 
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let mut cycle = shoot(&scene, None).unwrap();
     assert_eq!(
         floquet::multipliers(&scene, &mut cycle, 4).verdict.stability,
-        Stability::Stable
+        CycleStability::Stable
     );
     let mut period = Memory::default();
     assert_eq!(
@@ -70,7 +70,7 @@ fn the_cycle_is_the_tail_of_a_long_run() {
 #[test]
 fn a_cycle_comes_back() {
     let case = shipped("wiring-1", &["/mesh/cells_per_segment=2"]);
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
     assert!(cycle.search.correction < 0.05);
     let mut period = Memory::default();
@@ -92,12 +92,12 @@ fn a_cycle_comes_back() {
 #[test]
 fn an_unstable_cycle_is_recognised() {
     let mesh = "/mesh/cells_per_segment=2";
-    for (amplitude, expected) in [("0.033", Stability::Unstable), ("0.015", Stability::Stable)] {
+    for (amplitude, expected) in [("0.033", CycleStability::Unstable), ("0.015", CycleStability::Stable)] {
         let case = shipped(
             "valves-open",
             &[mesh, &format!("/ends/root/clamped/u3_m/sine/amplitude={amplitude}")],
         );
-        let scene = Scene::new(&case, None).unwrap();
+        let scene = PeriodicScene::new(&case, None).unwrap();
         let mut cycle = shoot(&scene, None).unwrap();
         let found = floquet::multipliers(&scene, &mut cycle, 4);
         assert_eq!(
@@ -105,7 +105,7 @@ fn an_unstable_cycle_is_recognised() {
             "{amplitude}: {}",
             found.verdict.words
         );
-        if expected == Stability::Unstable {
+        if expected == CycleStability::Unstable {
             assert!(found.verdict.words.contains("subharmonic"), "{}", found.verdict.words);
         }
     }
@@ -122,7 +122,10 @@ fn a_warm_start_keeps_the_volume_of_the_start() {
             "/start={\"pressures\": [{\"bladders\": [1, 2], \"pressure_pa\": 400.0}]}",
         ],
     );
-    let (a, b) = (Scene::new(&first, None).unwrap(), Scene::new(&second, None).unwrap());
+    let (a, b) = (
+        PeriodicScene::new(&first, None).unwrap(),
+        PeriodicScene::new(&second, None).unwrap(),
+    );
     let cycle = shoot(&a, None).unwrap();
     let taken = b.take_over(&a, &cycle.y).unwrap();
     let warm = shoot(&b, Some(&taken)).unwrap();
@@ -150,7 +153,7 @@ fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
             r#"/effects={"tube_inertia":"off","tube_losses":"off"}"#,
         ],
     );
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
     let found = settle(&case, scene, cycle).unwrap();
     let refined = found.refined.unwrap();
@@ -179,7 +182,7 @@ fn a_cycle_whose_energies_do_not_add_up_is_found_again() {
 #[ignore = "a minute of figures for the documentation"]
 fn saving_over_transients() {
     println!("factor      cycle: steps, s      run of 2 s: steps, s      decay [1/s]   run to 1 % [s]");
-    let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut before: Option<(PeriodicScene, Vec<f64>)> = None;
     let mut sums = [0.0; 5];
     for k in 0..25 {
         let factor = 0.01_f64.powf(1.0 - f64::from(k) / 24.0);
@@ -192,7 +195,7 @@ fn saving_over_transients() {
             ],
         );
         let begin = std::time::Instant::now();
-        let scene = Scene::new(&case, None).unwrap();
+        let scene = PeriodicScene::new(&case, None).unwrap();
         let from = before.as_ref().and_then(|(old, y)| scene.take_over(old, y));
         let mut cycle = shoot(&scene, from.as_deref()).unwrap();
         let found = floquet::multipliers(&scene, &mut cycle, 4);
@@ -214,7 +217,7 @@ fn saving_over_transients() {
         }
         assert_eq!(
             found.verdict.stability,
-            Stability::Stable,
+            CycleStability::Stable,
             "{factor}: {}",
             found.verdict.words
         );
@@ -242,7 +245,7 @@ fn pushed(port: &str, opening: &str) -> Case {
 
 /// Smallest and largest value of the largest pressure over the cycle [Pa], and the warnings.
 fn pressures(case: &Case) -> ([f64; 2], String) {
-    let scene = Scene::new(case, None).unwrap();
+    let scene = PeriodicScene::new(case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
     let mut period = Memory::default();
     let outcome = record::record(case, &scene, &cycle, &mut period).unwrap();
@@ -273,7 +276,7 @@ fn a_cycle_has_what_ports_have_let_in() {
     }
     // the derivative includes the volume, which does not change the oscillation
     let parameter = Parameter::find(&case, "/network/ports/0/volume_m3/ramp/to").unwrap();
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let cycle = shoot(&scene, None).unwrap();
     let mut settled = settle(&case, scene, cycle).unwrap();
     let outcome = sensitivity::differentiate(&mut settled, &[parameter], &mut Memory::default()).unwrap();
@@ -302,7 +305,7 @@ fn a_cycle_has_what_valves_have_trapped() {
 fn fluid_that_gathers_has_no_cycle() {
     let flow = |mean: &str| {
         let port = format!(r#""flow_m3_s": {{"sum": [{mean}, {{"sine": {{"amplitude": 1e-8, "frequency_hz": 1}}}}]}}"#);
-        Scene::new(&pushed(&port, "1"), None)
+        PeriodicScene::new(&pushed(&port, "1"), None)
     };
     let error = flow("1e-9").err().unwrap().to_string();
     assert!(error.contains("takes in 1.000·10⁻⁹ m³ each period"), "{error}");
@@ -313,7 +316,7 @@ fn fluid_that_gathers_has_no_cycle() {
 #[test]
 fn searches_end_when_they_are_asked_to() {
     let flag = Arc::new(AtomicBool::new(false));
-    let stop = Stop::by(Arc::clone(&flag));
+    let stop = StopFlag::by(Arc::clone(&flag));
     let case = |n: u32| {
         shipped(
             "valves-open",
@@ -335,7 +338,7 @@ fn searches_end_when_they_are_asked_to() {
     assert_eq!(found.members.len(), 1);
     let missing: Vec<_> = (2..=4).map(|n| (f64::from(n), "interrupted".to_string())).collect();
     assert_eq!(found.missing, missing);
-    let scene = Scene::new(&cases[0].1, None).unwrap().heeding(&stop);
+    let scene = PeriodicScene::new(&cases[0].1, None).unwrap().heeding(&stop);
     assert_eq!(shoot(&scene, None).err().unwrap().what, "interrupted");
 }
 

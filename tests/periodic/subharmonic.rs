@@ -8,10 +8,10 @@ use std::f64::consts::{PI, TAU};
 use serde_json::json;
 use slcbeam::case::{self, Case};
 use slcbeam::run::dynamics;
-use slcbeam::run::floquet::{self, Stability};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::floquet::{self, CycleStability};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::periodic::subharmonic::{self, Periods};
-use slcbeam::run::periodic::{Cycle, Scene, record};
+use slcbeam::run::periodic::{Cycle, PeriodicScene, record};
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::Status;
 
@@ -44,7 +44,7 @@ fn shaken(frequency: f64, first: f64, epsilon: f64, start: f64) -> Case {
 /// The first frequency of the mesh [Hz].
 fn first() -> f64 {
     let about = modes::linearise(&shaken(41.0, 20.5, 1e-6, 0.0), 0.0, None).expect("a state");
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 1,
         near_hz: 20.0,
         limits: false,
@@ -55,7 +55,7 @@ fn first() -> f64 {
 }
 
 /// Largest deflection of the tip over a cycle.
-fn swing(case: &Case, scene: &Scene, cycle: &Cycle) -> f64 {
+fn swing(case: &Case, scene: &PeriodicScene, cycle: &Cycle) -> f64 {
     let mut period = Memory::default();
     let outcome = record::record(case, scene, cycle, &mut period).expect("memory");
     assert_eq!(outcome.summary.status, Status::Finished);
@@ -108,7 +108,7 @@ fn doubled_period_has_the_averaged_amplitude() {
         );
         assert!((found / exact - 1.0).abs() < 0.02, "{ratio}: {found:e} {exact:e}");
         let verdict = floquet::multipliers(&scene, &mut cycle, 4).verdict;
-        assert_eq!(verdict.stability, Stability::Stable, "{}", verdict.words);
+        assert_eq!(verdict.stability, CycleStability::Stable, "{}", verdict.words);
     }
 }
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 use slcbeam::discrete::System;
-use slcbeam::discrete::fluid_mesh::Place;
+use slcbeam::discrete::fluid_mesh::LinkEnd;
 use slcbeam::model::characteristic::{MATHIEU_COUPLING, mathieu_growth, numbers};
 use slcbeam::model::{Model, audit};
 
@@ -160,7 +160,7 @@ fn slowest_time(cells: usize) -> f64 {
         join(cell, cell + 1, fluid.conductance);
     }
     for link in &fluid.links {
-        let (Place::Cell(a), Place::Cell(b)) = (link.from, link.to) else {
+        let (LinkEnd::Cell(a), LinkEnd::Cell(b)) = (link.from, link.to) else {
             panic!("a chain has tubes only")
         };
         join(a, b, 1.0 / (link.half_cells + link.resistance));

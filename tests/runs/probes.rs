@@ -8,7 +8,7 @@ use slcbeam::case::{self, Case};
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Status;
 
@@ -33,7 +33,7 @@ fn cantilever(tip: &Value, probes: &Value, cells: usize) -> Case {
 
 /// Values at rest, by name.
 fn at_rest(case: &Case) -> impl Fn(&str) -> f64 + use<> {
-    let path = follow(case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let names = columns(&system(case, 1.0).unwrap());
     let row = path.last().row.clone();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
 use slcbeam::model::{Model, audit};
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, follow};
+use slcbeam::run::equilibrium::{EquilibriumOptions, follow};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Summary;
 
@@ -46,9 +46,9 @@ fn a_beam_that_crosses_itself_is_told() {
     );
     assert_eq!(told(&run(&curled(15.0)).warnings, "W023"), None);
     let of_path = |curvature: f64| {
-        let options = Options {
+        let options = EquilibriumOptions {
             points: Some(64),
-            ..Options::at(1.5)
+            ..EquilibriumOptions::at(1.5)
         };
         follow(&parse(&curled(curvature)), &options, &mut |_| Control::Continue)
             .unwrap()

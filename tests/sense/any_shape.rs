@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::inverse::second_differences;
-use slcbeam::run::equilibrium::Options;
+use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
-use slcbeam::study::sense::estimate::{Ask, Forward, Smoothing, estimate};
+use slcbeam::study::sense::estimate::{EstimateOptions, ForwardModel, Smoothing, estimate};
 use slcbeam::study::sense::load_prior::LoadPrior;
 use slcbeam::study::sense::local_mean::FineLoad;
 use slcbeam::study::sense::rest::{AtRest, probed};
@@ -112,7 +112,7 @@ fn derivatives() -> DMatrix<f64> {
     let case = sensor(&[]);
     let amplitudes = basis::amplitudes(&case, &[Basis::Profile(TRUE + 1)]).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     model.at(&[0.0; TRUE + 1]).unwrap().1
 }
@@ -174,7 +174,7 @@ fn count(jacobian: &DMatrix<f64>, places: usize, sensors: &[usize], noise: f64, 
                 let exact = &rows * DVector::from_column_slice(&truth);
                 let data = exact.map(|p| p + noise * normal_number(&mut chance));
                 let posterior = prior.posterior(&own, &(&data / noise), &fine.means).unwrap();
-                let ask = Ask {
+                let ask = EstimateOptions {
                     differences: &differences,
                     smoothing: Smoothing::Likelihood,
                     noise_known: true,

@@ -3,7 +3,7 @@
 use std::fs;
 
 use serde_json::Value;
-use slcbeam::run::equilibrium::Options;
+use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
 use slcbeam::study::sense::rest::{AtRest, labels, probed};
 use tempfile::TempDir;
@@ -54,7 +54,7 @@ pub fn pressures(sets: &[&str], loads: &[Basis], rows: &[&[f64]], bladders: &[i6
     let case = sensor(sets);
     let amplitudes = basis::amplitudes(&case, loads).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     let all = labels(&case);
     let places: Vec<usize> = bladders

@@ -5,9 +5,11 @@
 use nalgebra::{DMatrix, DVector};
 use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::inverse::second_differences;
-use slcbeam::run::equilibrium::Options;
+use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
-use slcbeam::study::sense::estimate::{Ask, Estimate, Forward, Problem, Smoothing, estimate};
+use slcbeam::study::sense::estimate::{
+    EstimateOptions, ForwardModel, LoadEstimates, SenseProblem, Smoothing, estimate,
+};
 use slcbeam::study::sense::rest::{AtRest, probed};
 
 use crate::common::{normal_number, sensor};
@@ -15,7 +17,7 @@ use crate::common::{normal_number, sensor};
 /// Pressures that go with the loads in proportion.
 struct Linear(DMatrix<f64>);
 
-impl Forward for Linear {
+impl ForwardModel for Linear {
     fn at(&mut self, amplitudes: &[f64]) -> slcbeam::error::Result<(DVector<f64>, DMatrix<f64>)> {
         Ok((&self.0 * DVector::from_column_slice(amplitudes), self.0.clone()))
     }
@@ -38,7 +40,7 @@ fn noisy(truth: &DVector<f64>, sensors: &[usize], chance: &mut Chance) -> Vec<Op
 }
 
 /// Whether each amplitude lies within its band.
-pub fn within(found: &Estimate, truth: &[f64]) -> Vec<bool> {
+pub fn within(found: &LoadEstimates, truth: &[f64]) -> Vec<bool> {
     let one = &found.found[0];
     let inside =
         |(k, truth): (usize, &f64)| (one.mean[k] - truth).abs() <= found.quantile * one.covariance[(k, k)].sqrt();
@@ -56,8 +58,8 @@ pub fn shares(trials: usize, one: &mut dyn FnMut(usize) -> Vec<bool>) -> Vec<f64
     held.iter().map(|sum| *sum as f64 / trials as f64).collect()
 }
 
-fn ask(differences: &DMatrix<f64>, smoothing: Smoothing, noise_known: bool) -> Ask<'_> {
-    Ask {
+fn ask(differences: &DMatrix<f64>, smoothing: Smoothing, noise_known: bool) -> EstimateOptions<'_> {
+    EstimateOptions {
         differences,
         smoothing,
         noise_known,
@@ -70,7 +72,7 @@ fn of_equilibria(other: Basis, trials: usize) -> Vec<Vec<f64>> {
     let case = sensor(&[]);
     let amplitudes = basis::amplitudes(&case, &[Basis::TipForce, other]).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     let truth = [0.3, -0.8];
     let first = model.at(&truth).unwrap();
@@ -78,7 +80,7 @@ fn of_equilibria(other: Basis, trials: usize) -> Vec<Vec<f64>> {
     let of = |(stream, sensors): (usize, &[usize])| {
         let mut chance = Chance::new(20, stream as u64);
         shares(trials, &mut |_| {
-            let problem = Problem {
+            let problem = SenseProblem {
                 line: None,
                 forward: Box::new(model.clone()),
                 data: noisy(&first.0, sensors, &mut chance),
@@ -133,7 +135,7 @@ fn bands_hold_the_loads_where_the_noise_is_estimated() {
     let case = sensor(&[]);
     let amplitudes = basis::amplitudes(&case, &[Basis::TipForce, Basis::Uniform]).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     let jacobian = model.at(&[0.0, 0.0]).unwrap().1;
     let truth = DVector::from_column_slice(&[0.3, -0.8]);
@@ -154,8 +156,8 @@ fn bands_hold_the_loads_where_the_noise_is_estimated() {
     }
 }
 
-pub fn linear<'a>(jacobian: &DMatrix<f64>, data: Vec<Option<f64>>, deviation: f64) -> Problem<'a> {
-    Problem {
+pub fn linear<'a>(jacobian: &DMatrix<f64>, data: Vec<Option<f64>>, deviation: f64) -> SenseProblem<'a> {
+    SenseProblem {
         line: None,
         forward: Box::new(Linear(jacobian.clone())),
         deviation: vec![deviation; data.len()],
@@ -172,7 +174,7 @@ fn bands_of_a_profile_hold_profiles_that_are_as_smooth_as_is_known() {
     let places = 7;
     let amplitudes = basis::amplitudes(&case, &[Basis::Profile(places)]).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     let jacobian = model.at(&vec![0.0; places]).unwrap().1;
     let differences = second_differences(places);

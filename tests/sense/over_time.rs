@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::inverse::second_differences;
 use slcbeam::study::sense::basis::{self, Basis};
-use slcbeam::study::sense::estimate::{Ask, Forward, Smoothing, estimate};
+use slcbeam::study::sense::estimate::{EstimateOptions, ForwardModel, Smoothing, estimate};
 use slcbeam::study::sense::in_time::{InTime, Knots};
 use slcbeam::study::sense::rest::probed;
 use tempfile::TempDir;
@@ -154,7 +154,7 @@ fn bands_over_time_hold_the_load() {
             .iter()
             .map(|p| Some(p + 20.0 * normal_number(&mut chance)))
             .collect();
-        let ask = Ask {
+        let ask = EstimateOptions {
             differences: &differences,
             smoothing: Smoothing::Likelihood,
             noise_known: true,

@@ -1,9 +1,9 @@
 //! Loads at rest.
 
 use nalgebra::DVector;
-use slcbeam::run::equilibrium::Options;
+use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
-use slcbeam::study::sense::estimate::Forward as _;
+use slcbeam::study::sense::estimate::ForwardModel as _;
 use slcbeam::study::sense::rest::{AtRest, probed};
 
 use crate::common::sensor;
@@ -20,7 +20,7 @@ fn derivatives_are_those_of_differences() {
     let case = sensor(&[]);
     let amplitudes = basis::amplitudes(&case, &loads).unwrap();
     let (probed, names) = probed(&case).unwrap();
-    let options = Options::at(case.time.end_s);
+    let options = EquilibriumOptions::at(case.time.end_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options).unwrap();
     // a force across on the tip presses the upper bladders and draws at the lower ones
     let (pressed, _) = model.at(&[0.1, 0.0, 0.0, 0.0, 0.0]).unwrap();

@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use slcbeam::discrete::System;
 use slcbeam::model::characteristic;
 use slcbeam::run::floquet;
-use slcbeam::run::modes::{self, Plan};
-use slcbeam::run::periodic::{Scene, shoot};
+use slcbeam::run::modes::{self, ModeOptions};
+use slcbeam::run::periodic::{PeriodicScene, shoot};
 
 use super::scene::parse;
 use super::{EI, KGA, L, M, block, limit};
@@ -23,7 +23,7 @@ fn across(ends: &Value, segments: usize, effects: &Value) -> Vec<f64> {
 fn of_order(order: u8, ends: &Value, segments: usize, effects: &Value) -> Vec<f64> {
     let mesh = json!({"segments": segments, "cells_per_segment": 1, "order": order});
     let case = parse(&block(KGA, &json!({"ends": ends, "mesh": mesh, "effects": effects})));
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 12,
         near_hz: 0.0,
         limits: false,
@@ -187,7 +187,7 @@ fn growth(shear: Option<f64>, amplitude: f64, hz: f64) -> (f64, f64) {
         shear,
         &json!({"ends": {"root": {"clamped": {"u3_m": u3}}, "tip": "free"}, "solver": {"rtol": 1e-6}}),
     ));
-    let scene = Scene::new(&case, None).unwrap();
+    let scene = PeriodicScene::new(&case, None).unwrap();
     let mut cycle = shoot(&scene, None).unwrap();
     let found = floquet::multipliers(&scene, &mut cycle, 4);
     let most = found.multipliers.iter().map(|one| one.modulus).fold(0.0, f64::max);

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use serde_json::{Value, json};
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::Control;
 
 use super::scene::parse;
@@ -12,9 +12,9 @@ use super::{EA, EI, KGA, L, block, limit};
 /// Columns of the state under all loads, and whether it holds.
 fn at_rest(case: &Value, names: &[&str]) -> (Vec<f64>, usize) {
     let case = parse(case);
-    let options = Options {
+    let options = EquilibriumOptions {
         branches: false,
-        ..Options::at(0.0)
+        ..EquilibriumOptions::at(0.0)
     };
     let path = follow(&case, &options, &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);

@@ -7,7 +7,7 @@ use slcbeam::run::floors::{Floors, NOTHING};
 use slcbeam::run::summary::{Quantity, Status, Summary};
 use slcbeam::study::companion::error::raise_to_balance;
 use slcbeam::study::counted::counted;
-use slcbeam::study::refine::{Number, Numbers, refine, warning};
+use slcbeam::study::refine::{ReferencedNumber, RefinedNumbers, refine, warning};
 
 fn beam(young_modulus_pa: &str, tip: &str) -> Case {
     let text = format!(
@@ -94,11 +94,11 @@ fn numbers_are_refined_until_their_estimates_do() {
         1.0 + 0.7 * h * h + 3.0 * case.solver.rtol.powf(0.8)
     };
     let mut compute = |case: &Case| {
-        let number = Number {
+        let number = ReferencedNumber {
             value: value(case),
             size: 0.0,
         };
-        Ok(Numbers::from([("x".to_string(), number)]))
+        Ok(RefinedNumbers::from([("x".to_string(), number)]))
     };
     let (chosen, found) = refine(&beam("1e9", r#""free""#), 1e-3, true, &mut compute).unwrap();
     let (error, total) = ((value(&chosen) - 1.0).abs(), found.quantities["x"].total.unwrap());
@@ -110,9 +110,9 @@ fn numbers_are_refined_until_their_estimates_do() {
     let mut sign = 1.0;
     let mut jumps = |_: &Case| {
         sign = -sign;
-        Ok(Numbers::from([(
+        Ok(RefinedNumbers::from([(
             "x".to_string(),
-            Number {
+            ReferencedNumber {
                 value: 2.0 + sign,
                 size: 0.0,
             },

@@ -385,7 +385,7 @@ fn searches_share_what_they_found() {
     let first = target::reach(&case, 0.01, None, &mut measured).expect("memory").summary;
     let found = first.accuracy.expect("known");
     assert!(found.reached && !found.pilots.is_empty(), "{found:?}");
-    let setting = target::Setting::found(&found);
+    let setting = target::ReachedSetting::found(&found);
     let again = target::reach(&case, 0.01, Some(&setting), &mut measured)
         .expect("memory")
         .summary;

@@ -4,12 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Complex;
 use serde_json::{Value, json};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 
 use crate::{BRANCHES, parse, prony, strip};
 
 fn first(case: &Value, near_hz: f64) -> Complex<f64> {
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 1,
         near_hz,
         limits: false,
@@ -55,7 +55,7 @@ fn modes_are_the_roots_of_the_relaxing_oscillator() {
 #[test]
 fn modes_with_many_branches() {
     let band = json!({"loss_factor": {"value": 0.3, "from_hz": 0.1, "to_hz": 1000}});
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 6,
         near_hz: 0.0,
         limits: false,
@@ -83,7 +83,7 @@ fn modes_with_many_branches() {
         }
         let found = modes::modes(
             &parse(&case),
-            &Plan {
+            &ModeOptions {
                 near_hz: 12.0,
                 count: 4,
                 ..plan

@@ -7,7 +7,7 @@ use super::network::Joined;
 use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
-use crate::case::wiring::Point;
+use crate::case::wiring::WiringPoint;
 use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
@@ -19,7 +19,7 @@ const INSTANTS: usize = 200;
 pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     let names = case.network.as_ref().map_or(&[][..], |network| &network.junctions);
     // of two junctions with one name, the first counts
-    let first = |name: &String| names.iter().position(|other| other == name).map(Point::Junction);
+    let first = |name: &String| names.iter().position(|other| other == name).map(WiringPoint::Junction);
     let used = |name: &String| first(name).is_some_and(|point| joined.attached.contains_key(&point));
     for (i, name) in names.iter().enumerate().filter(|(_, name)| !used(name)) {
         let fault = Violation::new(
@@ -34,7 +34,7 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     for t in instants(joined, end) {
         let reached = reached(joined, t);
         for point in joined.attached.keys().filter(|point| !reached.contains(point)) {
-            if let Point::Junction(i) = point {
+            if let WiringPoint::Junction(i) = point {
                 dead.entry(*i).or_insert(t);
             }
         }
@@ -71,10 +71,10 @@ fn instants(joined: &Joined, end: f64) -> Vec<f64> {
 }
 
 /// Points joined by open branches to a bladder, an accumulator or a pressure port.
-fn reached(joined: &Joined, t: f64) -> BTreeSet<Point> {
+fn reached(joined: &Joined, t: f64) -> BTreeSet<WiringPoint> {
     let mut reached = &joined.held | &joined.stores;
     let ends = joined.branches.iter().flat_map(|(points, _)| points);
-    reached.extend(ends.filter(|point| matches!(point, Point::Bladder(..))));
+    reached.extend(ends.filter(|point| matches!(point, WiringPoint::Bladder(..))));
     let open: Vec<_> = joined
         .branches
         .iter()

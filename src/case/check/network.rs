@@ -8,7 +8,7 @@ use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
-use crate::case::wiring::{Bore, Given, Point, Port, Tube, Wiring, bladder_index, bladder_label};
+use crate::case::wiring::{Bore, Given, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index, bladder_label};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation, listed};
 use crate::functions::signals::Signal;
@@ -28,13 +28,13 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 #[derive(Default)]
 pub struct Joined<'a> {
     /// Pointers of everything attached to each point.
-    pub attached: BTreeMap<Point, Vec<String>>,
+    pub attached: BTreeMap<WiringPoint, Vec<String>>,
     /// Single tubes with their opening signals, and turbines.
-    pub branches: Vec<([Point; 2], Option<&'a Signal>)>,
+    pub branches: Vec<([WiringPoint; 2], Option<&'a Signal>)>,
     /// Points of ports with a pressure.
-    pub held: BTreeSet<Point>,
+    pub held: BTreeSet<WiringPoint>,
     /// Points of accumulators.
-    pub stores: BTreeSet<Point>,
+    pub stores: BTreeSet<WiringPoint>,
     /// True if an endpoint is invalid; unattached ends and junctions are then not reported.
     lost: bool,
 }
@@ -98,15 +98,15 @@ impl<'a> Rules<'a, '_> {
         self.faults.push(Violation::new(Code::Wiring, pointer, what));
     }
 
-    fn words(&self, point: Point) -> String {
+    fn words(&self, point: WiringPoint) -> String {
         match point {
-            Point::Bladder(index, end) => format!("the {end} of bladder {}", bladder_label(index, self.per_row)),
-            Point::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
+            WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", bladder_label(index, self.per_row)),
+            WiringPoint::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
         }
     }
 
-    fn end_of(&self, number: i64, end: BladderEnd) -> Option<Point> {
-        bladder_index(number, self.per_row).map(|index| Point::Bladder(index, end))
+    fn end_of(&self, number: i64, end: BladderEnd) -> Option<WiringPoint> {
+        bladder_index(number, self.per_row).map(|index| WiringPoint::Bladder(index, end))
     }
 
     fn junction_names(&mut self) {
@@ -120,7 +120,7 @@ impl<'a> Rules<'a, '_> {
     }
 
     /// Resolves the point that an endpoint names, and records its owner as attached there.
-    fn point(&mut self, endpoint: &Endpoint, pointer: &str, owner: &str) -> Option<Point> {
+    fn point(&mut self, endpoint: &Endpoint, pointer: &str, owner: &str) -> Option<WiringPoint> {
         let point = self.named(endpoint, pointer);
         match point {
             Some(point) => self.joined.attached.entry(point).or_default().push(owner.to_owned()),
@@ -129,18 +129,18 @@ impl<'a> Rules<'a, '_> {
         point
     }
 
-    fn named(&mut self, endpoint: &Endpoint, pointer: &str) -> Option<Point> {
+    fn named(&mut self, endpoint: &Endpoint, pointer: &str) -> Option<WiringPoint> {
         let what = match (endpoint.bladder, endpoint.end, &endpoint.junction) {
             (Some(number), Some(end), None) => {
                 let index = bladder(number, self.per_row, &format!("{pointer}/bladder"), self.faults);
-                return index.map(|index| Point::Bladder(index, end));
+                return index.map(|index| WiringPoint::Bladder(index, end));
             }
             (None, None, Some(name)) => {
                 let place = self.network.junctions.iter().position(|known| known == name);
                 if place.is_none() {
                     self.undeclared(name, pointer);
                 }
-                return place.map(Point::Junction);
+                return place.map(WiringPoint::Junction);
             }
             (_, _, Some(_)) => "a bladder end and a junction at once",
             (Some(_), None, None) => "a bladder without its end",
@@ -171,7 +171,7 @@ impl<'a> Rules<'a, '_> {
         opening: Option<&'a Signal>,
         pointer: &str,
         what: &str,
-    ) -> Option<[Point; 2]> {
+    ) -> Option<[WiringPoint; 2]> {
         let from = self.point(from, &format!("{pointer}/from"), pointer);
         let to = self.point(to, &format!("{pointer}/to"), pointer);
         let points = [from?, to?];
@@ -183,7 +183,7 @@ impl<'a> Rules<'a, '_> {
         Some(points)
     }
 
-    fn tubes(&mut self) -> Vec<Tube<'a>> {
+    fn tubes(&mut self) -> Vec<WiringTube<'a>> {
         let mut found = vec![];
         for (i, tube) in self.network.tubes.iter().enumerate() {
             let pointer = format!("/network/tubes/{i}");
@@ -202,7 +202,7 @@ impl<'a> Rules<'a, '_> {
                 self.faults.push(Violation::new(Code::Wiring, pointer, what).hint(hint));
                 continue;
             };
-            found.extend(points.map(|points| Tube {
+            found.extend(points.map(|points| WiringTube {
                 points,
                 length_m,
                 bore,
@@ -217,8 +217,8 @@ impl<'a> Rules<'a, '_> {
         found
     }
 
-    fn ports(&mut self) -> Vec<Port<'a>> {
-        let mut known: HashMap<Point, String> = HashMap::new();
+    fn ports(&mut self) -> Vec<WiringPort<'a>> {
+        let mut known: HashMap<WiringPoint, String> = HashMap::new();
         for (i, chain) in self.network.chains.iter().enumerate() {
             for (k, end) in chain.ends.iter().enumerate() {
                 let point = chain_end(chain, k).and_then(|(number, end)| self.end_of(number, end));
@@ -258,13 +258,13 @@ impl<'a> Rules<'a, '_> {
                 self.joined.held.insert(at);
             }
             let name = port.name.as_deref();
-            found.extend(given.into_iter().take(1).map(|given| Port { at, name, given }));
+            found.extend(given.into_iter().take(1).map(|given| WiringPort { at, name, given }));
         }
         found
     }
 
-    fn accumulators(&mut self) -> Vec<(Point, &'a schema::Accumulator)> {
-        let mut found: Vec<(Point, &schema::Accumulator)> = vec![];
+    fn accumulators(&mut self) -> Vec<(WiringPoint, &'a schema::Accumulator)> {
+        let mut found: Vec<(WiringPoint, &schema::Accumulator)> = vec![];
         for (i, accumulator) in self.network.accumulators.iter().enumerate() {
             let pointer = format!("/network/accumulators/{i}");
             let Some(at) = self.point(&accumulator.at, &format!("{pointer}/at"), &pointer) else {
@@ -287,7 +287,7 @@ impl<'a> Rules<'a, '_> {
         found
     }
 
-    fn turbines(&mut self) -> Vec<([Point; 2], &'a schema::Turbine)> {
+    fn turbines(&mut self) -> Vec<([WiringPoint; 2], &'a schema::Turbine)> {
         let mut found = vec![];
         for (i, turbine) in self.network.turbines.iter().enumerate() {
             let pointer = format!("/network/turbines/{i}");
@@ -334,10 +334,10 @@ impl<'a> Rules<'a, '_> {
                 }
             }
             match self.usual {
-                Some(usual) => wiring.chain_tubes.extend(row.windows(2).map(|pair| Tube {
+                Some(usual) => wiring.chain_tubes.extend(row.windows(2).map(|pair| WiringTube {
                     points: [
-                        Point::Bladder(pair[0], BladderEnd::Outlet),
-                        Point::Bladder(pair[1], BladderEnd::Inlet),
+                        WiringPoint::Bladder(pair[0], BladderEnd::Outlet),
+                        WiringPoint::Bladder(pair[1], BladderEnd::Inlet),
                     ],
                     length_m: usual.length_m,
                     bore: Bore::usual(usual),
@@ -364,7 +364,7 @@ impl<'a> Rules<'a, '_> {
     }
 
     /// Returns the port that one end of a chain prescribes, if any. Reports an end that contradicts its connections.
-    fn end(&mut self, i: usize, chain: &'a schema::Chain, k: usize) -> Option<Port<'a>> {
+    fn end(&mut self, i: usize, chain: &'a schema::Chain, k: usize) -> Option<WiringPort<'a>> {
         let (number, end) = chain_end(chain, k)?;
         let at = self.end_of(number, end);
         let owners = at.and_then(|at| self.joined.attached.get(&at));
@@ -390,7 +390,7 @@ impl<'a> Rules<'a, '_> {
             (ChainEnd::FlowM3S(flow), _) => Given::Flow(flow),
             (ChainEnd::VolumeM3(volume), _) => Given::Volume(volume),
         };
-        Some(Port {
+        Some(WiringPort {
             at: at?,
             name: None,
             given,

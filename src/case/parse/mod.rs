@@ -10,7 +10,7 @@ pub(super) mod misread;
 
 use std::collections::HashMap;
 
-use super::locate::{Kind, Member, Node, child};
+use super::locate::{JsonKind, JsonMember, JsonNode, child};
 use super::wording::short;
 use crate::error::Violation;
 
@@ -21,12 +21,12 @@ const MOST_FAULTS: usize = 100;
 
 /// Reads one JSON value. Violations that leave the structure readable (numbers that are not finite, keys given twice) are returned with a
 /// value, others without. Members whose key begins with `//` are remarks and are omitted.
-pub fn parse(text: &str) -> (Option<Node>, Vec<Violation>) {
+pub fn parse(text: &str) -> (Option<JsonNode>, Vec<Violation>) {
     parse_below(text, "")
 }
 
 /// Reads one JSON value as `parse`; `pointer` is its place in a case.
-pub fn parse_below(text: &str, pointer: &str) -> (Option<Node>, Vec<Violation>) {
+pub fn parse_below(text: &str, pointer: &str) -> (Option<JsonNode>, Vec<Violation>) {
     let mut parser = Parser {
         text,
         at: 0,
@@ -52,7 +52,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    fn document(&mut self) -> Option<Node> {
+    fn document(&mut self) -> Option<JsonNode> {
         if self.text.starts_with('\u{feff}') {
             let fault = self.fault(
                 0..3,
@@ -75,7 +75,7 @@ impl Parser<'_> {
                 let fault = self.fault(self.here(), what);
                 self.fail(fault.hint("remove it, or one before it"))
             }
-            Some(b',' | b'"') if matches!(node.kind, Kind::Object(_)) => {
+            Some(b',' | b'"') if matches!(node.kind, JsonKind::Object(_)) => {
                 let what = "`}` closes the whole object, but more text follows";
                 let fault = self.fault(node.span.end - 1..node.span.end, what);
                 self.fail(fault.hint("remove it, or one before it"))
@@ -88,7 +88,7 @@ impl Parser<'_> {
         }
     }
 
-    fn value(&mut self) -> Option<Node> {
+    fn value(&mut self) -> Option<JsonNode> {
         let start = self.at;
         let kind = match self.peek() {
             Some(b'{') => self.nested(Self::object)?,
@@ -96,19 +96,19 @@ impl Parser<'_> {
             Some(b'"') => {
                 let text = self.string()?;
                 self.ends_before_a_word(start)?;
-                Kind::String(text)
+                JsonKind::String(text)
             }
             Some(b) if b.is_ascii_alphanumeric() || b"+-.".contains(&b) || self.is_minus() => self.word()?,
             Some(_) => return self.unexpected("a value"),
             None => return self.ends_early(start, "a value"),
         };
-        Some(Node {
+        Some(JsonNode {
             span: start..self.at,
             kind,
         })
     }
 
-    fn nested(&mut self, read: fn(&mut Self, usize) -> Option<Kind>) -> Option<Kind> {
+    fn nested(&mut self, read: fn(&mut Self, usize) -> Option<JsonKind>) -> Option<JsonKind> {
         let start = self.at;
         if self.depth == DEEPEST {
             let fault = self.fault(self.here(), format!("brackets nested more than {DEEPEST} deep"));
@@ -121,13 +121,13 @@ impl Parser<'_> {
         Some(kind)
     }
 
-    fn object(&mut self, start: usize) -> Option<Kind> {
-        let mut members: Vec<Member> = vec![];
+    fn object(&mut self, start: usize) -> Option<JsonKind> {
+        let mut members: Vec<JsonMember> = vec![];
         let mut known = HashMap::new();
         self.space();
         if self.peek() == Some(b'}') {
             self.at += 1;
-            return Some(Kind::Object(members));
+            return Some(JsonKind::Object(members));
         }
         loop {
             let key_start = self.at;
@@ -170,20 +170,20 @@ impl Parser<'_> {
             };
             self.pointer.truncate(length);
             if first == key_start && !is_remark(&key) {
-                members.push(Member { key, key_span, value });
+                members.push(JsonMember { key, key_span, value });
             }
             if self.closes(b'}', start, "`,` or `}`")? {
-                return Some(Kind::Object(members));
+                return Some(JsonKind::Object(members));
             }
         }
     }
 
-    fn array(&mut self, start: usize) -> Option<Kind> {
+    fn array(&mut self, start: usize) -> Option<JsonKind> {
         let mut items = vec![];
         self.space();
         if self.peek() == Some(b']') {
             self.at += 1;
-            return Some(Kind::Array(items));
+            return Some(JsonKind::Array(items));
         }
         loop {
             match self.peek() {
@@ -196,7 +196,7 @@ impl Parser<'_> {
             items.push(self.value()?);
             self.pointer.truncate(length);
             if self.closes(b']', start, "`,` or `]`")? {
-                return Some(Kind::Array(items));
+                return Some(JsonKind::Array(items));
             }
         }
     }
@@ -242,25 +242,25 @@ impl Parser<'_> {
         }
     }
 
-    fn word(&mut self) -> Option<Kind> {
+    fn word(&mut self) -> Option<JsonKind> {
         let start = self.at;
         let of_word = |c: char| c.is_ascii_alphanumeric() || "+-._".contains(c) || misread::MINUS.contains(&c);
         let rest = &self.text[start..];
         self.at += rest.find(|c| !of_word(c)).unwrap_or(rest.len());
         let word = &self.text[start..self.at];
         match word {
-            "true" => return Some(Kind::Bool(true)),
-            "false" => return Some(Kind::Bool(false)),
-            "null" => return Some(Kind::Null),
+            "true" => return Some(JsonKind::Bool(true)),
+            "false" => return Some(JsonKind::Bool(false)),
+            "null" => return Some(JsonKind::Null),
             _ => {}
         }
         let number = serde_json::from_str(word).ok();
         let like = number.is_some() || word.ends_with(|c: char| c.is_ascii_digit());
         if let Some(slip) = misread::behind_number(word, rest, &self.pointer).filter(|_| like) {
-            return self.slip(start, slip).map(|()| Kind::Null);
+            return self.slip(start, slip).map(|()| JsonKind::Null);
         }
         if let Some(number) = number {
-            return Some(Kind::Number(number));
+            return Some(JsonKind::Number(number));
         }
         if self.at == self.text.len() && self.depth > 0 {
             return self.ends_early(start, "the rest of it");
@@ -283,7 +283,7 @@ impl Parser<'_> {
             }
         };
         self.report(fault);
-        Some(Kind::Null)
+        Some(JsonKind::Null)
     }
 
     fn is_minus(&self) -> bool {

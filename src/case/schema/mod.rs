@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use slcbeam_section::input::Section;
 
-use crate::case::faults::Source;
+use crate::case::faults::CaseSource;
 use crate::case::origins::Origins;
 use crate::case::presets::Preset;
 use crate::functions::signals::{Clock, Signal};
@@ -133,7 +133,7 @@ pub struct Case {
     /// Text from which the case was read, for the places of faults; neither serialized nor compared.
     #[serde(skip)]
     #[schemars(skip)]
-    pub source: Arc<Source>,
+    pub source: Arc<CaseSource>,
 }
 
 impl Case {

@@ -10,20 +10,20 @@ use slcbeam_section::input::Section;
 use slcbeam_section::three::Spatial;
 
 use super::{KEY, read, violations};
-use crate::case::faults::{Source, Violations};
+use crate::case::faults::{CaseSource, Violations};
 use crate::case::{computed, parse as json, schema_json, sets, validate};
 use crate::error::{Code, Result, Violation};
 
 /// A section read from a file.
 #[derive(Debug)]
-pub struct Written {
+pub struct SectionFile {
     /// The section.
     pub section: Section,
-    source: Source,
+    source: CaseSource,
     at: &'static str,
 }
 
-impl Written {
+impl SectionFile {
     /// Coefficients of the section.
     ///
     /// # Errors
@@ -57,14 +57,14 @@ impl Written {
 ///
 /// # Errors
 /// [`crate::error::Error::Case`] with the unreadable parts.
-pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
-    let source = Source::of(path, text);
+pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<SectionFile> {
+    let source = CaseSource::of(path, text);
     let (file, violations) = json::parse(text);
     let Some(file) = file.filter(|_| violations.is_empty()) else {
         return Err(source.error(violations));
     };
     let mut value = file.to_value();
-    let source = Source {
+    let source = CaseSource {
         sets: sets::apply(&mut value, sets)?,
         file: Some(file),
         ..source
@@ -78,7 +78,7 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<Written> {
     let mut faults = Violations::default();
     validate::validate(&value, &value, &schema, &mut faults);
     match value.pointer(at).map(|section| read(section, at)) {
-        Some(Ok(section)) if faults.is_empty() => return Ok(Written { section, source, at }),
+        Some(Ok(section)) if faults.is_empty() => return Ok(SectionFile { section, source, at }),
         Some(Err(violation)) if !faults.any_below(at) => faults.push(*violation),
         _ => {}
     }

@@ -14,7 +14,7 @@ use crate::error::{Code, Violation};
 
 mod file;
 
-pub use file::{Written, parse};
+pub use file::{SectionFile, parse};
 pub(super) use file::{is_one, no_case};
 
 /// Key of the section in a case.

@@ -32,7 +32,7 @@ pub use optimize::OptimizeArguments;
 pub use periodic::PeriodicArguments;
 pub use run::RunArguments;
 pub use sense::SenseArguments;
-pub use sweep::{MergeArguments, Script, SweepArguments, Through};
+pub use sweep::{DesignCommand, MergeArguments, Script, SweepArguments};
 pub use uncertain::UncertainArguments;
 
 /// Elastic beams with fluid-filled bladders joined by slender tubes: dynamics with error control.
@@ -278,7 +278,7 @@ pub struct MappingArguments {
     pub case: CaseArguments,
     /// Which table [default: both, a blank line between them]
     #[arg(long)]
-    pub table: Option<Table>,
+    pub table: Option<MapTable>,
     /// Print as JSON
     #[arg(long)]
     pub json: bool,
@@ -302,7 +302,7 @@ pub struct VerifyArguments {
 
 /// The two maps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Table {
+pub enum MapTable {
     /// Table A.1.
     ThetaToXf,
     /// Table A.2.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::{CaseArguments, ResultArguments, Through};
+use super::{CaseArguments, DesignCommand, ResultArguments};
 
 /// `optimize`.
 #[derive(Debug, Args)]
@@ -34,8 +34,8 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]
     pub subject_to: Vec<String>,
     /// Analysis of every design
-    #[arg(long, value_enum, default_value_t = Through::Run)]
-    pub command: Through,
+    #[arg(long, value_enum, default_value_t = DesignCommand::Run)]
+    pub command: DesignCommand,
     /// Searches, from the case's own numbers and from places between the bounds
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,

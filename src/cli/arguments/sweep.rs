@@ -10,7 +10,7 @@ use crate::study::sweep::Shard;
 
 /// Commands that a design can go through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Through {
+pub enum DesignCommand {
     /// A run in time
     Run,
     /// The steady cycle
@@ -21,13 +21,13 @@ pub enum Through {
     Modes,
 }
 
-impl From<Through> for AnalysisKind {
-    fn from(one: Through) -> Self {
+impl From<DesignCommand> for AnalysisKind {
+    fn from(one: DesignCommand) -> Self {
         match one {
-            Through::Run => Self::Run,
-            Through::Periodic => Self::Periodic,
-            Through::Equilibrium => Self::Equilibrium,
-            Through::Modes => Self::Modes,
+            DesignCommand::Run => Self::Run,
+            DesignCommand::Periodic => Self::Periodic,
+            DesignCommand::Equilibrium => Self::Equilibrium,
+            DesignCommand::Modes => Self::Modes,
         }
     }
 }
@@ -56,8 +56,8 @@ pub struct SweepArguments {
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["vary", "design"])]
     pub designs: Option<PathBuf>,
     /// Analysis of every design
-    #[arg(long, value_enum, default_value_t = Through::Run)]
-    pub command: Through,
+    #[arg(long, value_enum, default_value_t = DesignCommand::Run)]
+    pub command: DesignCommand,
     /// Sampling of designs with drawn values: latin:N or sobol:N; grid: all combinations of values
     #[arg(long, value_name = "grid|latin:N|sobol:N", default_value = "grid")]
     pub design: String,

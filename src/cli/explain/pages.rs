@@ -1,6 +1,6 @@
 //! Descriptions of words, symbols and result columns in the documentation: rows of its tables.
 
-use crate::discrete::quantities::{Field, Interest, Observable};
+use crate::discrete::quantities::{BeamField, Interest, Observable};
 use crate::output::report::facts;
 
 /// Page of words and symbols.
@@ -93,7 +93,7 @@ pub fn names() -> Vec<&'static str> {
     let figures = Interest::ALL.iter().map(|one| one.name());
     columns
         .chain(figures)
-        .chain(Field::ALL.iter().map(|field| field.name()))
+        .chain(BeamField::ALL.iter().map(|field| field.name()))
         .collect()
 }
 
@@ -106,7 +106,7 @@ fn quantities(name: &str) -> Vec<Explanation> {
         let what = format!("{} [{}], under quantities in summary.json", one.words(), one.unit());
         Explanation::new("figure", name, what)
     });
-    let field = Field::named(name).map(|one| {
+    let field = BeamField::named(name).map(|one| {
         let what = format!("{} [{}], an array of fields.npz", one.about(), one.unit());
         Explanation::new("field", name, what)
     });

@@ -21,7 +21,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::output::folder::{FIELDS, HISTORY, ResultFolder, SUMMARY};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::recorder::{Finished, FolderRecorder, Hook, Labels};
 use crate::output::report;
 use crate::output::summary;
@@ -31,10 +31,10 @@ use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
 use crate::run::wall::{Laps, WallTimes};
 use crate::study::analysis::AnalysisKind;
-use crate::study::analysis::Ask;
+use crate::study::analysis::AnalysisRequest;
 use crate::study::companion::{self, Accurate};
 use crate::study::target::effects::Annotate;
-use crate::study::target::{self, Setting};
+use crate::study::target::{self, ReachedSetting};
 use resume::resume;
 
 /// Runs a case into a result folder; `began` is the start of the program.
@@ -45,7 +45,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     let start_up = laps.lap();
     let system = System::chosen(case, model)?;
     let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
-    let out = asked.place.folder(&case.name, Kind::Run);
+    let out = asked.place.folder(&case.name, FolderKind::Run);
     if !asked.resume {
         size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
@@ -73,11 +73,11 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     } = match (accuracy, asked.resume) {
         (Some(accuracy), _) => {
             drop(system);
-            reach(case, accuracy, None, asked.place.claim(case, Kind::Run)?, &way)?
+            reach(case, accuracy, None, asked.place.claim(case, FolderKind::Run)?, &way)?
         }
         (None, true) => resume(case, system, &parameters, &out, &way)?,
         (None, false) => {
-            let folder = asked.place.claim(case, Kind::Run)?;
+            let folder = asked.place.claim(case, FolderKind::Run)?;
             let first = record(case, system, &parameters, folder, &way, &|_| ())?;
             settle(case, first, &parameters, &way)?
         }
@@ -179,7 +179,7 @@ fn own(hook: &SharedHook) -> Hook {
 }
 
 /// Runs one of many cases into a folder of its own, which may contain the files of an interrupted run.
-pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
+pub fn into(case: &Case, ask: AnalysisRequest, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
     let mut laps = Laps::since(Instant::now());
     let interrupted = Arc::clone(stop);
     let way = Way {
@@ -192,7 +192,7 @@ pub fn into(case: &Case, ask: Ask, dir: &Path, lean: bool, stop: &Arc<AtomicBool
         lean,
         before: WallTimes::default(),
     };
-    let folder = ResultFolder::claim(dir, Kind::Run, true)?;
+    let folder = ResultFolder::claim(dir, FolderKind::Run, true)?;
     let Recorded {
         mut outcome,
         finished,
@@ -253,7 +253,7 @@ fn settle(case: &Case, mut run: Recorded, by: &[Parameter], way: &Way) -> Result
     };
     let mut again = |case: &Case, annotate: Annotate| -> Result<Outcome> {
         let inside = finished.folder().candidate()?;
-        let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
+        let folder = ResultFolder::claim(inside.path(), FolderKind::Run, false)?;
         let repeated = record(case, System::new(case)?, by, folder, way, annotate)?;
         repeated.written?;
         repeated.finished.map(Finished::close).transpose()?;
@@ -288,12 +288,18 @@ fn complete(recorder: FolderRecorder, mut outcome: Outcome, way: &Way) -> Result
 
 /// Runs candidates until one reaches the accuracy. Candidates are recorded inside the folder and replace the result when they finish, so
 /// that a stopped one leaves its predecessor. The first may end early: then it is the only result.
-fn reach(case: &Case, accuracy: f64, from: Option<&Setting>, mut result: ResultFolder, way: &Way) -> Result<Recorded> {
+fn reach(
+    case: &Case,
+    accuracy: f64,
+    from: Option<&ReachedSetting>,
+    mut result: ResultFolder,
+    way: &Way,
+) -> Result<Recorded> {
     let began = Instant::now();
     let (mut placed, mut aside, mut unwritten) = (false, None, Ok(()));
     let mut candidate = |case: &Case, accuracy: &Accurate| -> Result<Outcome> {
         let inside = result.candidate()?;
-        let folder = ResultFolder::claim(inside.path(), Kind::Run, false)?;
+        let folder = ResultFolder::claim(inside.path(), FolderKind::Run, false)?;
         let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
         let outcome = companion::measured(case, System::new(case)?, accuracy, &mut recorder)?;
         let Recorded {

@@ -12,7 +12,7 @@ use crate::discrete::quantities::Interest;
 use crate::error::visible;
 use crate::output::numbers::{count, counted, duration, percent, quantity, significant, trimmed, with_error};
 use crate::output::{accuracy, bands};
-use crate::run::sensitivity::figures::Sensitivity;
+use crate::run::sensitivity::figures::FigureSensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 use errors::{errors, figure};
 
@@ -158,7 +158,7 @@ fn uncertain(summary: &Summary) -> Option<String> {
 
 /// Change of the largest deflections and the largest pressure when each number grows by one percent.
 fn sensitivities(summary: &Summary) -> Option<String> {
-    let of = |(pointer, s): (&String, &Sensitivity)| -> String {
+    let of = |(pointer, s): (&String, &FigureSensitivity)| -> String {
         let relative = |one: Interest, word: &str| {
             let of = |all: &std::collections::BTreeMap<String, Quantity>| all.get(one.name())?.max_abs;
             let (value, slope) = (of(&summary.quantities)?, of(&s.quantities)?);

@@ -15,19 +15,19 @@ use super::{interrupt, run, terminal};
 use crate::case::{Case, is_below};
 use crate::error::{Error, Result};
 use crate::output::folder::ResultFolder;
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::sweep::script::{Jobs, Scheduler, script};
 use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Survey, words};
 use crate::results;
-use crate::results::sweep::Plan;
+use crate::results::sweep::SweepPlan;
 use crate::run::dynamics::Outcome;
 use crate::run::summary::Status;
-use crate::study::analysis::{self, AnalysisKind, Ask, Found};
-use crate::study::sweep::{Row, pool};
-use crate::study::target::Setting;
+use crate::study::analysis::{self, AnalysisKind, AnalysisOutcome, AnalysisRequest};
+use crate::study::sweep::{SweepRow, pool};
+use crate::study::target::ReachedSetting;
 use progress::Counter;
-use source::Source;
+use source::DesignSource;
 
 /// Largest number of designs that are checked before the first is computed.
 const CHECKED: usize = 10_000;
@@ -37,7 +37,7 @@ const MOST_AT_ONCE: usize = 1024;
 
 /// Computes missing designs, writes the table, prints the number of designs of each kind.
 pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
-    let source = Source::read(asked)?;
+    let source = DesignSource::read(asked)?;
     let plan = &source.plan;
     if asked.keep_folders && plan.command != AnalysisKind::Run {
         let what = "--keep-folders keeps the folders of runs only; --keep-cases keeps the case of every design, with \
@@ -144,18 +144,18 @@ pub fn overridden(sets: &[String], again: &[String], why: impl Fn(&str) -> Strin
     Ok(())
 }
 
-fn claim(asked: &SweepArguments, source: &Source) -> Result<ResultFolder> {
+fn claim(asked: &SweepArguments, source: &DesignSource) -> Result<ResultFolder> {
     let mut place = asked.result.place.clone();
     if let (None, Some(shard)) = (&place.out, asked.shard) {
-        let dir = place.folder(&source.first.name, Kind::Designs);
+        let dir = place.folder(&source.first.name, FolderKind::Designs);
         let dir = PathBuf::from(format!("{}-{}-of-{}", dir.display(), shard.index, shard.of));
         place.out = Some(dir);
     }
-    place.claim(&source.first, Kind::Designs)
+    place.claim(&source.first, FolderKind::Designs)
 }
 
 /// Checks designs before the first is computed: all of them, or an evenly spread selection that is checked in a short time.
-fn check(source: &Source, left: &[usize], jobs: usize, quiet: bool, flag: &AtomicBool) -> Result<()> {
+fn check(source: &DesignSource, left: &[usize], jobs: usize, quiet: bool, flag: &AtomicBool) -> Result<()> {
     let every = left.len().div_ceil(CHECKED).max(1);
     let some: Vec<usize> = left.iter().copied().step_by(every).collect();
     let mut counter = Counter::new(quiet, "checked", some.len());
@@ -200,7 +200,7 @@ pub fn faults(
 /// Computes designs and stores their rows; true if it was interrupted.
 fn compute_all(
     asked: &SweepArguments,
-    source: &Source,
+    source: &DesignSource,
     folder: &ResultFolder,
     done: &Survey,
     left: &[usize],
@@ -209,7 +209,7 @@ fn compute_all(
 ) -> Result<bool> {
     let plan = &source.plan;
     let stop = || interrupt::raised(flag);
-    let mut ask = Ask {
+    let mut ask = AnalysisRequest {
         what: plan.command,
         accuracy: plan.accuracy,
         from: None,
@@ -221,7 +221,7 @@ fn compute_all(
         let first = analysis::run(&case, ask, &stop)
             .ok()
             .and_then(|outcome| outcome.summary.accuracy);
-        ask.from = first.as_ref().map(Setting::found);
+        ask.from = first.as_ref().map(ReachedSetting::found);
     }
     let mut journal = done.go_on(folder)?;
     let mut counter = Counter::new(asked.result.quiet, "done", left.len());
@@ -233,7 +233,7 @@ fn compute_all(
         }
         let design = source.designs.design(number);
         let found = match source.case(&design) {
-            Err(error) => Found::failed(&error),
+            Err(error) => AnalysisOutcome::failed(&error),
             Ok(case) => {
                 let keep = Keep {
                     asked,
@@ -252,9 +252,9 @@ fn compute_all(
                 analysis::found(&case, ask, &stop, &|case| keep.run(case, ask, &stop))?
             }
         };
-        Some(Row::of(design, found, begin.elapsed().as_secs_f64()))
+        Some(SweepRow::of(design, found, begin.elapsed().as_secs_f64()))
     };
-    pool::each(left, jobs, &work, &mut |row: Row| {
+    pool::each(left, jobs, &work, &mut |row: SweepRow| {
         if let Some(error) = unkept.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
             return Err(error);
         }
@@ -273,7 +273,7 @@ fn compute_all(
 }
 
 /// Stores the cases of designs that were computed before cases were requested.
-fn keep_others(source: &Source, folder: &ResultFolder, done: &Survey) -> Result<()> {
+fn keep_others(source: &DesignSource, folder: &ResultFolder, done: &Survey) -> Result<()> {
     let plan = &source.plan;
     for number in (0..plan.designs).filter(|number| done.has(*number)) {
         let name = files::numbered(plan, number);
@@ -288,7 +288,7 @@ fn keep_others(source: &Source, folder: &ResultFolder, done: &Survey) -> Result<
 /// Files that are kept of a design in addition to its row.
 struct Keep<'a> {
     asked: &'a SweepArguments,
-    plan: &'a Plan,
+    plan: &'a SweepPlan,
     folder: &'a ResultFolder,
     number: usize,
     flag: &'a Arc<AtomicBool>,
@@ -304,7 +304,7 @@ impl Keep<'_> {
     }
 
     /// Runs the case, and keeps its folder on request.
-    fn run(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+    fn run(&self, case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result<Outcome> {
         if !self.asked.keep_folders {
             return analysis::run(case, ask, stop);
         }
@@ -313,14 +313,14 @@ impl Keep<'_> {
     }
 }
 
-fn print_script(asked: &SweepArguments, plan: &Plan, scheduler: Script) -> Result<ExitCode> {
+fn print_script(asked: &SweepArguments, plan: &SweepPlan, scheduler: Script) -> Result<ExitCode> {
     if asked.cases.iter().any(|path| path.as_os_str() == "-") {
         return Err(Error::Usage(
             "--script: jobs read the case themselves; name its file in place of -".into(),
         ));
     }
     let program = std::env::current_exe().unwrap_or_else(|_| "slcbeam".into());
-    let out = asked.result.place.folder(&plan.case, Kind::Designs);
+    let out = asked.result.place.folder(&plan.case, FolderKind::Designs);
     let files = asked.cases.iter().chain(&asked.designs);
     for path in files.chain([&program, &out]) {
         if path.to_str().is_none_or(|name| name.contains(char::is_control)) {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::cli::line::{PLAIN, Shown};
+use crate::cli::line::{PLAIN, ProgressLine};
 use crate::cli::terminal;
 use crate::output::numbers::{count, counted, duration};
 
@@ -11,7 +11,7 @@ const EVERY: Duration = Duration::from_secs(30);
 
 /// Counts designs.
 pub struct Counter {
-    shown: Shown,
+    shown: ProgressLine,
     what: &'static str,
     done: usize,
     of: usize,
@@ -25,7 +25,7 @@ impl Counter {
     pub fn new(quiet: bool, what: &'static str, of: usize) -> Self {
         let now = Instant::now();
         Self {
-            shown: Shown::new(quiet, PLAIN),
+            shown: ProgressLine::new(quiet, PLAIN),
             what,
             done: 0,
             of,

@@ -7,27 +7,27 @@ use crate::case::{self, Case};
 use crate::cli::arguments::SweepArguments;
 use crate::cli::{line, size, terminal};
 use crate::error::{Error, Result};
-use crate::study::sweep::plan::{Listed, Plan};
-use crate::study::sweep::table::Table;
+use crate::study::sweep::plan::{Listed, SweepPlan};
+use crate::study::sweep::table::DesignTable;
 use crate::study::sweep::{Design, Designs, Draw, Vary};
 
 /// Pointers of the values that an accuracy determines.
 const CHOSEN: [&str; 3] = ["/mesh/cells_per_segment", "/mesh/cells_per_bladder", "/solver/rtol"];
 
 /// Source of the cases of designs.
-pub struct Source {
+pub struct DesignSource {
     /// Files and their texts.
     texts: Vec<(PathBuf, String)>,
     sets: Vec<String>,
     /// The designs.
     pub designs: Designs,
     /// Plan of the designs.
-    pub plan: Plan,
+    pub plan: SweepPlan,
     /// Case of the first design.
     pub first: Case,
 }
 
-impl Source {
+impl DesignSource {
     /// Reads everything, and checks the first design of every case.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl Source {
         let mut table = None;
         let (designs, specs) = match &asked.designs {
             Some(path) => {
-                let read = Table::read(path)?;
+                let read = DesignTable::read(path)?;
                 table = Some((path.display().to_string(), read.crc32));
                 let specs = vec![None; read.pointers.len()];
                 (Designs::listed(texts.len(), read)?, specs)
@@ -71,12 +71,12 @@ impl Source {
             );
             return Err(Error::Usage(format!("{what}; leave one of them out")));
         }
-        let mut plan = Plan {
+        let mut plan = SweepPlan {
             case: String::new(),
             command: asked.command.into(),
             cases: vec![],
             sets: asked.sets.clone(),
-            axes: Plan::axes_of(&designs, &specs),
+            axes: SweepPlan::axes_of(&designs, &specs),
             table,
             design: draw,
             seed: asked.seed,

@@ -8,27 +8,27 @@ mod wet;
 
 use std::ops::Range;
 
-use super::{FluidMesh, Mesh};
+use super::{BeamMesh, FluidMesh};
 use crate::case::schema::Effect;
 use crate::case::wiring::bladder_label;
 use crate::model::Model;
 
-pub use solid::{Line, Relaxation, Turning};
-pub use wet::{Coupling, Network};
+pub use solid::{LineLayout, Relaxation, Turning};
+pub use wet::{CouplingUnknowns, NetworkUnknowns};
 
 /// Blocks of unknowns, in this order, and properties of each unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Transverse (`u1`) and axial (`u3`) motion of the beam.
-    pub lines: [Line; 2],
+    pub lines: [LineLayout; 2],
     /// Rotation of sections that shear.
     pub turning: Turning,
     /// Relaxed strains of the solid.
     pub relaxation: Relaxation,
     /// Coupling variables of beam and bladders.
-    pub coupling: Coupling,
+    pub coupling: CouplingUnknowns,
     /// Bladders and their network.
-    pub network: Network,
+    pub network: NetworkUnknowns,
     /// Number of unknowns.
     pub len: usize,
     /// True if the solid has inertia.
@@ -63,15 +63,17 @@ enum Name {
 
 impl Layout {
     /// Creates the unknowns of a model on a mesh.
-    pub fn new(model: &Model, mesh: &Mesh, fluid: Option<&FluidMesh>) -> Self {
+    pub fn new(model: &Model, mesh: &BeamMesh, fluid: Option<&FluidMesh>) -> Self {
         let mut build = Builder::default();
-        let lines = Line::both(model, mesh, &mut build);
+        let lines = LineLayout::both(model, mesh, &mut build);
         let turning = Turning::new(model, mesh, &mut build);
         let relaxation = Relaxation::new(model, mesh, &mut build);
         let wet = model.wet.as_ref().zip(fluid);
-        let coupling = wet.map_or_else(Default::default, |(wet, _)| Coupling::new(model, wet, mesh, &mut build));
+        let coupling = wet.map_or_else(Default::default, |(wet, _)| {
+            CouplingUnknowns::new(model, wet, mesh, &mut build)
+        });
         let network = wet.map_or_else(Default::default, |(wet, fluid)| {
-            Network::new(model, wet, fluid, &mut build)
+            NetworkUnknowns::new(model, wet, fluid, &mut build)
         });
         Self {
             lines,
@@ -96,7 +98,7 @@ impl Layout {
 
     /// Every displacement or section angle, with its velocity if that is an unknown.
     pub fn moved(&self) -> impl Iterator<Item = (usize, Option<usize>)> + '_ {
-        let nodes = self.lines.iter().flat_map(Line::unknowns).map(|(_, u, v)| (u, v));
+        let nodes = self.lines.iter().flat_map(LineLayout::unknowns).map(|(_, u, v)| (u, v));
         nodes.chain(self.turning.unknowns())
     }
 

@@ -5,12 +5,12 @@ use std::ops::Range;
 use super::{Builder, Name};
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::discrete::Mesh;
+use crate::discrete::BeamMesh;
 use crate::model::{Kinematics, Model};
 
 /// Transverse or axial motion of the nodes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct LineLayout {
     /// Nodes with unknown displacement.
     pub free: Range<usize>,
     /// Displacements of these nodes.
@@ -39,7 +39,7 @@ pub struct Relaxation {
     pub shear: Range<usize>,
 }
 
-impl Line {
+impl LineLayout {
     /// Every free node with its displacement and, if it is an unknown, its velocity.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, usize, Option<usize>)> {
         let velocity = self.v.as_ref().map(|v| v.start);
@@ -56,9 +56,9 @@ impl Line {
     }
 }
 
-impl Line {
+impl LineLayout {
     /// Transverse and axial motion; displacements of both precede the velocities.
-    pub(super) fn both(model: &Model, mesh: &Mesh, build: &mut Builder) -> [Self; 2] {
+    pub(super) fn both(model: &Model, mesh: &BeamMesh, build: &mut Builder) -> [Self; 2] {
         let driven = |motion: &Translation| usize::from(matches!(motion, Translation::Displacement(_)));
         let [root, tip] = &model.ends;
         let free = |root: &Translation, tip: &Translation| driven(root)..mesh.nodes - driven(tip);
@@ -110,7 +110,7 @@ impl Turning {
         self.rate.as_ref().unwrap_or(&self.angle).clone()
     }
 
-    pub(super) fn new(model: &Model, mesh: &Mesh, build: &mut Builder) -> Self {
+    pub(super) fn new(model: &Model, mesh: &BeamMesh, build: &mut Builder) -> Self {
         if !model.effects.has(Effect::Shear) {
             return Self::default();
         }
@@ -143,7 +143,7 @@ impl Turning {
 }
 
 impl Relaxation {
-    pub(super) fn new(model: &Model, mesh: &Mesh, build: &mut Builder) -> Self {
+    pub(super) fn new(model: &Model, mesh: &BeamMesh, build: &mut Builder) -> Self {
         let (s, section) = (&model.scales, &model.section);
         let mut of = |there: bool, what: &'static str, places: usize, scale: f64| {
             build.block(|build| {

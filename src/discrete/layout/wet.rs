@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::{Builder, Name};
-use crate::discrete::fluid_mesh::{MeshFlow, MeshLink, Place};
-use crate::discrete::{FluidMesh, Mesh, let_in};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshFlow, MeshLink};
+use crate::discrete::{BeamMesh, FluidMesh, let_in};
 use crate::model::{LumpedKind, Model, Wet};
 
 /// Scale of an injected volume relative to its size: it is one of many unknowns in the error test, and all work follows from it.
@@ -12,7 +12,7 @@ const CLOSELY: f64 = 0.1;
 
 /// Coupling variables of segments and bladders.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Coupling {
+pub struct CouplingUnknowns {
     /// Mean moments `Mbar_j`.
     pub mean_moment: Range<usize>,
     /// Mean forces `Nbar_j`.
@@ -23,7 +23,7 @@ pub struct Coupling {
 
 /// Unknowns of the fluid.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Network {
+pub struct NetworkUnknowns {
     /// Stored areas of cells.
     pub area: Range<usize>,
     /// Pressures of junctions, or volumes of junctions with an accumulator.
@@ -42,8 +42,8 @@ pub struct Network {
     pub let_in: Vec<(usize, usize)>,
 }
 
-impl Coupling {
-    pub(super) fn new(model: &Model, wet: &Wet, mesh: &Mesh, build: &mut Builder) -> Self {
+impl CouplingUnknowns {
+    pub(super) fn new(model: &Model, wet: &Wet, mesh: &BeamMesh, build: &mut Builder) -> Self {
         let segments = |takes: bool| if takes { mesh.segments } else { 0 };
         Self {
             mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
@@ -58,7 +58,7 @@ impl Coupling {
     }
 }
 
-impl Network {
+impl NetworkUnknowns {
     pub(super) fn new(model: &Model, wet: &Wet, fluid: &FluidMesh, build: &mut Builder) -> Self {
         let s = &model.scales;
         let stored = wet.compliance() * s.pressure;
@@ -93,7 +93,7 @@ impl Network {
         });
         let tubes = wet.network.tube_numbers();
         let name = |link: &MeshLink, what: &'static str| match (link.number, link.to) {
-            (None, Place::Cell(to)) => Name::Face(what, to / fluid.cells_per_bladder, to % fluid.cells_per_bladder),
+            (None, LinkEnd::Cell(to)) => Name::Face(what, to / fluid.cells_per_bladder, to % fluid.cells_per_bladder),
             (number, _) => Name::Flow(what, number.map_or(0, |number| tubes[number])),
         };
         let moved = |link: &MeshLink| (stored * wet.bladder_length * s.frequency).min(s.pressure / link.in_series());

@@ -4,14 +4,14 @@ use std::ops::Range;
 
 use super::{ENERGY_RATES, EnergyRate, Rates, add, add_all, compressed, tubes};
 use crate::case::schema::Effect;
-use crate::discrete::fluid_mesh::{MeshBridge, Place};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
 use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, small};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace, let_in};
 use crate::model::bladder::{kink_curvature, kink_slope};
-use crate::model::network::{LinkKind, Network};
-use crate::model::{AreaLaw, Coupling, LumpedKind, LumpedNetwork, Wet};
+use crate::model::network::{LinkKind, ResolvedNetwork};
+use crate::model::{AreaLaw, CouplingLaw, LumpedKind, LumpedNetwork, Wet};
 
 /// Computes quantities needed only for balances: means, pressure rates of lumped networks, and area rates of their
 /// bladders.
@@ -103,7 +103,7 @@ pub fn rates<'a>(
         let ratio = wet.length_ratio(system.model.length);
         for j in 0..wet.per_row {
             let s = SegmentRates::new(system, wet, w, j);
-            let reciprocal = Coupling::Reciprocal { length_ratio: ratio };
+            let reciprocal = CouplingLaw::Reciprocal { length_ratio: ratio };
             let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.strains);
             let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
@@ -155,18 +155,18 @@ impl SegmentRates {
     }
 
     /// Rates of `lambda_p` and `alpha_p` for a coupling.
-    fn strain_rates(&self, coupling: &Coupling, law: &AreaLaw) -> (f64, f64) {
+    fn strain_rates(&self, coupling: &CouplingLaw, law: &AreaLaw) -> (f64, f64) {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
         match *coupling {
-            Coupling::Published {
+            CouplingLaw::Published {
                 stretch_per_pressure,
                 curvature_per_pressure,
             } => (
                 stretch_per_pressure * (pu_t + pd_t),
                 curvature_per_pressure * (pu_t - pd_t),
             ),
-            Coupling::Reciprocal { length_ratio } => {
+            CouplingLaw::Reciprocal { length_ratio } => {
                 let force_kink = kink_curvature(self.force, law.force_width) * self.force_rate;
                 let moment_kink = kink_curvature(self.moment, law.moment_width) * self.moment_rate;
                 let stretch =
@@ -194,7 +194,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         let lost = compressed::lost_between(wet, w, fluid.conductance, face);
         add(out, EnergyRate::Bladders, lost);
     }
-    let component = |place: Place| component(network, fluid, place);
+    let component = |place: LinkEnd| component(network, fluid, place);
     let w = &*w;
     let count = network.open.len();
     // `noise` is the reference flow of the law's relative error: `g |p|` of a pressure port.
@@ -211,11 +211,11 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         add(out, EnergyRate::Ports, power);
         leave(lumped.component, [outward, outward, 0.0], out);
     }
-    let cross = |from: Place, to: Place, [q, by_law, noise]: [f64; 3], out: &mut [f64]| {
+    let cross = |from: LinkEnd, to: LinkEnd, [q, by_law, noise]: [f64; 3], out: &mut [f64]| {
         for (place, sign) in [(from, 1.0), (to, -1.0)] {
             let outward = sign * q;
             match (place, component(place)) {
-                (Place::Port(p), _) => add(out, EnergyRate::Ports, wet.enthalpy(now.port_pressure[p]) * outward),
+                (LinkEnd::Port(p), _) => add(out, EnergyRate::Ports, wet.enthalpy(now.port_pressure[p]) * outward),
                 (_, Some(c)) if component(from) != component(to) => leave(c, [outward, sign * by_law, noise], out),
                 _ => {}
             }
@@ -335,11 +335,11 @@ pub(super) fn beyond_stored(w: &Workspace<f64>, conductance: f64, components: [O
 }
 
 /// Component of a place; none for a port.
-pub(super) fn component(network: &Network, fluid: &FluidMesh, place: Place) -> Option<usize> {
+pub(super) fn component(network: &ResolvedNetwork, fluid: &FluidMesh, place: LinkEnd) -> Option<usize> {
     match place {
-        Place::Cell(c) => Some(network.component_of_bladder[c / fluid.cells_per_bladder]),
-        Place::Junction(j) => Some(network.component_of_junction[fluid.junctions[j]]),
-        Place::Port(_) => None,
+        LinkEnd::Cell(c) => Some(network.component_of_bladder[c / fluid.cells_per_bladder]),
+        LinkEnd::Junction(j) => Some(network.component_of_junction[fluid.junctions[j]]),
+        LinkEnd::Port(_) => None,
     }
 }
 

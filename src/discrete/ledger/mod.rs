@@ -19,7 +19,7 @@ pub use solid::reaction;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{State, System, TimeData, Workspace, readings, residual, touching};
+use super::{CompleteState, System, TimeData, Workspace, readings, residual, touching};
 
 /// Rates that are integrated during a run, for the balances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl EnergyRate {
 
 /// Stored energies [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energies {
+pub struct StoredEnergies {
     /// `Σ h_i m |v_i|²/2`.
     pub kinetic: f64,
     /// Rotary energy of the sections.
@@ -123,7 +123,7 @@ pub struct Energies {
     pub around: f64,
 }
 
-impl Energies {
+impl StoredEnergies {
     /// Total energy.
     pub fn total(&self) -> f64 {
         self.kinetic
@@ -157,13 +157,13 @@ pub struct Invariants {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnergyBalance {
     /// Energy stored now.
-    pub stored: Energies,
+    pub stored: StoredEnergies,
     /// Residual [J].
     pub residual: f64,
 }
 
 /// Computes the present energy minus that at the start minus all work and losses (`integrals` of [`ENERGY_RATES`]).
-pub fn balance(stored: Energies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
+pub fn balance(stored: StoredEnergies, at_start: f64, integrals: &[f64]) -> EnergyBalance {
     let passed: f64 = ENERGY_RATES
         .iter()
         .map(|f| f.energy_sign() * integrals[*f as usize])
@@ -215,16 +215,16 @@ pub fn flows(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
 
 /// Completes a workspace with quantities that balances and samples need, but no equation: rates of strain, means, and
 /// axial motion without unknowns. The workspace must contain [`residual::evaluate`] of the same state.
-pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Workspace<f64>) -> State<'w> {
+pub fn complete<'w>(system: &System, now: &TimeData, yp: &[f64], w: &'w mut Workspace<f64>) -> CompleteState<'w> {
     add_rates(system, now, yp, w);
     readings::read(system, now, w);
-    State(w)
+    CompleteState(w)
 }
 
 /// Completes a workspace directly after [`flows`]: only output values are missing.
-pub fn complete_after_flows<'w>(system: &System, now: &TimeData, w: &'w mut Workspace<f64>) -> State<'w> {
+pub fn complete_after_flows<'w>(system: &System, now: &TimeData, w: &'w mut Workspace<f64>) -> CompleteState<'w> {
     readings::read(system, now, w);
-    State(w)
+    CompleteState(w)
 }
 
 /// Adds the quantities for balances: everything in [`complete`] except output values.
@@ -237,7 +237,7 @@ fn add_rates(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f64>
 }
 
 /// Stored energies of a state.
-pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
+pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEnergies {
     let mut e = solid::energies(system, now, &w);
     e.bladders = stored::energy(system, &w);
     let [walls, held] = stored::in_vessels(system, &w);
@@ -259,7 +259,7 @@ pub fn energies(system: &System, now: &TimeData, w: State) -> Energies {
 }
 
 /// Conserved quantities of a state.
-pub fn invariants(system: &System, now: &TimeData, w: State) -> Invariants {
+pub fn invariants(system: &System, now: &TimeData, w: CompleteState) -> Invariants {
     let (momentum, angular_momentum) = solid::momenta(system, now, &w);
     Invariants {
         momentum: [momentum.x, momentum.z],

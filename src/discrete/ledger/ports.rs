@@ -2,7 +2,7 @@
 
 use super::fluid::{beyond_stored, component, stored_rate};
 use super::{ENERGY_RATES, rate_count};
-use crate::discrete::fluid_mesh::{MeshBridge, Place};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
 use crate::discrete::residual::fluid::{pressure_at, through_bridge};
 use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::model::network::Feed;
@@ -32,9 +32,9 @@ pub fn flows(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut [f64
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
-    let mut across = |from: Place, to: Place, q: f64| {
+    let mut across = |from: LinkEnd, to: LinkEnd, q: f64| {
         for (place, sign) in [(from, 1.0), (to, -1.0)] {
-            if let Place::Port(port) = place {
+            if let LinkEnd::Port(port) = place {
                 out[port] += sign * q;
             }
         }

@@ -1,7 +1,7 @@
 //! Reactions of driven ends by two methods, whose difference is a mesh error.
 
 use crate::case::schema::Effect;
-use crate::discrete::{Attached, Body, State, System, TimeData};
+use crate::discrete::{Attached, Body, CompleteState, System, TimeData};
 use crate::model::Kinematics;
 
 /// Sums of squares over driven ends and directions: of the reactions, and of the differences between both methods [N^2]. The first sum
@@ -9,7 +9,7 @@ use crate::model::Kinematics;
 ///
 /// The first method is the momentum balance of the end's half cell, which satisfies the balance of momentum on every mesh. The second
 /// method is the section force at the end, extrapolated from the two nearest cells.
-pub fn compared(system: &System, now: &TimeData, w: State) -> [f64; 2] {
+pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let mut squares = [0.0; 2];
     // an attachment between the two cells would let the section force jump

@@ -1,6 +1,6 @@
 //! Contributions of the beam to the balances.
 
-use super::{Energies, EnergyRate, Rates, add};
+use super::{EnergyRate, Rates, StoredEnergies, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
@@ -232,10 +232,10 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 }
 
 /// Kinetic and elastic energies; the energy of shear is included in that of bending.
-pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> Energies {
+pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEnergies {
     let (mesh, section) = (&system.mesh, &system.model.section);
     let sheared = system.model.effects.has(Effect::Shear);
-    let mut e = Energies::default();
+    let mut e = StoredEnergies::default();
     for i in 0..mesh.nodes {
         let length = mesh.node_length(i);
         if system.layout.inertia {

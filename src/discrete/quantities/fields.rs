@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use super::observables::Role;
+use super::observables::QuantityRole;
 use crate::case::wiring::bladder_label;
 use crate::discrete::{System, Workspace};
 use crate::model::mapping::NetworkCoordinate;
 
 /// Fixed arrays along a line: coordinates and indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
+pub enum FieldAxis {
     /// Nodes of the beam.
     Nodes,
     /// Cells of the beam.
@@ -24,7 +24,7 @@ pub enum Axis {
 
 /// A quantity at every place along a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Field {
+pub enum BeamField {
     /// Transverse displacement.
     U1,
     /// Axial displacement.
@@ -51,13 +51,13 @@ pub enum Field {
 type Entry = (
     &'static str,
     &'static str,
-    Axis,
-    Role,
+    FieldAxis,
+    QuantityRole,
     &'static str,
     for<'w> fn(&'w Workspace<f64>) -> Cow<'w, [f64]>,
 );
 
-impl Field {
+impl BeamField {
     /// All fields, in the order in which they are recorded.
     pub const ALL: [Self; 10] = [
         Self::U1,
@@ -74,8 +74,8 @@ impl Field {
 
     #[rustfmt::skip]
     fn entry(self) -> Entry {
-        use Axis::{Cells, Network, Nodes};
-        use Role::{Recorded, Studied};
+        use FieldAxis::{Cells, Network, Nodes};
+        use QuantityRole::{Recorded, Studied};
         match self {
             Self::U1 => ("u1_m", "m", Nodes, Studied, "transverse displacement", |w| w.motion.u.iter().map(|u| u.x).collect()),
             Self::U3 => ("u3_m", "m", Nodes, Studied, "axial displacement", |w| w.motion.u.iter().map(|u| u.z).collect()),
@@ -101,12 +101,12 @@ impl Field {
     }
 
     /// Line along which the field is defined.
-    pub fn axis(self) -> Axis {
+    pub fn axis(self) -> FieldAxis {
         self.entry().2
     }
 
     /// Role of the field in outputs.
-    pub fn role(self) -> Role {
+    pub fn role(self) -> QuantityRole {
         self.entry().3
     }
 
@@ -138,22 +138,24 @@ impl Field {
     pub fn of(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
         let shears = !system.layout.turning.angle.is_empty();
-        Self::ALL
-            .into_iter()
-            .filter(move |field| (wet || field.axis() != Axis::Network) && (shears || *field != Self::SectionAngle))
+        Self::ALL.into_iter().filter(move |field| {
+            (wet || field.axis() != FieldAxis::Network) && (shears || *field != Self::SectionAngle)
+        })
     }
 
     /// Number of values in a system.
     pub fn len(self, system: &System) -> usize {
         match self.axis() {
-            Axis::Nodes => system.mesh.nodes,
-            Axis::Cells => system.mesh.cells,
-            Axis::Network | Axis::Bladder | Axis::Array => system.fluid.as_ref().map_or(0, |fluid| fluid.cells),
+            FieldAxis::Nodes => system.mesh.nodes,
+            FieldAxis::Cells => system.mesh.cells,
+            FieldAxis::Network | FieldAxis::Bladder | FieldAxis::Array => {
+                system.fluid.as_ref().map_or(0, |fluid| fluid.cells)
+            }
         }
     }
 }
 
-impl Axis {
+impl FieldAxis {
     const ALL: [Self; 5] = [Self::Nodes, Self::Cells, Self::Network, Self::Bladder, Self::Array];
 
     fn entry(self) -> [&'static str; 3] {

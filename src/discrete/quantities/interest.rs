@@ -9,7 +9,7 @@ use crate::discrete::glance::Watched;
 
 /// Source of a quantity of interest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum InterestSource {
     /// Oscillating values, also between output times; of two, the one with the larger magnitude.
     Motion(&'static [Watched]),
     /// Sum of the energies of one group.
@@ -31,7 +31,7 @@ struct Entry {
     name: &'static str,
     unit: &'static str,
     words: &'static str,
-    source: Source,
+    source: InterestSource,
     columns: &'static [Observable],
     when: When,
 }
@@ -59,17 +59,17 @@ macro_rules! interest {
 
 // name [unit], words, condition, source, columns of the history from which it can also be computed
 interest! {
-    TipU1: "tip_u1_m" ["m"], "tip deflection", Always, Source::Motion(&[Watched::Tip1]), [Observable::TipU1];
-    TipU3: "tip_u3_m" ["m"], "axial tip displacement", Always, Source::Motion(&[Watched::Tip3]), [Observable::TipU3];
-    TipAngle: "tip_angle_rad" ["rad"], "tip angle", Always, Source::Motion(&[Watched::Angle]), [Observable::TipAngle];
-    MidspanU1: "midspan_u1_m" ["m"], "deflection in the middle", Always, Source::Motion(&[Watched::Middle1]), [];
-    LargestU1: "largest_u1_m" ["m"], "largest deflection", Always, Source::Motion(&[Watched::Largest1]), [];
-    LargestU3: "largest_u3_m" ["m"], "largest axial displacement", Always, Source::Motion(&[Watched::Largest3]), [];
-    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure in size, above or below that around", Wet, Source::Motion(&[Watched::High, Watched::Low]),
+    TipU1: "tip_u1_m" ["m"], "tip deflection", Always, InterestSource::Motion(&[Watched::Tip1]), [Observable::TipU1];
+    TipU3: "tip_u3_m" ["m"], "axial tip displacement", Always, InterestSource::Motion(&[Watched::Tip3]), [Observable::TipU3];
+    TipAngle: "tip_angle_rad" ["rad"], "tip angle", Always, InterestSource::Motion(&[Watched::Angle]), [Observable::TipAngle];
+    MidspanU1: "midspan_u1_m" ["m"], "deflection in the middle", Always, InterestSource::Motion(&[Watched::Middle1]), [];
+    LargestU1: "largest_u1_m" ["m"], "largest deflection", Always, InterestSource::Motion(&[Watched::Largest1]), [];
+    LargestU3: "largest_u3_m" ["m"], "largest axial displacement", Always, InterestSource::Motion(&[Watched::Largest3]), [];
+    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure in size, above or below that around", Wet, InterestSource::Motion(&[Watched::High, Watched::Low]),
         [Observable::MaxPressure, Observable::MinPressure];
-    InputEnergy: "input_energy_j" ["J"], "energy put in", Always, Source::Energy(Group::PutIn), [];
-    HarvestedEnergy: "harvested_energy_j" ["J"], "energy harvested", Turbines, Source::Energy(Group::Harvested), [];
-    Efficiency: "efficiency" ["1"], "efficiency", Turbines, Source::Efficiency, [];
+    InputEnergy: "input_energy_j" ["J"], "energy put in", Always, InterestSource::Energy(Group::PutIn), [];
+    HarvestedEnergy: "harvested_energy_j" ["J"], "energy harvested", Turbines, InterestSource::Energy(Group::Harvested), [];
+    Efficiency: "efficiency" ["1"], "efficiency", Turbines, InterestSource::Efficiency, [];
 }
 
 impl Interest {
@@ -89,7 +89,7 @@ impl Interest {
     }
 
     /// Source of the quantity.
-    pub fn source(self) -> Source {
+    pub fn source(self) -> InterestSource {
         self.entry().source
     }
 

@@ -1,12 +1,12 @@
 //! Evaluation of quantities of a state.
 
-use crate::discrete::fluid_mesh::{MeshLink, Place};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshLink};
 use crate::discrete::glance::Moving;
-use crate::discrete::ledger::{self, Energies};
+use crate::discrete::ledger::{self, StoredEnergies};
 use crate::discrete::residual::fluid::pressure_at;
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::turns::{nearest, tip_angle};
-use crate::discrete::{State, System, TimeData, Workspace};
+use crate::discrete::{CompleteState, System, TimeData, Workspace};
 use crate::model::network::LinkKind;
 
 /// Positions of the largest and smallest values of a state, and its slope angle at the tip; kept fixed for derivatives.
@@ -43,16 +43,16 @@ pub struct Look<'a> {
     /// Time data of the state.
     pub now: &'a TimeData,
     /// The state.
-    pub w: State<'a>,
+    pub w: CompleteState<'a>,
     /// Stored energies.
-    pub stored: Energies,
+    pub stored: StoredEnergies,
     /// Positions at which extreme values are read.
     pub at: Extremes,
 }
 
 impl<'a> Look<'a> {
     /// Creates the evaluation of a state with these energies, at its own extremes.
-    pub fn new(system: &'a System, now: &'a TimeData, w: State<'a>, stored: Energies) -> Self {
+    pub fn new(system: &'a System, now: &'a TimeData, w: CompleteState<'a>, stored: StoredEnergies) -> Self {
         let at = Extremes::of(system, now, &w);
         Self {
             system,
@@ -165,10 +165,10 @@ fn largest_in_tubes(
     });
     let (value, factor, link, g, number) = tubes.reduce(|a, b| if b.0.abs() > a.0.abs() { b } else { a })?;
     let density = |p: f64| wet.compression.as_ref().map_or(1.0, |c| c.density(p).0);
-    let rate = |place: Place| match place {
-        Place::Cell(cell) => density(w.fluid.pressure[cell]) * ledger::pressure_rate(wet, fluid, w, cell),
-        Place::Port(port) => density(now.port_pressure[port]) * now.port_pressure_rate[port],
-        Place::Junction(_) => 0.0,
+    let rate = |place: LinkEnd| match place {
+        LinkEnd::Cell(cell) => density(w.fluid.pressure[cell]) * ledger::pressure_rate(wet, fluid, w, cell),
+        LinkEnd::Port(port) => density(now.port_pressure[port]) * now.port_pressure_rate[port],
+        LinkEnd::Junction(_) => 0.0,
     };
     let rate = match link.flow.filter(|flow| flow.law.inertance > 0.0) {
         Some(flow) => w.fluid.moving_rate[flow.number],

@@ -23,9 +23,9 @@ mod reactions;
 pub mod row;
 pub mod stations;
 
-pub use fields::{Axis, Field};
-pub use interest::{Interest, Source};
+pub use fields::{BeamField, FieldAxis};
+pub use interest::{Interest, InterestSource};
 pub use look::{Extremes, Look};
-pub use observables::{Group, Observable, Read, Role};
-pub use probes::Probe;
-pub use row::Row;
+pub use observables::{Group, Observable, QuantityRole, Read};
+pub use probes::MeshProbe;
+pub use row::ObservableRow;

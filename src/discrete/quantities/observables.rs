@@ -6,7 +6,7 @@ use super::look::Look;
 use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::ledger::{EnergyRate, passed};
-use crate::model::effects::Cause;
+use crate::model::effects::DecisionCause;
 
 /// Source of a quantity.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +69,7 @@ impl Group {
 
 /// Role of a quantity; each includes the previous ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
+pub enum QuantityRole {
     /// Recorded only.
     Recorded,
     /// Also used by studies to measure errors.
@@ -91,7 +91,7 @@ fn attached(system: &System) -> bool {
 }
 
 fn inert(system: &System) -> bool {
-    let unasked = || system.model.effects.decision(Effect::TubeInertia).cause == Cause::Unasked;
+    let unasked = || system.model.effects.decision(Effect::TubeInertia).cause == DecisionCause::Unasked;
     system.fluid.is_some() && !unasked()
 }
 
@@ -157,7 +157,7 @@ struct Entry {
     words: &'static str,
     about: &'static str,
     group: Group,
-    role: Role,
+    role: QuantityRole,
     present: fn(&System) -> bool,
     read: Read,
 }
@@ -182,7 +182,7 @@ macro_rules! observables {
 
         static TABLE: &[Entry] = &[$(Entry {
             name: $name, unit: $unit, label: $label, words: $words, about: $about,
-            group: Group::$group, role: Role::$role, present: $present, read: $read,
+            group: Group::$group, role: QuantityRole::$role, present: $present, read: $read,
         }),*];
     };
 }
@@ -291,7 +291,7 @@ impl Observable {
     }
 
     /// Role of the quantity.
-    pub fn role(self) -> Role {
+    pub fn role(self) -> QuantityRole {
         self.entry().role
     }
 

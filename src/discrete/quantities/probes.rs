@@ -4,14 +4,14 @@ use super::Observable;
 use super::look::Look;
 use crate::case::schema::{Case, Probe as Written};
 use crate::discrete::turns::{first_angle, tip_angle};
-use crate::discrete::{Mesh, System};
+use crate::discrete::{BeamMesh, System};
 
 /// A place of the beam, on a mesh.
 ///
 /// Values of nodes and of cells are interpolated linearly, those of cells extrapolated to the ends: the error is second order in the cell
 /// length.
 #[derive(Clone, Debug)]
-pub struct Probe {
+pub struct MeshProbe {
     /// First part of its column names.
     pub name: String,
     /// Place `θ/l_s`.
@@ -30,14 +30,20 @@ pub struct Probe {
 }
 
 /// One row of the table: last part of the column name, unit, description, need of bladders, evaluation.
-type Entry = (&'static str, &'static str, &'static str, bool, fn(&Probe, &Look) -> f64);
+type Entry = (
+    &'static str,
+    &'static str,
+    &'static str,
+    bool,
+    fn(&MeshProbe, &Look) -> f64,
+);
 
 /// Quantities recorded at each probe.
 #[rustfmt::skip]
 const TABLE: [Entry; 13] = [
     ("u1", "m", "transverse displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].x)),
     ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
-    ("angle", "rad", "slope angle phi, counted over full turns", false, Probe::angle),
+    ("angle", "rad", "slope angle phi, counted over full turns", false, MeshProbe::angle),
     ("curvature", "1/m", "curvature", false, |p, look| { let kappa = look.w.curvature(); p.of_nodes(|i| kappa[i]) }),
     ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 1.0)),
     ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, -1.0)),
@@ -52,7 +58,7 @@ const TABLE: [Entry; 13] = [
 
 /// A column of the history: one number per output time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Column {
+pub struct HistoryColumn {
     /// Name without unit, snake case: `tip_u1`.
     pub name: String,
     /// Unit: `m`; `1` when dimensionless.
@@ -61,7 +67,7 @@ pub struct Column {
     pub about: String,
 }
 
-impl Column {
+impl HistoryColumn {
     /// Name with unit, for keys of equilibria: `tip_u1_m`. The summary of a run uses [`key`].
     pub fn key(&self) -> String {
         let unit = match self.unit {
@@ -75,7 +81,7 @@ impl Column {
     }
 }
 
-impl From<Observable> for Column {
+impl From<Observable> for HistoryColumn {
     fn from(one: Observable) -> Self {
         Self {
             name: one.name().into(),
@@ -106,8 +112,8 @@ pub fn is_stress(name: &str) -> bool {
 }
 
 /// Columns of all probes of a system, one probe after the other.
-pub fn columns(system: &System) -> impl Iterator<Item = Column> + '_ {
-    entries(system).map(|(probe, (name, unit, about, ..))| Column {
+pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> + '_ {
+    entries(system).map(|(probe, (name, unit, about, ..))| HistoryColumn {
         name: format!("{}_{name}", probe.name),
         unit,
         about: format!("{about} at {} of the length", probe.at),
@@ -119,7 +125,7 @@ pub fn values<'a>(look: &'a Look) -> impl Iterator<Item = f64> + 'a {
     entries(look.system).map(|(probe, entry)| (entry.4)(probe, look))
 }
 
-fn entries(system: &System) -> impl Iterator<Item = (&Probe, Entry)> {
+fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
     let wet = system.fluid.is_some();
     let of = move |probe| {
         TABLE
@@ -130,15 +136,15 @@ fn entries(system: &System) -> impl Iterator<Item = (&Probe, Entry)> {
     system.probes.iter().flat_map(of)
 }
 
-impl Probe {
+impl MeshProbe {
     /// Probes of a case.
-    pub fn all(case: &Case, mesh: &Mesh) -> Vec<Self> {
+    pub fn all(case: &Case, mesh: &BeamMesh) -> Vec<Self> {
         let solid = (0.5 * case.beam.height_m, case.beam.young_modulus_pa);
         let probe = |probe: &Written| Self::new(&probe.name, probe.at, solid, mesh);
         case.probes.iter().map(probe).collect()
     }
 
-    fn new(name: &str, at: f64, (half_height, young_modulus): (f64, f64), mesh: &Mesh) -> Self {
+    fn new(name: &str, at: f64, (half_height, young_modulus): (f64, f64), mesh: &BeamMesh) -> Self {
         let place = at * mesh.cells as f64;
         let node = (place as usize).min(mesh.cells - 1);
         let cell = ((place - 0.5).max(0.0) as usize).min(mesh.cells.saturating_sub(2));

@@ -1,7 +1,7 @@
 //! Reactions: forces and couples at ends with given motion, at springs and dashpots, and angles of ends that can rotate.
 
 use super::look::Look;
-use super::probes::Column;
+use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
 use crate::discrete::ledger::reaction;
@@ -49,7 +49,7 @@ fn all(system: &System) -> Vec<Told> {
 }
 
 /// Columns of the reaction quantities of a system.
-pub fn columns(system: &System) -> impl Iterator<Item = Column> {
+pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
     all(system).into_iter().map(|one| {
         let (name, unit, about) = match one {
             Told::End(k, axis) => (
@@ -83,7 +83,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = Column> {
                 ),
             ),
         };
-        Column { name, unit, about }
+        HistoryColumn { name, unit, about }
     })
 }
 

@@ -7,14 +7,14 @@ use crate::discrete::System;
 
 /// Values of observables at one instant, followed by those of ports, accumulators, walls and reactions, and those of probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct ObservableRow {
     columns: Vec<Observable>,
     /// Number of values of ports, accumulators, walls and reactions.
     stations: usize,
     values: Vec<f64>,
 }
 
-impl Row {
+impl ObservableRow {
     /// Creates a row of zeros for a system.
     pub fn of(system: &System) -> Self {
         let stations = stations::columns(system, false).len();

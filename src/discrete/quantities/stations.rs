@@ -1,19 +1,19 @@
 //! Quantities of each port, accumulator, wall and reaction, and, for states at rest, of each bladder.
 
 use super::look::Look;
-use super::probes::{Column, key};
+use super::probes::{HistoryColumn, key};
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, touching};
 
 /// Columns of all ports, accumulators, walls and reactions of a system; with `at_rest` those of a state at rest.
-pub fn columns(system: &System, at_rest: bool) -> Vec<Column> {
+pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
     let mut all = of_network(system, at_rest);
     all.extend(reactions::columns(system));
     let walls = system.model.contacts.iter().map(|wall| &wall.name);
     for (name, short) in short("contact", walls) {
-        let column = |what: &str, unit, about: &str| Column {
+        let column = |what: &str, unit, about: &str| HistoryColumn {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the wall \"{name}\""),
@@ -31,7 +31,7 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<Column> {
     all
 }
 
-fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
+fn of_network(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
     };
@@ -44,7 +44,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
         .filter_map(|one| Some(&network.accumulators[one.number?].name));
     let mut all = vec![];
     for (name, short) in short("port", names) {
-        let column = |what: &str, unit, about: &str| Column {
+        let column = |what: &str, unit, about: &str| HistoryColumn {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the port \"{name}\""),
@@ -57,7 +57,7 @@ fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
         }
     }
     for (name, short) in short("accumulator", kept) {
-        let column = |what: &str, unit, about: &str| Column {
+        let column = |what: &str, unit, about: &str| HistoryColumn {
             name: format!("{short}_{what}"),
             unit,
             about: format!("{about} the accumulator \"{name}\""),
@@ -76,10 +76,10 @@ fn of_network(system: &System, at_rest: bool) -> Vec<Column> {
 }
 
 /// Mean pressure of every bladder; only for states at rest, because runs record pressures as fields.
-fn bladders(per_row: usize) -> impl Iterator<Item = Column> {
+fn bladders(per_row: usize) -> impl Iterator<Item = HistoryColumn> {
     (0..2 * per_row).map(move |bladder| {
         let label = bladder_label(bladder, per_row);
-        Column {
+        HistoryColumn {
             name: format!("{}_pressure", begin("bladder", &label.to_string())),
             unit: "Pa",
             about: format!("mean pressure of bladder {label}"),

@@ -2,7 +2,7 @@
 
 use super::fourth::{arc, bends_its_cells, shares};
 use crate::case::schema::Effect;
-use crate::discrete::workspace::Shape;
+use crate::discrete::workspace::BeamShape;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
@@ -53,7 +53,7 @@ pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
 
 /// `(Δγ, Δλ) κ h/24` of a node.
 #[inline]
-fn change<T: Scalar>(system: &System, shape: &Shape<T>, node: usize) -> Planar<T> {
+fn change<T: Scalar>(system: &System, shape: &BeamShape<T>, node: usize) -> Planar<T> {
     let line = &shape.sections.line;
     (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.h / 24.0))
 }
@@ -122,7 +122,7 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
 
 /// Excess of the length of a cell's line over the distance of its ends, relative to it, for small rotations.
 #[inline]
-pub fn of_line<T: Scalar>(system: &System, shape: &Shape<T>, cell: usize) -> T {
+pub fn of_line<T: Scalar>(system: &System, shape: &BeamShape<T>, cell: usize) -> T {
     let mut sum = T::zero();
     for node in [cell, cell + 1] {
         let share = line_share(system.mesh.cells, cell, node);

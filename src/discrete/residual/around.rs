@@ -4,7 +4,7 @@ use super::solid::angle_rate;
 use crate::case::schema::Effect;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{Kinematics, Surroundings};
+use crate::model::{AmbientFluid, Kinematics};
 use crate::numerics::{Planar, Scalar};
 
 /// Passes the forces of the surroundings on a node of the given length to `each`, with the balance entry of their work;
@@ -105,7 +105,7 @@ fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: u
 /// ```
 fn swept<T: Scalar>(
     system: &System,
-    around: &Surroundings,
+    around: &AmbientFluid,
     now: &TimeData,
     w: &Workspace<T>,
     node: usize,

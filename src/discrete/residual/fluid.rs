@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::case::schema::Effect;
-use crate::discrete::fluid_mesh::{MeshBridge, MeshLink, MeshSource, Place};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge, MeshLink, MeshSource};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
 use crate::model::{Compression, Storage, Wet};
 use crate::numerics::Scalar;
@@ -155,11 +155,11 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// Pressure at a cell, junction or port.
 #[inline]
-pub fn pressure_at<T: Scalar>(place: Place, now: &TimeData, w: &Workspace<T>) -> T {
+pub fn pressure_at<T: Scalar>(place: LinkEnd, now: &TimeData, w: &Workspace<T>) -> T {
     match place {
-        Place::Cell(c) => w.fluid.pressure[c],
-        Place::Junction(j) => w.fluid.junction[j],
-        Place::Port(p) => T::constant(now.port_pressure[p]),
+        LinkEnd::Cell(c) => w.fluid.pressure[c],
+        LinkEnd::Junction(j) => w.fluid.junction[j],
+        LinkEnd::Port(p) => T::constant(now.port_pressure[p]),
     }
 }
 
@@ -253,7 +253,7 @@ pub fn driving<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: 
 /// Q is the volume flow at that density. Then `Q = D/R` is [E55], and `q (h_a - h_b) = Q D`: all elements between the places respond to
 /// the pressure drop D and the flow Q as with incompressible fluid, also in energy.
 #[inline]
-pub fn along<T: Scalar>(wet: &Wet, from: Place, to: Place, now: &TimeData, w: &Workspace<T>) -> (T, Option<T>) {
+pub fn along<T: Scalar>(wet: &Wet, from: LinkEnd, to: LinkEnd, now: &TimeData, w: &Workspace<T>) -> (T, Option<T>) {
     let (a, b) = (pressure_at(from, now, w), pressure_at(to, now, w));
     match &wet.compression {
         None => (a - b, None),
@@ -279,10 +279,10 @@ pub fn look_along<T: Scalar>(wet: &Wet, link: &MeshLink, now: &TimeData, w: &mut
 
 /// Potential `Ψ` at a place.
 #[inline]
-fn potential_at<T: Scalar>(compression: &Compression, place: Place, now: &TimeData, w: &Workspace<T>) -> T {
+fn potential_at<T: Scalar>(compression: &Compression, place: LinkEnd, now: &TimeData, w: &Workspace<T>) -> T {
     match place {
-        Place::Cell(c) => w.fluid.potential[c],
-        Place::Junction(_) | Place::Port(_) => compression.potential(pressure_at(place, now, w)),
+        LinkEnd::Cell(c) => w.fluid.potential[c],
+        LinkEnd::Junction(_) | LinkEnd::Port(_) => compression.potential(pressure_at(place, now, w)),
     }
 }
 
@@ -318,10 +318,10 @@ pub fn bridge_drops<T: Scalar>(d: T, turbine: T) -> (T, T) {
 }
 
 #[inline]
-fn deliver<T: Scalar>(place: Place, flow: T, w: &mut Workspace<T>) {
+fn deliver<T: Scalar>(place: LinkEnd, flow: T, w: &mut Workspace<T>) {
     match place {
-        Place::Cell(c) => w.fluid.inflow[c] += flow,
-        Place::Junction(j) => w.fluid.junction_inflow[j] += flow,
-        Place::Port(_) => {}
+        LinkEnd::Cell(c) => w.fluid.inflow[c] += flow,
+        LinkEnd::Junction(j) => w.fluid.junction_inflow[j] += flow,
+        LinkEnd::Port(_) => {}
     }
 }

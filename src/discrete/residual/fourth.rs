@@ -4,7 +4,7 @@ use super::arcs;
 use super::bending::pressure_curvature;
 use super::solid::node_stretch;
 use crate::case::schema::Effect;
-use crate::discrete::{Mesh, System, TimeData, Workspace};
+use crate::discrete::{BeamMesh, System, TimeData, Workspace};
 use crate::error::{Code, Violation};
 use crate::model::{Kinematics, Model};
 use crate::numerics::Scalar;
@@ -28,7 +28,7 @@ use crate::numerics::Scalar;
 /// pressure between segments are contained in `α_p` and `λ_p`, across which e is smooth. At an end with given moment, e follows from it.
 /// The curvature that determines the end's angle is the mean `κ_n = α_p + κ_0 + (2 M_n/EI + e_{n-1})/3`; its part of the energy is
 /// `h_n M_n (κ_n - α_p - κ_0)/2`.
-pub fn moments<T: Scalar>(mesh: &Mesh, now: &TimeData, moment: &mut [T]) {
+pub fn moments<T: Scalar>(mesh: &BeamMesh, now: &TimeData, moment: &mut [T]) {
     let last = mesh.nodes - 1;
     let [held_at_root, held_at_tip] = [0, 1].map(|end: usize| now.ends[end].slope.is_some());
     let weight = |c: usize| {
@@ -204,7 +204,7 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 }
 
 /// Error if a model does not allow fourth order.
-pub fn refusal(model: &Model, mesh: &Mesh) -> Option<Violation> {
+pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
     } else if !model.relaxation.is_empty() {

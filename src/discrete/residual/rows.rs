@@ -1,7 +1,7 @@
 //! Equations other than momentum, block by block.
 
 use super::fluid::{driving, over_bridge};
-use crate::discrete::fluid_mesh::{MeshBridge, MeshFlow, MeshLink, Place};
+use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge, MeshFlow, MeshLink};
 use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::model::LumpedKind;
 use crate::model::network::Feed;
@@ -125,7 +125,7 @@ pub fn junctions<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
         let link = &fluid.links[k];
         let Some(flow) = link.flow else { continue };
         for (place, sign) in [(link.from, -delay), (link.to, delay)] {
-            if let Place::Junction(j) = place
+            if let LinkEnd::Junction(j) = place
                 && let Some(first) = fluid.adrift[j]
             {
                 r[rows.start + first] += w.fluid.moving_rate[flow.number] * sign;

@@ -2,7 +2,7 @@
 
 use super::{fourth, sheared};
 use crate::case::schema::Effect;
-use crate::discrete::workspace::{Sections, Shape};
+use crate::discrete::workspace::{BeamShape, Sections};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
@@ -20,7 +20,7 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     let inverse = 1.0 / system.mesh.h;
     let last = system.mesh.cells;
     let shape = &mut w.shape;
-    let strain = |_, _: &mut Sections<T>, e: Planar<T>, line: &Line<T>| {
+    let strain = |_, _: &mut Sections<T>, e: Planar<T>, line: &CellLine<T>| {
         (e.x.squared() + e.z * (e.z + 2.0)) / (line.stretch + 1.0)
     };
     wide!(lines(system, &w.motion.u, shape, strain));
@@ -50,8 +50,8 @@ fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: f64, kappa: &mut [T]) {
 pub fn lines<T: Scalar>(
     system: &System,
     u: &[Planar<T>],
-    shape: &mut Shape<T>,
-    mut strain: impl FnMut(usize, &mut Sections<T>, Planar<T>, &Line<T>) -> T,
+    shape: &mut BeamShape<T>,
+    mut strain: impl FnMut(usize, &mut Sections<T>, Planar<T>, &CellLine<T>) -> T,
 ) {
     let inverse = 1.0 / system.mesh.h;
     let cells = system.mesh.cells;
@@ -61,7 +61,7 @@ pub fn lines<T: Scalar>(
     let strains = &mut shape.strain[..cells];
     for c in 0..cells {
         let e = (u[c + 1] - u[c]) * inverse;
-        let line = Line::of(Planar::new(e.x, e.z + 1.0));
+        let line = CellLine::of(Planar::new(e.x, e.z + 1.0));
         d3[c] = line.d3;
         stretch[c] = line.stretch;
         per_stretch[c] = line.per_stretch;
@@ -72,7 +72,7 @@ pub fn lines<T: Scalar>(
 
 /// Line of a cell.
 #[derive(Clone, Copy, Debug)]
-pub struct Line<T> {
+pub struct CellLine<T> {
     /// Director `d3`.
     pub d3: Planar<T>,
     /// Stretch `λ`.
@@ -83,7 +83,7 @@ pub struct Line<T> {
     pub tangent: Planar<T>,
 }
 
-impl<T: Scalar> Line<T> {
+impl<T: Scalar> CellLine<T> {
     #[inline(always)]
     fn of(d3: Planar<T>) -> Self {
         let stretch = d3.squared().sqrt();

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::discrete::layout::Line;
-use crate::discrete::let_in::{self, Share, Store};
+use crate::discrete::layout::LineLayout;
+use crate::discrete::let_in::{self, InjectedShare, Store};
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
@@ -66,7 +66,7 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
             let unknown = l.network.junction.start + one.junction;
             (w.fluid.accumulated[k], w.fluid.accumulated_rate[k]) = (y[unknown], yp[unknown]);
         }
-        for &Share { source, store, share } in &fluid.shares {
+        for &InjectedShare { source, store, share } in &fluid.shares {
             let own = &mut w.fluid;
             let (held, rate) = match store {
                 Store::Cell(c) => (&mut own.area[c], &mut own.area_rate[c]),
@@ -121,8 +121,8 @@ fn copy<T: Scalar>(target: &mut [T], source: &[T], block: &Range<usize>) {
 /// Sets the motion of nodes from the unknowns and the frames.
 fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], motion: &mut Motion<T>) {
     let l = &system.layout;
-    let moves = |line: &Line| !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]);
-    let at_rate = |line: &Line| (line.v.is_none() && moves(line)).then(|| &yp[line.u.clone()]);
+    let moves = |line: &LineLayout| !l.inertia || line.u.clone().next().is_some_and(|u| l.differential[u]);
+    let at_rate = |line: &LineLayout| (line.v.is_none() && moves(line)).then(|| &yp[line.u.clone()]);
     let lines = l.lines.each_ref();
     let fields = [
         (&mut motion.u, lines.map(|line| Some(&y[line.u.clone()]))),
@@ -154,7 +154,7 @@ fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], mot
 /// Assembles vectors from their transverse and axial components, zero where there is none, and adds the motion of the frame to all nodes,
 /// including driven ones.
 #[inline(always)]
-fn lay<T: Scalar>(own: &mut [Planar<T>], lines: &[Line; 2], from: [Option<&[T]>; 2], given: [Option<f64>; 2]) {
+fn lay<T: Scalar>(own: &mut [Planar<T>], lines: &[LineLayout; 2], from: [Option<&[T]>; 2], given: [Option<f64>; 2]) {
     let [across, along] = lines.each_ref().map(|line| &line.free);
     let shift = given.map(Option::unwrap_or_default);
     let mut both = across.start.max(along.start)..across.end.min(along.end);

@@ -16,7 +16,7 @@ use crate::case::wiring::bladder_index;
 use crate::error::Code;
 use crate::functions::profile::{Integrals, Profile};
 use crate::functions::signals::Signal;
-use crate::model::{Load, Model, Storage};
+use crate::model::{DistributedLoad, Model, Storage};
 
 use super::{System, shapes};
 use begun::Begun;
@@ -31,7 +31,7 @@ const FINEST: usize = 1024;
 
 /// Mesh error of one shape.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct MeshFinding {
     /// JSON pointer in the case; that of the first load if several act together.
     pub pointer: String,
     /// Description of the lost quantity.
@@ -65,12 +65,12 @@ impl From<(f64, &'static str)> for LeftOut {
 }
 
 /// Mesh errors of all shapes of a case, above or below [`LIMIT`].
-pub fn findings(case: &Case, system: &System) -> Vec<Finding> {
+pub fn findings(case: &Case, system: &System) -> Vec<MeshFinding> {
     of_beam_and_bladders(case, system, true)
 }
 
 /// Mesh errors at the start, and, if `later`, also those during the motion.
-fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<Finding> {
+fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<MeshFinding> {
     let (segments, cells) = (system.mesh.segments, system.mesh.cells_per_segment);
     let along = "/mesh/cells_per_segment";
     let mut all = vec![];
@@ -116,7 +116,7 @@ pub fn jumps_into_bladders(case: &Case, model: &Model) -> Vec<JumpIntoBladder> {
 }
 
 /// Mesh errors above [`LIMIT`].
-pub fn unresolved(case: &Case, system: &System) -> Vec<Finding> {
+pub fn unresolved(case: &Case, system: &System) -> Vec<MeshFinding> {
     let mut all = findings(case, system);
     all.retain(|finding| finding.left_out > LIMIT);
     all
@@ -144,8 +144,8 @@ pub fn warnings_at_rest(case: &Case, system: &System) -> Vec<String> {
     warnings_of(all)
 }
 
-fn warnings_of(findings: Vec<Finding>) -> Vec<String> {
-    let warning = |finding: Finding| {
+fn warnings_of(findings: Vec<MeshFinding>) -> Vec<String> {
+    let warning = |finding: MeshFinding| {
         let advice = match finding.wanted {
             Some(cells) => format!("Use {cells} in {}", finding.setting),
             None => format!("Even {FINEST} in {} do not resolve it", finding.setting),
@@ -161,7 +161,7 @@ fn warnings_of(findings: Vec<Finding>) -> Vec<String> {
     findings.into_iter().map(warning).collect()
 }
 
-fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl Fn(usize) -> LeftOut) -> Finding {
+fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl Fn(usize) -> LeftOut) -> MeshFinding {
     let here = left_out(cells);
     let doubled = std::iter::successors(Some(cells), |cells| Some(2 * cells));
     let wanted = if here.share > LIMIT {
@@ -172,7 +172,7 @@ fn finding(pointer: String, cells: usize, setting: &'static str, left_out: impl 
     } else {
         Some(cells)
     };
-    Finding {
+    MeshFinding {
         pointer,
         what: here.what,
         left_out: here.share,
@@ -193,7 +193,7 @@ fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
             Some(Signal::Constant(value)) => (None, *value),
             signal => (signal, 1.0),
         };
-        for load in Load::resolve(written, &model.section) {
+        for load in DistributedLoad::resolve(written, &model.section) {
             let part = Shape::new(format!("/loads/{k}"), load, constant, model);
             let known = groups
                 .iter()

@@ -9,7 +9,7 @@ use super::LeftOut;
 use crate::case::schema::{BladderEnd, Case, Effect};
 use crate::case::wiring::bladder_index;
 use crate::functions::signals::{Clock, Signal};
-use crate::model::network::{Feed, LinkKind, Node, PressurePort, Source};
+use crate::model::network::{Feed, LinkKind, NetworkNode, PrescribedFlow, PressurePort};
 use crate::model::{Model, Storage, Wet, characteristic};
 
 /// Mesh error relative to the penetration depth of a wave in a bladder, for half a cell of that depth; measured with 1 to 32 cells.
@@ -25,7 +25,7 @@ const DAMPED: f64 = 2.0;
 const BACK: f64 = 0.5;
 
 /// Effect of a port or a pump on the adjacent bladders.
-pub struct Port {
+pub struct PortEffect {
     pointer: String,
     /// Ratio of bladder length to the penetration depth of an oscillating signal; 0 without oscillation.
     depths: f64,
@@ -35,7 +35,7 @@ pub struct Port {
     lag: f64,
 }
 
-impl Port {
+impl PortEffect {
     /// JSON pointer in the case.
     pub fn pointer(&self) -> String {
         self.pointer.clone()
@@ -71,7 +71,7 @@ impl Port {
 ///
 /// If the pressure differs from that of another port, it drops by `|p - p'| r/R` along a bladder. r is the resistance of a bladder, R
 /// that of the easiest path to the other port.
-pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
+pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<PortEffect> {
     let end = case.time.end_s;
     let network = &wet.network;
     let ringing = model.effects.has(Effect::SolidInertia);
@@ -99,7 +99,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     let ports = ports
         .zip(lags)
         .enumerate()
-        .map(|(k, (((name, signal), falls), lag))| Port {
+        .map(|(k, (((name, signal), falls), lag))| PortEffect {
             pointer: format!("the port \"{name}\""),
             depths: depths(signal, k < network.ports.len() && begins_with_jump(case, signal)),
             falls,
@@ -108,7 +108,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
     let tubes = case.network.iter().flat_map(|network| network.tubes.iter().enumerate());
     let at_bladders = tubes.filter(|(_, tube)| tube.from.bladder.or(tube.to.bladder).is_some());
     let pumps = at_bladders.filter_map(|(k, tube)| {
-        Some(Port {
+        Some(PortEffect {
             pointer: format!("/network/tubes/{k}/pump"),
             depths: depths(&tube.pump.as_ref()?.pressure_pa, false),
             falls: 0.0,
@@ -122,7 +122,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
         if let LinkKind::Turbine(k) = link.kind {
             turbine_at_bladder[k] |= [link.from, link.to]
                 .iter()
-                .any(|node| matches!(node, Node::Cell { .. }));
+                .any(|node| matches!(node, NetworkNode::Cell { .. }));
         }
     }
     let turbines = network
@@ -130,7 +130,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<Port> {
         .iter()
         .zip(turbine_at_bladder)
         .filter(|(_, at_bladder)| *at_bladder);
-    let turbines = turbines.map(|(turbine, _)| Port {
+    let turbines = turbines.map(|(turbine, _)| PortEffect {
         pointer: format!("the turbine \"{}\"", turbine.name),
         // only a small part of the pressure drop is in a bladder before a turbine of much higher resistance; the factor
         // 0.5 is measured
@@ -191,7 +191,8 @@ fn at_open_ends(wet: &Wet) -> Vec<Option<(usize, BladderEnd)>> {
     let mut open = vec![None; network.ports.len()];
     for link in network.links.iter().filter(|link| link.kind == LinkKind::Opening) {
         match (link.from, link.to) {
-            (Node::Port(k), Node::Cell { bladder, end }) | (Node::Cell { bladder, end }, Node::Port(k)) => {
+            (NetworkNode::Port(k), NetworkNode::Cell { bladder, end })
+            | (NetworkNode::Cell { bladder, end }, NetworkNode::Port(k)) => {
                 open[k] = Some((bladder, end));
             }
             _ => {}
@@ -278,7 +279,7 @@ fn falls(end: f64, wet: &Wet) -> Vec<f64> {
             .fold(0.0, f64::max)
     };
     let ports = network.ports.len();
-    let of_flow = |(k, source): (usize, &Source)| {
+    let of_flow = |(k, source): (usize, &PrescribedFlow)| {
         let (ways, flow) = (&ways[ports + k], source.feed.largest_flow(end));
         let fall = |&(j, way): &(usize, f64)| match network.ports.get(j) {
             Some(port) if flow > 0.0 => flow * bladder / (flow * way + size(&port.pressure)),
@@ -305,10 +306,10 @@ fn against(a: &Feed, b: &Feed, end: f64) -> bool {
 fn ways(wet: &Wet, bladder: f64) -> Vec<Vec<(usize, f64)>> {
     let network = &wet.network;
     let (ports, bladders) = (network.ports.len(), network.component_of_bladder.len());
-    let place = |node: Node| match node {
-        Node::Port(port) => port,
-        Node::Cell { bladder, end } => ports + 2 * bladder + usize::from(end == BladderEnd::Outlet),
-        Node::Junction(junction) => ports + 2 * bladders + junction,
+    let place = |node: NetworkNode| match node {
+        NetworkNode::Port(port) => port,
+        NetworkNode::Cell { bladder, end } => ports + 2 * bladder + usize::from(end == BladderEnd::Outlet),
+        NetworkNode::Junction(junction) => ports + 2 * bladders + junction,
     };
     let size = ports + 2 * bladders + network.junctions.len();
     let within = (0..bladders).map(|b| (ports + 2 * b, ports + 2 * b + 1, bladder));

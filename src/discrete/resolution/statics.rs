@@ -3,7 +3,7 @@
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Integrals;
 use crate::model::loads::LoadKind;
-use crate::model::{Load, Model};
+use crate::model::{DistributedLoad, Model};
 
 use super::held::{self, Part};
 use super::ratio;
@@ -20,13 +20,13 @@ pub(super) struct Shape {
     /// JSON pointer of the first load.
     pub pointer: String,
     /// Loads with their factors, for a beam of length 1: forces per length times `l_s`, moments per length unchanged.
-    loads: Vec<(Load, f64)>,
+    loads: Vec<(DistributedLoad, f64)>,
     /// True for given u1, slope and u3 at root and tip.
     held: [[bool; 3]; 2],
 }
 
 impl Shape {
-    pub fn new(pointer: String, load: Load, constant: f64, model: &Model) -> Self {
+    pub fn new(pointer: String, load: DistributedLoad, constant: f64, model: &Model) -> Self {
         let length = match load.kind {
             LoadKind::ForceX | LoadKind::ForceZ => model.length,
             LoadKind::MomentX | LoadKind::MomentZ | LoadKind::RestCurvature => 1.0,

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 use crate::case::relaxation;
 use crate::case::schema::Branch;
 use crate::discrete::shapes;
-use crate::discrete::straight::{self, Mode};
+use crate::discrete::straight::{self, StraightMode};
 use crate::functions::profile::Profile;
 use crate::model::Model;
 
@@ -65,7 +65,7 @@ impl Vibrations {
             let values = given.iter_mut().enumerate();
             values.for_each(|(k, value)| *value -= removed * rigid(k as f64 / CELLS as f64));
         }
-        let one = |mode: &Mode| {
+        let one = |mode: &StraightMode| {
             let [part, square] = products(&given, |x| mode.at(x));
             let amplitude = part / (CELLS as f64 * square).sqrt();
             let amplitude = if amplitude.abs() > NOTHING * largest {

@@ -11,13 +11,13 @@ const GONE: f64 = -40.0;
 
 /// Mode `a cos βx + b sin βx + c e^{-βx} + d e^{-β(1-x)}` for length 1.
 #[derive(Clone, Copy, Debug)]
-pub struct Mode {
+pub struct StraightMode {
     /// Wave number times length.
     pub beta: f64,
     factors: [f64; 4],
 }
 
-impl Mode {
+impl StraightMode {
     /// Displacement at a fraction of the length.
     pub fn at(&self, x: f64) -> f64 {
         let [a, b, c, d] = self.factors;
@@ -52,10 +52,10 @@ pub fn rigid(ends: &[ResolvedEnd; 2], bends: bool) -> Vec<fn(f64) -> f64> {
 }
 
 /// The first `count` axial modes, for held or free ends.
-pub fn axial(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
+pub fn axial(ends: &[ResolvedEnd; 2], count: usize) -> Vec<StraightMode> {
     let held = [0, 1].map(|end| matches!(ends[end].axial, Translation::Displacement(_)));
     let shift = if held[0] == held[1] { 0.0 } else { FRAC_PI_2 };
-    let one = |k: usize| Mode {
+    let one = |k: usize| StraightMode {
         beta: k as f64 * PI - shift,
         factors: if held[0] {
             [0.0, 1.0, 0.0, 0.0]
@@ -68,7 +68,7 @@ pub fn axial(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
 
 /// The first `count` modes of an Euler-Bernoulli beam, without rigid motions. Wave numbers differ by about π, except
 /// for the first.
-pub fn bending(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
+pub fn bending(ends: &[ResolvedEnd; 2], count: usize) -> Vec<StraightMode> {
     let held = [0, 1].map(|end| held_across(&ends[end]));
     let value = |beta: f64| conditions(&held, beta).determinant();
     const FIRST: f64 = 1.0;
@@ -93,7 +93,7 @@ pub fn bending(ends: &[ResolvedEnd; 2], count: usize) -> Vec<Mode> {
             let beta = 0.5 * (low + high);
             if let Some(vectors) = conditions(&held, beta).svd(false, true).v_t {
                 let factors = std::array::from_fn(|k| vectors[(3, k)]);
-                modes.push(Mode { beta, factors });
+                modes.push(StraightMode { beta, factors });
             }
         }
         (from, before) = (to, after);

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use super::interval::{Bounded, Interval, Span};
+use super::interval::{Bounded, Interval, JetSpan};
 use crate::functions::curve::Interpolation;
 use crate::functions::jet::{Clock, Jet};
 use crate::functions::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
@@ -12,16 +12,16 @@ impl Bounded for Signal {
         self.jet(Clock { t, within })
     }
 
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         match self {
-            Self::Constant(value) => Span::at(Jet::constant(*value)),
+            Self::Constant(value) => JetSpan::at(Jet::constant(*value)),
             Self::Sine(sine) => sine.span(from, to),
             Self::Sigmoid(sigmoid) => sigmoid.span(from, to),
             Self::Ramp(ramp) => ramp.span(from, to),
             Self::Polynomial(polynomial) => polynomial.span(from, to),
             Self::Table(table) => table.span(from, to),
-            Self::Sum(terms) => Span::sum(terms.iter().map(|term| term.span(from, to))),
-            Self::Product(factors) => Span::product(factors.iter().map(|factor| factor.span(from, to))),
+            Self::Sum(terms) => JetSpan::sum(terms.iter().map(|term| term.span(from, to))),
+            Self::Product(factors) => JetSpan::product(factors.iter().map(|factor| factor.span(from, to))),
         }
     }
 
@@ -91,9 +91,9 @@ fn sines(p: f64, q: f64) -> Interval {
 }
 
 /// `amplitude sin(ω t + phase)` and its derivatives.
-pub fn wave(amplitude: f64, omega: f64, phase: f64, from: f64, to: f64) -> Span {
+pub fn wave(amplitude: f64, omega: f64, phase: f64, from: f64, to: f64) -> JetSpan {
     let mut size = amplitude;
-    Span(std::array::from_fn(|k| {
+    JetSpan(std::array::from_fn(|k| {
         let turned = phase + FRAC_PI_2 * k as f64;
         let range = sines(omega * from + turned, omega * to + turned).scaled(size);
         size *= omega;
@@ -102,13 +102,13 @@ pub fn wave(amplitude: f64, omega: f64, phase: f64, from: f64, to: f64) -> Span 
 }
 
 impl Sine {
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         let plain = |from: f64, to: f64| wave(self.amplitude, TAU * self.frequency_hz, self.phase_rad, from, to);
         if self.ramp_cycles <= 0.0 {
             return plain(from, to);
         }
         if self.frequency_hz <= 0.0 {
-            return Span::at(Jet::default());
+            return JetSpan::at(Jet::default());
         }
         let start = Ramp {
             from: 0.0,
@@ -117,7 +117,7 @@ impl Sine {
             duration_s: self.ramp_cycles / self.frequency_hz,
             shape: RampShape::Smooth,
         };
-        let mut all = Span::EMPTY;
+        let mut all = JetSpan::EMPTY;
         if from < start.duration_s {
             let to = to.min(start.duration_s);
             all = all.hull(start.span(from, to) * plain(from, to));
@@ -131,10 +131,10 @@ impl Sine {
 
 /// Hull of a function's values at both ends and at the given interior places. This is its range if the places include
 /// all extrema of its value and derivatives.
-fn hull(at: impl Fn(f64) -> Jet, from: f64, to: f64, extreme: impl IntoIterator<Item = f64>) -> Span {
-    let ends = Span::at(at(from)).hull(Span::at(at(to)));
+fn hull(at: impl Fn(f64) -> Jet, from: f64, to: f64, extreme: impl IntoIterator<Item = f64>) -> JetSpan {
+    let ends = JetSpan::at(at(from)).hull(JetSpan::at(at(to)));
     let inside = extreme.into_iter().filter(|x| from < *x && *x < to);
-    inside.fold(ends, |all, x| all.hull(Span::at(at(x))))
+    inside.fold(ends, |all, x| all.hull(JetSpan::at(at(x))))
 }
 
 /// `ln(2 + sqrt 3)`: extremum of the acceleration of a logistic step.
@@ -143,7 +143,7 @@ const SIGMOID_ACCELERATION: f64 = 1.316_957_896_924_816_6;
 const SIGMOID_JERK: f64 = 2.292_431_669_561_178;
 
 impl Sigmoid {
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         let extreme = [
             0.0,
             SIGMOID_ACCELERATION,
@@ -166,14 +166,14 @@ impl Sigmoid {
 const STEP_EXTREMES: [f64; 3] = [0.211_324_865_405_187_1, 0.5, 0.788_675_134_594_812_9];
 
 impl Ramp {
-    pub(super) fn span(&self, from: f64, to: f64) -> Span {
+    pub(super) fn span(&self, from: f64, to: f64) -> JetSpan {
         let stop = self.start_s + self.duration_s;
-        let mut all = Span::EMPTY;
+        let mut all = JetSpan::EMPTY;
         if from < self.start_s {
-            all = all.hull(Span::at(Jet::constant(self.from)));
+            all = all.hull(JetSpan::at(Jet::constant(self.from)));
         }
         if to > stop {
-            all = all.hull(Span::at(Jet::constant(self.to)));
+            all = all.hull(JetSpan::at(Jet::constant(self.to)));
         }
         if from < stop && to > self.start_s {
             let within = self.start_s + 0.5 * self.duration_s;
@@ -181,9 +181,9 @@ impl Ramp {
             let places = STEP_EXTREMES.map(|s| self.start_s + s * self.duration_s);
             all = all.hull(hull(at, from.max(self.start_s), to.min(stop), places));
         }
-        if all == Span::EMPTY {
+        if all == JetSpan::EMPTY {
             let after = from >= stop;
-            return Span::at(Jet::constant(if after { self.to } else { self.from }));
+            return JetSpan::at(Jet::constant(if after { self.to } else { self.from }));
         }
         all
     }
@@ -191,7 +191,7 @@ impl Ramp {
 
 impl Polynomial {
     /// Encloses by a Taylor series about the middle.
-    pub(super) fn span(&self, from: f64, to: f64) -> Span {
+    pub(super) fn span(&self, from: f64, to: f64) -> JetSpan {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         let mut c = self.coefficients.clone();
         let n = c.len();
@@ -200,7 +200,7 @@ impl Polynomial {
                 c[j] += middle * c[j + 1];
             }
         }
-        Span(std::array::from_fn(|k| {
+        JetSpan(std::array::from_fn(|k| {
             let mut sum = Interval::point(0.0);
             let mut power = 1.0;
             for (i, x) in c.iter().enumerate().skip(k) {
@@ -221,7 +221,7 @@ impl Polynomial {
 
 impl Table {
     /// Encloses the table in `[from, to]`; a repeated table by the parts of its period inside.
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
             return self.curve.span(from, to);
         };
@@ -238,27 +238,27 @@ impl Table {
     }
 }
 
-impl crate::functions::curve::Curve {
+impl crate::functions::curve::PiecewiseCurve {
     /// Encloses the curve in `[from, to]`, piece by piece.
-    pub(super) fn span(&self, from: f64, to: f64) -> Span {
+    pub(super) fn span(&self, from: f64, to: f64) -> JetSpan {
         let knots = self.knots();
         let (Some(&first), Some(&last)) = (knots.first(), knots.last()) else {
-            return Span::at(Jet::default());
+            return JetSpan::at(Jet::default());
         };
-        let mut all = Span::EMPTY;
+        let mut all = JetSpan::EMPTY;
         if from < first || knots.len() == 1 {
-            all = all.hull(Span::at(self.jet(first, first, Interpolation::Cubic)));
+            all = all.hull(JetSpan::at(self.jet(first, first, Interpolation::Cubic)));
         }
         if to > last {
-            all = all.hull(Span::at(self.jet(last, last, Interpolation::Cubic)));
+            all = all.hull(JetSpan::at(self.jet(last, last, Interpolation::Cubic)));
         }
         for i in self.pieces(from, to).filter(|i| knots[*i] < knots[i + 1]) {
             let at = |x: f64| self.piece(i, x);
             let (a, b) = (knots[i].max(from), knots[i + 1].min(to));
             all = all.hull(hull(at, a, b, self.extremes(i)));
         }
-        if all == Span::EMPTY {
-            return Span::at(self.jet(from, from, Interpolation::Cubic));
+        if all == JetSpan::EMPTY {
+            return JetSpan::at(self.jet(from, from, Interpolation::Cubic));
         }
         all
     }

@@ -17,7 +17,7 @@
 //! - A fast tone, `W >= 0.4 ω`, may resonate with some `w >= ω`: `g (|E| + ∫ |E'| + W ∫ |E|)`, which grows in time.
 
 use super::interval::Bounded;
-use super::tones::{Envelope, Factor, Tone};
+use super::tones::{Factor, Tone, ToneProduct};
 use super::variation::Variation;
 use crate::functions::signals::{RampShape, Signal};
 
@@ -181,7 +181,7 @@ impl Changing {
 }
 
 /// `∫ |E''''| dt` between jumps; infinite if unknown.
-fn fourth(envelope: &Envelope) -> f64 {
+fn fourth(envelope: &ToneProduct) -> f64 {
     match envelope.0.as_slice() {
         [] => 0.0,
         [Factor::Start(ramp)] => 180.0 / ramp.duration_s.powi(3),

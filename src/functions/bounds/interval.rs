@@ -101,9 +101,9 @@ impl std::ops::Mul for Interval {
 
 /// Enclosures of a value and its first three derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span(pub [Interval; 4]);
+pub struct JetSpan(pub [Interval; 4]);
 
-impl Span {
+impl JetSpan {
     /// Empty span.
     pub const EMPTY: Self = Self([Interval::EMPTY; 4]);
 
@@ -157,7 +157,7 @@ impl Span {
     }
 }
 
-impl std::ops::Add for Span {
+impl std::ops::Add for JetSpan {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
@@ -165,7 +165,7 @@ impl std::ops::Add for Span {
 }
 
 /// Leibniz rule, as for [`Jet`].
-impl std::ops::Mul for Span {
+impl std::ops::Mul for JetSpan {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         let ([a0, a1, a2, a3], [b0, b1, b2, b3]) = (self.0, other.0);
@@ -184,7 +184,7 @@ pub trait Bounded {
     fn exactly(&self, x: f64, within: f64) -> Jet;
 
     /// Encloses values and derivatives on every branch inside `[from, to]`.
-    fn span(&self, from: f64, to: f64) -> Span;
+    fn span(&self, from: f64, to: f64) -> JetSpan;
 
     /// True if [`Self::span`] is as narrow as possible.
     fn is_elementary(&self) -> bool;

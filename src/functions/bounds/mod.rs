@@ -22,9 +22,9 @@ use std::f64::consts::TAU;
 use super::signals::Signal;
 pub use excites::{Excitation, NEAR};
 use interval::Bounded;
-pub use interval::{Interval, Span};
-use search::{Search, overflows, reached, sizes};
-pub use stretches::{Stretch, merged};
+pub use interval::{Interval, JetSpan};
+use search::{IntervalSearch, overflows, reached, sizes};
+pub use stretches::{TimeStretch, merged};
 pub use variation::Variation;
 
 /// Sample points per cycle, or in a signal without cycles, for the duration of a signal.
@@ -62,7 +62,7 @@ impl Signal {
     /// Range of the values between two instants [s].
     pub fn range(&self, from: f64, to: f64) -> Interval {
         let to = self.repeats_within(from, to);
-        let (range, limited) = search::range(&Search::new(self, from, to));
+        let (range, limited) = search::range(&IntervalSearch::new(self, from, to));
         if !limited {
             return range;
         }
@@ -77,10 +77,10 @@ impl Signal {
     /// Largest magnitudes until `end` [s].
     pub fn largest(&self, end: f64) -> Sizes {
         let to = self.repeats_within(0.0, end);
-        let (mut all, limited) = sizes(&Search::new(self, 0.0, to));
+        let (mut all, limited) = sizes(&IntervalSearch::new(self, 0.0, to));
         if limited {
             let mut most = [0.0_f64; 4];
-            for (from, to) in Search::joined(self, 0.0, to).smooth() {
+            for (from, to) in IntervalSearch::joined(self, 0.0, to).smooth() {
                 let (offset, mut here) = tones::together(self, from, to);
                 here[0] += offset.abs();
                 most = std::array::from_fn(|k| most[k].max(here[k]));
@@ -100,7 +100,7 @@ impl Signal {
     /// Magnitudes that the signal reaches until `end` [s]: lower bounds of those of [`Self::largest`].
     pub fn reaches(&self, end: f64) -> Sizes {
         let to = self.repeats_within(0.0, end);
-        let [value, rate, acceleration, jerk] = reached(&Search::new(self, 0.0, to));
+        let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(self, 0.0, to));
         Sizes {
             value,
             rate,
@@ -197,7 +197,7 @@ impl Signal {
     /// probably, stays within.
     pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<Excess> {
         let to = self.repeats_within(0.0, end);
-        let search = Search::new(self, 0.0, to);
+        let search = IntervalSearch::new(self, 0.0, to);
         let beyond = |x: f64| (x - high).max(low - x);
         let found = search.largest(
             |span| beyond(span.0[0].high).max(beyond(span.0[0].low)),
@@ -213,12 +213,12 @@ impl Signal {
     /// An instant until `end` [s] at which value, rate or acceleration is or may be infinite or NaN.
     pub fn overflows(&self, end: f64) -> Option<f64> {
         let to = self.repeats_within(0.0, end);
-        overflows(&Search::new(self, 0.0, to))
+        overflows(&IntervalSearch::new(self, 0.0, to))
     }
 
     /// An instant until `end` [s] at which the magnitude is nearly the largest.
     pub fn peak(&self, end: f64) -> f64 {
         let to = self.repeats_within(0.0, end);
-        Search::new(self, 0.0, to).size(0).place
+        IntervalSearch::new(self, 0.0, to).size(0).place
     }
 }

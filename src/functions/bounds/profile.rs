@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::enclose::{crests, wave};
-use super::interval::{Bounded, Interval, Span};
-use super::search::{self, Search, overflows, sizes};
+use super::interval::{Bounded, Interval, JetSpan};
+use super::search::{self, IntervalSearch, overflows, sizes};
 use super::variation::Variation;
 use crate::functions::jet::Jet;
 use crate::functions::profile::Profile;
@@ -12,7 +12,7 @@ use crate::functions::profile::Profile;
 impl Profile {
     /// Range of the values between two places in [0, 1].
     pub fn range(&self, from: f64, to: f64) -> Interval {
-        search::range(&Search::new(self, from, to)).0
+        search::range(&IntervalSearch::new(self, from, to)).0
     }
 
     /// Largest magnitude over the whole length.
@@ -22,12 +22,12 @@ impl Profile {
 
     /// Largest magnitude of the slope with respect to `x`.
     pub fn steepness(&self) -> f64 {
-        sizes(&Search::new(self, 0.0, 1.0)).0[1]
+        sizes(&IntervalSearch::new(self, 0.0, 1.0)).0[1]
     }
 
     /// A place at which value, slope or curvature is or may be infinite or NaN.
     pub fn overflows(&self) -> Option<f64> {
-        overflows(&Search::new(self, 0.0, 1.0))
+        overflows(&IntervalSearch::new(self, 0.0, 1.0))
     }
 
     /// Upper bounds of `∫ max(profile, 0) dx` and `∫ max(-profile, 0) dx`.
@@ -60,15 +60,15 @@ impl Bounded for Profile {
         }
     }
 
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         match self {
-            Self::Constant(value) => Span::at(Jet::constant(*value)),
+            Self::Constant(value) => JetSpan::at(Jet::constant(*value)),
             Self::Cosine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad + FRAC_PI_2, from, to),
             Self::Sine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad, from, to),
             Self::Polynomial(polynomial) => polynomial.span(from, to),
             Self::Table(table) => table.curve.span(from, to),
-            Self::Sum(terms) => Span::sum(terms.iter().map(|term| term.span(from, to))),
-            Self::Product(factors) => Span::product(factors.iter().map(|factor| factor.span(from, to))),
+            Self::Sum(terms) => JetSpan::sum(terms.iter().map(|term| term.span(from, to))),
+            Self::Product(factors) => JetSpan::product(factors.iter().map(|factor| factor.span(from, to))),
         }
     }
 

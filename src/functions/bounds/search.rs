@@ -8,7 +8,7 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::interval::{Bounded, Interval, Span};
+use super::interval::{Bounded, Interval, JetSpan};
 use crate::functions::jet::Jet;
 
 /// Largest number of pieces.
@@ -16,7 +16,7 @@ const MOST_PIECES: usize = 1500;
 
 /// Result of a search.
 #[derive(Clone, Copy, Debug)]
-pub struct Found {
+pub struct ExtremumFound {
     /// Upper bound of the quantity.
     pub bound: f64,
     /// Largest value found.
@@ -28,7 +28,7 @@ pub struct Found {
 }
 
 /// A function over `[from, to]` with its interior breaks.
-pub struct Search<'f, F: Bounded + ?Sized> {
+pub struct IntervalSearch<'f, F: Bounded + ?Sized> {
     function: &'f F,
     from: f64,
     to: f64,
@@ -69,7 +69,7 @@ impl Ord for Piece {
     }
 }
 
-impl<'f, F: Bounded + ?Sized> Search<'f, F> {
+impl<'f, F: Bounded + ?Sized> IntervalSearch<'f, F> {
     /// Search over `[from, to]`, which is not empty.
     pub fn new(function: &'f F, from: f64, to: f64) -> Self {
         let mut breaks = vec![];
@@ -109,11 +109,11 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
     /// `enough(found, bound, pieces)` is true.
     pub fn largest(
         &self,
-        most: impl Fn(&Span) -> f64,
+        most: impl Fn(&JetSpan) -> f64,
         value: impl Fn(&Jet) -> f64,
         enough: impl Fn(f64, f64, usize) -> bool,
-    ) -> Found {
-        let mut found = Found {
+    ) -> ExtremumFound {
+        let mut found = ExtremumFound {
             bound: f64::INFINITY,
             reached: f64::NEG_INFINITY,
             place: self.from,
@@ -152,7 +152,7 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
     }
 
     /// Largest magnitude of value (0), rate (1), acceleration (2) or jerk (3).
-    pub fn size(&self, k: usize) -> Found {
+    pub fn size(&self, k: usize) -> ExtremumFound {
         self.largest(
             |span| span.0[k].size(),
             |jet| [jet.value, jet.rate, jet.acceleration, jet.jerk][k].abs(),
@@ -165,9 +165,9 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
         from: f64,
         to: f64,
         inside: (usize, usize),
-        most: &impl Fn(&Span) -> f64,
+        most: &impl Fn(&JetSpan) -> f64,
         value: &impl Fn(&Jet) -> f64,
-        found: &mut Found,
+        found: &mut ExtremumFound,
     ) -> Piece {
         let f = self.function;
         let mut seen = |t: f64, jet: &Jet| {
@@ -202,7 +202,7 @@ impl<'f, F: Bounded + ?Sized> Search<'f, F> {
 }
 
 /// Span of a piece without breaks, with the function at its ends and middle.
-pub fn span_with_jets<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, [Jet; 3]) {
+pub fn span_with_jets<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (JetSpan, [Jet; 3]) {
     let middle = 0.5 * (from + to);
     let jets = [from, middle, to].map(|t| f.exactly(t, middle));
     let span = f.span(from, to);
@@ -213,7 +213,7 @@ pub fn span_with_jets<F: Bounded + ?Sized>(f: &F, from: f64, to: f64) -> (Span, 
 }
 
 /// Range of the value and a flag for a limited search. Each end is at most [`slack`] of the size beyond the true one.
-pub fn range<F: Bounded + ?Sized>(search: &Search<F>) -> (Interval, bool) {
+pub fn range<F: Bounded + ?Sized>(search: &IntervalSearch<F>) -> (Interval, bool) {
     let rough = search.function.span(search.from, search.to).0[0];
     if search.function.is_elementary() || rough.low == rough.high {
         return (rough, false);
@@ -230,18 +230,18 @@ pub fn range<F: Bounded + ?Sized>(search: &Search<F>) -> (Interval, bool) {
 }
 
 /// Upper bounds of the largest magnitudes of value, rate, acceleration and jerk, and a flag for a limited search.
-pub fn sizes<F: Bounded + ?Sized>(search: &Search<F>) -> ([f64; 4], bool) {
+pub fn sizes<F: Bounded + ?Sized>(search: &IntervalSearch<F>) -> ([f64; 4], bool) {
     if search.function.is_elementary() {
         let span = search.function.span(search.from, search.to);
         return (span.0.map(Interval::size), false);
     }
-    let found: [Found; 4] = std::array::from_fn(|k| search.size(k));
+    let found: [ExtremumFound; 4] = std::array::from_fn(|k| search.size(k));
     let limited = found.iter().any(|found| found.limited);
     (found.map(|found| found.bound * (1.0 + ROUND_OFF)), limited)
 }
 
 /// Magnitudes of value, rate, acceleration and jerk that are reached: lower bounds of the largest.
-pub fn reached<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
+pub fn reached<F: Bounded + ?Sized>(search: &IntervalSearch<F>) -> [f64; 4] {
     if search.function.is_elementary() {
         return search.function.span(search.from, search.to).0.map(Interval::size);
     }
@@ -249,7 +249,7 @@ pub fn reached<F: Bounded + ?Sized>(search: &Search<F>) -> [f64; 4] {
 }
 
 /// A place at which value, first or second derivative is or may be infinite or NaN.
-pub fn overflows<F: Bounded + ?Sized>(search: &Search<F>) -> Option<f64> {
+pub fn overflows<F: Bounded + ?Sized>(search: &IntervalSearch<F>) -> Option<f64> {
     let found = search.largest(
         |span| span.0[..3].iter().map(|i| i.size()).fold(0.0, f64::max),
         |jet| {

@@ -25,7 +25,7 @@ const HALVINGS: u32 = 12;
 
 /// A stretch of time that begins at the end of the previous one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
+pub struct TimeStretch {
     /// End [s].
     pub to: f64,
     /// Shortest time scale [s]; infinite if constant.
@@ -35,7 +35,7 @@ pub struct Stretch {
 impl Signal {
     /// Shortest time scales without changes that switching times mark, as in [`Self::shortest_unmarked_time_s`], for
     /// stretches from 0 to `end` [s].
-    pub fn stretches(&self, end: f64) -> Vec<Stretch> {
+    pub fn stretches(&self, end: f64) -> Vec<TimeStretch> {
         let whole = |scale: Option<f64>| up_to(end, [(end, scale.unwrap_or(f64::INFINITY))]);
         match self {
             _ if self.is_constant() => whole(None),
@@ -61,7 +61,7 @@ impl Signal {
 
 impl Signal {
     /// Time scales of a product, infinite where a factor keeps it constant, such as before and after a burst.
-    fn without_rests(&self, end: f64, all: &[Stretch]) -> Vec<Stretch> {
+    fn without_rests(&self, end: f64, all: &[TimeStretch]) -> Vec<TimeStretch> {
         let mut ends: Vec<f64> = all.iter().map(|stretch| stretch.to).collect();
         self.breaks(end, &mut ends);
         ends.retain(|to| *to > 0.0 && *to <= end);
@@ -83,8 +83,8 @@ impl Signal {
 }
 
 /// Merges the stretches of two signals; `both` combines their time scales.
-pub fn merged(a: &[Stretch], b: &[Stretch], both: impl Fn(f64, f64) -> f64) -> Vec<Stretch> {
-    let mut all: Vec<Stretch> = Vec::with_capacity(a.len() + b.len());
+pub fn merged(a: &[TimeStretch], b: &[TimeStretch], both: impl Fn(f64, f64) -> f64) -> Vec<TimeStretch> {
+    let mut all: Vec<TimeStretch> = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
     while let (Some(&&p), Some(&&q)) = (a.peek(), b.peek()) {
         push(&mut all, p.to.min(q.to), both(p.scale, q.scale));
@@ -98,7 +98,7 @@ pub fn merged(a: &[Stretch], b: &[Stretch], both: impl Fn(f64, f64) -> f64) -> V
     all
 }
 
-fn together(end: f64, parts: &[Signal], both: impl Fn(f64, f64) -> f64) -> Vec<Stretch> {
+fn together(end: f64, parts: &[Signal], both: impl Fn(f64, f64) -> f64) -> Vec<TimeStretch> {
     let rest = up_to(end, []);
     parts
         .iter()
@@ -106,7 +106,7 @@ fn together(end: f64, parts: &[Signal], both: impl Fn(f64, f64) -> f64) -> Vec<S
 }
 
 /// Stretches from ends and time scales within the run; constant after the last.
-fn up_to(end: f64, ends: impl IntoIterator<Item = (f64, f64)>) -> Vec<Stretch> {
+fn up_to(end: f64, ends: impl IntoIterator<Item = (f64, f64)>) -> Vec<TimeStretch> {
     let mut all = vec![];
     for (to, scale) in ends {
         push(&mut all, to.min(end), if scale > 0.0 { scale } else { f64::INFINITY });
@@ -115,13 +115,13 @@ fn up_to(end: f64, ends: impl IntoIterator<Item = (f64, f64)>) -> Vec<Stretch> {
     all
 }
 
-fn push(all: &mut Vec<Stretch>, to: f64, scale: f64) {
+fn push(all: &mut Vec<TimeStretch>, to: f64, scale: f64) {
     if to <= all.last().map_or(0.0, |last| last.to) {
         return;
     }
     match all.last_mut() {
         Some(last) if last.scale == scale => last.to = to,
-        _ => all.push(Stretch { to, scale }),
+        _ => all.push(TimeStretch { to, scale }),
     }
 }
 
@@ -152,7 +152,7 @@ impl Sigmoid {
 }
 
 impl Polynomial {
-    fn stretches(&self, end: f64) -> Vec<Stretch> {
+    fn stretches(&self, end: f64) -> Vec<TimeStretch> {
         let Some(scale) = self.scale(end) else {
             return up_to(end, []);
         };
@@ -163,7 +163,7 @@ impl Polynomial {
     }
 
     /// Halves intervals that are not constant, down to the time scale.
-    fn part(&self, all: &mut Vec<Stretch>, [from, to]: [f64; 2], [scale, largest]: [f64; 2], halvings: u32) {
+    fn part(&self, all: &mut Vec<TimeStretch>, [from, to]: [f64; 2], [scale, largest]: [f64; 2], halvings: u32) {
         let value = Bounded::span(&Signal::Polynomial(self.clone()), from, to).0[0];
         if value.high - value.low <= f64::EPSILON * largest {
             push(all, to, f64::INFINITY);

@@ -3,8 +3,8 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::interval::{Bounded, Span};
-use super::search::{Search, sizes};
+use super::interval::{Bounded, JetSpan};
+use super::search::{IntervalSearch, sizes};
 use crate::functions::jet::{Clock, Jet};
 use crate::functions::signals::{Ramp, RampShape, Signal};
 
@@ -30,12 +30,12 @@ pub struct Tone<'a> {
     /// Phase `φ` [rad].
     pub phase: f64,
     /// Envelope `E`; 1 if empty.
-    pub envelope: Envelope<'a>,
+    pub envelope: ToneProduct<'a>,
 }
 
 /// A product of factors.
 #[derive(Clone, Debug, Default)]
-pub struct Envelope<'a>(pub Vec<Factor<'a>>);
+pub struct ToneProduct<'a>(pub Vec<Factor<'a>>);
 
 impl<'a> Tone<'a> {
     fn steady(gain: f64) -> Self {
@@ -43,7 +43,7 @@ impl<'a> Tone<'a> {
             gain,
             omega: 0.0,
             phase: FRAC_PI_2,
-            envelope: Envelope::default(),
+            envelope: ToneProduct::default(),
         }
     }
 
@@ -66,7 +66,7 @@ impl<'a> Tone<'a> {
                     gain: sine.amplitude,
                     omega: TAU * sine.frequency_hz,
                     phase: sine.phase_rad,
-                    envelope: Envelope(start.into_iter().collect()),
+                    envelope: ToneProduct(start.into_iter().collect()),
                 }]
             }
             Signal::Sum(terms) => terms.iter().flat_map(Self::all).collect(),
@@ -91,7 +91,7 @@ impl<'a> Tone<'a> {
     /// Tone of a signal without sines.
     fn slow(signal: &'a Signal) -> Self {
         Self {
-            envelope: Envelope(vec![Factor::Given(signal)]),
+            envelope: ToneProduct(vec![Factor::Given(signal)]),
             ..Self::steady(1.0)
         }
     }
@@ -99,7 +99,7 @@ impl<'a> Tone<'a> {
     /// `sin a sin b = (cos(a - b) - cos(a + b))/2`.
     fn times(&self, other: &Self) -> Vec<Self> {
         let factors = self.envelope.0.iter().chain(&other.envelope.0).cloned();
-        let envelope = Envelope(factors.collect());
+        let envelope = ToneProduct(factors.collect());
         let gain = self.gain * other.gain;
         let tone = |gain: f64, omega: f64, phase: f64| match omega {
             // sin(-x) = sin(x + π); a sine of zero frequency is a number
@@ -145,7 +145,7 @@ pub fn together(signal: &Signal, from: f64, to: f64) -> (f64, [f64; 4]) {
         let envelope = if tone.envelope.0.is_empty() {
             [1.0, 0.0, 0.0, 0.0]
         } else {
-            sizes(&Search::new(&tone.envelope, from, to)).0
+            sizes(&IntervalSearch::new(&tone.envelope, from, to)).0
         };
         for (k, most) in most.iter_mut().enumerate() {
             let terms = (0..=k).filter(|j| envelope[*j] > 0.0);
@@ -167,7 +167,7 @@ fn has_sines(signal: &Signal) -> bool {
     }
 }
 
-impl Bounded for Envelope<'_> {
+impl Bounded for ToneProduct<'_> {
     fn exactly(&self, t: f64, within: f64) -> Jet {
         let jets = self.0.iter().map(|factor| match factor {
             Factor::Given(signal) => signal.exactly(t, within),
@@ -176,12 +176,12 @@ impl Bounded for Envelope<'_> {
         jets.reduce(|a, b| a * b).unwrap_or(Jet::constant(1.0))
     }
 
-    fn span(&self, from: f64, to: f64) -> Span {
+    fn span(&self, from: f64, to: f64) -> JetSpan {
         let spans = self.0.iter().map(|factor| match factor {
             Factor::Given(signal) => signal.span(from, to),
             Factor::Start(ramp) => ramp.span(from, to),
         });
-        Span::product(spans)
+        JetSpan::product(spans)
     }
 
     fn is_elementary(&self) -> bool {

@@ -3,7 +3,7 @@
 use std::collections::BinaryHeap;
 
 use super::interval::{Bounded, Interval};
-use super::search::{ROUND_OFF, Search, sizes, span_with_jets};
+use super::search::{IntervalSearch, ROUND_OFF, sizes, span_with_jets};
 use crate::functions::jet::Jet;
 
 /// Largest number of additional pieces.
@@ -29,7 +29,7 @@ impl Variation {
     /// Variation of a function.
     pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
         Self {
-            size: sizes(&Search::new(function, 0.0, end)).0,
+            size: sizes(&IntervalSearch::new(function, 0.0, end)).0,
             ..Self::summed(function, end, 4)
         }
     }
@@ -41,7 +41,7 @@ impl Variation {
 
     /// Integrals; the first `orders` of them to their accuracy.
     fn summed<F: Bounded + ?Sized>(function: &F, end: f64, orders: usize) -> Self {
-        let search = Search::joined(function, 0.0, end);
+        let search = IntervalSearch::joined(function, 0.0, end);
         let mut v = Self::default();
         let parts = |jet: &Jet| [jet.value, jet.rate, jet.acceleration, jet.jerk];
         let mut heap = BinaryHeap::new();

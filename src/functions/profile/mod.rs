@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::curve::{Curve, Interpolation};
+use super::curve::{Interpolation, PiecewiseCurve};
 use super::jet::Jet;
 use super::number_or_object::number_or_object;
 use super::signals::Polynomial;
@@ -82,7 +82,7 @@ pub struct PlaceTable {
     /// Interpolation between the points, by default monotone cubics, which stay within the values of the points; a natural spline (`cubic`) is
     /// smoother and swings beyond the values of points that jump.
     pub interpolation: Interpolation,
-    pub(super) curve: Curve,
+    pub(super) curve: PiecewiseCurve,
 }
 
 /// A curve through points, constant beyond its ends.
@@ -126,7 +126,7 @@ impl From<PlaceTable> for PlaceTableText {
 impl PlaceTable {
     /// Table through points; zero if the points do not define a curve.
     pub fn new(positions: Vec<f64>, values: Vec<f64>, interpolation: Interpolation) -> Self {
-        let curve = Curve::through(&positions, &values, interpolation).unwrap_or_default();
+        let curve = PiecewiseCurve::through(&positions, &values, interpolation).unwrap_or_default();
         Self {
             positions,
             values,
@@ -137,7 +137,7 @@ impl PlaceTable {
 
     /// True if the points define a curve.
     pub fn is_sound(&self) -> bool {
-        self.curve != Curve::default()
+        self.curve != PiecewiseCurve::default()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Simplified Newton iteration with the factors of an earlier start, for values that have changed little since.
 
-use super::{Newton, Start, StartOptions};
+use super::{ConsistentStart, Newton, StartOptions};
 use crate::dae::Dae;
 use crate::numerics::kernels;
 
@@ -12,7 +12,7 @@ const SLOW: f64 = 0.2;
 
 impl<D: Dae> Newton<'_, D> {
     /// Returns the start if the iteration with the factors of an earlier one converges; otherwise restores the values.
-    pub(super) fn with_old_factors(&mut self, options: &StartOptions) -> Option<Start> {
+    pub(super) fn with_old_factors(&mut self, options: &StartOptions) -> Option<ConsistentStart> {
         if !self.room.factored {
             return None;
         }
@@ -31,7 +31,7 @@ impl<D: Dae> Newton<'_, D> {
         start
     }
 
-    fn chords(&mut self, options: &StartOptions) -> Option<Start> {
+    fn chords(&mut self, options: &StartOptions) -> Option<ConsistentStart> {
         let mut last = f64::INFINITY;
         while self.iterations < CHORDS {
             self.evaluate().ok()?;
@@ -53,7 +53,7 @@ impl<D: Dae> Newton<'_, D> {
             // until a contraction rate is measured, assume the largest accepted one
             let rate = if last.is_finite() { rate } else { SLOW };
             if rate / (1.0 - rate) * size <= options.tolerance {
-                return Some(Start {
+                return Some(ConsistentStart {
                     iterations: self.iterations,
                     residual_evaluations: self.residuals,
                     correction: size,

@@ -3,7 +3,7 @@
 mod chords;
 mod options;
 
-pub use options::{Start, StartError, StartOptions};
+pub use options::{ConsistentStart, StartError, StartOptions};
 
 use super::not_finite;
 use crate::dae::{Dae, EvaluationError, Seeds};
@@ -24,7 +24,7 @@ pub fn consistent_start<D: Dae>(
     y: &mut [f64],
     yp: &mut [f64],
     options: &StartOptions,
-) -> Result<Start, StartError> {
+) -> Result<ConsistentStart, StartError> {
     Starter::new(dae)?.start(dae, t, y, yp, options)
 }
 
@@ -91,7 +91,7 @@ impl Starter {
         y: &mut [f64],
         yp: &mut [f64],
         options: &StartOptions,
-    ) -> Result<Start, StartError> {
+    ) -> Result<ConsistentStart, StartError> {
         let n = dae.len();
         assert!(y.len() == n && yp.len() == n, "values of another system");
         for (yp, _) in yp.iter_mut().zip(&self.differential).filter(|(_, d)| !**d) {
@@ -144,7 +144,7 @@ impl<D: Dae> Newton<'_, D> {
         }
     }
 
-    fn solve(mut self, options: &StartOptions) -> Result<Start, StartError> {
+    fn solve(mut self, options: &StartOptions) -> Result<ConsistentStart, StartError> {
         self.evaluate().map_err(|fault| self.give_up(fault.reason(), None))?;
         let mut damping: f64 = 1.0;
         let mut last = f64::INFINITY;
@@ -205,7 +205,7 @@ impl<D: Dae> Newton<'_, D> {
     }
 
     /// Applies the last correction as well, unless it increases the residual, and returns the start.
-    fn finish(mut self, correction: &[f64], size: f64) -> Result<Start, StartError> {
+    fn finish(mut self, correction: &[f64], size: f64) -> Result<ConsistentStart, StartError> {
         let from = self.unknowns();
         let before = kernels::max_abs(&self.room.residual);
         self.go(&from, correction, 1.0);
@@ -215,7 +215,7 @@ impl<D: Dae> Newton<'_, D> {
             self.go(&from, correction, 0.0);
             after = before;
         }
-        Ok(Start {
+        Ok(ConsistentStart {
             iterations: self.iterations,
             residual_evaluations: self.residuals,
             correction: size,

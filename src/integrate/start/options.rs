@@ -25,7 +25,7 @@ impl Default for StartOptions {
 
 /// Result of a consistent start.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Start {
+pub struct ConsistentStart {
     /// Number of Newton steps.
     pub iterations: u16,
     /// Number of residual evaluations.

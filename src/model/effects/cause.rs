@@ -8,7 +8,7 @@ use crate::error::numbers::significant;
 
 /// Reason for a decision on an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cause {
+pub enum DecisionCause {
     /// The full model is requested.
     Full,
     /// Switched on by name.
@@ -60,7 +60,7 @@ pub enum Cause {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weighed {
     /// Kind of number.
-    pub what: Number,
+    pub what: DecisiveNumber,
     /// Its value.
     pub value: f64,
     /// Value below which the effect may be omitted.
@@ -76,7 +76,7 @@ impl Weighed {
 
 /// Numbers that decide on effects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Number {
+pub enum DecisiveNumber {
     /// Square of the largest angle.
     Rotation,
     /// Shortening by bending over stretch.
@@ -154,7 +154,7 @@ pub enum Keeps {
     FiniteStrain,
 }
 
-impl Display for Cause {
+impl Display for DecisionCause {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         match self {
             Self::Full => f.write_str("full model requested"),
@@ -200,7 +200,7 @@ impl Display for Weighed {
     }
 }
 
-impl Display for Number {
+impl Display for DecisiveNumber {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Rotation => "square of the largest angle",

@@ -1,22 +1,22 @@
 //! Decides on effects one by one; each decision depends on the earlier ones.
 
-use super::cause::{Cause, Keeps, Number, Weighed};
+use super::cause::{DecisionCause, DecisiveNumber, Keeps, Weighed};
 use super::obstacles::{self, Obstacle};
 use super::table::{given, needs};
-use super::{Decision, EffectSet, Scene};
+use super::{Decision, EffectScene, EffectSet};
 use crate::case::schema::{
     Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Formulation, Load,
 };
 use crate::error::{Code, Violation};
-use crate::model::Network;
+use crate::model::ResolvedNetwork;
 
 /// State of the effect chooser.
 pub(super) struct Chooser<'a> {
     pub case: &'a Case,
     /// Network of the bladders.
-    pub network: Option<&'a Network>,
+    pub network: Option<&'a ResolvedNetwork>,
     /// Scene for automatic choices; none keeps every effect.
-    pub scene: Option<&'a Scene<'a>>,
+    pub scene: Option<&'a EffectScene<'a>>,
     choices: EffectChoices,
     tolerance: f64,
     /// Decisions so far.
@@ -24,7 +24,7 @@ pub(super) struct Chooser<'a> {
 }
 
 impl<'a> Chooser<'a> {
-    pub fn new(case: &'a Case, network: Option<&'a Network>, scene: Option<&'a Scene>) -> Self {
+    pub fn new(case: &'a Case, network: Option<&'a ResolvedNetwork>, scene: Option<&'a EffectScene>) -> Self {
         Self {
             case,
             network,
@@ -38,7 +38,7 @@ impl<'a> Chooser<'a> {
     pub fn all(mut self) -> EffectSet {
         for &effect in Effect::ALL {
             let (on, cause) = match self.given(effect) {
-                Some(given) => (given, Cause::Given(given)),
+                Some(given) => (given, DecisionCause::Given(given)),
                 None => self.decide(effect),
             };
             self.set.push(Decision { effect, on, cause });
@@ -53,7 +53,7 @@ impl<'a> Chooser<'a> {
 
     /// Decides on an effect. It is off where a required effect or input is missing, whatever the choice. It stays on
     /// where an obstacle prevents omission; the case is rejected if omission was requested.
-    fn decide(&mut self, effect: Effect) -> (bool, Cause) {
+    fn decide(&mut self, effect: Effect) -> (bool, DecisionCause) {
         if let Err(why) = self.possible(effect) {
             if self.choices.of(effect) == Choice::On {
                 self.contradicts(effect, &why);
@@ -66,30 +66,30 @@ impl<'a> Chooser<'a> {
     /// Rejects an effect that is switched on by name while the case itself rules it out: a required effect is off by
     /// name, its data are missing, or the form has no such effect. If the program omits a required effect, the named
     /// effect is omitted without error.
-    fn contradicts(&mut self, effect: Effect, why: &Cause) {
+    fn contradicts(&mut self, effect: Effect, why: &DecisionCause) {
         let (what, hint) = match why {
-            Cause::Needs(missing) => {
+            DecisionCause::Needs(missing) => {
                 let Some(off) = self.off_by_name(*missing) else {
                     return;
                 };
                 let hint = format!("leave it out, or set {off} to \"on\"");
                 (format!("{effect} is on, but {off}, which it needs, is off"), hint)
             }
-            Cause::Given(false) if effect == Effect::Compressibility => (
+            DecisionCause::Given(false) if effect == Effect::Compressibility => (
                 format!("{effect} is on, but the fluid is incompressible"),
                 "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
             ),
-            Cause::Unsheared => (
+            DecisionCause::Unsheared => (
                 format!("{effect} is on, but the published form has no shear"),
                 "leave it out, or set \"formulation\" to \"conservative\"".into(),
             ),
-            Cause::Given(false) if effect == Effect::Shear => (
+            DecisionCause::Given(false) if effect == Effect::Shear => (
                 format!("{effect} is on, but no shear_stiffness_n is given"),
                 "give /beam/shear_stiffness_n (solid rectangle: about 5/6 of its area times the shear modulus), or a section that \
                  supplies it; or leave shear out"
                     .into(),
             ),
-            Cause::Given(false) => (
+            DecisionCause::Given(false) => (
                 format!("{effect} is on, but no strain_energy is given"),
                 "give /bladders/strain_energy, or a section that supplies it; or leave the effect out".into(),
             ),
@@ -102,9 +102,9 @@ impl<'a> Chooser<'a> {
     /// fluid, which disables all its effects.
     fn off_by_name(&self, missing: Effect) -> Option<Effect> {
         match self.set.decision(missing).cause {
-            Cause::LeftOut if missing == Effect::Fluid => None,
-            Cause::LeftOut => Some(missing),
-            Cause::Needs(further) => self.off_by_name(further),
+            DecisionCause::LeftOut if missing == Effect::Fluid => None,
+            DecisionCause::LeftOut => Some(missing),
+            DecisionCause::Needs(further) => self.off_by_name(further),
             _ => None,
         }
     }
@@ -114,26 +114,26 @@ impl<'a> Chooser<'a> {
         self.set.refusals.push(refusal.hint(hint));
     }
 
-    fn decide_possible(&mut self, effect: Effect) -> (bool, Cause) {
+    fn decide_possible(&mut self, effect: Effect) -> (bool, DecisionCause) {
         match self.choices.of(effect) {
-            Choice::On => (true, Cause::Asked),
+            Choice::On => (true, DecisionCause::Asked),
             Choice::Off => match self.obstacle(effect) {
-                None => (false, Cause::LeftOut),
+                None => (false, DecisionCause::LeftOut),
                 Some(obstacle) => {
                     let what = format!("{effect} cannot be left out: {}", obstacle.what);
                     self.refuse(effect, &what, &obstacle.hint);
-                    (true, Cause::Refused(obstacle))
+                    (true, DecisionCause::Refused(obstacle))
                 }
             },
             Choice::Auto if effect == Effect::TubeInertia && self.asked_with_inertia() => {
-                (true, Cause::Kept(Keeps::AskedWithInertia))
+                (true, DecisionCause::Kept(Keeps::AskedWithInertia))
             }
-            Choice::Auto if effect.by_name(self.case.formulation) => (false, Cause::Unasked),
-            Choice::Auto if effect.of_inertia() && self.feeds_junction() => (false, Cause::FedJunction),
+            Choice::Auto if effect.by_name(self.case.formulation) => (false, DecisionCause::Unasked),
+            Choice::Auto if effect.of_inertia() && self.feeds_junction() => (false, DecisionCause::FedJunction),
             Choice::Auto => match self.scene {
-                None => (true, Cause::Full),
+                None => (true, DecisionCause::Full),
                 Some(scene) => match self.obstacle(effect) {
-                    Some(obstacle) => (true, Cause::Obstacle(obstacle)),
+                    Some(obstacle) => (true, DecisionCause::Obstacle(obstacle)),
                     None => self.automatic(effect, scene),
                 },
             },
@@ -141,23 +141,27 @@ impl<'a> Chooser<'a> {
     }
 
     /// Reason that rules an effect out, as an error.
-    fn possible(&self, effect: Effect) -> Result<(), Cause> {
+    fn possible(&self, effect: Effect) -> Result<(), DecisionCause> {
         if let Some(missing) = needs(effect).iter().find(|needed| !self.set.has(**needed)) {
-            return Err(Cause::Needs(*missing));
+            return Err(DecisionCause::Needs(*missing));
         }
         let bladders = self.case.bladders.as_ref();
         match effect {
-            Effect::NonlinearSection if bladders.is_none_or(|b| b.strain_energy.is_none()) => Err(Cause::Given(false)),
-            Effect::Shear if self.case.formulation == Formulation::Published => Err(Cause::Unsheared),
-            Effect::Shear if self.case.beam.shear_stiffness_n.is_none() => Err(Cause::Given(false)),
+            Effect::NonlinearSection if bladders.is_none_or(|b| b.strain_energy.is_none()) => {
+                Err(DecisionCause::Given(false))
+            }
+            Effect::Shear if self.case.formulation == Formulation::Published => Err(DecisionCause::Unsheared),
+            Effect::Shear if self.case.beam.shear_stiffness_n.is_none() => Err(DecisionCause::Given(false)),
             Effect::Compressibility if self.fluid().is_none_or(|fluid| !fluid.is_compressible()) => {
-                Err(Cause::Given(false))
+                Err(DecisionCause::Given(false))
             }
             _ if effect.of_flow() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
-                Err(Cause::Massless)
+                Err(DecisionCause::Massless)
             }
-            Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(Cause::Filled(false)),
-            Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => Err(Cause::NoKinks),
+            Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(DecisionCause::Filled(false)),
+            Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => {
+                Err(DecisionCause::NoKinks)
+            }
             _ => Ok(()),
         }
     }
@@ -170,7 +174,7 @@ impl<'a> Chooser<'a> {
 
     /// The sloshing number, if inertia along bladders is still possible: no choice by name and no earlier decision
     /// excludes it.
-    fn may_swing(&self, scene: &Scene) -> Option<f64> {
+    fn may_swing(&self, scene: &EffectScene) -> Option<f64> {
         let bladders = Effect::BladderInertia;
         let massless = self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
         let named = self.choices.of(bladders);
@@ -209,20 +213,20 @@ impl<'a> Chooser<'a> {
     }
 
     /// Automatic choice for an effect.
-    fn automatic(&self, effect: Effect, scene: &Scene) -> (bool, Cause) {
-        let kept = |keeps: Keeps| (true, Cause::Kept(keeps));
-        let unstable = |why: String| (true, Cause::Unstable(why));
-        let weighed = |what: Number, value: f64| Weighed {
+    fn automatic(&self, effect: Effect, scene: &EffectScene) -> (bool, DecisionCause) {
+        let kept = |keeps: Keeps| (true, DecisionCause::Kept(keeps));
+        let unstable = |why: String| (true, DecisionCause::Unstable(why));
+        let weighed = |what: DecisiveNumber, value: f64| Weighed {
             what,
             value,
             tolerance: self.tolerance,
         };
-        let weigh = |what: Number, value: f64| {
+        let weigh = |what: DecisiveNumber, value: f64| {
             let weighed = weighed(what, value);
-            (weighed.on(), Cause::Weighed(weighed))
+            (weighed.on(), DecisionCause::Weighed(weighed))
         };
         // keep bending effects whose omission might hide an instability or a resonance
-        let bending = |choice: (bool, Cause)| match scene.unstable() {
+        let bending = |choice: (bool, DecisionCause)| match scene.unstable() {
             _ if choice.0 => choice,
             Some(why) => unstable(why),
             None if scene.resonant() => kept(Keeps::Resonance),
@@ -237,96 +241,96 @@ impl<'a> Chooser<'a> {
             _ if needs(Effect::NonlinearSection).contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)
             }
-            Effect::NonlinearSection => weigh(Number::StrainEnergy, scene.strain_energy()),
+            Effect::NonlinearSection => weigh(DecisiveNumber::StrainEnergy, scene.strain_energy()),
             Effect::TransverseMotion => match scene.unstable() {
                 _ if !scene.mirrored() => kept(Keeps::RowsDiffer),
                 Some(why) => unstable(why),
-                None => (false, Cause::Straight(scene.compression())),
+                None => (false, DecisionCause::Straight(scene.compression())),
             },
-            Effect::FiniteRotation => bending(weigh(Number::Rotation, scene.rotation())),
+            Effect::FiniteRotation => bending(weigh(DecisiveNumber::Rotation, scene.rotation())),
             Effect::AxialForceOnBending => {
                 let (force, drawn_in) = (scene.normal_force(), scene.drawn_in());
                 bending(match drawn_in.is_nan() || drawn_in > force {
-                    true => weigh(Number::DrawnIn, drawn_in),
-                    false => weigh(Number::NormalForce, force),
+                    true => weigh(DecisiveNumber::DrawnIn, drawn_in),
+                    false => weigh(DecisiveNumber::NormalForce, force),
                 })
             }
-            Effect::AxialStretch => weigh(Number::Stretch, scene.stretch()),
+            Effect::AxialStretch => weigh(DecisiveNumber::Stretch, scene.stretch()),
             Effect::SolidInertia => match scene.unstable() {
                 _ if scene.driven() => kept(Keeps::DrivenEnds),
                 _ if !scene.held() => kept(Keeps::NotHeld),
                 Some(why) => unstable(why),
-                None => weigh(Number::BendingInertia, scene.bending_inertia()),
+                None => weigh(DecisiveNumber::BendingInertia, scene.bending_inertia()),
             },
             Effect::AxialInertia => {
                 let across = self.set.has(Effect::TransverseMotion);
                 let shortening = if across { scene.shortening() } else { 0.0 };
-                weigh(Number::AxialWaves, scene.axial_waves().max(shortening))
+                weigh(DecisiveNumber::AxialWaves, scene.axial_waves().max(shortening))
             }
             Effect::Shear if scene.sudden(self.tolerance) => kept(Keeps::Sudden),
-            Effect::Shear => bending(weigh(Number::Shear, scene.shear())),
+            Effect::Shear => bending(weigh(DecisiveNumber::Shear, scene.shear())),
             Effect::RotaryInertia if scene.sudden(self.tolerance) => kept(Keeps::Sudden),
-            Effect::RotaryInertia => weigh(Number::RotaryInertia, scene.rotary()),
+            Effect::RotaryInertia => weigh(DecisiveNumber::RotaryInertia, scene.rotary()),
             Effect::Flow => {
-                let count = |n: &Network| (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len());
+                let count = |n: &ResolvedNetwork| (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len());
                 match self.network.map_or((0, 0), count) {
                     _ if scene.fed() => kept(Keeps::Fed),
-                    (sealed, all) if sealed == all => (true, Cause::Sealed(all)),
+                    (sealed, all) if sealed == all => (true, DecisionCause::Sealed(all)),
                     // without loads across, only the flow bends the beam, however small
                     _ if !scene.mirrored() && obstacles::transverse_motion(self.case).is_none() => {
                         kept(Keeps::RowsDiffer)
                     }
                     (sealed, all) => {
-                        let leaks = weighed(Number::Leakage, scene.leakage());
-                        (leaks.on(), Cause::PartlySealed { sealed, all, leaks })
+                        let leaks = weighed(DecisiveNumber::Leakage, scene.leakage());
+                        (leaks.on(), DecisionCause::PartlySealed { sealed, all, leaks })
                     }
                 }
             }
             Effect::NetworkPressureDifferences => kept(Keeps::Dissipation),
             Effect::FlowAlongBladders => match self.network.and_then(obstacles::network_pressure_differences) {
-                Some(through) => (true, Cause::Obstacle(through)),
+                Some(through) => (true, DecisionCause::Obstacle(through)),
                 None if scene.uneven_start() => kept(Keeps::UnevenStart),
                 None => {
                     let lag = scene.lag_along_bladders(self.tolerance);
                     match self.may_swing(scene).filter(|swing| *swing > lag) {
-                        Some(swing) => weigh(Number::Sloshing, swing),
-                        None => weigh(Number::LagAlongBladders, lag),
+                        Some(swing) => weigh(DecisiveNumber::Sloshing, swing),
+                        None => weigh(DecisiveNumber::LagAlongBladders, lag),
                     }
                 }
             },
             Effect::Compressibility if self.fluid().is_some_and(|fluid| fluid.kind == FluidKind::Gas) => {
                 kept(Keeps::Gas)
             }
-            Effect::Compressibility => weigh(Number::Compression, scene.compression_of_fluid()),
+            Effect::Compressibility => weigh(DecisiveNumber::Compression, scene.compression_of_fluid()),
             Effect::TubeInertia => {
                 let (tubes, bladders) = (scene.tubes(self.tolerance).inertia, scene.sloshing(self.tolerance));
                 match self.choices.of(Effect::BladderInertia) {
-                    Choice::Auto if bladders > tubes => weigh(Number::Sloshing, bladders),
-                    _ => weigh(Number::Inertance, tubes),
+                    Choice::Auto if bladders > tubes => weigh(DecisiveNumber::Sloshing, bladders),
+                    _ => weigh(DecisiveNumber::Inertance, tubes),
                 }
             }
-            Effect::BladderInertia => weigh(Number::Sloshing, scene.sloshing(self.tolerance)),
+            Effect::BladderInertia => weigh(DecisiveNumber::Sloshing, scene.sloshing(self.tolerance)),
             Effect::UnsteadyFriction => {
                 let in_tubes = scene.tubes(self.tolerance).memory;
                 weigh(
-                    Number::UnsteadyFriction,
+                    DecisiveNumber::UnsteadyFriction,
                     match self.set.has(Effect::BladderInertia) {
                         true if in_tubes.is_finite() => in_tubes.max(scene.memory_of_bladders(self.tolerance)),
                         _ => in_tubes,
                     },
                 )
             }
-            Effect::TubeLosses => weigh(Number::TubeLosses, scene.tubes(self.tolerance).losses),
-            Effect::PressureToCurvature => weigh(Number::PressureStrain, scene.strains_of_pressure()[0]),
-            Effect::PressureToStretch => weigh(Number::PressureStrain, scene.strains_of_pressure()[1]),
+            Effect::TubeLosses => weigh(DecisiveNumber::TubeLosses, scene.tubes(self.tolerance).losses),
+            Effect::PressureToCurvature => weigh(DecisiveNumber::PressureStrain, scene.strains_of_pressure()[0]),
+            Effect::PressureToStretch => weigh(DecisiveNumber::PressureStrain, scene.strains_of_pressure()[1]),
             Effect::MomentToArea | Effect::ForceToArea => kept(Keeps::MakesPressure),
             Effect::Asymmetry => {
                 let [m, n] = scene.asymmetries();
-                weigh(Number::Asymmetry, m.max(n))
+                weigh(DecisiveNumber::Asymmetry, m.max(n))
             }
-            Effect::Fluid => (true, Cause::Filled(true)),
+            Effect::Fluid => (true, DecisionCause::Filled(true)),
             // all others are on where the case gives their data
-            _ => (true, Cause::Given(true)),
+            _ => (true, DecisionCause::Given(true)),
         }
     }
 }

@@ -18,14 +18,14 @@ mod obstacles;
 pub mod scene;
 mod table;
 
-use super::Network;
+use super::ResolvedNetwork;
 use crate::case::schema::{Case, Effect};
 use crate::error::Violation;
 
-pub use cause::{Cause, Keeps, Number, Weighed};
+pub use cause::{DecisionCause, DecisiveNumber, Keeps, Weighed};
 use choose::Chooser;
 pub use obstacles::Obstacle;
-pub use scene::Scene;
+pub use scene::EffectScene;
 pub use table::needs;
 
 /// A decision with its reason.
@@ -36,7 +36,7 @@ pub struct Decision {
     /// True if it is simulated.
     pub on: bool,
     /// Reason.
-    pub cause: Cause,
+    pub cause: DecisionCause,
 }
 
 /// The effects that a model contains.
@@ -52,13 +52,13 @@ pub struct EffectSet {
 
 impl EffectSet {
     /// All effects that a case describes; `network` is that of its bladders.
-    pub fn whole(case: &Case, network: Option<&Network>) -> Self {
+    pub fn whole(case: &Case, network: Option<&ResolvedNetwork>) -> Self {
         Chooser::new(case, network, None).all()
     }
 
     /// Chooses the effects of a case for its scene. Named choices apply as given. Of the others, those are omitted that
     /// change results by less than `effects_tolerance`.
-    pub fn choose(case: &Case, network: Option<&Network>, scene: &Scene) -> Self {
+    pub fn choose(case: &Case, network: Option<&ResolvedNetwork>, scene: &EffectScene) -> Self {
         Chooser::new(case, network, Some(scene)).all()
     }
 
@@ -84,7 +84,7 @@ impl EffectSet {
     /// Removes unsteady friction, unless it is switched on by name.
     pub fn forgetting(mut self) -> Self {
         let memory = Effect::UnsteadyFriction;
-        if self.decision(memory).cause != Cause::Asked {
+        if self.decision(memory).cause != DecisionCause::Asked {
             self.on &= !bit(memory);
         }
         self

@@ -4,7 +4,7 @@ use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::model::network::{AccumulatorLaw, Feed};
-use crate::model::{LumpedNetwork, Network};
+use crate::model::{LumpedNetwork, ResolvedNetwork};
 
 /// Reason that an effect must stay, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
@@ -228,7 +228,7 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
 }
 
 /// Obstacle: a prescribed flow or a pump.
-pub fn flow(network: &Network) -> Option<Obstacle> {
+pub fn flow(network: &ResolvedNetwork) -> Option<Obstacle> {
     if let Some(source) = network.sources.first() {
         let given = match source.feed {
             Feed::Flow(_) => "flow",
@@ -244,7 +244,7 @@ pub fn flow(network: &Network) -> Option<Obstacle> {
 }
 
 /// Obstacle: a rigid tank, which stores only compressed fluid.
-pub fn compressibility(network: &Network) -> Option<Obstacle> {
+pub fn compressibility(network: &ResolvedNetwork) -> Option<Obstacle> {
     let rigid = |law| matches!(law, AccumulatorLaw::Rigid { .. });
     let tank = network.accumulators.iter().find(|one| rigid(one.law))?;
     let what = format!("the tank \"{}\" stores nothing without compression", tank.name);
@@ -252,7 +252,7 @@ pub fn compressibility(network: &Network) -> Option<Obstacle> {
 }
 
 /// Obstacle: a network that cannot have a single pressure.
-pub fn network_pressure_differences(network: &Network) -> Option<Obstacle> {
+pub fn network_pressure_differences(network: &ResolvedNetwork) -> Option<Obstacle> {
     let why = LumpedNetwork::all(network).find_map(Result::err)?;
     obstacle(why, "remove it, or leave network_pressure_differences on")
 }

@@ -4,7 +4,7 @@
 use Effect::*;
 
 use crate::case::schema::{Case, Effect, Load};
-use crate::model::Network;
+use crate::model::ResolvedNetwork;
 
 /// Effects that an effect requires.
 pub fn needs(effect: Effect) -> &'static [Effect] {
@@ -39,7 +39,7 @@ fn gravity(load: &Load) -> bool {
 
 /// True or false for an effect that is on exactly where the case gives its data; none for effects that the case or the
 /// program chooses. `network` is that of the bladders, if they contain fluid.
-pub fn given(effect: Effect, case: &Case, network: Option<&Network>) -> Option<bool> {
+pub fn given(effect: Effect, case: &Case, network: Option<&ResolvedNetwork>) -> Option<bool> {
     Some(match effect {
         Damping => {
             let damping = &case.beam.damping;

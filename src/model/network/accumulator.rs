@@ -17,7 +17,7 @@ use crate::numerics::Scalar;
 /// `E = -p_0 V_0 (ln(1 - V/V_0) + V/V_0)`. E is the work `∫ p dV`: an accumulator dissipates nothing. For compressible
 /// fluid see [`crate::model::Compression::in_vessel`]; a rigid tank stores only compressed fluid.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Accumulator {
+pub struct AccumulatorElement {
     /// Name.
     pub name: String,
     /// Index of its junction.

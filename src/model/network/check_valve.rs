@@ -13,7 +13,7 @@ use crate::numerics::{Scalar, ramp};
 /// piecewise linear or quadratic, so its inverse and its series with a resistance have closed forms. A relief valve is
 /// a check valve with a high cracking pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CheckValve {
+pub struct CheckValveLaw {
     /// `p_c` [Pa].
     pub cracking_pressure: f64,
     /// `G_f` [m^3/(s Pa)].
@@ -24,7 +24,7 @@ pub struct CheckValve {
     pub width: f64,
 }
 
-impl From<&Written> for CheckValve {
+impl From<&Written> for CheckValveLaw {
     fn from(written: &Written) -> Self {
         Self {
             cracking_pressure: written.cracking_pressure_pa,
@@ -35,7 +35,7 @@ impl From<&Written> for CheckValve {
     }
 }
 
-impl CheckValve {
+impl CheckValveLaw {
     /// Flow under a pressure drop.
     #[inline]
     pub fn flow<T: Scalar>(&self, drop: T) -> T {
@@ -112,20 +112,20 @@ mod tests {
     use super::*;
     use crate::numerics::Dual;
 
-    const VALVES: [CheckValve; 3] = [
-        CheckValve {
+    const VALVES: [CheckValveLaw; 3] = [
+        CheckValveLaw {
             cracking_pressure: 0.0,
             forward: 1e-9,
             reverse: 1e-15,
             width: 10.0,
         },
-        CheckValve {
+        CheckValveLaw {
             cracking_pressure: 2e3,
             forward: 3e-10,
             reverse: 1e-12,
             width: 500.0,
         },
-        CheckValve {
+        CheckValveLaw {
             cracking_pressure: 1.0,
             forward: 1e-9,
             reverse: 1e-9,

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use super::{Network, Node};
+use super::{NetworkNode, ResolvedNetwork};
 use crate::numerics::sets::Sets;
 
 /// Numbers the connected components of bladders and junctions, and lists those with a port or a source.
-pub(super) fn find(network: &mut Network, bladders: usize) {
+pub(super) fn find(network: &mut ResolvedNetwork, bladders: usize) {
     let links = network.links.iter().filter(|l| !l.is_shut()).map(|l| (l.from, l.to));
     let joined: Vec<_> = links.chain(network.bridges.iter().map(|b| (b.from, b.to))).collect();
-    let slot = |node: Node| match node {
-        Node::Cell { bladder, .. } => Some(bladder),
-        Node::Junction(j) => Some(bladders + j),
-        Node::Port(_) => None,
+    let slot = |node: NetworkNode| match node {
+        NetworkNode::Cell { bladder, .. } => Some(bladder),
+        NetworkNode::Junction(j) => Some(bladders + j),
+        NetworkNode::Port(_) => None,
     };
     let slots = bladders + network.junctions.len();
     let mut sets = Sets::new(slots);
@@ -32,7 +32,7 @@ pub(super) fn find(network: &mut Network, bladders: usize) {
         });
         network.components += usize::from(first == i);
     }
-    let of = |node: Node| slot(node).map(|slot| component[slot]);
+    let of = |node: NetworkNode| slot(node).map(|slot| component[slot]);
     let mut open: BTreeSet<usize> = network.sources.iter().filter_map(|s| of(s.into)).collect();
     for (from, to) in joined {
         if let (Some(touched), None) | (None, Some(touched)) = (of(from), of(to)) {
@@ -63,7 +63,7 @@ pub struct Component {
 
 impl Component {
     /// Returns all components of a network, in order.
-    pub fn all(network: &Network) -> Vec<Self> {
+    pub fn all(network: &ResolvedNetwork) -> Vec<Self> {
         let mut all = vec![Self::default(); network.components];
         for (bladder, &of) in network.component_of_bladder.iter().enumerate() {
             all[of].bladders.push(bladder);
@@ -96,11 +96,11 @@ impl Component {
 /// Groups of junctions joined by links without inertia, and connected to the rest only by tubes with inertia. A group
 /// contains no accumulator, and touches no bladder or port directly. Flows into a group sum to zero, and its pressure
 /// level follows from accelerations.
-pub fn adrift(network: &Network) -> Vec<Vec<usize>> {
+pub fn adrift(network: &ResolvedNetwork) -> Vec<Vec<usize>> {
     let held = network.junctions.len();
-    let slot = |node: Node| match node {
-        Node::Junction(j) => j,
-        Node::Cell { .. } | Node::Port(_) => held,
+    let slot = |node: NetworkNode| match node {
+        NetworkNode::Junction(j) => j,
+        NetworkNode::Cell { .. } | NetworkNode::Port(_) => held,
     };
     let mut sets = Sets::new(held + 1);
     let links = network

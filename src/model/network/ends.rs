@@ -1,6 +1,6 @@
 //! Ends of tubes with inertia where only the compressed fluid of the tubes stores, and vessels.
 
-use super::{AccumulatorLaw, Link, Network, Node};
+use super::{AccumulatorLaw, Link, NetworkNode, ResolvedNetwork};
 
 /// A vessel, or a group of junctions connected only by tubes with inertia.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct TubeEnd {
     pub vessel: Option<AccumulatorLaw>,
 }
 
-impl Network {
+impl ResolvedNetwork {
     /// Returns all tube ends.
     pub fn tube_ends(&self) -> Vec<TubeEnd> {
         let groups = self.adrift().into_iter().map(|group| (group, None));
@@ -37,7 +37,7 @@ impl Network {
 
     /// Tubes with inertia that end at a junction, including shut ones.
     pub fn tubes_at(&self, junction: usize) -> impl Iterator<Item = &Link> {
-        let here = Node::Junction(junction);
+        let here = NetworkNode::Junction(junction);
         self.links
             .iter()
             .filter(move |link| link.inertance() > 0.0 && (link.from == here || link.to == here))
@@ -47,7 +47,7 @@ impl Network {
     /// Compressed fluid is stored there: either alone, so that its content determines the pressure, or in parallel to
     /// the walls of a vessel.
     pub fn halves_of_tubes(&self, junction: usize) -> f64 {
-        let here = Node::Junction(junction);
+        let here = NetworkNode::Junction(junction);
         let volume = |link: &Link| {
             let ends = usize::from(link.from == here) + usize::from(link.to == here);
             0.5 * ends as f64 * link.tube.map_or(0.0, |tube| tube.volume)

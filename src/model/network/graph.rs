@@ -4,39 +4,39 @@
 use std::collections::BTreeMap;
 
 use super::{
-    Accumulator, AccumulatorLaw, AlongBladder, Bridge, CheckValve, Feed, Link, LinkKind, Network, Node, PressurePort,
-    Pump, Source, TubeFlow, Turbine, bladder_permeability, components,
+    AccumulatorElement, AccumulatorLaw, AlongBladder, Bridge, CheckValveLaw, Feed, LinearPump, LinearTurbine, Link,
+    LinkKind, NetworkNode, PrescribedFlow, PressurePort, ResolvedNetwork, TubeFlow, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
-use crate::case::wiring::{Bore, Given, Point, Tube, Wiring};
+use crate::case::wiring::{Bore, Given, Wiring, WiringPoint, WiringTube};
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 
 /// An attachment to a point.
 enum Thing<'a> {
-    Tube { to: Point, tube: &'a Tube<'a> },
-    Turbine { to: Point, index: usize },
+    Tube { to: WiringPoint, tube: &'a WiringTube<'a> },
+    Turbine { to: WiringPoint, index: usize },
     Pressure { port: usize },
     Source { name: String, feed: Feed },
     Accumulator { index: usize },
 }
 
 /// Graph of a network with permeabilities scaled by `factor`.
-pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Bladders) -> Network {
+pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Bladders) -> ResolvedNetwork {
     let viscosity = fluid.viscosity_pa_s;
     let permeability = bladder_permeability(bladders);
     let chain_tubes = wiring.chain_tubes.len();
-    let mut network = Network {
+    let mut network = ResolvedNetwork {
         bladder_mobility: permeability * factor / viscosity,
         along_bladders: AlongBladder::new(bladders, fluid),
         chains: wiring.chains.clone(),
         tubes: chain_tubes + wiring.tubes.len(),
-        ..Network::default()
+        ..ResolvedNetwork::default()
     };
     let tube = wiring.chain_tubes.first().map_or(0.0, |tube| tube.length_m);
     let length = bladders.length_m * 2.0 * bladders.per_row as f64 + TABLE_TUBE_RATIO * tube * chain_tubes as f64;
     for (k, (_, written)) in wiring.turbines.iter().enumerate() {
-        network.turbines.push(Turbine {
+        network.turbines.push(LinearTurbine {
             name: written.name.clone().unwrap_or_else(|| format!("turbine-{}", k + 1)),
             conductance: match written.conductance {
                 TurbineConductance::M3SPa(g) => g,
@@ -50,7 +50,7 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
     let things = things(wiring, &mut network.ports);
     let nodes = nodes(wiring, &things, &mut network);
     // R = μ l_c/q1c
-    let resistance = |tube: &Tube| viscosity * tube.length_m / (self::permeability(tube.bore) * factor);
+    let resistance = |tube: &WiringTube| viscosity * tube.length_m / (self::permeability(tube.bore) * factor);
     for (at, thing) in things {
         let from = nodes[&at];
         match thing {
@@ -62,8 +62,8 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 kind: LinkKind::Tube,
                 radius: radius(tube),
                 tube: Some(TubeFlow::new(tube, radius(tube), fluid)),
-                check_valve: tube.check_valve.map(CheckValve::from),
-                pump: tube.pump.map(|pump| Pump {
+                check_valve: tube.check_valve.map(CheckValveLaw::from),
+                pump: tube.pump.map(|pump| LinearPump {
                     pressure: pump.pressure_pa.clone(),
                     resistance: pump.resistance_pa_s_m3,
                 }),
@@ -75,15 +75,15 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 &wiring.turbines[index].1.rectifier,
             ),
             Thing::Pressure { port } => {
-                if let Node::Cell { .. } = from {
-                    network.links.push(opening(from, Node::Port(port)));
+                if let NetworkNode::Cell { .. } = from {
+                    network.links.push(opening(from, NetworkNode::Port(port)));
                 }
             }
-            Thing::Source { name, feed } => network.sources.push(Source { into: from, feed, name }),
+            Thing::Source { name, feed } => network.sources.push(PrescribedFlow { into: from, feed, name }),
             Thing::Accumulator { index } => {
-                if let Node::Junction(junction) = from {
+                if let NetworkNode::Junction(junction) = from {
                     let written = wiring.accumulators[index].1;
-                    network.accumulators.push(Accumulator {
+                    network.accumulators.push(AccumulatorElement {
                         name: written.name.clone().unwrap_or_else(|| wiring.label(at)),
                         junction,
                         start_pressure: written.start_pressure_pa,
@@ -107,12 +107,12 @@ fn permeability(bore: Bore) -> f64 {
 }
 
 /// Radius of a tube, or of the circular tube of equal permeability [m].
-fn radius(tube: &Tube) -> f64 {
+fn radius(tube: &WiringTube) -> f64 {
     tube.radius_m.unwrap_or_else(|| duct::radius(permeability(tube.bore)))
 }
 
 /// All attachments, sorted by point; adds prescribed pressures to the ports.
-fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Point, Thing<'a>)> {
+fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(WiringPoint, Thing<'a>)> {
     let mut things = vec![];
     for tube in wiring.chain_tubes.iter().chain(&wiring.tubes) {
         let [from, to] = tube.points;
@@ -149,11 +149,15 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Poi
 
 /// Node of every point with attachments. A point with several attachments, or with a rectifier of check valves, becomes
 /// a junction or a port into which a bladder opens.
-fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> BTreeMap<Point, Node> {
+fn nodes(
+    wiring: &Wiring,
+    things: &[(WiringPoint, Thing)],
+    network: &mut ResolvedNetwork,
+) -> BTreeMap<WiringPoint, NetworkNode> {
     let real = |index: usize| matches!(wiring.turbines[index].1.rectifier, Rectifier::CheckValves(_));
-    let mut meeting: BTreeMap<Point, (usize, bool)> = BTreeMap::new();
-    let mut held: BTreeMap<Point, usize> = BTreeMap::new();
-    let mut count = |point: Point, needs_node: bool| {
+    let mut meeting: BTreeMap<WiringPoint, (usize, bool)> = BTreeMap::new();
+    let mut held: BTreeMap<WiringPoint, usize> = BTreeMap::new();
+    let mut count = |point: WiringPoint, needs_node: bool| {
         let entry = meeting.entry(point).or_default();
         entry.0 += 1;
         entry.1 |= needs_node;
@@ -172,19 +176,19 @@ fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> B
         count(*at, needs_node);
         to.into_iter().for_each(|to| count(to, needs_node));
     }
-    let node = |(point, (things, needs_node)): (Point, (usize, bool))| {
-        if let (Point::Bladder(bladder, end), 1, false) = (point, things, needs_node) {
-            return (point, Node::Cell { bladder, end });
+    let node = |(point, (things, needs_node)): (WiringPoint, (usize, bool))| {
+        if let (WiringPoint::Bladder(bladder, end), 1, false) = (point, things, needs_node) {
+            return (point, NetworkNode::Cell { bladder, end });
         }
         let here = held.get(&point).map_or_else(
             || {
                 network.junctions.push(wiring.label(point));
-                Node::Junction(network.junctions.len() - 1)
+                NetworkNode::Junction(network.junctions.len() - 1)
             },
-            |port| Node::Port(*port),
+            |port| NetworkNode::Port(*port),
         );
-        if let Point::Bladder(bladder, end) = point {
-            network.links.push(opening(Node::Cell { bladder, end }, here));
+        if let WiringPoint::Bladder(bladder, end) = point {
+            network.links.push(opening(NetworkNode::Cell { bladder, end }, here));
         }
         (point, here)
     };
@@ -192,7 +196,7 @@ fn nodes(wiring: &Wiring, things: &[(Point, Thing)], network: &mut Network) -> B
 }
 
 /// Link from a bladder's end to a junction or a port.
-fn opening(cell: Node, here: Node) -> Link {
+fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
     Link {
         from: cell,
         to: here,
@@ -207,7 +211,7 @@ fn opening(cell: Node, here: Node) -> Link {
 }
 
 /// Adds a turbine between two points, with a bridge of check valves if it has one.
-fn join(network: &mut Network, [from, to]: [Node; 2], index: usize, rectifier: &Rectifier) {
+fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usize, rectifier: &Rectifier) {
     match rectifier {
         Rectifier::Ideal => network.links.push(Link {
             from,

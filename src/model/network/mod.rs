@@ -26,9 +26,9 @@ use crate::case::wiring::Wiring;
 use crate::error::Result;
 use crate::functions::signals::Signal;
 
-pub use accumulator::{Accumulator, AccumulatorLaw};
+pub use accumulator::{AccumulatorElement, AccumulatorLaw};
 pub use along::AlongBladder;
-pub use check_valve::CheckValve;
+pub use check_valve::CheckValveLaw;
 pub use components::Component;
 pub use ends::TubeEnd;
 pub use ladder::{BRANCHES, Ladder};
@@ -36,7 +36,7 @@ pub use tube::{FlowLaw, TubeFlow};
 
 /// A point of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Node {
+pub enum NetworkNode {
     /// The outermost cell of a bladder, behind its half-cell resistance.
     Cell {
         /// Bladder, `0..n`: upper row first.
@@ -71,9 +71,9 @@ pub enum LinkKind {
 #[derive(Clone, Debug)]
 pub struct Link {
     /// Start of positive flow.
-    pub from: Node,
+    pub from: NetworkNode,
     /// End of positive flow.
-    pub to: Node,
+    pub to: NetworkNode,
     /// Resistance between the points, half cells excluded [Pa s/m^3].
     pub resistance: f64,
     /// Opening of the valve; `None`: no valve.
@@ -85,14 +85,14 @@ pub struct Link {
     /// Inertia and losses of a tube; none for creeping flow.
     pub tube: Option<TubeFlow>,
     /// Check valve.
-    pub check_valve: Option<CheckValve>,
+    pub check_valve: Option<CheckValveLaw>,
     /// Pump.
-    pub pump: Option<Pump>,
+    pub pump: Option<LinearPump>,
 }
 
 /// A pump with a linear curve: its pressure decreases with flow.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pump {
+pub struct LinearPump {
     /// `p_pump`, pressure at zero flow [Pa].
     pub pressure: Signal,
     /// `R_pump`, decrease of the pressure per flow [Pa s/m^3].
@@ -114,9 +114,9 @@ impl Link {
 
 /// Prescribed flow into a cell or a junction.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct PrescribedFlow {
     /// Cell or junction that it feeds.
-    pub into: Node,
+    pub into: NetworkNode,
     /// Prescribed quantity.
     pub feed: Feed,
     /// Name.
@@ -167,18 +167,18 @@ pub struct PressurePort {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bridge {
     /// First terminal: a junction or a pressure port.
-    pub from: Node,
+    pub from: NetworkNode,
     /// Second terminal.
-    pub to: Node,
+    pub to: NetworkNode,
     /// Index of its turbine.
     pub turbine: usize,
     /// Law of one valve.
-    pub valve: CheckValve,
+    pub valve: CheckValveLaw,
 }
 
 /// A turbine: conductance and name.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turbine {
+pub struct LinearTurbine {
     /// Name in outputs.
     pub name: String,
     /// `G` [m^3/(s Pa)].
@@ -187,7 +187,7 @@ pub struct Turbine {
 
 /// The resolved network.
 #[derive(Clone, Debug, Default)]
-pub struct Network {
+pub struct ResolvedNetwork {
     /// `q1b/mu`, permeability factor included [m^4/(Pa s)].
     pub bladder_mobility: f64,
     /// Momentum along bladders; none for creeping flow.
@@ -195,17 +195,17 @@ pub struct Network {
     /// Conductances between points.
     pub links: Vec<Link>,
     /// Prescribed flows.
-    pub sources: Vec<Source>,
+    pub sources: Vec<PrescribedFlow>,
     /// Prescribed pressures.
     pub ports: Vec<PressurePort>,
     /// Names of the junctions whose pressures are unknowns.
     pub junctions: Vec<String>,
     /// Turbines.
-    pub turbines: Vec<Turbine>,
+    pub turbines: Vec<LinearTurbine>,
     /// Real rectifiers.
     pub bridges: Vec<Bridge>,
     /// Accumulators, each at its own junction.
-    pub accumulators: Vec<Accumulator>,
+    pub accumulators: Vec<AccumulatorElement>,
     /// True if prescribed volumes inject no flow: for equilibria.
     pub still: bool,
     /// True if time steps resolve prescribed volumes even without other reasons: for runs, which integrate their work.
@@ -224,7 +224,7 @@ pub struct Network {
     pub tubes: usize,
 }
 
-impl Network {
+impl ResolvedNetwork {
     /// Network of the bladders of a case; none for a dry beam.
     ///
     /// # Errors
@@ -249,8 +249,8 @@ impl Network {
 
     /// True if a pressure port is joined to a component, so that fluid can leave it.
     pub fn lets_out(&self, component: usize) -> bool {
-        let inside = |node: Node| self.component_of(node) == Some(component);
-        let port = |node: Node| matches!(node, Node::Port(_));
+        let inside = |node: NetworkNode| self.component_of(node) == Some(component);
+        let port = |node: NetworkNode| matches!(node, NetworkNode::Port(_));
         let links = self.links.iter().filter(|link| !link.is_shut()).map(|l| (l.from, l.to));
         let mut ways = links.chain(self.bridges.iter().map(|b| (b.from, b.to)));
         ways.any(|(a, b)| inside(a) && port(b) || port(a) && inside(b))
@@ -262,7 +262,7 @@ impl Network {
         let links = self.links.iter().filter(|l| !l.is_shut());
         let joined = links.flat_map(|l| [l.from, l.to]);
         for node in joined.chain(self.sources.iter().map(|s| s.into)) {
-            if let Node::Cell { bladder, .. } = node {
+            if let NetworkNode::Cell { bladder, .. } = node {
                 sealed[bladder] = false;
             }
         }
@@ -270,9 +270,14 @@ impl Network {
     }
 
     /// First source into a group of junctions with tubes only, whose inertia prevents a prescribed flow.
-    pub fn fed_junction(&self) -> Option<&Source> {
+    pub fn fed_junction(&self) -> Option<&PrescribedFlow> {
         let adrift = self.adrift();
-        let fed = |source: &&Source| adrift.iter().flatten().any(|&j| Node::Junction(j) == source.into);
+        let fed = |source: &&PrescribedFlow| {
+            adrift
+                .iter()
+                .flatten()
+                .any(|&j| NetworkNode::Junction(j) == source.into)
+        };
         self.sources.iter().find(fed)
     }
 
@@ -290,16 +295,16 @@ impl Network {
     /// of its component in series if these lead to a port and have no valves.
     pub(super) fn pumped_pressure(&self, wet: &Wet, end: f64) -> f64 {
         let bladder = wet.bladder_length / self.bladder_mobility;
-        let of = |source: &Source| {
+        let of = |source: &PrescribedFlow| {
             let own = self.component_of(source.into);
-            let inside = |node: Node| self.component_of(node) == own;
+            let inside = |node: NetworkNode| self.component_of(node) == own;
             let volume = match &source.feed {
                 Feed::Flow(flow) => flow.largest_integral(end),
                 Feed::Volume(volume) => volume.largest(end).value,
             };
             let filled = volume / (wet.compliance() * wet.bladder_length);
             let mut links = self.links.iter().filter(|l| inside(l.from) || inside(l.to));
-            let lets_out = |l: &Link| matches!((l.from, l.to), (Node::Port(_), _) | (_, Node::Port(_)));
+            let lets_out = |l: &Link| matches!((l.from, l.to), (NetworkNode::Port(_), _) | (_, NetworkNode::Port(_)));
             let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none();
             let open = links.clone().any(lets_out) && links.clone().all(steady);
             let in_series = links.try_fold(0.0, |sum, link| {
@@ -315,7 +320,7 @@ impl Network {
     }
 
     /// Compliance of the component of a point, at ambient pressure [m^3/Pa].
-    pub fn compliance_at(&self, node: Node, wet: &Wet) -> f64 {
+    pub fn compliance_at(&self, node: NetworkNode, wet: &Wet) -> f64 {
         let own = self.component_of(node);
         let here = |component: &&usize| Some(**component) == own;
         let bladders = self.component_of_bladder.iter().filter(here).count();
@@ -355,7 +360,7 @@ impl Network {
         let of = |link: &Link| {
             let cells = [link.from, link.to]
                 .into_iter()
-                .filter(|n| matches!(n, Node::Cell { .. }));
+                .filter(|n| matches!(n, NetworkNode::Cell { .. }));
             (0.5 * cells.count() as f64 / within + link.resistance).recip()
         };
         let links = self.links.iter().filter(|link| !link.is_shut()).map(of);
@@ -364,11 +369,11 @@ impl Network {
     }
 
     /// Component of a point; `None` for a pressure port.
-    pub fn component_of(&self, node: Node) -> Option<usize> {
+    pub fn component_of(&self, node: NetworkNode) -> Option<usize> {
         match node {
-            Node::Cell { bladder, .. } => Some(self.component_of_bladder[bladder]),
-            Node::Junction(j) => Some(self.component_of_junction[j]),
-            Node::Port(_) => None,
+            NetworkNode::Cell { bladder, .. } => Some(self.component_of_bladder[bladder]),
+            NetworkNode::Junction(j) => Some(self.component_of_junction[j]),
+            NetworkNode::Port(_) => None,
         }
     }
 }

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use super::ladder::{BRANCHES, Ladder};
-use super::{Link, LinkKind, Network};
+use super::{Link, LinkKind, ResolvedNetwork};
 use crate::case::schema::{Effect, Fluid};
-use crate::case::wiring::Tube;
+use crate::case::wiring::WiringTube;
 use crate::model::{EffectSet, duct};
 use crate::numerics::Scalar;
 
@@ -94,7 +94,7 @@ pub fn friction_ratio(reynolds: f64, roughness: f64) -> (f64, f64) {
 
 impl TubeFlow {
     /// Law of a tube with its radius [m], with all effects.
-    pub(super) fn new(tube: &Tube, radius: f64, fluid: &Fluid) -> Self {
+    pub(super) fn new(tube: &WiringTube, radius: f64, fluid: &Fluid) -> Self {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
         let area = PI * radius * radius;
         let laminar = viscosity * tube.length_m / duct::circle(radius);
@@ -201,7 +201,7 @@ impl Losses {
     }
 }
 
-impl Network {
+impl ResolvedNetwork {
     /// Index of a link among the tubes.
     pub fn tube(&self, link: usize) -> usize {
         let tubes = self.links[..link].iter().filter(|l| l.kind == LinkKind::Tube);

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Function values and gradients at a point.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SqpPoint {
     /// Objective, scaled to the order of 1.
     pub value: f64,
     /// Gradient of the objective.
@@ -26,7 +26,7 @@ pub struct Point {
     pub slopes: DMatrix<f64>,
 }
 
-impl Point {
+impl SqpPoint {
     /// Sum of the violations of all inequalities.
     pub fn violation(&self) -> f64 {
         self.inequalities.iter().map(|c| c.max(0.0)).sum()
@@ -35,7 +35,7 @@ impl Point {
 
 /// Outcome of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ended {
+pub enum SqpStatus {
     /// Converged to a minimum under the inequalities.
     Found,
     /// No step lowers the objective, although its gradient predicts it: the gradient is inaccurate.
@@ -48,24 +48,24 @@ pub enum Ended {
 
 /// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Minimum {
+pub struct SqpMinimum {
     /// Variables.
     pub x: Vec<f64>,
     /// Values and gradients there.
-    pub at: Point,
+    pub at: SqpPoint,
     /// Lagrange multipliers: decrease of the objective per unit of relaxation of each inequality.
     pub multipliers: Vec<f64>,
     /// Multipliers of the bounds: positive at the upper bound, negative at the lower bound, 0 between them.
     pub at_bounds: Vec<f64>,
     /// Outcome of the search.
-    pub ended: Ended,
+    pub ended: SqpStatus,
     /// Number of steps.
     pub steps: usize,
 }
 
 /// Options of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct SqpOptions {
     /// Largest number of steps.
     pub steps: usize,
     /// Step size below which the search ends.
@@ -100,10 +100,10 @@ const ROUNDS: usize = 20_000;
 const SETTLED: f64 = 1e-14;
 
 /// Function that evaluates a point; none if it cannot be evaluated.
-pub type Evaluate<'a> = dyn FnMut(&[f64]) -> Option<Point> + 'a;
+pub type EvaluateFunctions<'a> = dyn FnMut(&[f64]) -> Option<SqpPoint> + 'a;
 
 /// Searches from a start; none if the start cannot be evaluated.
-pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -> Option<Minimum> {
+pub fn minimise(start: &[f64], options: &SqpOptions, evaluate: &mut EvaluateFunctions<'_>) -> Option<SqpMinimum> {
     let mut x: Vec<f64> = start.iter().map(|x| x.clamp(0.0, 1.0)).collect();
     let mut at = evaluate(&x)?;
     let n = x.len();
@@ -112,7 +112,7 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
     loop {
         let step = Step::of(&x, &at, &b, &mut price, reach);
         let end = |ended| {
-            Some(Minimum {
+            Some(SqpMinimum {
                 x: x.clone(),
                 at: at.clone(),
                 multipliers: step.multipliers.clone(),
@@ -127,19 +127,19 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
         let least = if beyond { NOTHING * options.close } else { options.close };
         if length <= least || fall <= 0.0 {
             return end(match beyond {
-                true => Ended::Apart,
-                false => Ended::Found,
+                true => SqpStatus::Apart,
+                false => SqpStatus::Found,
             });
         }
         if steps >= options.steps {
-            return end(Ended::Unfinished);
+            return end(SqpStatus::Unfinished);
         }
-        let merit = |at: &Point| at.value + price * at.violation();
+        let merit = |at: &SqpPoint| at.value + price * at.violation();
         let moved = |d: &DVector<f64>, part: f64| -> Vec<f64> {
             let to = x.iter().zip(d.iter()).map(|(x, d)| snapped(x + part * d));
             to.collect()
         };
-        let falls = |there: &Point, part| merit(there) <= merit(&at) - WORTH * part * fall + options.noise;
+        let falls = |there: &SqpPoint, part| merit(there) <= merit(&at) - WORTH * part * fall + options.noise;
         let (mut part, mut next) = (1.0, None);
         for _ in 0..CUTS {
             let to = moved(&step.d, part);
@@ -166,9 +166,9 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
         }
         let Some((to, there)) = next else {
             return end(match (fall <= 10.0 * options.noise.max(1e-9), beyond) {
-                (_, true) => Ended::Apart,
-                (true, false) => Ended::Found,
-                (false, false) => Ended::Stuck,
+                (_, true) => SqpStatus::Apart,
+                (true, false) => SqpStatus::Found,
+                (false, false) => SqpStatus::Stuck,
             });
         };
         // after a shortened step, limit the next one to a small multiple of its length
@@ -178,7 +178,7 @@ pub fn minimise(start: &[f64], options: &Options, evaluate: &mut Evaluate<'_>) -
         };
         let s = DVector::from_iterator(n, to.iter().zip(&x).map(|(to, x)| to - x));
         let lambda = DVector::from_column_slice(&step.multipliers);
-        let of = |at: &Point| &at.slope + at.slopes.tr_mul(&lambda);
+        let of = |at: &SqpPoint| &at.slope + at.slopes.tr_mul(&lambda);
         update(&mut b, &s, of(&there) - of(&at), fresh);
         (x, at, fresh) = (to, there, false);
         steps += 1;
@@ -225,7 +225,7 @@ struct Step {
 impl Step {
     /// Best step for the curvature `b`. Raises the penalty until the step satisfies the inequalities as far as
     /// possible, and the penalty exceeds all multipliers.
-    fn of(x: &[f64], at: &Point, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
+    fn of(x: &[f64], at: &SqpPoint, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
         loop {
             let step = Self::at_price(x, at, b, [*price, reach]);
             let short = step.left > HELD && step.multipliers.iter().any(|l| *l >= *price * (1.0 - 1e-9));
@@ -236,7 +236,7 @@ impl Step {
         }
     }
 
-    fn at_price(x: &[f64], at: &Point, b: &DMatrix<f64>, [price, reach]: [f64; 2]) -> Self {
+    fn at_price(x: &[f64], at: &SqpPoint, b: &DMatrix<f64>, [price, reach]: [f64; 2]) -> Self {
         let (n, m) = (x.len(), at.inequalities.len());
         let inverse = b.clone().try_inverse().unwrap_or_else(|| DMatrix::identity(n, n));
         let row = |i: usize| match i.checked_sub(m) {
@@ -290,8 +290,8 @@ impl Step {
     }
 
     /// Second-order correction: the step with the inequalities at the end of this step (Nocedal & Wright, 18.3).
-    fn bent(&self, x: &[f64], at: &Point, there: &Point, b: &DMatrix<f64>, limits: [f64; 2]) -> DVector<f64> {
-        let bent = Point {
+    fn bent(&self, x: &[f64], at: &SqpPoint, there: &SqpPoint, b: &DMatrix<f64>, limits: [f64; 2]) -> DVector<f64> {
+        let bent = SqpPoint {
             inequalities: &there.inequalities - &at.slopes * &self.d,
             ..at.clone()
         };
@@ -299,7 +299,7 @@ impl Step {
     }
 
     /// Predicted decrease of the penalized objective, to first order.
-    fn fall(&self, at: &Point, price: f64) -> f64 {
+    fn fall(&self, at: &SqpPoint, price: f64) -> f64 {
         -at.slope.dot(&self.d) + price * (at.violation() - self.left)
     }
 }

@@ -1,13 +1,13 @@
 use super::*;
 
-const OPTIONS: Options = Options {
+const OPTIONS: SqpOptions = SqpOptions {
     steps: 200,
     close: 1e-8,
     noise: 0.0,
 };
 
-fn free(value: f64, slope: &[f64]) -> Point {
-    Point {
+fn free(value: f64, slope: &[f64]) -> SqpPoint {
+    SqpPoint {
         value,
         slope: DVector::from_column_slice(slope),
         inequalities: DVector::zeros(0),
@@ -16,7 +16,7 @@ fn free(value: f64, slope: &[f64]) -> Point {
 }
 
 /// Source: Rosenbrock (1960), whose valley ends at (1, 1), here 0.5 in both.
-fn rosenbrock(x: &[f64]) -> Point {
+fn rosenbrock(x: &[f64]) -> SqpPoint {
     let [a, b] = [4.0 * x[0] - 1.0, 4.0 * x[1] - 1.0];
     let [da, db] = [-400.0 * a * (b - a * a) - 2.0 * (1.0 - a), 200.0 * (b - a * a)];
     free(100.0 * (b - a * a).powi(2) + (1.0 - a).powi(2), &[4.0 * da, 4.0 * db])
@@ -32,7 +32,7 @@ fn valleys_are_followed_to_their_end() {
             (x[0] < wall).then(|| rosenbrock(x))
         });
         let found = found.expect("a start");
-        assert!(found.ended == Ended::Found && found.at.value < 1e-12, "{found:?}");
+        assert!(found.ended == SqpStatus::Found && found.at.value < 1e-12, "{found:?}");
         assert!(count < 120, "{count}");
     }
     assert!(minimise(&[0.0, 0.9], &OPTIONS, &mut |_| None).is_none());
@@ -46,7 +46,7 @@ fn inequalities_are_held() {
         let [a, b, c, d] = [y[0], y[1], y[2], y[3]];
         let slope = [2.0 * a - 5.0, 2.0 * b - 5.0, 4.0 * c - 21.0, 2.0 * d + 7.0];
         let squares = a * a + b * b + c * c + d * d;
-        Some(Point {
+        Some(SqpPoint {
             value: a * a + b * b + 2.0 * c * c + d * d - 5.0 * a - 5.0 * b - 21.0 * c + 7.0 * d,
             slope: DVector::from_column_slice(&slope) * 10.0,
             inequalities: DVector::from_vec(vec![
@@ -68,7 +68,7 @@ fn inequalities_are_held() {
     };
     for start in [[0.5; 4], [1.0; 4], [0.0, 1.0, 0.0, 1.0]] {
         let found = minimise(&start, &OPTIONS, &mut |x| problem(x)).expect("a start");
-        assert!(found.ended == Ended::Found, "{start:?}: {found:?}");
+        assert!(found.ended == SqpStatus::Found, "{start:?}: {found:?}");
         let off = |of: &[f64], wanted: &[f64]| of.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off(&found.x, &[0.5, 0.6, 0.7, 0.4]) < 1e-6, "{start:?}: {found:?}");
         assert!(off(&found.multipliers, &[1.0, 0.0, 2.0]) < 1e-4, "{start:?}: {found:?}");
@@ -87,19 +87,22 @@ fn bounds_hold_and_contradictions_are_told() {
         "{found:?}"
     );
     // x0 >= 0.8 and x0 <= 0.2
-    let apart = |x: &[f64]| Point {
+    let apart = |x: &[f64]| SqpPoint {
         inequalities: DVector::from_vec(vec![0.8 - x[0], x[0] - 0.2]),
         slopes: DMatrix::from_row_slice(2, 2, &[-1.0, 0.0, 1.0, 0.0]),
         ..plane(x)
     };
     let found = minimise(&[0.7, 0.9], &OPTIONS, &mut |x| Some(apart(x))).expect("a start");
-    assert!(found.ended == Ended::Apart && found.at.violation() > 0.5, "{found:?}");
+    assert!(
+        found.ended == SqpStatus::Apart && found.at.violation() > 0.5,
+        "{found:?}"
+    );
 }
 
 /// Goal: errors of 1e-5 in the values do not prevent convergence to a stationary point.
 #[test]
 fn errors_of_values_are_passed_over() {
-    let options = Options {
+    let options = SqpOptions {
         noise: 2e-5,
         close: 1e-5,
         ..OPTIONS
@@ -110,7 +113,7 @@ fn errors_of_values_are_passed_over() {
     };
     let found = minimise(&[0.9], &options, &mut |x| Some(bowl(x))).expect("a start");
     assert!(
-        found.ended == Ended::Found && (found.x[0] - 0.3).abs() < 1e-5,
+        found.ended == SqpStatus::Found && (found.x[0] - 0.3).abs() < 1e-5,
         "{found:?}"
     );
 }
@@ -122,7 +125,7 @@ fn curved_limits_are_followed() {
     let problem = |x: &[f64]| {
         let [a, b] = [2.0 * x[0], 2.0 * x[1]];
         let round = a * a + b * b - 1.0;
-        Point {
+        SqpPoint {
             value: -a - 10.0 * round,
             slope: DVector::from_column_slice(&[-2.0 - 40.0 * a, -40.0 * b]),
             inequalities: DVector::from_vec(vec![round]),

@@ -10,9 +10,9 @@ use crate::case::schema::Effect;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
-use crate::study::effects::ablation::{Compared, LARGEST};
-use crate::study::effects::change::Measure;
-use crate::study::effects::{Ablation, Verdict};
+use crate::study::effects::ablation::{ComparedRun, LARGEST};
+use crate::study::effects::change::ModelMeasure;
+use crate::study::effects::{Ablation, EffectVerdict};
 
 pub use table::{csv, sentence, table};
 
@@ -25,14 +25,14 @@ pub const PICTURE: &str = "effects.svg";
 
 /// Quantity shown in bars and columns.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Shown {
+pub enum ShownQuantity {
     /// A quantity of the full model.
     Quantity(String),
     /// For each effect the quantity that changes most.
     Largest,
 }
 
-impl Shown {
+impl ShownQuantity {
     /// Chooses the requested quantity. Without a request: the transverse displacement of the tip, else the axial one, else the largest
     /// change.
     pub fn choose(found: &Ablation, asked: Option<&str>) -> Self {
@@ -58,7 +58,7 @@ impl Shown {
     }
 
     /// Change of the quantity.
-    pub fn change(&self, compared: &Compared) -> Option<f64> {
+    pub fn change(&self, compared: &ComparedRun) -> Option<f64> {
         match self {
             Self::Quantity(name) => compared.changes.get(name).copied(),
             Self::Largest => compared.largest.as_ref().map(|l| l.1),
@@ -67,7 +67,7 @@ impl Shown {
 
     /// Integrator's own error in the quantity; for [`Shown::Largest`] the smallest own error of all quantities.
     pub fn own(&self, found: &Ablation) -> Option<f64> {
-        let own = |m: &Measure| m.own;
+        let own = |m: &ModelMeasure| m.own;
         match self {
             Self::Quantity(name) => found.measures.iter().find(|m| m.name == *name).and_then(own),
             Self::Largest => found.measures.iter().filter_map(own).reduce(f64::min),
@@ -81,15 +81,15 @@ pub fn json(found: &Ablation) -> String {
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &Shown) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &Ablation, shown: &ShownQuantity) -> Result<Vec<PathBuf>> {
     let mut files = vec![(CSV, csv(found)), (JSON, json(found))];
     files.extend(ablation::draw(&bars(found, shown)).map(|text| (PICTURE, text)));
     folder.fill(files)
 }
 
 /// Data of the picture.
-pub fn bars(found: &Ablation, shown: &Shown) -> AblationBars {
-    let bar = |name: &str, compared: &Compared, verdict: Option<Verdict>| Bar {
+pub fn bars(found: &Ablation, shown: &ShownQuantity) -> AblationBars {
+    let bar = |name: &str, compared: &ComparedRun, verdict: Option<EffectVerdict>| Bar {
         name: name.into(),
         change: shown.change(compared),
         largest: compared.largest.as_ref().map(|l| l.1),

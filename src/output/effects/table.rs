@@ -2,20 +2,20 @@
 
 use std::fmt::Write as _;
 
-use super::Shown;
+use super::ShownQuantity;
 use crate::case::schema::Effect;
 use crate::output::columns;
 use crate::output::numbers::{counted, percent, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::trial::Ending;
-use crate::study::effects::ablation::Compared;
+use crate::study::effects::ablation::ComparedRun;
 use crate::study::effects::change::Judged;
-use crate::study::effects::{Ablation, Row, Verdict};
+use crate::study::effects::{Ablation, AblationRow, EffectVerdict};
 
 const HEADINGS: &str = "<left out | <verdict | change | largest | <in | unknowns | steps | work | time | <decides";
 
 /// Table of the changes of one quantity: one line per effect, the combined choices, and a legend.
-pub fn table(found: &Ablation, shown: &Shown) -> String {
+pub fn table(found: &Ablation, shown: &ShownQuantity) -> String {
     let full = &found.full;
     let mut text = format!("{}: what each effect does, to {}\n", found.case, shown.words());
     let Some(_) = &full.summary else {
@@ -44,7 +44,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     let mut reasons = vec![];
     for row in &found.rows {
         match row.verdict {
-            Verdict::Kept | Verdict::Failed => {
+            EffectVerdict::Kept | EffectVerdict::Failed => {
                 let why = row.reason.as_deref().unwrap_or("no reason given");
                 reasons.push(format!("{}: {}: {why}", row.name, said(row)));
             }
@@ -59,7 +59,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
     let absent: Vec<Effect> = found
         .rows
         .iter()
-        .filter(|r| r.verdict == Verdict::Absent)
+        .filter(|r| r.verdict == EffectVerdict::Absent)
         .map(|r| r.name)
         .collect();
     if !absent.is_empty() {
@@ -72,7 +72,7 @@ pub fn table(found: &Ablation, shown: &Shown) -> String {
 }
 
 /// Runs besides those of single effects: the case's own choice, the program's and the recommended one, if they exist.
-pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &Compared)> {
+pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &ComparedRun)> {
     let recommended = found.recommendation.as_ref().and_then(|r| r.run.as_ref());
     let all = [
         ("as in the case", found.given.as_ref()),
@@ -82,7 +82,7 @@ pub(super) fn beside(found: &Ablation) -> impl Iterator<Item = (&'static str, &C
     all.into_iter().filter_map(|(name, compared)| Some((name, compared?)))
 }
 
-fn legend(found: &Ablation, shown: &Shown) -> String {
+fn legend(found: &Ablation, shown: &ShownQuantity) -> String {
     let own = |x: Option<f64>| x.map_or_else(|| "unknown".into(), |x| format!("{x:.1e}"));
     let worst = found
         .measures
@@ -107,7 +107,7 @@ fn legend(found: &Ablation, shown: &Shown) -> String {
     text
 }
 
-fn name(row: &Row) -> String {
+fn name(row: &AblationRow) -> String {
     match row.without.as_slice() {
         [] => row.name.to_string(),
         others => format!("{} (both without {})", row.name, Effect::names(others, ", ")),
@@ -115,7 +115,7 @@ fn name(row: &Row) -> String {
 }
 
 /// Verdict of an effect, or `not run`.
-fn said(row: &Row) -> &'static str {
+fn said(row: &AblationRow) -> &'static str {
     match &row.left_out {
         Some(c) if c.trial.ending == Ending::Skipped => "not run",
         _ => word(row.verdict),
@@ -123,19 +123,26 @@ fn said(row: &Row) -> &'static str {
 }
 
 /// Word for a verdict.
-pub fn word(verdict: Verdict) -> &'static str {
+pub fn word(verdict: EffectVerdict) -> &'static str {
     match verdict {
-        Verdict::Needed => "needed",
-        Verdict::Harmless => "harmless",
-        Verdict::Saves => "saves",
-        Verdict::Undecided => "undecided",
-        Verdict::Failed => "failed",
-        Verdict::Kept => "cannot be left out",
-        Verdict::Absent => "absent",
+        EffectVerdict::Needed => "needed",
+        EffectVerdict::Harmless => "harmless",
+        EffectVerdict::Saves => "saves",
+        EffectVerdict::Undecided => "undecided",
+        EffectVerdict::Failed => "failed",
+        EffectVerdict::Kept => "cannot be left out",
+        EffectVerdict::Absent => "absent",
     }
 }
 
-fn line(found: &Ablation, shown: &Shown, name: &str, verdict: &str, c: &Compared, number: String) -> [String; 10] {
+fn line(
+    found: &Ablation,
+    shown: &ShownQuantity,
+    name: &str,
+    verdict: &str,
+    c: &ComparedRun,
+    number: String,
+) -> [String; 10] {
     if c.trial.summary.is_none() {
         let mut line: [String; 10] = Default::default();
         line[0] = name.into();
@@ -218,7 +225,7 @@ pub fn csv(found: &Ablation) -> String {
 }
 
 /// Cost and changes of a comparison, one row per quantity; a single row without changes if there are none.
-fn cells(found: &Ablation, c: &Compared) -> Vec<[String; 13]> {
+fn cells(found: &Ablation, c: &ComparedRun) -> Vec<[String; 13]> {
     let n = &c.trial.counters;
     let row = |name: &str, numbers: [Option<f64>; 3]| {
         let [size, change, own] = numbers.map(number);

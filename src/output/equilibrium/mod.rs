@@ -12,13 +12,16 @@ use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries, eq
 use super::plot::{extent, over_time};
 use super::records;
 use crate::case::schema::Case;
-use crate::discrete::quantities::{Observable, Role};
+use crate::discrete::quantities::{Observable, QuantityRole};
 use crate::error::Result;
 use crate::results;
-use crate::results::equilibrium::{self as kept, Equilibrium, Numbers};
+use crate::results::equilibrium::{self as kept, EquilibriumPath, NamedNumbers};
 use crate::results::run::{Bands, Status};
-use crate::run::equilibrium::{Event, Kind, Options, Path, Sensitivity, Stability, State};
-use crate::run::record::Column;
+use crate::run::equilibrium::{
+    EquilibriumEvent, EquilibriumOptions, EquilibriumSensitivity, EquilibriumStability, EquilibriumState, EventKind,
+    Path,
+};
+use crate::run::record::HistoryColumn;
 use crate::run::summary::Accuracy;
 use crate::study::refine::meshes::Meshes;
 
@@ -37,21 +40,21 @@ pub const PICTURE: &str = "path.svg";
 const DRAWN: usize = 16;
 
 /// A load path with its context.
-pub struct Found<'a> {
+pub struct LoadPath<'a> {
     /// The case.
     pub case: &'a Case,
     /// Requested options.
-    pub options: &'a Options,
+    pub options: &'a EquilibriumOptions,
     /// The path.
     pub path: &'a Path,
     /// Columns of its states.
-    pub columns: &'a [Column],
+    pub columns: &'a [HistoryColumn],
     /// Wall time [s].
     pub wall_s: f64,
     /// Warnings.
     pub warnings: &'a [String],
     /// Derivatives of the last state's columns with respect to parameters of the case.
-    pub sensitivities: &'a [Sensitivity],
+    pub sensitivities: &'a [EquilibriumSensitivity],
     /// Estimated errors, if an accuracy was requested.
     pub accuracy: Option<&'a Accuracy>,
     /// Effect of the mesh on the last state, if no accuracy was requested.
@@ -61,50 +64,53 @@ pub struct Found<'a> {
 }
 
 /// The text of `equilibrium.json`.
-pub fn json(found: &Found) -> String {
+pub fn json(found: &LoadPath) -> String {
     let path = found.path;
-    let keyed = |values: &[f64]| -> Numbers {
+    let keyed = |values: &[f64]| -> NamedNumbers {
         let pairs = found.columns.iter().zip(values).skip(1);
         pairs.map(|(column, value)| (column.key(), Some(*value))).collect()
     };
     let last = path.states.last();
-    let stability = |s: &Stability| kept::Stability {
+    let stability = |s: &EquilibriumStability| kept::StabilityRecord {
         stable: s.unstable == 0,
         unstable_modes: s.unstable,
         softest_1_s2: s.softest,
     };
     let several = !found.options.via_s.is_empty();
-    let event = |e: &Event| kept::Event {
+    let event = |e: &EquilibriumEvent| kept::PathEvent {
         load_factor: e.load_factor(),
         stage: several.then_some(e.stage + 1),
         what: e.words().into(),
     };
-    let derivatives = |s: &Sensitivity| {
+    let derivatives = |s: &EquilibriumSensitivity| {
         let (value, derivatives) = (s.parameter.value, keyed(&s.row));
-        (s.parameter.pointer.clone(), kept::Derivatives { value, derivatives })
+        (
+            s.parameter.pointer.clone(),
+            kept::EquilibriumDerivatives { value, derivatives },
+        )
     };
-    results::text(&Equilibrium {
+    results::text(&EquilibriumPath {
         case: found.case.name.clone(),
         status: path.fault.as_ref().map_or(Status::Finished, |_| Status::Failed),
         reason: path.fault.as_ref().map(|f| f.what.clone()),
         loads_at_s: found.options.at_s,
         via_s: found.options.via_s.clone(),
         valves_s: found.options.valves_s.clone(),
-        load_factor: last.map(State::load_factor),
+        load_factor: last.map(EquilibriumState::load_factor),
         states: path.states.len(),
         quantities: last.map(|s| keyed(&s.row)),
         bands: found.bands.clone(),
         stability: last.and_then(|s| s.stability.as_ref()).map(stability),
         events: path.events.iter().map(event).collect(),
         sensitivities: found.sensitivities.iter().map(derivatives).collect(),
-        solver: kept::Work {
+        solver: kept::PathWork {
             newton_iterations: path.work.iterations,
             residual_evaluations: path.work.residual_evaluations,
             factorizations: path.work.factorizations,
             rejected_steps: path.rejected,
             largest_correction_left: path.work.correction,
         },
-        wall_s: kept::Wall { total: found.wall_s },
+        wall_s: kept::WallRecord { total: found.wall_s },
         warnings: found.warnings.to_vec(),
         accuracy: found.accuracy.cloned(),
         meshes: found.meshes.cloned(),
@@ -112,7 +118,7 @@ pub fn json(found: &Found) -> String {
 }
 
 /// Writes the files into a folder; other files in it stay.
-pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &LoadPath) -> Result<Vec<PathBuf>> {
     let case = found.case.written();
     let mut files = vec![
         (CSV, table(found)),
@@ -125,7 +131,7 @@ pub fn write(folder: &mut ResultFolder, found: &Found) -> Result<Vec<PathBuf>> {
 }
 
 /// One row per state, with its stage (from 1) if there are several.
-fn table(found: &Found) -> String {
+fn table(found: &LoadPath) -> String {
     let several = !found.options.via_s.is_empty();
     let columns = found.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit));
     let rows = found.path.states.iter().map(|state| {
@@ -145,7 +151,7 @@ fn table(found: &Found) -> String {
 }
 
 /// One row per node: `theta [m]`, then x and z of every state.
-fn shapes(found: &Found) -> String {
+fn shapes(found: &LoadPath) -> String {
     let states = &found.path.states;
     let length = found.case.beam.length_m;
     let shares = states.iter().map(|state| shortest(state.load_factor()));
@@ -160,7 +166,7 @@ fn shapes(found: &Found) -> String {
 }
 
 /// Description of the loads.
-fn about(options: &Options) -> String {
+fn about(options: &EquilibriumOptions) -> String {
     let all = options.via_s.iter().chain([&options.at_s]);
     let instants: Vec<String> = all.map(|at| format!("{} s", shortest(*at))).collect();
     match instants.as_slice() {
@@ -170,19 +176,19 @@ fn about(options: &Options) -> String {
 }
 
 /// Picture of the load factor over displacement (solid where stable), and of shapes along the path.
-fn drawn(found: &Found) -> Option<String> {
+fn drawn(found: &LoadPath) -> Option<String> {
     let states = &found.path.states;
     let stable = |k: usize| states[k].stability.as_ref().is_none_or(|s| s.unstable == 0);
     // of probes only the deflection, since ends may be held
     let shown = |name: &str| match Observable::named(name) {
-        Some(one) => one.role() == Role::Headline,
+        Some(one) => one.role() == QuantityRole::Headline,
         None => name.ends_with("_u1"),
     };
     let nearest = |share: f64| {
         let far = |k: &usize| (states[*k].load_factor() - share).abs();
         (0..states.len()).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0)
     };
-    let over = |(k, column): (usize, &Column)| {
+    let over = |(k, column): (usize, &HistoryColumn)| {
         let points: Vec<_> = states.iter().map(|s| (s.row[k], s.load_factor())).collect();
         let mut series: Vec<_> = (1..points.len())
             .map(|k| {
@@ -200,8 +206,8 @@ fn drawn(found: &Found) -> Option<String> {
         ));
         for event in &found.path.events {
             let letter = match event.kind {
-                Kind::LimitPoint => "L",
-                Kind::Bifurcation => "B",
+                EventKind::LimitPoint => "L",
+                EventKind::Bifurcation => "B",
             };
             let at = points[nearest(event.load_factor())];
             series.push(PictureSeries::marks([at], Glyph::Box(4.0), PALETTE[3]));
@@ -232,14 +238,14 @@ fn drawn(found: &Found) -> Option<String> {
 }
 
 /// Some shapes of the path, from blue to red, with equal scales along and across.
-fn shapes_drawn(found: &Found, width: f64) -> Option<Panel> {
+fn shapes_drawn(found: &LoadPath, width: f64) -> Option<Panel> {
     let states = &found.path.states;
-    let chosen: Vec<&State> = states
+    let chosen: Vec<&EquilibriumState> = states
         .iter()
         .rev()
         .step_by(states.len().div_ceil(DRAWN).max(1))
         .collect();
-    let shape = |state: &State| -> Vec<(f64, f64)> {
+    let shape = |state: &EquilibriumState| -> Vec<(f64, f64)> {
         let theta = |i: usize| found.case.beam.length_m * i as f64 / (state.u1.len() - 1) as f64;
         let all = state.u1.iter().zip(&state.u3).enumerate();
         all.map(|(i, (u1, u3))| (theta(i) + u3, *u1)).collect()

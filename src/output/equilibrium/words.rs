@@ -1,12 +1,12 @@
 //! Text of a load path.
 
-use super::Found;
+use super::LoadPath;
 use crate::discrete::quantities::probes::is_stress;
 use crate::discrete::quantities::{Group, Observable};
 use crate::output::columns::{self, aligned, warnings};
 use crate::output::numbers::{counted, quantity, significant, with_error};
-use crate::run::equilibrium::State;
-use crate::run::record::Column;
+use crate::run::equilibrium::EquilibriumState;
+use crate::run::record::HistoryColumn;
 use crate::study::refine::meshes::Meshes;
 
 /// Largest number of rows in the table.
@@ -20,7 +20,7 @@ const NO_PRESSURE: f64 = 1e-9;
 const NO_FORCE: f64 = 1e-15;
 
 /// Table of the path, its events, the last state, and derivatives.
-pub fn words(found: &Found) -> String {
+pub fn words(found: &LoadPath) -> String {
     let path = found.path;
     if path.states.is_empty() {
         return String::new();
@@ -69,7 +69,7 @@ pub fn words(found: &Found) -> String {
         ));
         let derivatives = found.columns.iter().zip(&s.row).skip(1);
         // omits bladders that do not change
-        let changes = |column: &Column, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
+        let changes = |column: &HistoryColumn, lines: &[String; 4]| !is_bladder(column) || lines[2] != "0";
         let mut lines: Vec<_> = derivatives
             .map(|(column, derivative)| {
                 let by_share = 0.01 * s.parameter.value * derivative;
@@ -98,9 +98,9 @@ pub fn words(found: &Found) -> String {
 }
 
 /// Tip and pressures of the last state with their errors.
-fn last_with_errors(found: &Found) -> String {
+fn last_with_errors(found: &LoadPath) -> String {
     let row = found.path.states.last().map_or(&[][..], |state| &state.row);
-    let error = |column: &Column| found.meshes?.errors.get(&column.name).copied();
+    let error = |column: &HistoryColumn| found.meshes?.errors.get(&column.name).copied();
     let texts = found.columns.iter().zip(row).skip(1).filter_map(|(column, value)| {
         let group = Observable::named(&column.name).map(Observable::group);
         let counts = matches!(group, Some(Group::Tip | Group::Pressure)) && value.abs() > floor(found, column.unit);
@@ -114,7 +114,7 @@ fn last_with_errors(found: &Found) -> String {
 }
 
 /// Loads of the last state.
-fn reached(found: &Found, last: &State) -> String {
+fn reached(found: &LoadPath, last: &EquilibriumState) -> String {
     let (share, at) = (significant(last.share, 6), |t: &f64| significant(*t, 6));
     let via: Vec<String> = found.options.via_s.iter().map(at).collect();
     if via.is_empty() {
@@ -129,7 +129,7 @@ fn reached(found: &Found, last: &State) -> String {
 }
 
 /// Some of the states, the last among them.
-fn table(found: &Found) -> String {
+fn table(found: &LoadPath) -> String {
     let columns: Vec<(usize, String)> = found
         .columns
         .iter()
@@ -142,7 +142,7 @@ fn table(found: &Found) -> String {
         .collect();
     let states = &found.path.states;
     let every = states.len().div_ceil(ROWS).max(1);
-    let mut shown: Vec<&State> = states.iter().rev().step_by(every).collect();
+    let mut shown: Vec<&EquilibriumState> = states.iter().rev().step_by(every).collect();
     shown.reverse();
     let headings: String = columns.iter().map(|(_, name)| format!("{name} | ")).collect();
     let lines = shown.iter().map(|state| {
@@ -158,12 +158,12 @@ fn table(found: &Found) -> String {
 }
 
 /// True for the pressure of one bladder.
-fn is_bladder(column: &Column) -> bool {
+fn is_bladder(column: &HistoryColumn) -> bool {
     column.name.starts_with("bladder_") && column.unit == "Pa"
 }
 
 /// Round-off limit in a unit: a fraction of the largest value of all states, and at least a constant per unit.
-fn floor(found: &Found, unit: &str) -> f64 {
+fn floor(found: &LoadPath, unit: &str) -> f64 {
     let least = match unit {
         "m" => 0.01 * ROUND_OFF * found.case.beam.length_m,
         "rad" => 0.01 * ROUND_OFF,
@@ -179,7 +179,7 @@ fn floor(found: &Found, unit: &str) -> f64 {
 }
 
 /// True if no state has a displacement, angle, pressure or force.
-fn loads_nothing(found: &Found) -> bool {
+fn loads_nothing(found: &LoadPath) -> bool {
     ["m", "rad", "Pa", "N"].iter().all(|unit| {
         let least = floor(found, unit);
         let columns = found.columns.iter().enumerate().skip(1);

@@ -15,14 +15,14 @@ pub mod vtk;
 use std::path::{Path, PathBuf};
 
 use super::folder::{CASE, FIELDS, RAW_FIELDS};
-use super::kind::Kind;
+use super::kind::FolderKind;
 use super::reading;
 use crate::error::{Error, Result};
 use crate::study::compare::Recording;
 
 /// Files written in one format.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Written {
+pub struct ExportedFiles {
     /// File to open, or folder of the files.
     pub path: PathBuf,
     /// Number of files.
@@ -31,7 +31,7 @@ pub struct Written {
     pub bytes: u64,
 }
 
-impl Written {
+impl ExportedFiles {
     fn new(path: PathBuf) -> Self {
         Self {
             path,
@@ -52,7 +52,7 @@ impl Written {
 /// [`Error::Usage`] if `dir` is no result folder or its run has not ended; [`Error::Output`] if a file cannot be read.
 pub fn read(dir: &Path) -> Result<Recording> {
     let usage = |what: &str| Err(Error::Usage(format!("{} {what}", dir.display())));
-    if let Some(what) = Kind::no_run(dir) {
+    if let Some(what) = FolderKind::no_run(dir) {
         return Err(Error::Usage(what));
     }
     if !dir.join(CASE).is_file() {

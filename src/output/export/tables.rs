@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::Written;
+use super::ExportedFiles;
 use super::staged::Staged;
 use crate::error::Result;
 use crate::output::folder::TABLES;
@@ -14,9 +14,9 @@ use crate::study::compare::{Array, Recording};
 ///
 /// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, with `s` from the bladder's
 /// inlet. The name of the field, which is also that of the file, contains the unit.
-pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<Written> {
+pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<ExportedFiles> {
     let staged = Staged::new(dir, TABLES)?;
-    let mut written = Written::new(staged.target().to_path_buf());
+    let mut written = ExportedFiles::new(staged.target().to_path_buf());
     for field in &from.fields {
         let path = staged.path(&format!("{}.csv", field.name));
         let mut names = vec!["t [s]".to_string()];

@@ -13,8 +13,8 @@ use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
 use crate::study::fit::Fitted;
-use crate::study::fit::beside::Beside;
-use crate::study::fit::problem::{Abscissa, Problem};
+use crate::study::fit::beside::DataComparison;
+use crate::study::fit::problem::{Abscissa, FitProblem};
 
 pub use words::{comparison, words};
 
@@ -31,7 +31,7 @@ pub const FITTED: &str = "fitted-case.json";
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Result<()> {
+pub fn write(folder: &mut ResultFolder, problem: &FitProblem, found: &Fitted) -> Result<()> {
     let (own, fitted) = (problem.case.written(), found.case.written());
     let mut files = vec![
         (CSV, table(problem, found)),
@@ -44,7 +44,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Fitted) -> Re
 }
 
 /// Columns beside the observations: names with units, and values.
-fn beside(problem: &Problem) -> Vec<(String, Vec<f64>)> {
+fn beside(problem: &FitProblem) -> Vec<(String, Vec<f64>)> {
     match &problem.abscissa {
         Abscissa::Time(instants) => vec![("t [s]".into(), instants.clone())],
         Abscissa::Drives(drives) => drives
@@ -55,7 +55,7 @@ fn beside(problem: &Problem) -> Vec<(String, Vec<f64>)> {
 }
 
 /// Index of the observation of a column in each row, if there is one.
-fn places(problem: &Problem, column: usize) -> Vec<Option<usize>> {
+fn places(problem: &FitProblem, column: usize) -> Vec<Option<usize>> {
     let mut all = vec![None; problem.rows()];
     for (place, one) in problem.of(column) {
         all[one.row] = Some(place);
@@ -63,7 +63,7 @@ fn places(problem: &Problem, column: usize) -> Vec<Option<usize>> {
     all
 }
 
-fn table(problem: &Problem, found: &Fitted) -> String {
+fn table(problem: &FitProblem, found: &Fitted) -> String {
     let aside = beside(problem);
     let places: Vec<_> = (0..problem.matched.len()).map(|k| places(problem, k)).collect();
     let of = |one: &Matched| {
@@ -98,7 +98,7 @@ fn table(problem: &Problem, found: &Fitted) -> String {
     records::text(headings, rows)
 }
 
-fn drawn(problem: &Problem, found: &Fitted) -> Option<String> {
+fn drawn(problem: &FitProblem, found: &Fitted) -> Option<String> {
     let aside = beside(problem);
     let (name, xs) = aside.first()?;
     let x = match &problem.abscissa {
@@ -171,7 +171,7 @@ fn over_data(
 }
 
 /// Picture of a run over data; `curve` returns time [s] and value of a quantity by its name.
-pub fn picture(found: &Beside, curve: impl Fn(&str) -> Vec<(f64, f64)>) -> Option<String> {
+pub fn picture(found: &DataComparison, curve: impl Fn(&str) -> Vec<(f64, f64)>) -> Option<String> {
     let panels = found.columns.iter().flat_map(|column| {
         let at = |values: &mut dyn Iterator<Item = f64>| column.times_s.iter().copied().zip(values).collect();
         let residuals = column.computed.iter().zip(&column.measured).map(|(a, b)| a - b);

@@ -3,8 +3,8 @@
 use crate::error::{listed, visible};
 use crate::output::columns::{table, warnings};
 use crate::output::numbers::{counted, duration, percent, quantity, significant};
-use crate::study::fit::beside::Beside;
-use crate::study::fit::found::{Bound, Estimate, Fit};
+use crate::study::fit::beside::DataComparison;
+use crate::study::fit::found::{Bound, Fit, FittedNumber};
 use crate::study::fit::robust::Loss;
 
 /// Smallest magnitude of a correlation that is listed.
@@ -68,7 +68,7 @@ pub fn words(fit: &Fit) -> String {
     text
 }
 
-fn line(one: &Estimate) -> [String; 5] {
+fn line(one: &FittedNumber) -> [String; 5] {
     let short = |x: f64| significant(x, 5);
     let error = one.standard_error.map(|error| significant(error, 3));
     let interval = one
@@ -133,9 +133,9 @@ fn worst(fit: &Fit) -> Option<String> {
 }
 
 /// Table of a run beside data.
-pub fn comparison(found: &Beside) -> String {
+pub fn comparison(found: &DataComparison) -> String {
     let headings = "<run less data | values | rms | largest | at | bias | rms, relative | largest, relative | R²";
-    let line = |column: &crate::study::fit::beside::Column| {
+    let line = |column: &crate::study::fit::beside::ComparedColumn| {
         let (left, unit) = (&column.left, &column.unit);
         [
             format!("{} over {}", column.quantity, visible(&column.matched.column)),

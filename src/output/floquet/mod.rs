@@ -14,7 +14,7 @@ use super::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, Pictur
 use super::records;
 use crate::error::Result;
 use crate::results;
-use crate::results::cycles::{Cycle, Floquet, Map};
+use crate::results::cycles::{CycleResult, Floquet, Map};
 use crate::study::refine::meshes::Meshes;
 use crate::study::stability::Sheet;
 
@@ -34,7 +34,7 @@ pub fn csv(floquet: &Floquet) -> String {
 }
 
 /// Table of the multipliers, and the verdict.
-pub fn words(found: &Cycle) -> String {
+pub fn words(found: &CycleResult) -> String {
     let Floquet {
         multipliers,
         conserved,
@@ -88,7 +88,7 @@ pub fn words(found: &Cycle) -> String {
 }
 
 /// Writes the files of one case into a folder.
-pub fn write(folder: &mut ResultFolder, found: &Cycle) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &CycleResult) -> Result<Vec<PathBuf>> {
     let mut files = vec![
         ("floquet.csv", csv(&found.floquet)),
         ("floquet.json", results::text(found)),
@@ -177,7 +177,7 @@ pub fn write_map(folder: &mut ResultFolder, map: &Map) -> Result<Vec<PathBuf>> {
 const NAMED: usize = 6;
 
 /// Picture of the multipliers and the unit circle.
-fn multipliers(found: &Cycle) -> Option<String> {
+fn multipliers(found: &CycleResult) -> Option<String> {
     let all = &found.floquet.multipliers;
     let reach = 1.15 * all.first()?.modulus.max(1.0);
     let circle = (0..=180)

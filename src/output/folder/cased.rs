@@ -4,20 +4,20 @@ use std::fs;
 use std::path::PathBuf;
 
 use super::{CASE, ResultFolder, entries, name_of, remove, text_of};
-use crate::case::{Written, is_table};
+use crate::case::{CaseText, is_table};
 use crate::error::Result;
 
 impl ResultFolder {
     /// Writes the case after its tables, so that an existing case always has all its tables; then removes all other tables. The files are
     /// on the disk after [`ResultFolder::secure`].
-    pub fn write_case(&self, case: &Written) -> Result<()> {
+    pub fn write_case(&self, case: &CaseText) -> Result<()> {
         self.write_tables(case)?;
         self.write_once(CASE, &case.json)?;
         self.remove_other_tables(case)
     }
 
     /// Writes the tables of a case.
-    pub(super) fn write_tables(&self, case: &Written) -> Result<()> {
+    pub(super) fn write_tables(&self, case: &CaseText) -> Result<()> {
         for (name, text) in &case.tables {
             self.write_once(name, text)?;
         }
@@ -35,7 +35,7 @@ impl ResultFolder {
     }
 
     /// Removes tables of an older case.
-    pub(super) fn remove_other_tables(&self, case: &Written) -> Result<()> {
+    pub(super) fn remove_other_tables(&self, case: &CaseText) -> Result<()> {
         let named = |path: &PathBuf| case.tables.iter().any(|(name, _)| self.path(name) == *path);
         let all = self.tables()?;
         all.iter()

@@ -10,9 +10,9 @@ use std::fs;
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
-use super::kind::Kind;
+use super::kind::FolderKind;
 use super::uncertainty::UNCERTAINTY;
-use crate::case::{Written, is_table};
+use crate::case::{CaseText, is_table};
 use crate::error::{Error, Result};
 use crate::results;
 use lock::Lock;
@@ -71,8 +71,8 @@ pub const RUN_FILES: [&str; 12] = [
 #[derive(Debug)]
 pub struct ResultFolder {
     dir: PathBuf,
-    kind: Kind,
-    older: Option<Kind>,
+    kind: FolderKind,
+    older: Option<FolderKind>,
     /// True if the folder was created here. It is removed on drop if it is empty.
     made: bool,
     lock: Option<Lock>,
@@ -87,7 +87,7 @@ impl ResultFolder {
     /// # Errors
     ///
     /// The folder has other content and `force` is not given, another process writes into it, or it cannot be created.
-    pub fn claim(dir: &Path, kind: Kind, force: bool) -> Result<Self> {
+    pub fn claim(dir: &Path, kind: FolderKind, force: bool) -> Result<Self> {
         let made = !dir.exists();
         if made && dir.is_symlink() {
             let why = "it is a symbolic link whose target does not exist";
@@ -95,11 +95,11 @@ impl ResultFolder {
         }
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let lock = Lock::take(dir)?;
-        let older = Kind::within(dir);
+        let older = FolderKind::within(dir);
         if !force {
             let why = match older {
                 // a run that has not ended may belong to a cycle
-                Some(Kind::Run) if kind == Kind::Cycle && !dir.join(SUMMARY).exists() => None,
+                Some(FolderKind::Run) if kind == FolderKind::Cycle && !dir.join(SUMMARY).exists() => None,
                 Some(older) if older == kind => foreign(dir, kind)?,
                 Some(older) => Some(format!("it holds the result of `slcbeam {}`", older.command())),
                 None if has_files(dir)? => Some("it holds files but no slcbeam result".into()),
@@ -127,7 +127,7 @@ impl ResultFolder {
     fn sweep(&self) {
         let own = |half: &str| {
             let name = half.rsplit_once('.').map_or(half, |(name, _)| name);
-            Kind::owns(name) || [CASE, ORIGIN, REPORT].contains(&name) || is_table(name)
+            FolderKind::owns(name) || [CASE, ORIGIN, REPORT].contains(&name) || is_table(name)
         };
         for path in entries(&self.dir).unwrap_or_default() {
             let name = name_of(&path);
@@ -146,10 +146,10 @@ impl ResultFolder {
     ///
     /// There is no run, or another process writes into the folder.
     pub fn again(dir: &Path) -> Result<Self> {
-        if Kind::within(dir) != Some(Kind::Run) {
+        if FolderKind::within(dir) != Some(FolderKind::Run) {
             return Err(Error::Usage(format!("{} contains no run to resume", dir.display())));
         }
-        let mut folder = Self::claim(dir, Kind::Run, false)?;
+        let mut folder = Self::claim(dir, FolderKind::Run, false)?;
         folder.origin.stays = true;
         Ok(folder)
     }
@@ -207,7 +207,7 @@ impl ResultFolder {
     }
 
     /// Writes all files of a result without a run, with its case, as [`ResultFolder::fill`].
-    pub fn fill_with<T: AsRef<[u8]>>(&mut self, case: &Written, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
+    pub fn fill_with<T: AsRef<[u8]>>(&mut self, case: &CaseText, files: Vec<(&str, T)>) -> Result<Vec<PathBuf>> {
         self.write_tables(case)?;
         let written = self.fill(files)?;
         self.remove_other_tables(case)?;
@@ -217,7 +217,7 @@ impl ResultFolder {
     /// Writes a result with a second case, whose tables are stored beside those of its own, as [`ResultFolder::fill_with`].
     pub fn fill_with_both<T: AsRef<[u8]>>(
         &mut self,
-        [own, other]: [&Written; 2],
+        [own, other]: [&CaseText; 2],
         files: Vec<(&str, T)>,
     ) -> Result<Vec<PathBuf>> {
         let mut both = own.clone();
@@ -254,7 +254,7 @@ impl ResultFolder {
         self.record_origin()?;
         let Some(older) = self.older else { return Ok(()) };
         // A history stays until another run begins and empties it. Until then it identifies the folder as that of a run.
-        let stays = |name: &str| name == HISTORY && matches!(self.kind, Kind::Run | Kind::Cycle);
+        let stays = |name: &str| name == HISTORY && matches!(self.kind, FolderKind::Run | FolderKind::Cycle);
         for name in older.files().into_iter().chain([REPORT]).filter(|name| !stays(name)) {
             self.remove(name)?;
         }
@@ -363,7 +363,7 @@ fn remove_folder_of(dir: &Path, endings: &[&str]) -> Result<()> {
 
 /// Reason why the identifying file of a kind is foreign; `None` if it belongs to this program. It is then a JSON object with a case or, for
 /// an interrupted run, a history that begins with time.
-fn foreign(dir: &Path, kind: Kind) -> Result<Option<String>> {
+fn foreign(dir: &Path, kind: FolderKind) -> Result<Option<String>> {
     let sign = dir.join(kind.sign());
     if !sign.exists() {
         let own = history_begins_with_time(&dir.join(HISTORY));

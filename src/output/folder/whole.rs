@@ -9,7 +9,7 @@ use super::fault;
 use crate::case::reading;
 use crate::error::Result;
 use crate::numerics::threads::{Begun, begin};
-use crate::results::{self, Found, Kept};
+use crate::results::{self, ResultFile, StoredResult};
 
 /// Writes a file that the user names, completely or not at all. An existing file keeps its permissions; the target of a link is replaced.
 pub fn replace(path: &Path, text: &str) -> Result<()> {
@@ -178,7 +178,7 @@ pub(crate) fn damaged(why: impl Into<String>) -> io::Error {
 }
 
 /// Reads the result in a file.
-pub(crate) fn result<T: Kept>(path: &Path) -> Result<Found<T>> {
+pub(crate) fn result<T: ResultFile>(path: &Path) -> Result<StoredResult<T>> {
     results::read(&text_of(path)?).map_err(|e| fault("read", path, e))
 }
 

@@ -20,7 +20,7 @@ use crate::model::passivity::{self, Passivity};
 use crate::results;
 use crate::results::modes::{self as kept, About};
 use crate::results::run::Bands;
-use crate::run::modes::{Kind, Mode, Modes, Plan, Sensitivity, Sort};
+use crate::run::modes::{Mode, ModeOptions, ModeSensitivity, Modes, Sort, TimeBehavior};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -43,7 +43,7 @@ pub struct Report<'a> {
     /// Name of the case.
     pub case: &'a str,
     /// Requested search.
-    pub plan: &'a Plan,
+    pub plan: &'a ModeOptions,
     /// The only kind of modes requested, if any.
     pub sort: Option<Sort>,
     /// Modes found.
@@ -51,7 +51,7 @@ pub struct Report<'a> {
     /// State of linearization.
     pub state: About,
     /// Derivatives with respect to numbers of the case.
-    pub sensitivities: &'a [Sensitivity],
+    pub sensitivities: &'a [ModeSensitivity],
     /// Estimated errors, if an accuracy was requested.
     pub accuracy: Option<&'a Accuracy>,
     /// Warnings about the case itself.
@@ -121,7 +121,7 @@ impl Report<'_> {
     }
 
     /// Change of each mode for a 1 % change of a number of the case: `mode 2: +0.0608 Hz, −1.2e-5 1/s`.
-    fn derivatives(&self, s: &Sensitivity) -> String {
+    fn derivatives(&self, s: &ModeSensitivity) -> String {
         let percent = 0.01 * s.parameter.value;
         let mut text = format!(
             "for 1 % of {} = {}:",
@@ -165,11 +165,11 @@ impl Report<'_> {
 /// Text of `modes.json`; numbers that are not finite are null.
 pub fn json(report: &Report) -> String {
     let found = report.found;
-    let coupling = |(p, words): (Passivity, String)| kept::Coupling {
+    let coupling = |(p, words): (Passivity, String)| kept::CouplingPassivity {
         passive: p.passive(),
         least_eigenvalue: p.least,
         reciprocity_defect: p.defect,
-        direction: kept::Direction {
+        direction: kept::LoadDirection {
             moment_n_m: p.direction[0],
             force_n: p.direction[1],
             upper_pressure_pa: p.direction[2],
@@ -177,15 +177,15 @@ pub fn json(report: &Report) -> String {
         },
         words,
     };
-    let derivatives = |s: &Sensitivity| {
-        let derivatives = kept::Derivatives {
+    let derivatives = |s: &ModeSensitivity| {
+        let derivatives = kept::ModeDerivatives {
             value: s.parameter.value,
             growth_rate_1_s: s.s.iter().map(|ds| Some(ds.re)).collect(),
             frequency_hz: s.s.iter().map(|ds| Some(ds.im / std::f64::consts::TAU)).collect(),
         };
         (s.parameter.pointer.clone(), derivatives)
     };
-    results::text(&kept::Modes {
+    results::text(&kept::ModesRecord {
         case: report.case.into(),
         about: report.about(),
         state: Some(report.state),
@@ -199,7 +199,7 @@ pub fn json(report: &Report) -> String {
         modes: with_bands(found.modes.iter().map(mode).collect(), report.bands),
         coupling: report.passivity().map(coupling),
         sensitivities: report.sensitivities.iter().map(derivatives).collect(),
-        solver: kept::Work {
+        solver: kept::SearchWork {
             factorizations: found.factorizations,
             solves: found.solves,
             all_at_once: found.dense,
@@ -209,8 +209,8 @@ pub fn json(report: &Report) -> String {
     })
 }
 
-fn mode(mode: &Mode) -> kept::Mode {
-    kept::Mode {
+fn mode(mode: &Mode) -> kept::ModeRecord {
+    kept::ModeRecord {
         kind: mode.kind,
         frequency_hz: mode.frequency_hz(),
         damping_ratio: mode.damping_ratio(),
@@ -233,13 +233,13 @@ fn mode(mode: &Mode) -> kept::Mode {
 
 /// Adds the bands of their own figures to modes. A rank counts all oscillating modes, of which some may be missing here, and equal modes
 /// may be in another order. Modes are therefore matched by their values.
-fn with_bands(mut modes: Vec<kept::Mode>, bands: &Bands) -> Vec<kept::Mode> {
+fn with_bands(mut modes: Vec<kept::ModeRecord>, bands: &Bands) -> Vec<kept::ModeRecord> {
     for rank in 1.. {
         let of = |figure: &str| bands.get(&format!("mode_{rank}.{figure}"));
         let Some(frequency) = of("frequency_hz") else {
             return modes;
         };
-        let alike = |mode: &&mut kept::Mode| {
+        let alike = |mode: &&mut kept::ModeRecord| {
             let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * mode.angular_frequency_per_s;
             mode.bands.is_empty()
                 && mode.frequency_hz.is_some_and(|hz| near(hz, frequency.value))
@@ -368,7 +368,7 @@ const UNSTABLE: Colour = Colour(0xb0, 0x1c, 0x2e);
 fn moves(mode: &Mode) -> &'static str {
     let shape = &mode.shape;
     match shape.transverse() {
-        _ if mode.kind == Kind::Volume || shape.displacement() == 0.0 => "fluid",
+        _ if mode.kind == TimeBehavior::Volume || shape.displacement() == 0.0 => "fluid",
         share if share > 0.9 => "across",
         share if share < 0.1 => "along",
         _ => "both",

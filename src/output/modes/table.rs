@@ -6,7 +6,7 @@ use super::{Report, moves};
 use crate::output::columns::{aligned, cells};
 use crate::output::numbers::{counted, percent, quantity, significant};
 use crate::output::records::{self, number};
-use crate::run::modes::{Kind, Limit, Mode};
+use crate::run::modes::{LimitingMode, Mode, TimeBehavior};
 
 /// Largest number of digits shown.
 const DIGITS: f64 = 6.0;
@@ -77,8 +77,16 @@ fn staying(report: &Report) -> String {
         n => Some(format!("{n} {one}s ({what})")),
     };
     let all: Vec<String> = [
-        described(count(Kind::Rigid), Kind::Rigid.word(), "nothing holds them"),
-        described(count(Kind::Volume), Kind::Volume.word(), "fluid of closed networks"),
+        described(
+            count(TimeBehavior::Rigid),
+            TimeBehavior::Rigid.word(),
+            "nothing holds them",
+        ),
+        described(
+            count(TimeBehavior::Volume),
+            TimeBehavior::Volume.word(),
+            "fluid of closed networks",
+        ),
     ]
     .into_iter()
     .flatten()
@@ -93,7 +101,7 @@ fn line(number: usize, mode: &Mode) -> [String; 11] {
     let cell = |value: Option<f64>, error: f64, unit: &str| {
         value.map_or(String::new(), |value| quantity(value, unit, digits(value, error)))
     };
-    let limit = |limit: &Option<Limit>| limit.map_or(String::new(), |l| quantity(l.frequency_hz, "Hz", 5));
+    let limit = |limit: &Option<LimitingMode>| limit.map_or(String::new(), |l| quantity(l.frequency_hz, "Hz", 5));
     let size = mode.s.norm();
     [
         number.to_string(),

@@ -13,8 +13,8 @@ use crate::case::readable;
 use crate::error::{Result, visible};
 use crate::results;
 use crate::study::optimize::Optimised;
-use crate::study::optimize::found::Design;
-use crate::study::optimize::problem::Problem;
+use crate::study::optimize::found::ComputedDesign;
+use crate::study::optimize::problem::OptimizationProblem;
 use crate::study::sweep::unit::unit;
 
 pub use words::{place, ranked, words};
@@ -32,7 +32,7 @@ pub const BEST: &str = "optimum-case.json";
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) -> Result<()> {
+pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &Optimised) -> Result<()> {
     let (own, best) = (problem.case.written(), found.case.written());
     let mut files = vec![
         (CSV, table(problem, found)),
@@ -44,7 +44,7 @@ pub fn write(folder: &mut ResultFolder, problem: &Problem, found: &Optimised) ->
     folder.fill_with_both([&own, &best], files).map(|_| ())
 }
 
-fn table(problem: &Problem, found: &Optimised) -> String {
+fn table(problem: &OptimizationProblem, found: &Optimised) -> String {
     let (searches, alternatives) = (found.optimum.starts.len(), &found.optimum.alternatives);
     let choice = (!alternatives.is_empty()).then_some("alternative");
     let begin = ["design"].into_iter().chain(choice).chain(["search"]).map(String::from);
@@ -79,13 +79,13 @@ fn table(problem: &Problem, found: &Optimised) -> String {
 const DRAWN: usize = 6;
 
 /// Picture of the figure over the designs in order, and over each varied number.
-fn drawn(problem: &Problem, found: &Optimised) -> Option<String> {
+fn drawn(problem: &OptimizationProblem, found: &Optimised) -> Option<String> {
     let optimum = &found.optimum;
     let name = readable::figure_name(&optimum.goal.figure);
     let figures = || found.history.iter().filter_map(|one| Some(one.figures.as_ref()?[0]));
     extent(figures())?;
     let y = PictureAxis::new(name, unit(&optimum.goal.figure), 5).with(&figures().collect::<Vec<_>>());
-    let panel = |x: PictureAxis, at: &dyn Fn(usize, &Design) -> f64, best: Option<f64>| {
+    let panel = |x: PictureAxis, at: &dyn Fn(usize, &ComputedDesign) -> f64, best: Option<f64>| {
         let held = |wanted: bool| {
             let all = found
                 .history

@@ -6,7 +6,7 @@ use crate::error::visible;
 use crate::output::columns::{table, warnings};
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::sweep::words::several;
-use crate::results::optimum::{Bound, Compared, Derivatives, Held, Optimum, Variable};
+use crate::results::optimum::{Bound, ComparedAlternative, DerivativeSource, Held, Optimum, Variable};
 
 /// Largest number of alternatives listed.
 const SHOWN: usize = 12;
@@ -84,8 +84,8 @@ fn alike(failed: &BTreeMap<String, usize>) -> Vec<(String, usize)> {
 fn how(found: &Optimum) -> &'static str {
     match found.derivatives {
         _ if found.variables.is_empty() => "",
-        Derivatives::Differences => " with derivatives by differences",
-        Derivatives::Exact => " with exact derivatives",
+        DerivativeSource::Differences => " with derivatives by differences",
+        DerivativeSource::Exact => " with exact derivatives",
     }
 }
 
@@ -94,7 +94,7 @@ fn alternatives(found: &Optimum) -> String {
     if found.alternatives.is_empty() {
         return String::new();
     }
-    let line = |one: &Compared| {
+    let line = |one: &ComparedAlternative| {
         let note = match (&one.reason, one.held) {
             (Some(reason), _) => visible(reason).into_owned(),
             (None, true) => String::new(),
@@ -114,16 +114,16 @@ fn alternatives(found: &Optimum) -> String {
 }
 
 /// Alternatives, the best first: those within the limits, then those beyond a limit, then those without a value.
-pub fn ranked(found: &Optimum) -> Vec<&Compared> {
+pub fn ranked(found: &Optimum) -> Vec<&ComparedAlternative> {
     let sign = found.goal.sign();
-    let key = |one: &Compared| {
+    let key = |one: &ComparedAlternative| {
         (
             one.value.is_none(),
             !one.held,
             one.value.map_or(0.0, |value| sign * value),
         )
     };
-    let mut all: Vec<&Compared> = found.alternatives.iter().collect();
+    let mut all: Vec<&ComparedAlternative> = found.alternatives.iter().collect();
     all.sort_by(|a, b| {
         let (a, b) = (key(a), key(b));
         (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))

@@ -3,24 +3,24 @@
 use std::collections::BTreeMap;
 
 use crate::output::numbers::{percent, quantity, significant};
-use crate::results::cycles::Along;
+use crate::results::cycles::CyclePath;
 use crate::results::run::Quantity;
-use crate::study::analysis::power::{self, Figure};
-use crate::study::stability::Member;
+use crate::study::analysis::power::{self, CycleFigure};
+use crate::study::stability::CycleMember;
 
 /// Energy figures of the cycle of one value.
-pub fn energies(member: &Member) -> Vec<Figure> {
+pub fn energies(member: &CycleMember) -> Vec<CycleFigure> {
     power::figures(&member.quantities, member.floquet.period_s)
 }
 
 /// Names of the columns: every figure of a cycle, followed by its error.
-pub fn columns(found: &Along) -> Vec<String> {
+pub fn columns(found: &CyclePath) -> Vec<String> {
     let all = found.members.first().map_or(vec![], energies);
     all.iter().flat_map(|f| [f.name.clone(), f.open_name()]).collect()
 }
 
 /// A figure or its error, by the name of its column.
-pub fn column(figures: &[Figure], name: &str) -> Option<f64> {
+pub fn column(figures: &[CycleFigure], name: &str) -> Option<f64> {
     figures.iter().find_map(|f| match name == f.name {
         true => Some(f.value),
         false => f.open.filter(|_| name == f.open_name()),
@@ -28,14 +28,14 @@ pub fn column(figures: &[Figure], name: &str) -> Option<f64> {
 }
 
 /// Figures shown if turbines harvest: energy, mean power, efficiency; empty without turbines.
-pub fn harvested(found: &Along) -> Vec<Figure> {
+pub fn harvested(found: &CyclePath) -> Vec<CycleFigure> {
     let all = found.members.first().map_or(vec![], energies);
-    let put_in = |f: &Figure| f.name.starts_with("input");
+    let put_in = |f: &CycleFigure| f.name.starts_with("input");
     all.into_iter().filter(|f| !put_in(f)).collect()
 }
 
 /// Headings of figures, with units.
-pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
+pub fn headings(shown: &[CycleFigure]) -> impl Iterator<Item = String> + use<'_> {
     shown.iter().map(|f| match f.unit {
         "1" => f.words.into(),
         unit => format!("{} [{unit}]", f.words),
@@ -43,7 +43,7 @@ pub fn headings(shown: &[Figure]) -> impl Iterator<Item = String> + use<'_> {
 }
 
 /// Values of figures in one cycle, with errors.
-pub fn shown(member: &Member, shown: &[Figure]) -> Vec<String> {
+pub fn shown(member: &CycleMember, shown: &[CycleFigure]) -> Vec<String> {
     let figures = energies(member);
     let cell = |name: &str| {
         let f = figures.iter().find(|f| f.name == name)?;
@@ -65,7 +65,7 @@ pub fn lines(
     let all = power::figures(quantities, period);
     // the input is listed as an energy; its mean power is in the table of a sweep
     let listed = all.iter().filter(|f| !f.name.starts_with("input_power"));
-    let line = |f: &Figure| {
+    let line = |f: &CycleFigure| {
         let value = match f.unit {
             "1" => percent(f.value),
             unit => quantity(f.value, unit, 4),

@@ -18,10 +18,10 @@ use crate::case::readable;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
-use crate::results::cycles::{Along, Search, Stability};
+use crate::results::cycles::{CyclePath, CycleStability, ShootingRecord};
 use crate::results::run::Summary;
-use crate::run::sensitivity::figures::Sensitivity;
-use crate::study::stability::Member;
+use crate::run::sensitivity::figures::FigureSensitivity;
+use crate::study::stability::CycleMember;
 
 /// Stability and search of a cycle, in its result folder.
 pub const CYCLE: &str = "cycle.json";
@@ -30,7 +30,7 @@ pub const CYCLE: &str = "cycle.json";
 pub const SHOWN: [Interest; 3] = [Interest::TipU1, Interest::TipU3, Interest::MaxPressure];
 
 /// Largest value of a quantity over the period.
-pub fn largest(member: &Member, one: Interest) -> Option<f64> {
+pub fn largest(member: &CycleMember, one: Interest) -> Option<f64> {
     member.quantities.get(one.name()).and_then(|q| q.window_max_abs)
 }
 
@@ -40,7 +40,7 @@ fn short(one: Interest) -> &'static str {
 }
 
 /// Text of `sweep.csv`: one row per cycle. Energies, mean powers and the efficiency have the names of the table of `slcbeam sweep`.
-pub fn csv(found: &Along) -> String {
+pub fn csv(found: &CyclePath) -> String {
     let parameter = format!("{} [as in the case]", found.pointer);
     let motion = "largest |tip_u1| [m],largest |tip_u3| [m],largest pressure [Pa]".split(',');
     let stability = "growth rate [1/s],multiplier real part [1],multiplier imaginary part [1],steps [1],unknowns [1],wall time [s],verdict";
@@ -68,7 +68,7 @@ pub fn csv(found: &Along) -> String {
 }
 
 /// Table of the cycles, and the work.
-pub fn words(found: &Along) -> String {
+pub fn words(found: &CyclePath) -> String {
     let harvested = energies::harvested(found);
     let energies: String = energy_headings(&harvested)
         .map(|heading| format!(" | {heading}"))
@@ -110,24 +110,24 @@ pub fn words(found: &Along) -> String {
 }
 
 /// Writes the files of a sweep into a folder.
-pub fn write(folder: &mut ResultFolder, found: &Along) -> Result<Vec<PathBuf>> {
+pub fn write(folder: &mut ResultFolder, found: &CyclePath) -> Result<Vec<PathBuf>> {
     let mut files = vec![("sweep.csv", csv(found)), ("sweep.json", results::text(found))];
     files.extend(picture(found).map(|text| ("sweep.svg", text)));
     folder.fill(files)
 }
 
 /// Picture of the cycles along the parameter, one panel per quantity; orange rings: unstable cycles.
-fn picture(found: &Along) -> Option<String> {
+fn picture(found: &CyclePath) -> Option<String> {
     found.members.first()?;
     let (name, unit) = (
         readable::pointer_name(&found.pointer),
         readable::pointer_unit(&found.pointer),
     );
     let x = PictureAxis::new(name, unit, 7).logarithmic(found.logarithmic);
-    let panel = |name: &str, unit: &str, value: &dyn Fn(&Member) -> Option<f64>| {
-        let point = |m: &Member| Some((m.value, value(m)?));
+    let panel = |name: &str, unit: &str, value: &dyn Fn(&CycleMember) -> Option<f64>| {
+        let point = |m: &CycleMember| Some((m.value, value(m)?));
         let points: Vec<_> = found.members.iter().map(point).collect::<Option<_>>()?;
-        let unstable = |m: &Member| m.floquet.verdict.stability == Stability::Unstable;
+        let unstable = |m: &CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
         let of = |which: bool| {
             let all = points
                 .iter()
@@ -174,7 +174,7 @@ pub fn figures(summary: &Summary, period: f64, error: &dyn Fn(&str) -> Option<f6
 
 /// Text of the relative changes of the figures over the period for an increase of each number by 1 %.
 pub fn slopes(summary: &Summary) -> String {
-    let of = |(pointer, by): (&String, &Sensitivity)| {
+    let of = |(pointer, by): (&String, &FigureSensitivity)| {
         let shown = SHOWN.iter().map(|one| (*one, short(*one), "largest "));
         let energies = [
             (Interest::InputEnergy, "energy put in", ""),
@@ -197,7 +197,7 @@ pub fn slopes(summary: &Summary) -> String {
 }
 
 /// Text of the work of the search.
-pub fn search(search: &Search) -> String {
+pub fn search(search: &ShootingRecord) -> String {
     format!(
         "found in {} over {}: {}, {}, {}; it returns to {:.1e} of the tolerance\n",
         counted(search.newton_steps, "Newton step"),

@@ -5,7 +5,7 @@ use super::colour::Colour;
 use super::extent;
 use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use crate::output::numbers::significant;
-use crate::study::effects::Verdict;
+use crate::study::effects::EffectVerdict;
 
 /// A model that is compared with the full one.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Bar {
     /// Work, relative to that of the model it is compared with.
     pub work: f64,
     /// Verdict on an effect; absent for combined choices.
-    pub verdict: Option<Verdict>,
+    pub verdict: Option<EffectVerdict>,
 }
 
 /// Data of the picture.
@@ -127,11 +127,11 @@ pub fn draw(data: &AblationBars) -> Option<String> {
 }
 
 /// Meaning and color of a bar.
-fn meaning(verdict: Option<Verdict>) -> (&'static str, Colour) {
+fn meaning(verdict: Option<EffectVerdict>) -> (&'static str, Colour) {
     match verdict {
-        Some(Verdict::Needed | Verdict::Failed) => ("needed", NEEDED),
-        Some(Verdict::Saves) => ("saves", Colour(0x2f, 0x85, 0x5a)),
-        Some(Verdict::Harmless) => ("harmless", Colour(0x8b, 0xa6, 0xc1)),
+        Some(EffectVerdict::Needed | EffectVerdict::Failed) => ("needed", NEEDED),
+        Some(EffectVerdict::Saves) => ("saves", Colour(0x2f, 0x85, 0x5a)),
+        Some(EffectVerdict::Harmless) => ("harmless", Colour(0x8b, 0xa6, 0xc1)),
         Some(_) => ("undecided", Colour(0xb9, 0xb3, 0xa6)),
         None => ("a choice as a whole", Colour(0x3b, 0x5b, 0x8c)),
     }

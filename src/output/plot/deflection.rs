@@ -1,7 +1,7 @@
 //! `deflection.svg`: shapes of the beam over the last cycle, blue to red.
 
 use super::picture::{Panel, Picture, PictureAxis, equally_scaled};
-use super::{Span, extent, over_time, time_bar};
+use super::{TimeSpan, extent, over_time, time_bar};
 
 /// Displacements of the beam at a few instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Deflection {
     /// Name of the case.
     pub case: String,
     /// Part of the run that the instants span.
-    pub span: Span,
+    pub span: TimeSpan,
     /// Times [s].
     pub times: Vec<f64>,
     /// Material coordinate [m].

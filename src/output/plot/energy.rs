@@ -3,7 +3,7 @@
 use super::canvas::Stroke;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{Curve, times_of};
+use super::{PlottedCurve, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Entries of the ledger over time.
@@ -12,7 +12,7 @@ pub struct Energy {
     /// Name of the case.
     pub case: String,
     /// Entries [J]: stored energies, cumulative works, losses, and the residual.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PlottedCurve>,
 }
 
 /// Fraction of the largest entry below which an entry is not drawn.
@@ -23,11 +23,11 @@ pub fn belongs(one: Observable) -> bool {
     one.unit() == "J"
 }
 
-fn is_stored(curve: &Curve) -> bool {
+fn is_stored(curve: &PlottedCurve) -> bool {
     curve.of().is_some_and(|one| one.group() == Group::Stored)
 }
 
-fn is_residual(curve: &Curve) -> bool {
+fn is_residual(curve: &PlottedCurve) -> bool {
     curve.of().is_some_and(|one| one.group() == Group::Open)
 }
 
@@ -36,7 +36,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     let lines = entries(data);
     let x = times_of(lines.iter().copied())?;
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
-    let entry = |(k, curve): (usize, &&Curve)| {
+    let entry = |(k, curve): (usize, &&PlottedCurve)| {
         let stroke = Stroke {
             dash: (!is_stored(curve)).then_some((6.0, 3.5)),
             ..Stroke::solid(PALETTE[k % PALETTE.len()], 1.5)
@@ -72,7 +72,7 @@ pub fn draw(data: &Energy) -> Option<String> {
 }
 
 /// Entries that are not negligible.
-fn entries(data: &Energy) -> Vec<&Curve> {
+fn entries(data: &Energy) -> Vec<&PlottedCurve> {
     let all = data.curves.iter();
     let mut lines: Vec<_> = all.filter(|c| !is_residual(c) && !c.points.is_empty()).collect();
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);

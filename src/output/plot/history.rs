@@ -3,16 +3,16 @@
 use super::canvas::Stroke;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{Curve, times_of};
+use super::{PlottedCurve, times_of};
 use crate::discrete::quantities::{Group, Observable};
 
 /// Curves over time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct History {
+pub struct HistoryPlot {
     /// Name of the case.
     pub case: String,
     /// Curves, matched to quantities by name.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<PlottedCurve>,
 }
 
 /// Groups that are drawn: the first with one panel per quantity, pressures and powers with one panel per unit.
@@ -34,7 +34,7 @@ fn floor(unit: &str) -> f64 {
 }
 
 /// Name beside the vertical axis of a panel.
-fn name(curves: &[&Curve]) -> &'static str {
+fn name(curves: &[&PlottedCurve]) -> &'static str {
     match curves[0].of() {
         Some(one) if one.group() == Group::Pressure => "max, min p",
         Some(one) => one.label(),
@@ -43,13 +43,13 @@ fn name(curves: &[&Curve]) -> &'static str {
 }
 
 /// Draws the picture; `None` if there is nothing to draw.
-pub fn draw(data: &History) -> Option<String> {
+pub fn draw(data: &HistoryPlot) -> Option<String> {
     let shown = panels(data);
     let x = times_of(shown.iter().flatten().copied())?;
     let panels = shown.iter().enumerate().map(|(k, curves)| {
         // the second curve of a panel uses the other half of the palette
         let colour = |c: usize| PALETTE[(k + 5 * c) % PALETTE.len()];
-        let line = |(c, curve): (usize, &&Curve)| {
+        let line = |(c, curve): (usize, &&PlottedCurve)| {
             PictureSeries::line(curve.points.iter().copied(), Stroke::solid(colour(c), 1.2))
         };
         let unit = &*curves[0].unit;
@@ -70,14 +70,14 @@ pub fn draw(data: &History) -> Option<String> {
 }
 
 /// Curves of each panel; omits powers that are zero throughout.
-fn panels(data: &History) -> Vec<Vec<&Curve>> {
-    let mut panels: Vec<Vec<&Curve>> = vec![];
+fn panels(data: &HistoryPlot) -> Vec<Vec<&PlottedCurve>> {
+    let mut panels: Vec<Vec<&PlottedCurve>> = vec![];
     for (one, curve) in data.curves.iter().filter_map(|c| Some((c.of()?, c))) {
         let group = one.group();
         if curve.points.is_empty() || group == Group::Power && curve.max_abs() == 0.0 {
             continue;
         }
-        let joins = |panel: &&mut Vec<&Curve>| {
+        let joins = |panel: &&mut Vec<&PlottedCurve>| {
             let first = panel[0].of();
             group != Group::Tip && first.is_some_and(|first| first.group() == group && first.unit() == one.unit())
         };

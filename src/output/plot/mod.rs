@@ -42,13 +42,13 @@ use crate::discrete::quantities::Observable;
 pub use ablation::AblationBars;
 pub use deflection::Deflection;
 pub use energy::Energy;
-pub use history::History;
+pub use history::HistoryPlot;
 pub use pressure::Pressure;
 pub use workprecision::WorkPrecision;
 
 /// A named line over time.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Curve {
+pub struct PlottedCurve {
     /// Column name, without unit.
     pub name: String,
     /// Unit as in the column.
@@ -57,7 +57,7 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
 }
 
-impl Curve {
+impl PlottedCurve {
     /// The observable with this name, if there is one.
     pub fn of(&self) -> Option<Observable> {
         Observable::named(&self.name)
@@ -72,14 +72,14 @@ impl Curve {
 
 /// Part of a run shown in pictures over space.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Span {
+pub enum TimeSpan {
     /// The last cycle of the drive.
     LastCycle,
     /// Everything.
     WholeRun,
 }
 
-impl Span {
+impl TimeSpan {
     fn label(self) -> &'static str {
         match self {
             Self::LastCycle => "last cycle",
@@ -90,14 +90,14 @@ impl Span {
 
 /// Chooses about `count` instants for a picture over space, evenly spread over the last cycle. Without a frequency, or for a run shorter
 /// than a cycle, they spread over the whole run. Returns indices into `times`.
-pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (Span, Vec<usize>) {
+pub fn instants(times: &[f64], frequency_hz: Option<f64>, count: usize) -> (TimeSpan, Vec<usize>) {
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
-        return (Span::WholeRun, Vec::new());
+        return (TimeSpan::WholeRun, Vec::new());
     };
     let cycle = frequency_hz.filter(|f| *f > 0.0).map(f64::recip);
     let (span, start) = match cycle {
-        Some(cycle) if last - first >= cycle => (Span::LastCycle, last - cycle),
-        _ => (Span::WholeRun, first),
+        Some(cycle) if last - first >= cycle => (TimeSpan::LastCycle, last - cycle),
+        _ => (TimeSpan::WholeRun, first),
     };
     let nearest = |t: f64| {
         let after = times.partition_point(|&x| x < t).min(times.len() - 1);
@@ -123,7 +123,7 @@ pub fn extent(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
 }
 
 /// Text about the displayed part of the run.
-fn about(span: Span, from: f64, to: f64) -> String {
+fn about(span: TimeSpan, from: f64, to: f64) -> String {
     let time = |t: f64| numbers::trimmed(&numbers::quantity(t, "s", 4));
     if from == to {
         return format!("at {}", time(to));
@@ -143,7 +143,7 @@ pub fn over_time(times: &[f64], curves: impl IntoIterator<Item = Vec<(f64, f64)>
 }
 
 /// Time axis of curves; `None` if they have no points.
-fn times_of<'a>(curves: impl Iterator<Item = &'a Curve>) -> Option<PictureAxis> {
+fn times_of<'a>(curves: impl Iterator<Item = &'a PlottedCurve>) -> Option<PictureAxis> {
     let (from, to) = extent(curves.flat_map(|c| c.points.iter().map(|p| p.0)))?;
     Some(PictureAxis::new("time t", "s", 10).between(from, to))
 }

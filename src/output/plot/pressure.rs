@@ -3,7 +3,7 @@
 use super::canvas::Stroke;
 use super::colour::Colour;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
-use super::{Span, extent, over_time, time_bar};
+use super::{TimeSpan, extent, over_time, time_bar};
 
 /// Pressure of all cells at a few instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Pressure {
     /// Name of the case.
     pub case: String,
     /// Part of the run that the instants span.
-    pub span: Span,
+    pub span: TimeSpan,
     /// Times [s].
     pub times: Vec<f64>,
     /// Coordinate along the networks, one per cell.

@@ -32,7 +32,7 @@ pub struct Marker {
 
 /// Point of equal temporal and spatial error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Balance {
+pub struct BalanceMark {
     /// Relative error.
     pub error: f64,
     /// Wall time [s].
@@ -41,7 +41,7 @@ pub struct Balance {
 
 /// Runs with one mesh and scheme.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct MeshLine {
     /// Cells per segment; determines the color.
     pub cells: usize,
     /// Scheme of time integration; determines the marker.
@@ -49,7 +49,7 @@ pub struct Line {
     /// Runs, from loose to tight tolerance.
     pub markers: Vec<Marker>,
     /// Point of equal errors.
-    pub balance: Option<Balance>,
+    pub balance: Option<BalanceMark>,
 }
 
 /// Data of the picture.
@@ -64,7 +64,7 @@ pub struct WorkPrecision {
     /// Largest number of timed runs per point.
     pub repeats: usize,
     /// Lines, ordered by scheme, then by mesh.
-    pub lines: Vec<Line>,
+    pub lines: Vec<MeshLine>,
     /// True if errors in time have their own panel.
     pub split: bool,
 }

@@ -5,15 +5,15 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{Kind, Page, Written, pack, page, warnings};
-use crate::discrete::quantities::{Observable, Role};
+use super::{FolderKind, Page, WrittenPage, pack, page, warnings};
+use crate::discrete::quantities::{Observable, QuantityRole};
 use crate::error::{Error, Result};
 use crate::output::folder::{REPORT, fault, replace_alike};
 use crate::output::numbers::{percent, quantity};
 use crate::study::compare::difference::Difference;
 use crate::study::compare::many::column_at;
-use crate::study::compare::{Beside, Recording};
-use crate::study::fit::beside::{Beside as Data, Column};
+use crate::study::compare::{ManyComparison, Recording};
+use crate::study::fit::beside::{ComparedColumn, DataComparison as Data};
 
 /// Largest number of instants shown of a history.
 const INSTANTS: usize = 1500;
@@ -22,7 +22,7 @@ const INSTANTS: usize = 1500;
 ///
 /// # Errors
 /// The folder contains a result, another file is in the page's place, or the page cannot be written.
-pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside) -> Result<Written> {
+pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &ManyComparison) -> Result<WrittenPage> {
     let names = names(found);
     let name = format!("{} and {}", names[0], others(names.len() - 1));
     let mut page = begun("Results side by side", name);
@@ -49,10 +49,10 @@ pub fn compared(dir: &Path, all: &[Recording], reference: usize, found: &Beside)
 ///
 /// # Errors
 /// The folder contains a result, another file is in the page's place, or the page cannot be written.
-pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<Written> {
+pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<WrittenPage> {
     let name = format!("{} over {}", found.case, file_name(&found.data));
     let mut page = begun("A run over measured data", name);
-    let row = |one: &Column| {
+    let row = |one: &ComparedColumn| {
         let left = &one.left;
         let (rms, largest) = (100.0 * left.rms_relative, 100.0 * left.max_relative);
         let numbers = json!([
@@ -97,8 +97,8 @@ fn begun(label: &str, name: String) -> Page {
     page
 }
 
-fn put(page: &Page, dir: &Path) -> Result<Written> {
-    if Kind::find(dir).is_ok() {
+fn put(page: &Page, dir: &Path) -> Result<WrittenPage> {
+    if FolderKind::find(dir).is_ok() {
         return Err(Error::Usage(format!(
             "--out {}: the folder contains a result whose page would be overwritten; name another folder",
             dir.display()
@@ -108,7 +108,7 @@ fn put(page: &Page, dir: &Path) -> Result<Written> {
     let path = dir.join(REPORT);
     let text = page::assemble(page);
     replace_alike(&path, &text, &["<!doctype html"])?;
-    Ok(Written {
+    Ok(WrittenPage {
         path,
         bytes: text.len(),
     })
@@ -128,7 +128,7 @@ fn others(count: usize) -> String {
 }
 
 /// Names of the results: the last part of each folder, or the full path if two end alike.
-fn names(found: &Beside) -> Vec<String> {
+fn names(found: &ManyComparison) -> Vec<String> {
     let folders = found.folders();
     let all: Vec<String> = folders.iter().map(|folder| file_name(folder)).collect();
     let twice = |name: &String| all.iter().filter(|own| *own == name).count() > 1;
@@ -140,8 +140,8 @@ fn names(found: &Beside) -> Vec<String> {
 }
 
 /// Sentences about the largest differences, first among the headline quantities.
-fn answer(found: &Beside, names: &[String]) -> String {
-    let headline = |d: &&Difference| Observable::named(&d.name).is_some_and(|one| one.role() == Role::Headline);
+fn answer(found: &ManyComparison, names: &[String]) -> String {
+    let headline = |d: &&Difference| Observable::named(&d.name).is_some_and(|one| one.role() == QuantityRole::Headline);
     let largest = |of: &dyn Fn(&&Difference) -> bool| {
         let all = found.comparisons.iter().zip(&names[1..]).flat_map(|(one, name)| {
             let histories = one.histories.iter().chain(&one.fields).filter(|d| of(d));
@@ -189,7 +189,7 @@ fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
             let packed = values.iter().map(|v| pack::numbers(v.as_ref().unwrap_or(&none).iter().copied()));
             json!({
                 "name": column.name, "unit": column.unit, "label": one.map_or(column.name.as_str(), |one| one.label()),
-                "about": one.map_or("", Observable::about), "usual": one.is_some_and(|one| one.role() == Role::Headline),
+                "about": one.map_or("", Observable::about), "usual": one.is_some_and(|one| one.role() == QuantityRole::Headline),
                 "values": packed.collect::<Vec<_>>(),
             })
         })
@@ -209,7 +209,7 @@ fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
     })
 }
 
-fn tables(found: &Beside, names: &[String]) -> Vec<Value> {
+fn tables(found: &ManyComparison, names: &[String]) -> Vec<Value> {
     let columns = |first: &[&str], each: &dyn Fn(&String) -> Vec<String>| -> Vec<String> {
         let first = first.iter().map(ToString::to_string);
         first.chain(names[1..].iter().flat_map(each)).collect()

@@ -2,23 +2,23 @@
 
 use serde_json::{Value, json};
 
-use super::{Found, Kind, MOST_ROWS, Page, Place, capital};
+use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::periodic::{SHOWN, energies, largest};
-use crate::results::cycles::{Along, Cycle, Map, Stability};
+use crate::results::cycles::{CyclePath, CycleResult, CycleStability, Map};
 use crate::run::floquet::Multiplier;
-use crate::run::floquet::shape::Part;
+use crate::run::floquet::shape::EnergyPart;
 use crate::study::refine::numbers;
-use crate::study::stability::Member;
+use crate::study::stability::CycleMember;
 
 /// Name of the growth rate of a disturbance.
 const GROWTH: &str = "growth_per_s";
 
 /// Table of the multipliers.
-fn multipliers(found: &Cycle) -> Value {
+fn multipliers(found: &CycleResult) -> Value {
     let banded = !found.bands.is_empty();
     let names: Vec<String> = numbers::named(&found.floquet)
         .into_iter()
@@ -32,9 +32,9 @@ fn multipliers(found: &Cycle) -> Value {
     };
     let row = |(k, m): (usize, &Multiplier)| {
         let part = match m.part {
-            Part::Bending(mode) => format!("bending mode {mode}"),
-            Part::Along => "motion along".into(),
-            Part::Fluid => "fluid".into(),
+            EnergyPart::Bending(mode) => format!("bending mode {mode}"),
+            EnergyPart::Along => "motion along".into(),
+            EnergyPart::Fluid => "fluid".into(),
         };
         let before = [m.re, m.im, m.modulus, m.growth_per_s].map(Value::from);
         let behind = [json!(m.frequency_hz), json!(part), json!(m.share)];
@@ -63,7 +63,7 @@ fn multipliers(found: &Cycle) -> Value {
 }
 
 /// Sentences about the stability of a cycle and the search for it.
-pub fn answer(found: &Cycle) -> String {
+pub fn answer(found: &CycleResult) -> String {
     format!(
         "{}. The cycle of {} s was found in {} over {}, with {} a period.",
         capital(&found.floquet.verdict.words),
@@ -75,19 +75,19 @@ pub fn answer(found: &Cycle) -> String {
 }
 
 /// Additions from `cycle.json` to the page of a cycle's run.
-pub fn of_cycle(found: &Cycle) -> Value {
+pub fn of_cycle(found: &CycleResult) -> Value {
     json!([{"title": "Stability of the cycle", "text": answer(found), "table": multipliers(found)}])
 }
 
 /// Page of `floquet`.
 pub fn floquet(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Cycle>(Kind::Floquet.sign())?;
-    let mut page = place.page(Kind::Floquet, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<CycleResult>(FolderKind::Floquet.sign())?;
+    let mut page = place.page(FolderKind::Floquet, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let (word, tone) = match found.floquet.verdict.stability {
-        Stability::Unstable => ("unstable", "bad"),
-        Stability::Neutral => ("neutral", "fair"),
-        Stability::Stable => ("stable", "good"),
+        CycleStability::Unstable => ("unstable", "bad"),
+        CycleStability::Neutral => ("neutral", "fair"),
+        CycleStability::Stable => ("stable", "good"),
     };
     page.fill(json!({
         "label": "Stability of the steady cycle", "status": {"word": word, "tone": tone, "reason": null}, "answer": answer(&found),
@@ -102,8 +102,8 @@ pub fn floquet(place: &Place) -> Result<Page> {
 
 /// Page of `floquet --map`.
 pub fn map(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Map>(Kind::Map.sign())?;
-    let mut page = place.page(Kind::Map, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<Map>(FolderKind::Map.sign())?;
+    let mut page = place.page(FolderKind::Map, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let (mut rows, mut answers, mut all) = (vec![], vec![], 0);
     for sheet in &found.sheets {
@@ -153,17 +153,17 @@ pub fn map(place: &Place) -> Result<Page> {
 
 /// Page of `periodic --sweep`.
 pub fn sweep(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Along>(Kind::Sweep.sign())?;
-    let Along {
+    let StoredResult { result: found, head } = place.result::<CyclePath>(FolderKind::Sweep.sign())?;
+    let CyclePath {
         pointer,
         members,
         missing,
         logarithmic,
         ..
     } = &found;
-    let mut page = place.page(Kind::Sweep, &found.case, Some(&head));
+    let mut page = place.page(FolderKind::Sweep, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
-    let unstable = |m: &&Member| m.floquet.verdict.stability == Stability::Unstable;
+    let unstable = |m: &&CycleMember| m.floquet.verdict.stability == CycleStability::Unstable;
     let (low, high) = members.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| {
         (l.min(m.value), h.max(m.value))
     });
@@ -181,7 +181,7 @@ pub fn sweep(place: &Place) -> Result<Page> {
             .flat_map(|f| [format!("{} [{}]", f.words, f.unit), "± of it".into()]),
     );
     headings.extend(["growth [1/s]", "verdict"].map(String::from));
-    let row = |m: &Member| {
+    let row = |m: &CycleMember| {
         let verdict = &m.floquet.verdict;
         let mut row = vec![json!(m.value)];
         row.extend(SHOWN.map(|one| json!(largest(m, one))));

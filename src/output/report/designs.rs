@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::{Found, Kind, MOST_ROWS, Page, Place, capital, pack};
+use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital, pack};
 use crate::error::Result;
 use crate::output::folder::{CASE, REPORT};
 use crate::output::sweep::words::{kinds, several};
 use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, pictures, table, warnings};
-use crate::results::sweep::{Plan, Sweep};
+use crate::results::sweep::{Sweep, SweepPlan};
 
 /// Largest number of columns of the page's table; the file contains the rest.
 const MOST_COLUMNS: usize = 40;
@@ -15,7 +15,7 @@ const MOST_COLUMNS: usize = 40;
 /// Page of `sweep`.
 pub fn data(place: &Place) -> Result<Page> {
     // a sweep that was killed has no table yet
-    let Found { result: mut plan, head } = place.result::<Plan>(Kind::Designs.sign())?;
+    let StoredResult { result: mut plan, head } = place.result::<SweepPlan>(FolderKind::Designs.sign())?;
     // commands on the page refer to its own folder, which contains the case
     if let [case] = &mut plan.cases[..]
         && place.path(CASE).is_file()
@@ -24,7 +24,7 @@ pub fn data(place: &Place) -> Result<Page> {
     }
     let survey = Survey::of(&place.path(JOURNAL), &plan)?;
     let found = about(&plan, &survey);
-    let mut page = place.page(Kind::Designs, &plan.title(), Some(&head));
+    let mut page = place.page(FolderKind::Designs, &plan.title(), Some(&head));
     page.warnings = warnings(&plan, &survey)?;
     let kinds = kinds(found.statuses.iter().map(|(status, n)| (&**status, n)));
     let missing = match found.missing {
@@ -77,7 +77,7 @@ fn rows(place: &Place, found: &Sweep, survey: &Survey) -> Result<Value> {
                 .into_iter()
                 .zip(&found.columns)
                 .take(columns);
-            let value = |(text, column): (String, &crate::results::sweep::Column)| match column.array {
+            let value = |(text, column): (String, &crate::results::sweep::SweepColumn)| match column.array {
                 Some(_) => text.parse::<f64>().map_or(Value::from(text), Value::from),
                 None => Value::from(text),
             };

@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::history::History;
+use super::history::ReportHistory;
 use crate::discrete::quantities::{Group, Observable};
 use crate::run::summary::Summary;
 
 /// Entries of the ledger, and names of the columns drawn over time.
-pub fn of(summary: &Summary, history: &History) -> Value {
+pub fn of(summary: &Summary, history: &ReportHistory) -> Value {
     let of = |groups: &[Group]| -> Vec<Observable> { groups.iter().copied().flat_map(Observable::grouped).collect() };
     let stored = of(&[Group::Stored]);
     let comes_in = of(&[Group::PutIn, Group::Added]);

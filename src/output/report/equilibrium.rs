@@ -4,13 +4,13 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{Found, Kind, Page, Place, pack, sheet};
+use super::{FolderKind, Page, Place, StoredResult, pack, sheet};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
 use crate::output::folder::{CASE, open};
 use crate::output::numbers::{counted, duration, quantity, significant, trimmed};
-use crate::results::equilibrium::Equilibrium;
+use crate::results::equilibrium::EquilibriumPath;
 use crate::results::run::Status;
 
 /// Largest number of states whose shapes are on the page.
@@ -38,8 +38,8 @@ const TILES: [(&str, &str, &str, &str); 4] = [
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Equilibrium>(JSON)?;
-    let mut page = place.page(Kind::Equilibrium, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<EquilibriumPath>(JSON)?;
+    let mut page = place.page(FolderKind::Equilibrium, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let at = found.loads_at_s;
     // share of the loads of the last stage, if it was reached
@@ -84,7 +84,7 @@ pub fn data(place: &Place) -> Result<Page> {
 }
 
 /// Argument with the stages before the last one.
-fn via(found: &Equilibrium) -> String {
+fn via(found: &EquilibriumPath) -> String {
     // stages of valves need no argument
     let asked = found.via_s.iter().filter(|_| found.valves_s.is_empty());
     let instants: Vec<String> = asked.map(f64::to_string).collect();
@@ -94,7 +94,7 @@ fn via(found: &Equilibrium) -> String {
     }
 }
 
-fn answer(found: &Equilibrium, share: f64) -> String {
+fn answer(found: &EquilibriumPath, share: f64) -> String {
     let short = |x: f64| trimmed(&significant(x, 4));
     let loads = match found.via_s.last() {
         None => format!(

@@ -98,7 +98,7 @@ pub fn effects(summary: &Summary) -> Vec<Value> {
         let text = effect.map(|effect| effect.note().trim()).or(other);
         text.unwrap_or_default().replace('`', "")
     };
-    let row = |(name, chosen): (&String, &crate::run::summary::Chosen)| json!({"name": name, "value": chosen.value, "reason": chosen.reason, "about": described(name)});
+    let row = |(name, chosen): (&String, &crate::run::summary::ProgramChoice)| json!({"name": name, "value": chosen.value, "reason": chosen.reason, "about": described(name)});
     summary.effects.iter().map(row).collect()
 }
 

@@ -2,18 +2,18 @@
 
 use serde_json::json;
 
-use super::{Found, Kind, Page, Place};
+use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::fit::{CSV, FITTED, JSON, PICTURE};
 use crate::output::numbers::{counted, duration, significant};
-use crate::results::fit::{Bound, Estimate, Fit};
+use crate::results::fit::{Bound, Fit, FittedNumber};
 
 /// Page of `fit`.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Fit>(JSON)?;
-    let mut page = place.page(Kind::Fit, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<Fit>(JSON)?;
+    let mut page = place.page(FolderKind::Fit, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
-    let tile = |one: &Estimate| {
+    let tile = |one: &FittedNumber| {
         let error = one
             .standard_error
             .map_or(String::new(), |error| format!(" ± {}", significant(error, 2)));
@@ -25,7 +25,7 @@ pub fn data(place: &Place) -> Result<Page> {
         };
         json!({"label": one.pointer, "value": format!("{}{error}", significant(one.value, 5)), "note": note})
     };
-    let row = |(k, one): (usize, &Estimate)| {
+    let row = |(k, one): (usize, &FittedNumber)| {
         let interval = |k: usize| one.interval_95.map(|i| i[k]);
         let cells = json!([
             one.pointer,

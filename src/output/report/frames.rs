@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::pack;
-use crate::discrete::quantities::Field;
+use crate::discrete::quantities::BeamField;
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
 use crate::output::npz::Npz;
@@ -95,12 +95,12 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
         "theta": pack::numbers(nodes.iter().map(|&k| theta[k])),
         "nodes_recorded": theta.len(),
         "cycle": cycle,
-        "whole": span == plot::Span::WholeRun,
+        "whole": span == plot::TimeSpan::WholeRun,
         "frequency_hz": frequency,
         "u1": field("u1_m", &alone)?,
         "u3": field("u3_m", &alone)?,
         "curvature": field("curvature_1_m", &alone)?,
-        "angle": field(Field::SectionAngle.name(), &beside)?,
+        "angle": field(BeamField::SectionAngle.name(), &beside)?,
         "pressure": field("pressure_pa", &groups)?,
         "x_f": first("x_f"),
         "bladder": first("bladder"),

@@ -3,9 +3,9 @@
 use serde_json::{Map, Value, json};
 
 use super::pack;
-use crate::discrete::quantities::{Group, Observable, Role};
+use crate::discrete::quantities::{Group, Observable, QuantityRole};
 use crate::error::Result;
-use crate::output::envelope::{Envelope, History as Recorded, Source, each_row};
+use crate::output::envelope::{Envelope, HistorySource as Recorded, RowOrigin, each_row};
 use crate::output::folder::{ENVELOPE, HISTORY};
 use crate::output::numbers::count;
 
@@ -14,7 +14,7 @@ const STRETCHES: usize = 2000;
 
 /// A history and its first and last rows.
 #[derive(Clone, Debug, Default)]
-pub struct History {
+pub struct ReportHistory {
     /// Thinned columns; the first is time.
     columns: Vec<Vec<f64>>,
     names: Vec<(String, String)>,
@@ -25,7 +25,7 @@ pub struct History {
     stretches: u64,
 }
 
-impl History {
+impl ReportHistory {
     /// Reads what was recorded; empty if the run ended before its first row.
     pub fn read(recorded: Recorded) -> Result<Self> {
         if let Recorded::Folder(dir) = recorded
@@ -40,10 +40,10 @@ impl History {
                 found.names = names.to_vec();
                 envelope = Envelope::new(found.names.clone(), STRETCHES);
             }
-            if source != Source::Covered {
+            if source != RowOrigin::Covered {
                 envelope.push(row);
             }
-            if source == Source::Rest {
+            if source == RowOrigin::Rest {
                 found.stretches += 1;
                 return;
             }
@@ -125,12 +125,14 @@ fn spoken(name: &str) -> String {
 
 /// True if a quantity is shown by default: headlines, and all quantities of the pressure group.
 fn usual(one: Observable) -> bool {
-    one.role() == Role::Headline || one.group() == Group::Pressure
+    one.role() == QuantityRole::Headline || one.group() == Group::Pressure
 }
 
 /// Labels of the headline quantities, by name.
 pub fn headlines() -> Value {
-    let all = Observable::ALL.iter().filter(|one| one.role() == Role::Headline);
+    let all = Observable::ALL
+        .iter()
+        .filter(|one| one.role() == QuantityRole::Headline);
     let labelled = all.map(|one| (one.name().to_string(), one.label().into()));
     Value::Object(labelled.collect())
 }

@@ -6,7 +6,7 @@ use super::pack;
 use crate::case::schema::Load;
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::Signal;
-use crate::model::Network;
+use crate::model::ResolvedNetwork;
 use crate::model::network::Feed;
 
 /// Largest number of signals.
@@ -22,7 +22,7 @@ struct Input<'a> {
 /// Columns of all inputs that vary in time, at the instants of a history. If `joined`, pairs of instants stand for stretches of time, and
 /// the values are the extremes of the signal in each.
 pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
-    let network = Network::of(case).ok().flatten();
+    let network = ResolvedNetwork::of(case).ok().flatten();
     let ends = [("root", case.ends.root.resolve()), ("tip", case.ends.tip.resolve())];
     let mut all = loads(case);
     for (name, end) in &ends {
@@ -110,7 +110,7 @@ fn of_end<'a>(name: &str, end: &'a ResolvedEnd, all: &mut Vec<Input<'a>>) {
     }
 }
 
-fn of_network<'a>(network: &'a Network, all: &mut Vec<Input<'a>>) {
+fn of_network<'a>(network: &'a ResolvedNetwork, all: &mut Vec<Input<'a>>) {
     for port in &network.ports {
         all.push(Input {
             label: format!("pressure at {}", port.name),

@@ -62,14 +62,14 @@ pub use compared::{compared, over_data};
 
 use super::envelope::Remembered;
 use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, put_whole, replace_alike, text_of};
-use super::kind::Kind;
+use super::kind::FolderKind;
 use super::uncertainty::{self, UNCERTAINTY};
 use crate::case::{self, Case};
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::numerics::threads::begin;
 use crate::results::uncertainty::Uncertainty;
-use crate::results::{Found, Head, Kept};
+use crate::results::{Head, ResultFile, StoredResult};
 
 /// Size from which a picture or the text of a case is not embedded [byte].
 const LARGEST_TEXT: usize = 800_000;
@@ -79,7 +79,7 @@ const MOST_ROWS: usize = 1000;
 
 /// A written page.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Written {
+pub struct WrittenPage {
     /// The file.
     pub path: PathBuf,
     /// Size [byte].
@@ -91,8 +91,8 @@ pub struct Written {
 /// # Errors
 ///
 /// The folder contains no result, a file of it cannot be read, or the page cannot be written.
-pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
-    let kind = Kind::find(dir)?;
+pub fn write(dir: &Path, out: Option<&Path>) -> Result<WrittenPage> {
+    let kind = FolderKind::find(dir)?;
     let path = out.map_or_else(|| dir.join(REPORT), Path::to_path_buf);
     let elsewhere = folder_of(&path) != fs::canonicalize(dir).ok();
     let text = halt::complete(|| text(&Place::new(dir, None), kind, elsewhere))?;
@@ -100,7 +100,7 @@ pub fn write(dir: &Path, out: Option<&Path>) -> Result<Written> {
         Some(_) => replace_alike(&path, &text, &["<!doctype html"])?,
         None => put_whole(&path, |file| file.write_all(text.as_bytes()))?,
     }
-    Ok(Written {
+    Ok(WrittenPage {
         path,
         bytes: text.len(),
     })
@@ -120,31 +120,31 @@ pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
 /// As [`write`].
 pub fn lay(folder: &ResultFolder, history: Option<&Remembered>) -> Result<()> {
     let dir = folder.dir();
-    let text = halt::complete(|| text(&Place::new(dir, history), Kind::find(dir)?, false))?;
+    let text = halt::complete(|| text(&Place::new(dir, history), FolderKind::find(dir)?, false))?;
     folder.lay(REPORT, text.as_bytes()).map(|_| ())
 }
 
 /// Content of the page of a kind.
-fn data(place: &Place, kind: Kind) -> Result<Page> {
+fn data(place: &Place, kind: FolderKind) -> Result<Page> {
     match kind {
-        Kind::Run | Kind::Cycle => run::data(place),
-        Kind::Equilibrium => equilibrium::data(place),
-        Kind::Modes => modes::data(place),
-        Kind::Study => studies::study(place),
-        Kind::Effects => studies::effects(place),
-        Kind::Floquet => cycles::floquet(place),
-        Kind::Map => cycles::map(place),
-        Kind::Sweep => cycles::sweep(place),
-        Kind::Designs => designs::data(place),
-        Kind::Fit => fit::data(place),
-        Kind::Sense => sense::data(place),
-        Kind::Optimum => optimum::data(place),
-        Kind::Response => response::data(place),
+        FolderKind::Run | FolderKind::Cycle => run::data(place),
+        FolderKind::Equilibrium => equilibrium::data(place),
+        FolderKind::Modes => modes::data(place),
+        FolderKind::Study => studies::study(place),
+        FolderKind::Effects => studies::effects(place),
+        FolderKind::Floquet => cycles::floquet(place),
+        FolderKind::Map => cycles::map(place),
+        FolderKind::Sweep => cycles::sweep(place),
+        FolderKind::Designs => designs::data(place),
+        FolderKind::Fit => fit::data(place),
+        FolderKind::Sense => sense::data(place),
+        FolderKind::Optimum => optimum::data(place),
+        FolderKind::Response => response::data(place),
     }
 }
 
 /// Text of the page.
-fn text(place: &Place, kind: Kind, elsewhere: bool) -> Result<String> {
+fn text(place: &Place, kind: FolderKind, elsewhere: bool) -> Result<String> {
     // the table of the parameters takes longest, so a thread computes it
     let (page, parameters) = thread::scope(|scope| {
         let rows = begin(scope, || place.case_text.as_deref().map(parameters::rows));
@@ -191,7 +191,7 @@ impl<'a> Place<'a> {
     }
 
     /// Reads a result of the folder.
-    fn result<T: Kept>(&self, name: &str) -> Result<Found<T>> {
+    fn result<T: ResultFile>(&self, name: &str) -> Result<StoredResult<T>> {
         super::folder::result(&self.path(name))
     }
 
@@ -215,13 +215,13 @@ impl<'a> Place<'a> {
     }
 
     /// Common part of every page, with the given name.
-    fn page(&self, kind: Kind, name: &str, head: Option<&Head>) -> Page {
+    fn page(&self, kind: FolderKind, name: &str, head: Option<&Head>) -> Page {
         let numbers = self.case.as_ref().map(facts::characteristic_of);
         self.page_with(kind, name, head, numbers.unwrap_or_default())
     }
 
     /// [`Place::page`] with given rows of characteristic numbers.
-    fn page_with(&self, kind: Kind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
+    fn page_with(&self, kind: FolderKind, name: &str, head: Option<&Head>, numbers: Vec<Value>) -> Page {
         let mut page = Page {
             name: name.into(),
             ..Page::default()

@@ -5,14 +5,14 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{Found, Kind, Page, Place, capital, pack, sheet};
+use super::{FolderKind, Page, Place, StoredResult, capital, pack, sheet};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
 use crate::output::npz::Npz;
 use crate::output::numbers::{counted, significant};
-use crate::results::modes::{About, Modes};
+use crate::results::modes::{About, ModesRecord};
 
 /// Columns of the page's table; the file contains the rest.
 const COLUMNS: [&str; 9] = [
@@ -32,8 +32,8 @@ const MOST_NUMBERS: usize = 420_000;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Modes>(JSON)?;
-    let mut page = place.page(Kind::Modes, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<ModesRecord>(JSON)?;
+    let mut page = place.page(FolderKind::Modes, &found.case, Some(&head));
     let (word, tone) = if found.stable {
         ("stable", "good")
     } else {
@@ -75,7 +75,7 @@ pub fn data(place: &Place) -> Result<Page> {
 }
 
 /// Removes the modes that do not move from the table.
-fn moving_alone(mut table: Value, found: &Modes) -> Value {
+fn moving_alone(mut table: Value, found: &ModesRecord) -> Value {
     if let Some(rows) = table["rows"].as_array_mut() {
         let mut kinds = found.modes.iter().map(|mode| mode.kind);
         rows.retain(|_| kinds.next().is_none_or(|kind| !kind.stays()));
@@ -84,7 +84,7 @@ fn moving_alone(mut table: Value, found: &Modes) -> Value {
 }
 
 /// Inserts uncertainty bands behind frequencies and growth rates, if there are any.
-fn with_bands(mut table: Value, found: &Modes) -> Value {
+fn with_bands(mut table: Value, found: &ModesRecord) -> Value {
     if found.modes.iter().all(|mode| mode.bands.is_empty()) {
         return table;
     }

@@ -2,18 +2,18 @@
 
 use serde_json::json;
 
-use super::{Found, Kind, Page, Place};
+use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
 use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as position, ranked};
 use crate::output::sweep::unit;
 use crate::output::sweep::words::several;
-use crate::results::optimum::{Derivatives, Optimum, Variable};
+use crate::results::optimum::{DerivativeSource, Optimum, Variable};
 
 /// Page of `optimize`.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Optimum>(JSON)?;
-    let mut page = place.page(Kind::Optimum, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<Optimum>(JSON)?;
+    let mut page = place.page(FolderKind::Optimum, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let goal = &found.goal;
     // a figure with its unit
@@ -24,8 +24,8 @@ pub fn data(place: &Place) -> Result<Page> {
     let mut facts = vec![
         several(found.evaluations),
         match found.derivatives {
-            Derivatives::Exact => "exact derivatives".into(),
-            Derivatives::Differences => "derivatives by differences".into(),
+            DerivativeSource::Exact => "exact derivatives".into(),
+            DerivativeSource::Differences => "derivatives by differences".into(),
         },
         match found.starts.len() {
             1 => "one search".into(),

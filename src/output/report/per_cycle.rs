@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::history::History;
+use super::history::ReportHistory;
 use super::pack;
 use crate::discrete::quantities::{Group, Observable};
 use crate::run::energies::ROUNDING;
@@ -12,7 +12,7 @@ const LEAST: f64 = 1e-9;
 
 /// Columns of mean input power, mean harvested power, and `H/(H + D - P)`, each over the period before its time. Empty if the history is
 /// shorter than a period, was thinned, or has no harvest.
-pub fn columns(history: &History, period: f64) -> Vec<Value> {
+pub fn columns(history: &ReportHistory, period: f64) -> Vec<Value> {
     let times = history.times();
     let (Some(first), Some(last)) = (times.first(), times.last()) else {
         return vec![];

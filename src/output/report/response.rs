@@ -2,17 +2,17 @@
 
 use serde_json::json;
 
-use super::{Found, Kind, Page, Place};
+use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::response::{JSON, PICTURE};
-use crate::results::response::{About, Response};
+use crate::results::response::{About, ResponseRecord};
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Response>(JSON)?;
-    let mut page = place.page(Kind::Response, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<ResponseRecord>(JSON)?;
+    let mut page = place.page(FolderKind::Response, &found.case, Some(&head));
     page.put("label", "Frequency response of small motions");
     page.warnings.clone_from(&found.warnings);
     let (word, tone) = match found.warnings.is_empty() {
@@ -44,7 +44,7 @@ pub fn data(place: &Place) -> Result<Page> {
         }]),
     );
     let rows = found.curves().flat_map(|curve| {
-        let row = |peak: &crate::results::response::Peak| {
+        let row = |peak: &crate::results::response::ResponsePeak| {
             json!([
                 curve.output,
                 peak.frequency_hz,

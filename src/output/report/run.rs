@@ -4,19 +4,19 @@ use std::{io, thread};
 
 use serde_json::{Value, json};
 
-use super::history::History;
-use super::{Kind, Page, Place, cycles, energy_balance, facts, frames, inputs, per_cycle};
+use super::history::ReportHistory;
+use super::{FolderKind, Page, Place, cycles, energy_balance, facts, frames, inputs, per_cycle};
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::characteristic;
 use crate::numerics::threads::begin;
 use crate::output::bands;
-use crate::output::envelope::History as Recorded;
+use crate::output::envelope::HistorySource as Recorded;
 use crate::output::folder::{CASE, ENVELOPE, FIELDS, HISTORY, SUMMARY};
 use crate::output::numbers::{counted, duration, error_percent, percent, quantity, significant, trimmed, with_error};
 use crate::output::periodic::CYCLE;
 use crate::output::summary;
-use crate::results::cycles::Cycle;
+use crate::results::cycles::CycleResult;
 use crate::results::run::{Status, Summary};
 
 /// Displacements below this [m] are round-off.
@@ -46,7 +46,7 @@ pub fn data(place: &Place) -> Result<Page> {
     // reads the fields in a thread
     let (motion, recorded) = thread::scope(|scope| {
         let motion = begin(scope, || frames::read(&fields, frequency));
-        let recorded = History::read(Recorded::of(place.dir, place.history)).map(|history| {
+        let recorded = ReportHistory::read(Recorded::of(place.dir, place.history)).map(|history| {
             let columns = history.json(beside(place, &history, frequency));
             (history, columns)
         });
@@ -57,9 +57,9 @@ pub fn data(place: &Place) -> Result<Page> {
     let mut page = match &summary {
         Some(summary) => {
             let numbers = facts::characteristic(&summary.characteristic);
-            place.page_with(Kind::Run, name, head.as_ref(), numbers)
+            place.page_with(FolderKind::Run, name, head.as_ref(), numbers)
         }
-        None => place.page(Kind::Run, name, head.as_ref()),
+        None => place.page(FolderKind::Run, name, head.as_ref()),
     };
     let mut notes: Vec<String> = vec![];
     let motion = match motion {
@@ -85,7 +85,7 @@ pub fn data(place: &Place) -> Result<Page> {
     }
     page.warnings.extend(notes);
     if place.path(CYCLE).is_file() {
-        let cycle = place.result::<Cycle>(CYCLE)?.result;
+        let cycle = place.result::<CycleResult>(CYCLE)?.result;
         page.fill(json!({
             "label": "Steady cycle", "answer": cycles::answer(&cycle), "sections": cycles::of_cycle(&cycle),
             "command": format!("slcbeam periodic {CASE}"),
@@ -99,7 +99,7 @@ pub fn data(place: &Place) -> Result<Page> {
 
 /// Columns beside those of the history: inputs, and the figures over the preceding period of a driven run. A cycle has no inputs: it counts
 /// time from the start of a period, the case does not.
-fn beside(place: &Place, history: &History, frequency: Option<f64>) -> Vec<Value> {
+fn beside(place: &Place, history: &ReportHistory, frequency: Option<f64>) -> Vec<Value> {
     let case = place.case.as_ref().filter(|_| !place.path(CYCLE).is_file());
     let inputs = case.map_or_else(Vec::new, |case| {
         inputs::columns(case, history.times(), history.joined())
@@ -108,7 +108,7 @@ fn beside(place: &Place, history: &History, frequency: Option<f64>) -> Vec<Value
     inputs.into_iter().chain(cycles).collect()
 }
 
-fn fill(page: &mut Page, summary: &Summary, history: &History) {
+fn fill(page: &mut Page, summary: &Summary, history: &ReportHistory) {
     let (word, tone) = match summary.status {
         Status::Finished => ("finished", "good"),
         Status::Stopped => ("stopped early", "fair"),

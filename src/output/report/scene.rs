@@ -4,10 +4,10 @@ use serde_json::{Value, json};
 
 use super::signals::{is_zero, peak, words};
 use crate::case::schema::{AccumulatorKind, BladderEnd, ChainEnd, Load, Rectifier};
-use crate::case::wiring::{Given, Point, Tube, Wiring};
+use crate::case::wiring::{Given, Wiring, WiringPoint, WiringTube};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
-use crate::model::{Contact, Network};
+use crate::model::{ContactWall, ResolvedNetwork};
 use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Number of places along the beam at which a load is drawn.
@@ -28,7 +28,7 @@ pub fn of(case: &Case) -> Option<Value> {
             "{} long, {} high, {} wide",
             q(beam.length_m, "m"), q(beam.height_m, "m"), q(beam.width_m, "m")
         ),
-        "bladders": case.bladders.as_ref().zip(Network::of(case).ok()?).map(|(b, network)| json!({
+        "bladders": case.bladders.as_ref().zip(ResolvedNetwork::of(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
             "length": b.length_m,
             "height": b.height_m,
@@ -40,12 +40,12 @@ pub fn of(case: &Case) -> Option<Value> {
         "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0, end_s), end(&case.ends.tip.resolve(), case.ends.tip.form().0, end_s)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
-        "walls": Contact::all(case).iter().map(wall).collect::<Vec<_>>(),
+        "walls": ContactWall::all(case).iter().map(wall).collect::<Vec<_>>(),
     }))
 }
 
 /// A wall: its face and its description.
-fn wall(wall: &Contact) -> Value {
+fn wall(wall: &ContactWall) -> Value {
     let stiffness = match wall.at {
         None => format!("all along, {}", q(wall.stiffness, "Pa")),
         Some(at) => format!(
@@ -74,9 +74,9 @@ fn q(x: f64, unit: &str) -> String {
 fn wiring(case: &Case) -> Option<Value> {
     let found = Wiring::of(case).ok()?;
     let end_s = case.time.end_s;
-    let point = |point: &Point| match *point {
-        Point::Bladder(bladder, end) => json!({"bladder": bladder, "outlet": end == BladderEnd::Outlet}),
-        Point::Junction(_) => json!({"junction": found.label(*point)}),
+    let point = |point: &WiringPoint| match *point {
+        WiringPoint::Bladder(bladder, end) => json!({"bladder": bladder, "outlet": end == BladderEnd::Outlet}),
+        WiringPoint::Junction(_) => json!({"junction": found.label(*point)}),
     };
     let valve = |opening: &Signal| match opening {
         Signal::Constant(o) if *o >= 1.0 => None,
@@ -94,7 +94,7 @@ fn wiring(case: &Case) -> Option<Value> {
         });
         json!({"bladders": bladders, "ends": ends.collect::<Vec<_>>(), "valve": valve(&chain.opening)})
     });
-    let within = |tube: &Tube| {
+    let within = |tube: &WiringTube| {
         let check = tube.check_valve.map(|valve| match valve.cracking_pressure_pa {
             0.0 => "check valve".to_owned(),
             cracking => format!("check valve, opens at {}", q(cracking, "Pa")),

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::{Found, Kind, Page, Place};
+use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::numbers::{counted, significant};
 use crate::output::sense as files;
@@ -10,8 +10,8 @@ use crate::results::sense::Sensed;
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Sensed>(files::JSON)?;
-    let mut page = place.page(Kind::Sense, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<Sensed>(files::JSON)?;
+    let mut page = place.page(FolderKind::Sense, &found.case, Some(&head));
     page.warnings.clone_from(&found.warnings);
     let mut facts = vec![counted(found.bladders.len() as u64, "bladder")];
     if !found.rows.is_empty() {

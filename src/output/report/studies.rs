@@ -2,18 +2,18 @@
 
 use serde_json::{Value, json};
 
-use super::{Found, Kind, Page, Place, capital};
+use super::{FolderKind, Page, Place, StoredResult, capital};
 use crate::error::Result;
-use crate::output::effects::{self as effects_files, Shown};
+use crate::output::effects::{self as effects_files, ShownQuantity};
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::plot::ablation::Bar;
-use crate::output::plot::workprecision::{Line, Marker, WorkPrecision};
+use crate::output::plot::workprecision::{Marker, MeshLine, WorkPrecision};
 use crate::output::study as study_files;
 use crate::results::studies::{Ablation, Study};
-use crate::study::accuracy::study::Point;
-use crate::study::accuracy::{Budget, Plan, Scheme};
-use crate::study::effects::{Row, Verdict};
+use crate::study::accuracy::study::StudyPoint;
+use crate::study::accuracy::{Budget, Scheme, StudyPlan};
+use crate::study::effects::{AblationRow, EffectVerdict};
 
 fn yes(it_is: bool) -> &'static str {
     if it_is { "yes" } else { "no" }
@@ -27,12 +27,12 @@ fn method(scheme: Scheme) -> String {
 
 /// Page of `study`: cost of accuracy.
 pub fn study(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Study>(study_files::JSON)?;
-    let mut page = place.page(Kind::Study, &found.case, Some(&head));
+    let StoredResult { result: found, head } = place.result::<Study>(study_files::JSON)?;
+    let mut page = place.page(FolderKind::Study, &found.case, Some(&head));
     let measure = found.measure().map_or("", |measure| measure.name.as_str());
     page.warnings.clone_from(&found.notes);
     let charts = study_files::picture(&found).and_then(|data| cost(&data));
-    let row = |(k, point): (usize, &Point)| {
+    let row = |(k, point): (usize, &StudyPoint)| {
         let (trial, error) = (&point.trial, found.error(k));
         let setting = trial.setting;
         json!([
@@ -79,7 +79,7 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
     meshes.sort_unstable();
     meshes.dedup();
     let drawn = |marker: &&Marker| marker.error > 0.0 && marker.least_s > 0.0;
-    let series = |line: &Line| {
+    let series = |line: &MeshLine| {
         let cells = counted(line.cells as u64, "cell");
         let name = format!("{cells}, {}", method(line.scheme));
         let point = |marker: &Marker| {
@@ -127,7 +127,7 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
 
 /// Chart of the changes without each effect.
 fn changes(found: &Ablation) -> Value {
-    let data = effects_files::bars(found, &Shown::choose(found, None));
+    let data = effects_files::bars(found, &ShownQuantity::choose(found, None));
     let row = |bar: &Bar| {
         let verdict = bar.verdict.map(|verdict| json!(verdict));
         let verdict = verdict
@@ -142,9 +142,9 @@ fn changes(found: &Ablation) -> Value {
             String::new()
         };
         let tone = match bar.verdict {
-            Some(Verdict::Needed | Verdict::Failed) => "bad",
-            Some(Verdict::Saves) => "good",
-            Some(Verdict::Harmless) => "fair",
+            Some(EffectVerdict::Needed | EffectVerdict::Failed) => "bad",
+            Some(EffectVerdict::Saves) => "good",
+            Some(EffectVerdict::Harmless) => "fair",
             _ => "",
         };
         json!({
@@ -168,7 +168,7 @@ fn changes(found: &Ablation) -> Value {
 }
 
 /// Options of the command that produced a study.
-fn options(plan: &Plan) -> String {
+fn options(plan: &StudyPlan) -> String {
     let list = |values: Vec<String>| values.join(",");
     let rtols = list(plan.rtols.iter().map(|t| json!(t).to_string()).collect());
     let cells = list(plan.cells.iter().map(ToString::to_string).collect());
@@ -181,9 +181,9 @@ fn options(plan: &Plan) -> String {
 
 /// Page of `effects`: change of results without each effect.
 pub fn effects(place: &Place) -> Result<Page> {
-    let Found { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
-    let mut page = place.page(Kind::Effects, &found.case, Some(&head));
-    let row = |r: &Row| -> Value {
+    let StoredResult { result: found, head } = place.result::<Ablation>(effects_files::JSON)?;
+    let mut page = place.page(FolderKind::Effects, &found.case, Some(&head));
+    let row = |r: &AblationRow| -> Value {
         let left_out = r.left_out.as_ref();
         let largest = left_out.and_then(|c| c.largest.as_ref());
         json!([

@@ -12,7 +12,7 @@ use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records::{self, number};
 use crate::error::Result;
 use crate::results;
-use crate::results::sense::{BandKind, Banded, Chosen, Sensed};
+use crate::results::sense::{BandKind, Banded, ChosenSensors, Sensed};
 
 pub use words::{about_band, about_noise, about_sight, answer, list, table, words};
 
@@ -121,7 +121,7 @@ fn drawn(found: &Sensed) -> Option<String> {
         None => panels.extend(pressures(found)),
     }
     for (k, a) in found.amplitudes.iter().enumerate().take(MOST) {
-        let of = |one: &Chosen| Some((one.bladders.len() as f64, one.errors[k]?));
+        let of = |one: &ChosenSensors| Some((one.bladders.len() as f64, one.errors[k]?));
         let line: Vec<_> = found.choice.iter().filter_map(of).collect();
         if line.len() > 1 {
             let name = format!("standard error of {}", a.name);
@@ -193,7 +193,7 @@ fn pressures_over_time(found: &Sensed) -> Vec<Panel> {
 
 /// Pressures along the beam, for the row of measurements with the largest pressure.
 fn pressures(found: &Sensed) -> Option<Panel> {
-    let size = |row: &&results::sense::Row| {
+    let size = |row: &&results::sense::MeasurementRow| {
         let all = row.measured_pa.iter().flatten();
         all.fold(0.0_f64, |most, p| most.max(p.abs()))
     };

@@ -11,7 +11,7 @@ mod words;
 use std::path::PathBuf;
 
 use super::folder::ResultFolder;
-use super::plot::workprecision::{self, Balance, Line, Marker, WorkPrecision};
+use super::plot::workprecision::{self, BalanceMark, Marker, MeshLine, WorkPrecision};
 use crate::error::Result;
 use crate::results;
 use crate::study::accuracy::Study;
@@ -59,11 +59,11 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
                 })
             });
             let balance = study.balances.iter().find(|b| (b.cells, b.scheme) == (cells, scheme));
-            lines.push(Line {
+            lines.push(MeshLine {
                 cells,
                 scheme,
                 markers: markers.collect(),
-                balance: balance.map(|b| Balance {
+                balance: balance.map(|b| BalanceMark {
                     error: b.at.error,
                     seconds: b.at.cost,
                 }),

@@ -8,8 +8,8 @@ use crate::output::numbers::{counted, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
 use crate::study::accuracy::plan::fluid_cells;
-use crate::study::accuracy::study::Point;
-use crate::study::accuracy::trial::{Ending, Role};
+use crate::study::accuracy::study::StudyPoint;
+use crate::study::accuracy::trial::{Ending, RunPurpose};
 
 const HEADINGS: &str =
     "cells | method | rtol | time | median | steps | residuals | factor. | failed | in time | in space | total | ";
@@ -37,7 +37,7 @@ pub fn table(study: &Study) -> String {
         .points
         .iter()
         .enumerate()
-        .filter(|(_, p)| p.trial.role == Role::Point)
+        .filter(|(_, p)| p.trial.role == RunPurpose::Point)
     {
         match study.error(k) {
             Some(_) => lines.push(row(study, k)),
@@ -85,7 +85,7 @@ fn row(study: &Study, k: usize) -> [String; 13] {
     ]
 }
 
-fn reasons(point: &Point) -> String {
+fn reasons(point: &StudyPoint) -> String {
     let s = point.trial.setting;
     let how = ending(point.trial.ending);
     let why = point.trial.reason.as_deref().unwrap_or("no reason given");
@@ -180,8 +180,8 @@ pub fn csv(study: &Study) -> String {
             s.scheme.order.to_string(),
             format!("{:e}", s.rtol),
             match trial.role {
-                Role::Point => "point".into(),
-                Role::Reference => "reference".into(),
+                RunPurpose::Point => "point".into(),
+                RunPurpose::Reference => "reference".into(),
             },
             ending(trial.ending).into(),
             trial.reason.clone().unwrap_or_default(),

@@ -2,7 +2,7 @@
 
 use crate::discrete::quantities::Observable;
 use crate::output::numbers::{counted, significant, trimmed};
-use crate::study::accuracy::{Scheme, Setting, Study};
+use crate::study::accuracy::{Scheme, Study, StudySetting};
 
 /// A measure as text.
 pub fn spoken(name: &str) -> String {
@@ -57,7 +57,7 @@ pub fn sentence(study: &Study) -> String {
     text
 }
 
-fn price(seconds: f64, setting: Setting, schemes: &[Scheme]) -> String {
+fn price(seconds: f64, setting: StudySetting, schemes: &[Scheme]) -> String {
     let scheme = if schemes.len() > 1 {
         format!(", {}", setting.scheme)
     } else {

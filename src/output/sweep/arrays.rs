@@ -10,9 +10,9 @@ use super::{ARRAYS, numeric};
 use crate::error::Result;
 use crate::output::arrays::{Patient, write_array};
 use crate::output::folder::{ResultFolder, put_whole};
-use crate::results::sweep::{Column, Plan};
+use crate::results::sweep::{SweepColumn, SweepPlan};
 use crate::run::summary::Status;
-use crate::study::sweep::Row;
+use crate::study::sweep::SweepRow;
 
 /// Largest number of values in memory. The journal is read once per group of columns within this limit.
 const HELD: usize = 4 << 20;
@@ -21,7 +21,7 @@ const HELD: usize = 4 << 20;
 ///
 /// # Errors
 /// The file cannot be written, or the journal cannot be read.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Column]) -> Result<()> {
+pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, columns: &[SweepColumn]) -> Result<()> {
     let rows = survey.count();
     let named: Vec<(&str, &str)> = columns
         .iter()
@@ -54,7 +54,7 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Col
 }
 
 /// Numbers of a row, by heading.
-fn numbers<'a>(plan: &'a Plan, row: &'a Row) -> HashMap<&'a str, f64> {
+fn numbers<'a>(plan: &'a SweepPlan, row: &'a SweepRow) -> HashMap<&'a str, f64> {
     let mut all: HashMap<&str, f64> = row.found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
     all.insert("design", row.number as f64);
     all.insert("case", row.case as f64);

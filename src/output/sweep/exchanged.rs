@@ -3,7 +3,7 @@
 use super::Survey;
 use crate::error::{Code, Result};
 use crate::output::numbers::{significant, trimmed};
-use crate::results::sweep::Plan;
+use crate::results::sweep::SweepPlan;
 use crate::study::sweep::exchanged::{Exchange, MOST, Swinging, exchanges};
 
 /// Largest number of exchanges listed.
@@ -13,7 +13,7 @@ const LISTED: usize = 3;
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn of(plan: &Plan, survey: &Survey) -> Result<Vec<Exchange>> {
+pub fn of(plan: &SweepPlan, survey: &Survey) -> Result<Vec<Exchange>> {
     let mut designs = vec![];
     survey.each(|row| {
         if designs.len() < MOST {

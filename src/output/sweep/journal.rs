@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::output::folder::{ResultFolder, fault, open};
 use crate::output::journal::{Journal, Lines};
 use crate::run::summary::Status;
-use crate::study::sweep::{Plan, Row};
+use crate::study::sweep::{SweepPlan, SweepRow};
 
 /// Content of a journal without its rows.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +31,7 @@ impl Survey {
     ///
     /// # Errors
     /// The journal cannot be read.
-    pub fn of(path: &Path, plan: &Plan) -> Result<Self> {
+    pub fn of(path: &Path, plan: &SweepPlan) -> Result<Self> {
         let mut found = Self {
             begins: vec![0; plan.designs],
             ended: vec![None; plan.designs],
@@ -39,7 +39,7 @@ impl Survey {
         };
         // by name: the first design with this figure, and its place there
         let mut names: BTreeMap<String, (usize, usize)> = BTreeMap::new();
-        found.lines = Lines::read(path, plan.crc32(), true, |begin, row: Row| {
+        found.lines = Lines::read(path, plan.crc32(), true, |begin, row: SweepRow| {
             let fits = row.number < plan.designs && row.case < plan.cases.len() && row.values.len() == plan.axes.len();
             if !fits || !plan.has(row.number) || found.finished(row.number) {
                 return;
@@ -95,7 +95,7 @@ impl Survey {
     ///
     /// # Errors
     /// A row cannot be read, or `take` fails.
-    pub fn each(&self, mut take: impl FnMut(Row) -> io::Result<()>) -> Result<()> {
+    pub fn each(&self, mut take: impl FnMut(SweepRow) -> io::Result<()>) -> Result<()> {
         let mut read = || -> io::Result<()> {
             if self.count() == 0 {
                 return Ok(());

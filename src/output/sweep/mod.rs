@@ -31,11 +31,11 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use super::folder::{REPORT, ResultFolder, entries, fault, name_of, put_whole, result};
-use super::kind::Kind;
-use crate::case::Written;
+use super::kind::FolderKind;
+use crate::case::CaseText;
 use crate::error::Result;
 use crate::results;
-use crate::results::sweep::{Column, Plan, Sweep};
+use crate::results::sweep::{Sweep, SweepColumn, SweepPlan};
 use crate::study::analysis::word;
 pub use crate::study::sweep::unit::unit;
 
@@ -63,10 +63,10 @@ pub const FOLDERS: &str = "designs";
 ///
 /// # Errors
 /// The plan cannot be read.
-pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
+pub fn plan(folder: &ResultFolder) -> Result<Option<SweepPlan>> {
     let path = folder.path(PLAN);
     if path.exists() {
-        result::<Plan>(&path).map(|found| Some(found.result))
+        result::<SweepPlan>(&path).map(|found| Some(found.result))
     } else {
         Ok(None)
     }
@@ -76,14 +76,14 @@ pub fn plan(folder: &ResultFolder) -> Result<Option<Plan>> {
 ///
 /// # Errors
 /// A file cannot be removed or written.
-pub fn begin(folder: &mut ResultFolder, plan: &Plan, first: &Written) -> Result<()> {
-    if Kind::within(folder.dir()) == Some(Kind::Designs) {
+pub fn begin(folder: &mut ResultFolder, plan: &SweepPlan, first: &CaseText) -> Result<()> {
+    if FolderKind::within(folder.dir()) == Some(FolderKind::Designs) {
         for name in [CASES, FOLDERS] {
             remove_numbered(folder.path(name))?;
         }
     }
     folder.clear()?;
-    for name in Kind::Designs.files() {
+    for name in FolderKind::Designs.files() {
         folder.remove(name)?;
     }
     folder.write_case(first)?;
@@ -115,7 +115,7 @@ fn remove_numbered(dir: PathBuf) -> Result<()> {
 }
 
 /// Name of the case or folder of a design.
-pub fn numbered(plan: &Plan, number: usize) -> String {
+pub fn numbered(plan: &SweepPlan, number: usize) -> String {
     let width = plan.designs.to_string().len().max(5);
     format!("{number:0width$}")
 }
@@ -124,7 +124,7 @@ pub fn numbered(plan: &Plan, number: usize) -> String {
 ///
 /// # Errors
 /// The case cannot be written.
-pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()> {
+pub fn keep_case(folder: &ResultFolder, name: &str, case: &CaseText) -> Result<()> {
     let dir = folder.path(CASES);
     fs::create_dir_all(&dir).map_err(|e| fault("create", &dir, e))?;
     for (table, text) in &case.tables {
@@ -143,7 +143,7 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &Written) -> Result<()
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn summarize(plan: &Plan, survey: &Survey) -> Result<Sweep> {
+pub fn summarize(plan: &SweepPlan, survey: &Survey) -> Result<Sweep> {
     Ok(Sweep {
         warnings: warnings(plan, survey)?,
         ..about(plan, survey)
@@ -154,7 +154,7 @@ pub fn summarize(plan: &Plan, survey: &Survey) -> Result<Sweep> {
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, sweep: &Sweep, lean: bool) -> Result<()> {
+pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, sweep: &Sweep, lean: bool) -> Result<()> {
     table::write(folder, plan, survey, &sweep.columns)?;
     arrays::write(folder, plan, survey, &sweep.columns)?;
     folder.write(JSON, results::text(sweep).as_bytes())?;
@@ -175,14 +175,14 @@ pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, sweep: &Sweep,
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn warnings(plan: &Plan, survey: &Survey) -> Result<Vec<String>> {
+pub fn warnings(plan: &SweepPlan, survey: &Survey) -> Result<Vec<String>> {
     let mut all = exchanged::warnings(&exchanged::of(plan, survey)?);
     all.extend(warned::of(survey)?);
     Ok(all)
 }
 
 /// Description of the table of these rows, without warnings.
-pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
+pub fn about(plan: &SweepPlan, survey: &Survey) -> Sweep {
     let (rows, expected) = (survey.count(), plan.share());
     let statuses = survey
         .statuses
@@ -201,7 +201,7 @@ pub fn about(plan: &Plan, survey: &Survey) -> Sweep {
 }
 
 /// Columns of the table.
-fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
+fn columns(plan: &SweepPlan, survey: &Survey) -> Vec<SweepColumn> {
     let mut used = std::collections::BTreeSet::new();
     let mut column = |name: &str, unit: &str, text: bool| {
         let plain: String = name
@@ -215,7 +215,7 @@ fn columns(plan: &Plan, survey: &Survey) -> Vec<Column> {
             array = format!("{plain}_{k}");
             k += 1;
         }
-        Column {
+        SweepColumn {
             name: name.into(),
             array: (!text).then_some(array),
             unit: unit.into(),

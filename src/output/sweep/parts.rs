@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 use super::{JOURNAL, PLAN, Survey};
 use crate::error::{Error, Result};
 use crate::output::folder::{ResultFolder, result};
-use crate::output::kind::Kind;
+use crate::output::kind::FolderKind;
 use crate::output::numbers::significant;
-use crate::results::sweep::{Plan, Shard};
+use crate::results::sweep::{Shard, SweepPlan};
 use crate::run::summary::Status;
-use crate::study::analysis::Found;
+use crate::study::analysis::AnalysisOutcome;
 
 /// A folder with a part of a sweep.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct SweepPart {
     /// Path of the folder.
     pub dir: PathBuf,
     /// Plan of the part.
-    pub plan: Plan,
+    pub plan: SweepPlan,
 }
 
 /// A part that is missing or incomplete.
@@ -40,12 +40,12 @@ pub struct Lost {
 ///
 /// # Errors
 /// [`Error::Usage`] if they are parts of different sweeps, with the difference.
-pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
-    let mut all: Vec<Part> = vec![];
+pub fn read(dirs: &[PathBuf]) -> Result<Vec<SweepPart>> {
+    let mut all: Vec<SweepPart> = vec![];
     for dir in dirs {
         let path = dir.join(PLAN);
-        Kind::wanted("merge", dir, &[Kind::Designs])?;
-        let plan = result::<Plan>(&path)?.result;
+        FolderKind::wanted("merge", dir, &[FolderKind::Designs])?;
+        let plan = result::<SweepPlan>(&path)?.result;
         if let Some(first) = all.first()
             && let Some(why) = plan.whole().difference(&first.plan.whole())
         {
@@ -56,7 +56,7 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
                 why
             )));
         }
-        all.push(Part { dir: dir.clone(), plan });
+        all.push(SweepPart { dir: dir.clone(), plan });
     }
     Ok(all)
 }
@@ -66,7 +66,7 @@ pub fn read(dirs: &[PathBuf]) -> Result<Vec<Part>> {
 ///
 /// # Errors
 /// A file cannot be read or written. [`Error::Usage`] if two rows of one design finished with different figures; nothing is written then.
-pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Survey, Vec<String>)> {
+pub fn join(parts: &[SweepPart], folder: &ResultFolder, plan: &SweepPlan) -> Result<(Survey, Vec<String>)> {
     let path = folder.path(JOURNAL);
     let mut there = Survey::of(&path, plan)?;
     let surveys = parts
@@ -104,7 +104,7 @@ pub fn join(parts: &[Part], folder: &ResultFolder, plan: &Plan) -> Result<(Surve
 /// Rejects folders if a design finished in two of them with different figures.
 fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
     let twice = |number: usize| all.iter().filter(|(_, survey)| survey.finished(number)).count() > 1;
-    let mut known: BTreeMap<usize, (usize, Found)> = BTreeMap::new();
+    let mut known: BTreeMap<usize, (usize, AnalysisOutcome)> = BTreeMap::new();
     for (place, (dir, survey)) in all.iter().enumerate() {
         let mut conflict = None;
         survey.each(|row| {
@@ -140,7 +140,7 @@ fn agree(all: &[(&Path, &Survey)]) -> Result<()> {
 }
 
 /// Missing designs, by shard.
-pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost> {
+pub fn lost(parts: &[SweepPart], plan: &SweepPlan, there: &Survey, out: &Path) -> Vec<Lost> {
     let of = parts.first().and_then(|part| part.plan.shard).map(|shard| shard.of);
     let even = of.filter(|of| {
         parts
@@ -153,7 +153,7 @@ pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost
     };
     let mut all = vec![];
     for shard in shards {
-        let own = Plan { shard, ..plan.clone() };
+        let own = SweepPlan { shard, ..plan.clone() };
         let missing: Vec<usize> = (0..plan.designs).filter(|n| own.has(*n) && !there.has(*n)).collect();
         let Some(first) = missing.first() else { continue };
         let given = parts
@@ -183,7 +183,7 @@ pub fn lost(parts: &[Part], plan: &Plan, there: &Survey, out: &Path) -> Vec<Lost
 }
 
 /// Probable folder of a shard, from the names of the others.
-fn beside(parts: &[Part], shard: Shard) -> Option<PathBuf> {
+fn beside(parts: &[SweepPart], shard: Shard) -> Option<PathBuf> {
     let part = parts.first()?;
     let name = sibling(part.dir.file_name()?.to_str()?, part.plan.shard?, shard.index)?;
     Some(part.dir.with_file_name(name))

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::{Survey, exchanged, numeric, table, unit};
 use crate::case::readable;
 use crate::error::Result;
-use crate::output::plot::designs::{self, Drawn, Numbers};
-use crate::results::sweep::Plan;
+use crate::output::plot::designs::{self, DesignNumbers, Drawn};
+use crate::results::sweep::SweepPlan;
 use crate::run::summary::Status;
 
 /// Largest number of designs drawn, spread over all.
@@ -34,7 +34,7 @@ const FIRST: [&str; 13] = [
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn draw(plan: &Plan, survey: &Survey) -> Result<Vec<(&'static str, String)>> {
+pub fn draw(plan: &SweepPlan, survey: &Survey) -> Result<Vec<(&'static str, String)>> {
     let data = data(plan, survey)?;
     if data.designs.len() < 2 || data.varied.is_empty() {
         return Ok(vec![]);
@@ -59,7 +59,7 @@ pub fn draw(plan: &Plan, survey: &Survey) -> Result<Vec<(&'static str, String)>>
 }
 
 /// Data of the designs that finished, thinned to those drawn.
-fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
+fn data(plan: &SweepPlan, survey: &Survey) -> Result<Drawn> {
     let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
     let (mut named, mut numbers) = (vec![], vec![]);
     let mut figures: BTreeMap<&str, Vec<f64>> = FIRST.iter().map(|name| (*name, vec![])).collect();
@@ -112,7 +112,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
     let curve = curve.collect();
     let chosen = FIRST.iter().filter_map(|name| {
         let values = figures.remove(name)?;
-        (!values.is_empty() && differs(&values)).then(|| Numbers {
+        (!values.is_empty() && differs(&values)).then(|| DesignNumbers {
             name: (*name).into(),
             label: readable::figure_name(name),
             unit: unit(name).into(),
@@ -125,7 +125,7 @@ fn data(plan: &Plan, survey: &Survey) -> Result<Drawn> {
         case: plan.title(),
         varied: numbered
             .iter()
-            .map(|&k| Numbers {
+            .map(|&k| DesignNumbers {
                 name: plan.axes[k].pointer.clone(),
                 label: readable::pointer_name(&plan.axes[k].pointer),
                 unit: readable::pointer_unit(&plan.axes[k].pointer).into(),

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::results::sweep::Plan;
+use crate::results::sweep::SweepPlan;
 use crate::study::sweep::plan::quoted;
 
 /// Scheduler that starts the jobs.
@@ -32,7 +32,7 @@ pub struct Jobs<'a> {
 }
 
 /// Text of the script.
-pub fn script(plan: &Plan, scheduler: Scheduler, settings: &Jobs) -> String {
+pub fn script(plan: &SweepPlan, scheduler: Scheduler, settings: &Jobs) -> String {
     let program = quoted(&settings.program.display().to_string());
     let more = settings.more.iter().map(|word| (*word).to_owned());
     let options: Vec<String> = plan

@@ -11,15 +11,15 @@ use crate::error::Result;
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::output::numbers::shortest;
 use crate::output::records;
-use crate::results::sweep::{Column, Plan};
+use crate::results::sweep::{SweepColumn, SweepPlan};
 use crate::study::analysis::word;
-use crate::study::sweep::Row;
+use crate::study::sweep::SweepRow;
 
 /// Writes the table.
 ///
 /// # Errors
 /// The file cannot be written, or the journal cannot be read.
-pub fn write(folder: &ResultFolder, plan: &Plan, survey: &Survey, columns: &[Column]) -> Result<()> {
+pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, columns: &[SweepColumn]) -> Result<()> {
     let mut reading = Ok(());
     put_whole(&folder.path(TABLE), |file| {
         let mut table = csv::Writer::from_writer(BufWriter::new(file));
@@ -40,7 +40,7 @@ pub fn cell(value: &Value) -> String {
 }
 
 /// A row in the order of the columns.
-pub fn cells(plan: &Plan, survey: &Survey, row: &Row) -> Vec<String> {
+pub fn cells(plan: &SweepPlan, survey: &Survey, row: &SweepRow) -> Vec<String> {
     let found = &row.found;
     let by_name: HashMap<&str, f64> = found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
     let mut all = Vec::with_capacity(survey.figures.len() + row.values.len() + 7);

@@ -6,7 +6,7 @@ use crate::dae::{BeamDae, Dae};
 use crate::discrete::System;
 use crate::error::{Result, SolverError};
 use crate::run::checkpoint::Checkpoint;
-use crate::run::equilibrium::{self, Options};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::observe::Observer;
 use crate::run::record::{Control, Header, Recorder};
 use crate::run::sensitivity::forward::Before;
@@ -20,10 +20,16 @@ impl Run<'_> {
         recorder: &mut dyn Recorder,
     ) -> Result<std::result::Result<Vec<f64>, End>> {
         let mut asked = Ok(Control::Continue);
-        let found = equilibrium::at_start_watched(self.case, &Options::of_start(start), dae, &self.state, &mut || {
-            asked = recorder.progress(&self.latest);
-            asked.as_ref().map_or(Control::Stop(String::new()), Control::clone)
-        });
+        let found = equilibrium::at_start_watched(
+            self.case,
+            &EquilibriumOptions::of_start(start),
+            dae,
+            &self.state,
+            &mut || {
+                asked = recorder.progress(&self.latest);
+                asked.as_ref().map_or(Control::Stop(String::new()), Control::clone)
+            },
+        );
         let stopped = |reason: String| End::Stopped(format!("{reason}, in search of the equilibrium to start from"));
         Ok(match asked? {
             Control::Stop(reason) => Err(stopped(reason)),

@@ -9,7 +9,7 @@ use crate::run::record::Recorder;
 use crate::run::sensitivity::forward::{Alike, By};
 
 /// Derivatives that are integrated from given initial values.
-pub struct Along<'a> {
+pub struct ContinuedDerivatives<'a> {
     /// Numbers of the case by which to differentiate.
     pub by: &'a [Parameter],
     /// Systems of changed cases.
@@ -23,7 +23,7 @@ pub fn go_on(
     case: &Case,
     system: System,
     [y, yp]: [&[f64]; 2],
-    along: Option<&Along<'_>>,
+    along: Option<&ContinuedDerivatives<'_>>,
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
     let by = along.map_or(By::default(), |along| By {

@@ -6,11 +6,11 @@ use crate::dae::BeamDae;
 use crate::discrete::System;
 use crate::discrete::quantities::{Group, Interest};
 use crate::error::Code;
-use crate::integrate::Wall;
+use crate::integrate::SolverWallTimes;
 use crate::model::hammer;
-use crate::run::method::{Integrator, Options};
+use crate::run::method::{Integrator, IntegratorOptions};
 use crate::run::order;
-use crate::run::sensitivity::forward::Forward;
+use crate::run::sensitivity::forward::ForwardSensitivities;
 use crate::run::summary::{Status, WallTimes};
 use crate::run::unbounded;
 
@@ -20,8 +20,8 @@ impl Run<'_> {
         self.summary.solver.add(&self.earlier);
         let s = &self.summary.solver;
         self.held = match self.options {
-            Options::OneStep(_) => None,
-            Options::Ida(_) => order::held_by_stability(
+            IntegratorOptions::OneStep(_) => None,
+            IntegratorOptions::Ida(_) => order::held_by_stability(
                 solver.dae().system(),
                 s.max_order,
                 self.summary.time_s,
@@ -41,7 +41,7 @@ impl Run<'_> {
     }
 
     /// Subtracts the parts that the solver measured from the wall time of the steps.
-    pub(super) fn divide(&mut self, solver: &Wall) {
+    pub(super) fn divide(&mut self, solver: &SolverWallTimes) {
         let wall = &mut self.summary.wall_s;
         wall.residual = solver.residual.as_secs_f64();
         wall.jacobian = solver.jacobian.as_secs_f64();
@@ -92,7 +92,11 @@ impl Run<'_> {
         s.step_response = o.steps.as_ref().map(|steps| steps.judge(finished)).unwrap_or_default();
         o.energies.complete(&mut s.quantities, self.case.solver.rtol);
         s.warnings.extend(o.energies.warning(&s.quantities));
-        s.sensitivities = self.forward.as_ref().map(Forward::summary).unwrap_or_default();
+        s.sensitivities = self
+            .forward
+            .as_ref()
+            .map(ForwardSensitivities::summary)
+            .unwrap_or_default();
         let of = Interest::Efficiency.name();
         let value = s.quantities.get(of).copied().unwrap_or_default();
         for slope in s.sensitivities.values_mut().filter_map(|by| by.quantities.get_mut(of)) {

@@ -12,19 +12,19 @@ mod switch;
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-pub use continued::{Along, go_on};
+pub use continued::{ContinuedDerivatives, go_on};
 use faults::{fault, inconsistent, stalled, too_many_steps};
 use pace::Pace;
 
 use super::checkpoint::Checkpoint;
-use super::growth::Linear;
-use super::method::{self, Integrator, Options};
+use super::growth::LinearProperties;
+use super::method::{self, Integrator, IntegratorOptions};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
-use super::schedule::{self, Outputs, Stop};
-use super::sensitivity::forward::{By, Forward};
+use super::schedule::{self, Outputs, ScheduledStop};
+use super::sensitivity::forward::{By, ForwardSensitivities};
 use super::strides::Strides;
-use super::summary::{Chosen, Counters, Status, Summary, WallTimes};
+use super::summary::{Counters, ProgramChoice, Status, Summary, WallTimes};
 use super::{known, wall::Laps, waves};
 use crate::case::{inherited, parameter::Parameter, schema::Case};
 use crate::dae::BeamDae;
@@ -98,15 +98,15 @@ struct Run<'a> {
     case: &'a Case,
     observer: Observer,
     outputs: Outputs,
-    stops: Vec<Stop>,
+    stops: Vec<ScheduledStop>,
     strides: Strides,
     /// Examination for growing waves, where there may be any.
-    waves: Option<waves::Watch>,
+    waves: Option<waves::WaveWatch>,
     summary: Summary,
-    options: Options,
-    linear: Linear,
+    options: IntegratorOptions,
+    linear: LinearProperties,
     inertia: bool,
-    forward: Option<Forward<'a>>,
+    forward: Option<ForwardSensitivities<'a>>,
     held: Option<String>,
     laps: Laps,
     /// State of progress at the end of the last step.
@@ -152,9 +152,9 @@ impl<'a> Run<'a> {
             method::with_sensitivities(case, &system)
         };
         let strides = Strides::new(case, &system);
-        let options = Options::new(case, &system, &chosen, strides.least());
+        let options = IntegratorOptions::new(case, &system, &chosen, strides.least());
         let inertia = system.layout.inertia;
-        let linear = Linear {
+        let linear = LinearProperties {
             mathieu,
             euler_load: characteristic.get("euler_load_n").copied(),
         };
@@ -164,7 +164,7 @@ impl<'a> Run<'a> {
             outputs: Outputs::new(case),
             stops: schedule::stops(case, &system.model),
             strides,
-            waves: waves::Watch::new(&system.model, case.time.end_s),
+            waves: waves::WaveWatch::new(&system.model, case.time.end_s),
             summary: Summary {
                 case: case.name.clone(),
                 status: Status::Failed,
@@ -187,7 +187,7 @@ impl<'a> Run<'a> {
                         let value = if d.on { "on" } else { "off" }.to_string();
                         (
                             d.effect.to_string(),
-                            Chosen {
+                            ProgramChoice {
                                 value,
                                 reason: d.cause.to_string(),
                             },
@@ -196,14 +196,14 @@ impl<'a> Run<'a> {
                     .chain([
                         (
                             "method".into(),
-                            Chosen {
+                            ProgramChoice {
                                 value: chosen.name(),
                                 reason: chosen.reason,
                             },
                         ),
                         (
                             "max_order".into(),
-                            Chosen {
+                            ProgramChoice {
                                 value: chosen.order.order.to_string(),
                                 reason: chosen.order.reason,
                             },
@@ -241,7 +241,7 @@ impl<'a> Run<'a> {
         };
         let mut dae = BeamDae::new(system);
         if !by.parameters.is_empty() {
-            let (forward, with_neighbours) = Forward::new(case, dae, by)?;
+            let (forward, with_neighbours) = ForwardSensitivities::new(case, dae, by)?;
             (run.forward, dae) = (Some(forward), with_neighbours);
         }
         Ok((run, dae))

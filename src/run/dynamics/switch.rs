@@ -8,8 +8,8 @@ use crate::integrate::{StartOptions, Starter};
 use crate::run::checkpoint::{Checkpoint, VERSION};
 use crate::run::method::Integrator;
 use crate::run::record::Recorder;
-use crate::run::schedule::Stop;
-use crate::run::sensitivity::forward::Forward;
+use crate::run::schedule::ScheduledStop;
+use crate::run::sensitivity::forward::ForwardSensitivities;
 use crate::run::summary::Counters;
 
 /// Passes a switch at `t` [s]. Selects the next smooth branch of every signal by an instant `ahead` within it [s]. Computes a
@@ -50,7 +50,7 @@ impl Run<'_> {
         next: f64,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<SolverError>> {
-        let Stop {
+        let ScheduledStop {
             t,
             switches,
             checkpoint,
@@ -89,7 +89,7 @@ impl Run<'_> {
                     ..self.summary.solver.clone()
                 },
                 observed: self.observer.seen.clone(),
-                forward: self.forward.as_ref().map(Forward::kept),
+                forward: self.forward.as_ref().map(ForwardSensitivities::kept),
             })?;
             self.spent(|wall| &mut wall.output);
         }

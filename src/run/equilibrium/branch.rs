@@ -1,8 +1,8 @@
 //! Transition from a path to another one that crosses it.
 
 use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
-use super::state::Stability;
-use super::{Event, Kind};
+use super::state::EquilibriumStability;
+use super::{EquilibriumEvent, EventKind};
 use crate::numerics::kernels;
 use crate::sundials::KinsolError;
 
@@ -16,7 +16,7 @@ impl Follower<'_> {
     /// Leaves a path where another one crosses it, by a step in the direction of least stiffness, in which the matrix is nearly
     /// singular. The step is towards a positive sign of its largest displacement. If the other side has fewer unstable directions,
     /// the step is towards that side.
-    pub(super) fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<Stability>)) -> Result<f64, End> {
+    pub(super) fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<EquilibriumStability>)) -> Result<f64, End> {
         let n = self.n;
         let last = trail.last.clone();
         let mut x = last.clone();
@@ -24,12 +24,12 @@ impl Follower<'_> {
             .map_err(|failure| self.fail(&failure, last[n]))?;
         let mut direction = self.softest();
         // the eigenvalue that changes sign is proportional to the distance
-        let here = Stability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
+        let here = EquilibriumStability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
         let share = last[n] + (beyond.0 - last[n]) * between(here, beyond.1);
-        self.path.events.push(Event {
+        self.path.events.push(EquilibriumEvent {
             stage: self.stage,
             share,
-            kind: Kind::Bifurcation,
+            kind: EventKind::Bifurcation,
         });
         self.branch = self.path.states.len();
         self.bounds.push(self.branch);
@@ -92,7 +92,7 @@ impl Follower<'_> {
     /// Number of unstable directions of a state; `usize::MAX` if there is no state or its stability is unknown.
     fn unstable(&mut self, x: Option<&Vec<f64>>) -> usize {
         let n = self.n;
-        let stability = x.and_then(|x| Stability::of(self.solver.dae_mut().statics(), x[n], &x[..n]));
+        let stability = x.and_then(|x| EquilibriumStability::of(self.solver.dae_mut().statics(), x[n], &x[..n]));
         stability.map_or(usize::MAX, |s| s.unstable)
     }
 
@@ -109,8 +109,8 @@ impl Follower<'_> {
 }
 
 /// Position of an eigenvalue's zero between two states, as a fraction of the distance; 0.5 if it is unknown.
-fn between(before: Option<Stability>, beyond: Option<Stability>) -> f64 {
-    let softest = |s: Option<Stability>| s.and_then(|s| s.softest);
+fn between(before: Option<EquilibriumStability>, beyond: Option<EquilibriumStability>) -> f64 {
+    let softest = |s: Option<EquilibriumStability>| s.and_then(|s| s.softest);
     let share = softest(before).zip(softest(beyond)).map(|(a, b)| a / (a - b));
     share.filter(|share| (0.0..=1.0).contains(share)).unwrap_or(0.5)
 }

@@ -1,8 +1,8 @@
 //! Errors that end a path before the requested load.
 
 use super::path::{End, Follower};
-use super::state::State;
-use super::{Event, Kind};
+use super::state::EquilibriumState;
+use super::{EquilibriumEvent, EventKind};
 use crate::discrete::ValveTangents;
 use crate::error::numbers::counted;
 use crate::error::{At, Code, SolverError};
@@ -11,8 +11,8 @@ use crate::sundials::KinsolError;
 
 impl Follower<'_> {
     /// True if the load moves away from the requested one on the way to a state.
-    pub(super) fn turns(&self, now: &State) -> bool {
-        let away = |state: &State| (self.options.share - state.share).abs();
+    pub(super) fn turns(&self, now: &EquilibriumState) -> bool {
+        let away = |state: &EquilibriumState| (self.options.share - state.share).abs();
         let before = self.path.states.last().filter(|before| before.stage == now.stage);
         before.is_some_and(|before| away(now) > away(before))
     }
@@ -26,11 +26,11 @@ impl Follower<'_> {
         let beyond = self.path.beyond.as_deref().unwrap_or_default();
         // a crossing path may reduce the load at once
         let seen = self.path.events.last().map(|event| (event.stage, event.kind));
-        if seen != Some((self.stage, Kind::LimitPoint)) {
-            self.path.events.push(Event {
+        if seen != Some((self.stage, EventKind::LimitPoint)) {
+            self.path.events.push(EquilibriumEvent {
                 stage: self.stage,
                 share: largest,
-                kind: Kind::LimitPoint,
+                kind: EventKind::LimitPoint,
             });
         }
         let what = format!(

@@ -1,6 +1,6 @@
 //! Stability of the states of a path.
 
-use super::Stability;
+use super::EquilibriumStability;
 use super::path::Follower;
 use crate::integrate::halt;
 
@@ -18,7 +18,7 @@ impl Follower<'_> {
             let ends = [first, last].map(|k| self.stability(k));
             let same = ends[0].map(|s| s.unstable) == ends[1].map(|s| s.unstable);
             for state in first + 1..last {
-                let inherited = ends[0].map(|s| Stability { softest: None, ..s });
+                let inherited = ends[0].map(|s| EquilibriumStability { softest: None, ..s });
                 self.path.states[state].stability = match same {
                     true => inherited,
                     false if halt::asked() => None,
@@ -29,8 +29,8 @@ impl Follower<'_> {
         }
     }
 
-    fn stability(&mut self, k: usize) -> Option<Stability> {
+    fn stability(&mut self, k: usize) -> Option<EquilibriumStability> {
         let state = &self.path.states[k];
-        Stability::of(self.solver.dae_mut().statics(), state.share, &state.y)
+        EquilibriumStability::of(self.solver.dae_mut().statics(), state.share, &state.y)
     }
 }

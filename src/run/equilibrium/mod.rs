@@ -44,14 +44,14 @@ use crate::run::unphysical::{Met, Unphysical};
 use crate::sundials::Solution;
 
 pub use resting::Resting;
-pub use sensitivity::{Derivative, Direction, Sensitivity, along, differentiate};
+pub use sensitivity::{Derivative, EquilibriumSensitivity, ParameterDirection, along, differentiate};
 pub use stages::follow;
-pub use state::{Stability, State, columns, restate};
-pub use trapped::{Kept, TIGHT, kept, warning as trapped};
+pub use state::{EquilibriumStability, EquilibriumState, columns, restate};
+pub use trapped::{TIGHT, TrappedFluid, kept, warning as trapped};
 
 /// Options of a search for equilibrium.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct EquilibriumOptions {
     /// Instant of the full loads [s].
     pub at_s: f64,
     /// Instants whose loads are reached before, in this order [s].
@@ -68,7 +68,7 @@ pub struct Options {
     pub branches: bool,
 }
 
-impl Options {
+impl EquilibriumOptions {
     /// Options for the loads of an instant [s].
     pub fn at(at_s: f64) -> Self {
         Self {
@@ -103,9 +103,9 @@ impl Options {
 #[derive(Clone, Debug, Default)]
 pub struct Path {
     /// States, from rest on.
-    pub states: Vec<State>,
+    pub states: Vec<EquilibriumState>,
     /// Remarkable points of the path.
-    pub events: Vec<Event>,
+    pub events: Vec<EquilibriumEvent>,
     /// Work of the solver.
     pub work: Solution,
     /// Predictions that had to be shortened.
@@ -130,25 +130,25 @@ pub struct Path {
 
 /// A remarkable point of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event {
+pub struct EquilibriumEvent {
     /// Stage of the path, from 0.
     pub stage: usize,
     /// Share of the stage.
     pub share: f64,
     /// Kind of the point.
-    pub kind: Kind,
+    pub kind: EventKind,
 }
 
 /// Kind of a remarkable point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum EventKind {
     /// The load factor turns back: snap-through under a load that continues to grow.
     LimitPoint,
     /// Another path crosses: buckling. The path continues on the other one.
     Bifurcation,
 }
 
-impl Event {
+impl EquilibriumEvent {
     /// Load factor: number of earlier stages plus the share of this one.
     pub fn load_factor(&self) -> f64 {
         self.stage as f64 + self.share
@@ -157,8 +157,8 @@ impl Event {
     /// Description for messages.
     pub fn words(&self) -> &'static str {
         match self.kind {
-            Kind::LimitPoint => "limit point: the load that the beam carries turns back here",
-            Kind::Bifurcation => {
+            EventKind::LimitPoint => "limit point: the load that the beam carries turns back here",
+            EventKind::Bifurcation => {
                 "bifurcation: the path loses its stability where another one crosses it; the other path is followed"
             }
         }
@@ -202,7 +202,7 @@ impl Path {
     }
 
     /// The last state.
-    pub fn last(&self) -> &State {
+    pub fn last(&self) -> &EquilibriumState {
         &self.states[self.states.len() - 1]
     }
 }
@@ -222,7 +222,12 @@ pub fn system(case: &Case, at_s: f64) -> error::Result<System> {
 ///
 /// # Errors
 /// There is no equilibrium, or no path to it from rest.
-pub fn at_start(case: &Case, options: &Options, dae: &mut BeamDae, y: &[f64]) -> Result<Vec<f64>, SolverError> {
+pub fn at_start(
+    case: &Case,
+    options: &EquilibriumOptions,
+    dae: &mut BeamDae,
+    y: &[f64],
+) -> Result<Vec<f64>, SolverError> {
     at_start_watched(case, options, dae, y, &mut || Control::Continue)
 }
 
@@ -232,7 +237,7 @@ pub fn at_start(case: &Case, options: &Options, dae: &mut BeamDae, y: &[f64]) ->
 /// As [`at_start`], or `ask` stopped the search.
 pub fn at_start_watched(
     case: &Case,
-    options: &Options,
+    options: &EquilibriumOptions,
     dae: &mut BeamDae,
     y: &[f64],
     ask: &mut dyn FnMut() -> Control,

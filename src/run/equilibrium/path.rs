@@ -4,8 +4,8 @@ use super::arclength::Arclength;
 use super::faults::stopped;
 use super::natural::Natural;
 use super::predict::Trail;
-use super::state::{self, Stability, State};
-use super::{Event, Kind, Options, Path};
+use super::state::{self, EquilibriumStability, EquilibriumState};
+use super::{EquilibriumEvent, EquilibriumOptions, EventKind, Path};
 use crate::discrete::System;
 use crate::discrete::glance::Watched;
 use crate::error::SolverError;
@@ -60,7 +60,7 @@ pub(super) enum Next {
     /// Another step of this length.
     Step(f64),
     /// Another path crosses before this share, at which the state has this stability.
-    Branch(f64, Option<Stability>),
+    Branch(f64, Option<EquilibriumStability>),
     /// The end of the stage.
     Arrived,
 }
@@ -78,10 +78,10 @@ pub(super) struct Follower<'a> {
     pub(super) solver: Kinsol<Arclength>,
     pub(super) weights: Vec<f64>,
     pub(super) n: usize,
-    pub(super) options: Options,
+    pub(super) options: EquilibriumOptions,
     pub(super) limits: Limits,
     pub(super) path: &'a mut Path,
-    pub(super) watch: &'a mut dyn FnMut(&State) -> Control,
+    pub(super) watch: &'a mut dyn FnMut(&EquilibriumState) -> Control,
 }
 
 /// The path so far: its last points in natural coordinates, the last one also in unknowns.
@@ -195,7 +195,7 @@ impl Follower<'_> {
                 let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
                 if orientation != self.orientation && self.options.branches {
                     if step <= NEAR {
-                        let beyond = Stability::of(self.solver.dae_mut().statics(), x[n], &x[..n]);
+                        let beyond = EquilibriumStability::of(self.solver.dae_mut().statics(), x[n], &x[..n]);
                         return Ok(Next::Branch(x[n], beyond));
                     }
                     step = (0.25 * step).max(NEAR);
@@ -286,7 +286,7 @@ impl Follower<'_> {
 
     /// Stores a state and passes it to `watch`.
     pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
-        let state = State::read(self.solver.dae_mut().statics(), x, self.stage);
+        let state = EquilibriumState::read(self.solver.dae_mut().statics(), x, self.stage);
         let factor = state.load_factor();
         let (beyond, glance) = state::within(self.solver.dae_mut().statics(), x, &self.limits, factor);
         self.path.unphysical.take(&self.limits.unphysical, &glance, factor);
@@ -308,10 +308,10 @@ impl Follower<'_> {
         if let [.., a, b] = &self.path.states[self.branch..]
             && (b.load_factor() - a.load_factor()) * (state.load_factor() - b.load_factor()) < 0.0
         {
-            self.path.events.push(Event {
+            self.path.events.push(EquilibriumEvent {
                 stage: self.stage,
                 share: b.share,
-                kind: Kind::LimitPoint,
+                kind: EventKind::LimitPoint,
             });
             self.bounds.push(self.path.states.len() - 1);
         }

@@ -1,9 +1,9 @@
 //! Equilibria under loads that differ a little from those of a known equilibrium.
 
-use super::sensitivity::{Derivative, Direction, along};
+use super::sensitivity::{Derivative, ParameterDirection, along};
 use super::stages::{begin, follow, grow};
-use super::state::State;
-use super::{Options, Path};
+use super::state::EquilibriumState;
+use super::{EquilibriumOptions, Path};
 use crate::case::schema::Case;
 use crate::error::{Error, Result};
 use crate::run::record::Control;
@@ -26,7 +26,7 @@ impl Resting {
     ///
     /// # Errors
     /// Those of [`follow`], and [`Error::Solver`] if the path ends early.
-    pub fn follow(case: &Case, options: &Options) -> Result<Self> {
+    pub fn follow(case: &Case, options: &EquilibriumOptions) -> Result<Self> {
         let options = &options.resolved(case)?;
         let mut path = follow(case, options, &mut |_| Control::Continue)?;
         if let Some(fault) = path.fault.take() {
@@ -47,7 +47,7 @@ impl Resting {
     ///
     /// # Errors
     /// Those of [`crate::discrete::System::new`].
-    pub fn beside(&self, case: &Case, options: &Options) -> Result<Option<Self>> {
+    pub fn beside(&self, case: &Case, options: &EquilibriumOptions) -> Result<Option<Self>> {
         let stages = options.resolved(case)?.stages();
         let [stage] = stages.as_slice() else {
             return Ok(None);
@@ -70,7 +70,7 @@ impl Resting {
         };
         let unknowns = y.iter().zip(&scales).map(|(y, scale)| y * scale).collect();
         y.push(1.0);
-        let state = State::read(solver.dae_mut(), &y, 0);
+        let state = EquilibriumState::read(solver.dae_mut(), &y, 0);
         let path = Path {
             states: vec![state],
             work,
@@ -88,7 +88,12 @@ impl Resting {
     ///
     /// # Errors
     /// As [`along`].
-    pub fn along(&self, case: &Case, options: &Options, directions: &[Direction]) -> Result<Vec<Derivative>> {
+    pub fn along(
+        &self,
+        case: &Case,
+        options: &EquilibriumOptions,
+        directions: &[ParameterDirection],
+    ) -> Result<Vec<Derivative>> {
         along(case, options, &self.path, directions)
     }
 }

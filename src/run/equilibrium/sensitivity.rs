@@ -1,8 +1,8 @@
 //! Derivatives of an equilibrium with respect to numbers of its case.
 
 use super::stages::{Held, begin, grow};
-use super::state::State;
-use super::{Options, Path};
+use super::state::EquilibriumState;
+use super::{EquilibriumOptions, Path};
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, Seeds, StaticBeam};
@@ -11,7 +11,7 @@ use crate::sparse::Klu;
 
 /// Derivatives by one parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensitivity {
+pub struct EquilibriumSensitivity {
     /// The parameter.
     pub parameter: Parameter,
     /// Derivative of the scaled unknowns.
@@ -21,7 +21,7 @@ pub struct Sensitivity {
 }
 
 /// A change of the case by one number p.
-pub struct Direction<'a> {
+pub struct ParameterDirection<'a> {
     /// Description of p for messages.
     pub name: String,
     /// A small change of p.
@@ -45,25 +45,28 @@ pub struct Derivative {
 /// As [`along`].
 pub fn differentiate(
     case: &Case,
-    options: &Options,
+    options: &EquilibriumOptions,
     path: &Path,
     parameters: &[Parameter],
-) -> Result<Vec<Sensitivity>> {
+) -> Result<Vec<EquilibriumSensitivity>> {
     let direction = |parameter: &Parameter| {
         let own = parameter.clone();
-        Direction {
+        ParameterDirection {
             name: format!("--sensitivity {}", parameter.pointer),
             step: CHANGE * parameter.value,
             moved: Box::new(move |steps| own.changed(case, own.value * (1.0 + steps * CHANGE))),
         }
     };
-    let directions: Vec<Direction> = parameters.iter().map(direction).collect();
+    let directions: Vec<ParameterDirection> = parameters.iter().map(direction).collect();
     let found = along(case, options, path, &directions)?;
-    let named = parameters.iter().zip(found).map(|(parameter, found)| Sensitivity {
-        parameter: parameter.clone(),
-        y: found.y,
-        row: found.row,
-    });
+    let named = parameters
+        .iter()
+        .zip(found)
+        .map(|(parameter, found)| EquilibriumSensitivity {
+            parameter: parameter.clone(),
+            y: found.y,
+            row: found.row,
+        });
     Ok(named.collect())
 }
 
@@ -79,7 +82,12 @@ pub fn differentiate(
 ///
 /// # Errors
 /// A changed case is not valid or has other unknowns, or the tangent is singular.
-pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Direction]) -> Result<Vec<Derivative>> {
+pub fn along(
+    case: &Case,
+    options: &EquilibriumOptions,
+    path: &Path,
+    directions: &[ParameterDirection],
+) -> Result<Vec<Derivative>> {
     let mut found: Vec<Derivative> = vec![];
     let mut before: Option<Held> = None;
     let stages = options.resolved(case)?.stages();
@@ -104,7 +112,7 @@ pub fn along(case: &Case, options: &Options, path: &Path, directions: &[Directio
             let mut row = vec![0.0; state.row.len()];
             for (step, weight, other) in &mut changed {
                 let moved = restated(&statics, other, state, |k| state.y[k] + *step * y[k]);
-                let there = State::read(other, &moved, number);
+                let there = EquilibriumState::read(other, &moved, number);
                 row.iter_mut().zip(&there.row).for_each(|(d, q)| *d += *weight * q);
             }
             now.push(Derivative { y, row });
@@ -125,8 +133,8 @@ fn singular() -> Error {
 /// Steps of a number, their weights, and the equations of the stage with each step. The equations begin in the last state of the stage
 /// before, which is given with its derivative.
 fn changed(
-    (options, number, count): (&Options, usize, usize),
-    direction: &Direction,
+    (options, number, count): (&EquilibriumOptions, usize, usize),
+    direction: &ParameterDirection,
     statics: &StaticBeam,
     before: Option<(&Held, &[f64])>,
 ) -> Result<Vec<(f64, f64, StaticBeam)>> {
@@ -155,7 +163,11 @@ fn changed(
 }
 
 /// `∂F/∂p` in the scales of the unchanged system. Each of `changed` is a step of p, its weight, and the system with this step.
-fn by_parameter(statics: &StaticBeam, changed: &mut [(f64, f64, StaticBeam)], state: &State) -> Result<Vec<f64>> {
+fn by_parameter(
+    statics: &StaticBeam,
+    changed: &mut [(f64, f64, StaticBeam)],
+    state: &EquilibriumState,
+) -> Result<Vec<f64>> {
     let n = statics.len();
     let mut sum = vec![0.0; n];
     let mut residual = vec![0.0; n];
@@ -175,7 +187,7 @@ fn by_parameter(statics: &StaticBeam, changed: &mut [(f64, f64, StaticBeam)], st
 }
 
 /// Scaled unknowns in the scales of another system, followed by the load factor.
-fn restated(from: &StaticBeam, to: &StaticBeam, state: &State, y: impl Fn(usize) -> f64) -> Vec<f64> {
+fn restated(from: &StaticBeam, to: &StaticBeam, state: &EquilibriumState, y: impl Fn(usize) -> f64) -> Vec<f64> {
     let (old, new) = (&from.system().layout.scales, &to.system().layout.scales);
     let scaled = (0..old.len()).map(|k| y(k) * old[k] / new[k]);
     scaled.chain([state.share]).collect()

@@ -4,9 +4,9 @@ use super::arclength::Arclength;
 use super::faults::{dry, fault};
 use super::natural::Natural;
 use super::path::{End, Follower, weights};
-use super::state::State;
+use super::state::EquilibriumState;
 use super::trapped::{self, TIGHT};
-use super::{Options, Path};
+use super::{EquilibriumOptions, Path};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, StaticBeam};
 use crate::discrete::layout::Layout;
@@ -42,7 +42,7 @@ impl Stage {
     }
 }
 
-impl Options {
+impl EquilibriumOptions {
     /// Stages of the path, in order; at least one. If loads jump at the instant at which a valve closes, the stage has the loads before
     /// the jump. For a start in equilibrium, loads and valves are those of its own instant.
     pub(super) fn stages(&self) -> Vec<Stage> {
@@ -182,7 +182,11 @@ pub(super) fn begin(case: &Case, grown: Grown, held: Option<&Held>) -> (StaticBe
 ///
 /// # Errors
 /// Those of [`System::new`]. The path contains the error with which it ends early.
-pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> Control) -> error::Result<Path> {
+pub fn follow(
+    case: &Case,
+    options: &EquilibriumOptions,
+    watch: &mut dyn FnMut(&EquilibriumState) -> Control,
+) -> error::Result<Path> {
     follow_of(case, &|stage| grow(case, stage), options, true, watch)
 }
 
@@ -193,9 +197,9 @@ pub fn follow(case: &Case, options: &Options, watch: &mut dyn FnMut(&State) -> C
 pub(super) fn follow_of(
     case: &Case,
     grow: &dyn Fn(&Stage) -> error::Result<Grown>,
-    options: &Options,
+    options: &EquilibriumOptions,
     judged: bool,
-    watch: &mut dyn FnMut(&State) -> Control,
+    watch: &mut dyn FnMut(&EquilibriumState) -> Control,
 ) -> error::Result<Path> {
     let options = &options.resolved(case)?;
     let stages = options.stages();
@@ -231,7 +235,7 @@ pub(super) fn follow_of(
         }
         let layout = statics.system().layout.clone();
         let share = if number + 1 < stages.len() { 1.0 } else { options.share };
-        let options = Options {
+        let options = EquilibriumOptions {
             share,
             ..options.clone()
         };
@@ -250,10 +254,10 @@ fn stretch(
     case: &Case,
     statics: StaticBeam,
     (y, new): (Vec<f64>, bool),
-    (stage, options): (usize, Options),
+    (stage, options): (usize, EquilibriumOptions),
     judged: bool,
     path: &mut Path,
-    watch: &mut dyn FnMut(&State) -> Control,
+    watch: &mut dyn FnMut(&EquilibriumState) -> Control,
 ) {
     let n = statics.len();
     let wet = statics.system().model.wet.is_some();
@@ -297,7 +301,7 @@ fn stretch(
 fn switch(
     case: &Case,
     grown: Grown,
-    options: &Options,
+    options: &EquilibriumOptions,
     stage: usize,
     held: &mut Held,
 ) -> std::result::Result<(), SolverError> {
@@ -313,12 +317,12 @@ fn switch(
         return Err(lost("the equations cannot be evaluated"));
     }
     let mut path = Path::default();
-    let options = Options {
+    let options = EquilibriumOptions {
         share: 1.0,
         points: None,
         ..options.clone()
     };
-    let go_on = &mut |_: &State| Control::Continue;
+    let go_on = &mut |_: &EquilibriumState| Control::Continue;
     stretch(case, statics, (y, true), (stage, options), false, &mut path, go_on);
     match (path.fault, path.states.last()) {
         (None, Some(last)) => {

@@ -4,16 +4,16 @@ use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::glance::Glance;
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Look, Observable, Row, probes, stations};
+use crate::discrete::quantities::{Look, Observable, ObservableRow, probes, stations};
 use crate::discrete::residual::relaxation;
 use crate::discrete::{System, TimeData, Workspace, let_in};
 use crate::run::range::Limits;
-use crate::run::record::Column;
+use crate::run::record::HistoryColumn;
 use crate::spectral;
 
 /// An equilibrium under a load factor.
 #[derive(Clone, Debug)]
-pub struct State {
+pub struct EquilibriumState {
     /// Stage of the path, from 0.
     pub stage: usize,
     /// Share of the stage.
@@ -27,7 +27,7 @@ pub struct State {
     /// Displacements u3 of the nodes [m].
     pub u3: Vec<f64>,
     /// Stability, if determined.
-    pub stability: Option<Stability>,
+    pub stability: Option<EquilibriumStability>,
 }
 
 /// `[E42]` Stability of an equilibrium: the signs of the eigenvalues μ of its static tangent relative to the mass of the nodes,
@@ -39,7 +39,7 @@ pub struct State {
 /// Each negative eigenvalue is an unstable direction (divergence). √μ is the angular frequency of a soft motion if the network has
 /// time to follow. Flutter under follower loads needs inertia: `slcbeam modes`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stability {
+pub struct EquilibriumStability {
     /// Number of negative eigenvalues.
     pub unstable: usize,
     /// Eigenvalue of least magnitude [1/s^2], if computed.
@@ -52,19 +52,19 @@ fn at_rest(system: &System) -> Vec<Observable> {
 }
 
 /// Columns of the row of a [`State`], the load factor first.
-pub fn columns(system: &System) -> Vec<Column> {
-    let share = Column {
+pub fn columns(system: &System) -> Vec<HistoryColumn> {
+    let share = HistoryColumn {
         name: "load_factor".into(),
         unit: "1",
         about: "load factor".into(),
     };
-    let all = at_rest(system).into_iter().map(Column::from);
+    let all = at_rest(system).into_iter().map(HistoryColumn::from);
     let all = all.chain(stations::columns(system, true));
     let all = all.chain(probes::columns(system));
     std::iter::once(share).chain(all).collect()
 }
 
-impl State {
+impl EquilibriumState {
     /// Load factor: number of earlier stages plus the share of this one.
     pub fn load_factor(&self) -> f64 {
         self.stage as f64 + self.share
@@ -77,7 +77,7 @@ impl State {
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
         let look = Look::new(system, now, w, ledger::energies(system, now, w));
         let others = [stations::columns(system, true).len(), probes::columns(system).count()];
-        let mut read = Row::new(at_rest(system), others);
+        let mut read = ObservableRow::new(at_rest(system), others);
         read.take(share, &look, &[], 0.0);
         let row = std::iter::once(stage as f64 + share)
             .chain(read.values().iter().copied())
@@ -105,7 +105,7 @@ pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64)
     (beyond, glance)
 }
 
-impl Stability {
+impl EquilibriumStability {
     /// Stability of a state with scaled unknowns `y` under a load factor; `None` if the eigenvalues were not found.
     pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
         let mut values = vec![0.0; statics.pattern().entries()];

@@ -1,11 +1,11 @@
 //! Fluid trapped behind valves that closed before the instant of the loads. Its volume depends on the loads at their closure.
 
-use super::Options;
+use super::EquilibriumOptions;
 use crate::case::schema::{BladderEnd, Case, EquilibriumStart};
 use crate::error::numbers::rounded;
 use crate::error::{Code, Error, Result};
 use crate::functions::{Clock, Signal};
-use crate::model::network::{Network, Node};
+use crate::model::network::{NetworkNode, ResolvedNetwork};
 use crate::numerics::sets::Sets;
 
 /// Opening at or below which a moving valve counts as closed: leakage through it takes longer than any simulation.
@@ -17,7 +17,7 @@ const END: f64 = 1e-3;
 /// Largest number of added stages.
 const MOST: usize = 200;
 
-impl Options {
+impl EquilibriumOptions {
     /// Adds the stages that the valves of a case require. If a valve closes and traps fluid before the instant of the loads, the path
     /// first leads to the loads at its closure, with the openings before. It begins with the last state that does not depend on
     /// earlier ones. Requested stages ([`Options::via_s`]) remain unchanged.
@@ -40,9 +40,9 @@ impl Options {
 }
 
 /// Fluid trapped behind valves that are closed in the long run.
-pub struct Kept {
+pub struct TrappedFluid {
     /// Options of the path to the state in which the last of them closed.
-    pub options: Options,
+    pub options: EquilibriumOptions,
     /// Warning about the trapped fluid.
     pub warning: String,
 }
@@ -51,7 +51,7 @@ pub struct Kept {
 ///
 /// # Errors
 /// As [`Options::resolved`].
-pub fn kept(case: &Case, at_s: f64, settled: &dyn Fn(&Signal) -> Signal) -> Result<Option<Kept>> {
+pub fn kept(case: &Case, at_s: f64, settled: &dyn Fn(&Signal) -> Signal) -> Result<Option<TrappedFluid>> {
     let Some(mut history) = History::of(case, at_s)? else {
         return Ok(None);
     };
@@ -79,11 +79,11 @@ pub fn kept(case: &Case, at_s: f64, settled: &dyn Fn(&Signal) -> Signal) -> Resu
     few(stages, at_s)?;
     let mut via_s: Vec<f64> = stages.iter().map(|span| span.to).collect();
     via_s.pop();
-    Ok(Some(Kept {
-        options: Options {
+    Ok(Some(TrappedFluid {
+        options: EquilibriumOptions {
             via_s,
             valves_s: stages.iter().map(|span| span.inside).collect(),
-            ..Options::at(shut)
+            ..EquilibriumOptions::at(shut)
         },
         warning: history.words(case).unwrap_or_default(),
     }))
@@ -103,7 +103,7 @@ fn few(stages: &[Span], at_s: f64) -> Result<()> {
 ///
 /// # Errors
 /// As [`Options::resolved`].
-pub fn warning(case: &Case, options: &Options) -> Result<Option<String>> {
+pub fn warning(case: &Case, options: &EquilibriumOptions) -> Result<Option<String>> {
     if options.via_s.is_empty() != options.valves_s.is_empty() {
         return Ok(None);
     }
@@ -163,18 +163,18 @@ impl History {
         if at_s <= begin && past.is_none() {
             return Ok(None);
         }
-        let Some(network) = Network::of(case)? else {
+        let Some(network) = ResolvedNetwork::of(case)? else {
             return Ok(None);
         };
         let bladders = network.component_of_bladder.len();
         let given = bladders + network.junctions.len();
-        let place = |node: Node| match node {
-            Node::Cell { bladder, end } => {
+        let place = |node: NetworkNode| match node {
+            NetworkNode::Cell { bladder, end } => {
                 let (BladderEnd::Inlet | BladderEnd::Outlet) = end;
                 bladder
             }
-            Node::Junction(junction) => bladders + junction,
-            Node::Port(_) => given,
+            NetworkNode::Junction(junction) => bladders + junction,
+            NetworkNode::Port(_) => given,
         };
         let mut joined: Vec<[usize; 2]> = network.bridges.iter().map(|b| [place(b.from), place(b.to)]).collect();
         let mut valves = vec![];

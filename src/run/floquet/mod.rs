@@ -12,11 +12,11 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use super::periodic::{Cycle, Scene};
+use super::periodic::{Cycle, PeriodicScene};
 use crate::numerics::krylov;
-use shape::{Modes, Part};
+use shape::{DryBendingModes, EnergyPart};
 
-pub use verdict::{Stability, Verdict};
+pub use verdict::{CycleStability, CycleVerdict};
 
 /// Residual of a multiplier's vector, relative to one.
 const RESIDUAL: f64 = 1e-8;
@@ -41,7 +41,7 @@ pub struct Multiplier {
     /// its part.
     pub frequency_hz: f64,
     /// Part with most of its energy.
-    pub part: Part,
+    pub part: EnergyPart,
     /// Fraction of the energy in this part.
     pub share: f64,
     /// Rate by which the integrator's steps damp the motion beyond its own decay [1/s]; must be far below the growth rate.
@@ -62,7 +62,7 @@ pub struct Floquet {
     /// Other multipliers, largest first.
     pub multipliers: Vec<Multiplier>,
     /// Stability and its cause.
-    pub verdict: Verdict,
+    pub verdict: CycleVerdict,
 }
 
 /// `[E38]` The `count` largest multipliers of a cycle.
@@ -73,10 +73,10 @@ pub struct Floquet {
 ///
 /// M is the derivative of the discrete period map. Each conserved volume has a left vector with `wᵀ M = wᵀ`. M maps the states
 /// orthogonal to these vectors to such states, and their multipliers, exactly one, do not occur there.
-pub fn multipliers(scene: &Scene, cycle: &mut Cycle, count: usize) -> Floquet {
+pub fn multipliers(scene: &PeriodicScene, cycle: &mut Cycle, count: usize) -> Floquet {
     let mut start = krylov::everything(cycle.y.len());
     scene.admit(&mut start);
-    let modes = Modes::new(&scene.system, &cycle.y);
+    let modes = DryBendingModes::new(&scene.system, &cycle.y);
     let most = scene.dimension().min(MOST_VECTORS);
     let found = krylov::largest(
         |v| {
@@ -131,10 +131,17 @@ const FOLLOWED: f64 = 2.0;
 /// ```text
 /// Σₙ arg⟨cₙ, cₙ₊₁⟩ / T     c coordinates whose squares are twice the energy
 /// ```
-fn turns(scene: &Scene, cycle: &mut Cycle, modes: &Modes, part: Part, v: &[Vec<f64>; 2], dry: f64) -> Option<f64> {
+fn turns(
+    scene: &PeriodicScene,
+    cycle: &mut Cycle,
+    modes: &DryBendingModes,
+    part: EnergyPart,
+    v: &[Vec<f64>; 2],
+    dry: f64,
+) -> Option<f64> {
     let longest = cycle.march.times().windows(2).map(|t| t[1] - t[0]).fold(0.0, f64::max);
     let n = v[0].len();
-    if part == Part::Fluid || dry * longest > FOLLOWED || v[1].iter().all(|x| *x == 0.0) {
+    if part == EnergyPart::Fluid || dry * longest > FOLLOWED || v[1].iter().all(|x| *x == 0.0) {
         return None;
     }
     let mut block = [&v[0][..], &v[1]].concat();
@@ -163,7 +170,7 @@ fn nearest(angle: f64, period: f64, own: f64) -> f64 {
 }
 
 /// Rate [1/s] by which the steps damp a motion of given growth rate and angular frequency [1/s] beyond its own decay.
-fn numerical_damping(scene: &Scene, times: &[f64], [growth, w]: [f64; 2]) -> f64 {
+fn numerical_damping(scene: &PeriodicScene, times: &[f64], [growth, w]: [f64; 2]) -> f64 {
     let tableau = scene.method.tableau();
     let lost: f64 = times
         .windows(2)

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::Rotation;
 use crate::discrete::System;
-use crate::discrete::layout::Line;
+use crate::discrete::layout::LineLayout;
 use crate::model::Kinematics;
 
 /// Number of bending modes.
@@ -16,7 +16,7 @@ const MODES: usize = 8;
 /// The part with most of the energy of a disturbance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub enum EnergyPart {
     /// A bending mode of the dry beam, counted from 1.
     Bending(usize),
     /// Motion along the beam.
@@ -25,7 +25,7 @@ pub enum Part {
     Fluid,
 }
 
-impl std::fmt::Display for Part {
+impl std::fmt::Display for EnergyPart {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Bending(mode) => write!(f, "mode {mode}"),
@@ -37,7 +37,7 @@ impl std::fmt::Display for Part {
 
 /// Bending modes of the straight dry beam on its mesh.
 #[derive(Clone, Debug)]
-pub struct Modes {
+pub struct DryBendingModes {
     /// Angular frequencies [1/s], ascending; rigid motions left out.
     pub frequencies: Vec<f64>,
     /// Shapes at the free nodes, one in each row, `Σ mass u² = 1` [1/kg^(1/2)].
@@ -48,7 +48,7 @@ pub struct Modes {
     tangents: Vec<[f64; 2]>,
 }
 
-impl Modes {
+impl DryBendingModes {
     /// Lowest modes of a system, from the stiffness `Σ EI κ² length` of the curvatures at nodes and the mass at nodes; empty if no node
     /// can move across. `state` are the scaled unknowns that are disturbed.
     pub fn new(system: &System, state: &[f64]) -> Self {
@@ -125,12 +125,12 @@ impl Modes {
     /// Coordinates of a disturbance of the scaled unknowns in a part. Their squares add up to twice its energy there
     /// [J^(1/2)]. Empty for
     /// the fluid.
-    pub fn coordinates(&self, system: &System, part: Part, v: &[f64]) -> Vec<f64> {
+    pub fn coordinates(&self, system: &System, part: EnergyPart, v: &[f64]) -> Vec<f64> {
         let (l, s) = (&system.layout, &system.model.section);
         let across = &l.lines[0];
         let at = |k: usize| v[k] * l.scales[k];
         match part {
-            Part::Bending(mode) => {
+            EnergyPart::Bending(mode) => {
                 let (shape, w) = (&self.shapes[mode - 1], self.frequencies[mode - 1]);
                 let modal = |first: usize| -> f64 {
                     let terms = shape.iter().zip(&self.masses).enumerate();
@@ -139,7 +139,7 @@ impl Modes {
                 let rate = across.v.as_ref().map_or(0.0, |v| modal(v.start));
                 vec![w * modal(across.u.start), rate]
             }
-            Part::Along => {
+            EnergyPart::Along => {
                 let h = system.mesh.h;
                 let [stretches, speeds] = [self.stretches(system, v), self.speeds(system, v)];
                 let stretches = stretches.iter().map(|e| e * (s.axial_stiffness * h).sqrt());
@@ -147,16 +147,16 @@ impl Modes {
                     .chain(speeds.iter().map(|v| v * (s.mass_per_length * h).sqrt()))
                     .collect()
             }
-            Part::Fluid => vec![],
+            EnergyPart::Fluid => vec![],
         }
     }
 
     /// Angular frequency [1/s] of the dry beam in the shape of a disturbance with most of its energy in `part`. For motion along the
     /// beam it is Rayleigh's quotient; for the fluid it is 0.
-    pub fn frequency(&self, system: &System, part: Part, v: &[Vec<f64>; 2]) -> f64 {
+    pub fn frequency(&self, system: &System, part: EnergyPart, v: &[Vec<f64>; 2]) -> f64 {
         match part {
-            Part::Bending(mode) => self.frequencies[mode - 1],
-            Part::Along => {
+            EnergyPart::Bending(mode) => self.frequencies[mode - 1],
+            EnergyPart::Along => {
                 let s = &system.model.section;
                 let (mut stretch, mut moved) = (0.0, 0.0);
                 for v in v {
@@ -165,15 +165,15 @@ impl Modes {
                 }
                 (s.axial_stiffness * stretch / (s.mass_per_length * moved).max(f64::MIN_POSITIVE)).sqrt()
             }
-            Part::Fluid => 0.0,
+            EnergyPart::Fluid => 0.0,
         }
     }
 
     /// Part with most of the energy of a disturbance, given by real and imaginary part, and the fraction in this part.
-    pub fn dominant(&self, system: &System, v: &[Vec<f64>; 2]) -> (Part, f64) {
-        let mut parts: Vec<(Part, f64)> = (1..=self.frequencies.len())
-            .map(Part::Bending)
-            .chain([Part::Along, Part::Fluid])
+    pub fn dominant(&self, system: &System, v: &[Vec<f64>; 2]) -> (EnergyPart, f64) {
+        let mut parts: Vec<(EnergyPart, f64)> = (1..=self.frequencies.len())
+            .map(EnergyPart::Bending)
+            .chain([EnergyPart::Along, EnergyPart::Fluid])
             .map(|part| (part, 0.0))
             .collect();
         for v in v {
@@ -185,7 +185,7 @@ impl Modes {
         let whole: f64 = parts.iter().map(|p| p.1).sum();
         let (part, energy) = parts
             .into_iter()
-            .fold((Part::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
+            .fold((EnergyPart::Fluid, 0.0), |most, p| if p.1 > most.1 { p } else { most });
         (part, if whole > 0.0 { energy / whole } else { 0.0 })
     }
 
@@ -233,7 +233,7 @@ fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
 }
 
 /// Values of the scaled unknowns across and along at all nodes, in SI units; 0 at nodes without an unknown.
-fn nodes(system: &System, v: &[f64], unknowns: impl Fn(&Line) -> Option<&Range<usize>>) -> Vec<[f64; 2]> {
+fn nodes(system: &System, v: &[f64], unknowns: impl Fn(&LineLayout) -> Option<&Range<usize>>) -> Vec<[f64; 2]> {
     let l = &system.layout;
     let mut all = vec![[0.0; 2]; system.mesh.nodes];
     for (axis, line) in l.lines.iter().enumerate() {

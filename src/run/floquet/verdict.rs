@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Multiplier;
-use super::shape::Part;
+use super::shape::EnergyPart;
 use crate::run::null;
 
 /// Growth over a period below which a disturbance counts as neutral: the effect of the steps' own error on a multiplier of one.
@@ -14,7 +14,7 @@ const REAL: f64 = 1e-6;
 /// Stability of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Stability {
+pub enum CycleStability {
     /// All disturbances decay.
     Stable,
     /// No disturbance grows, but some do not decay.
@@ -25,9 +25,9 @@ pub enum Stability {
 
 /// Verdict on a cycle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
+pub struct CycleVerdict {
     /// Stability class.
-    pub stability: Stability,
+    pub stability: CycleStability,
     /// Growth rate of the largest multiplier [1/s].
     #[serde(deserialize_with = "null::number")]
     pub growth_per_s: f64,
@@ -36,10 +36,10 @@ pub struct Verdict {
 }
 
 /// Derives the verdict from the largest multiplier.
-pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -> Verdict {
+pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -> CycleVerdict {
     let Some(first) = multipliers.first() else {
-        return Verdict {
-            stability: Stability::Stable,
+        return CycleVerdict {
+            stability: CycleStability::Stable,
             growth_per_s: f64::NEG_INFINITY,
             words: "stable: every disturbance decays within one period".into(),
         };
@@ -47,23 +47,23 @@ pub fn judge(multipliers: &[Multiplier], driven: bool, rtol: f64, period: f64) -
     let growth = first.growth_per_s;
     let threshold = NEUTRAL.max(rtol) / period;
     let (stability, words) = if growth > threshold {
-        (Stability::Unstable, unstable(first, driven))
+        (CycleStability::Unstable, unstable(first, driven))
     } else if growth > -threshold {
         let words = format!(
             "neutral: {} neither grows nor decays (modulus of the multiplier 1 within {:.0e})",
             at(first),
             (first.modulus - 1.0).abs().max(1e-16)
         );
-        (Stability::Neutral, words)
+        (CycleStability::Neutral, words)
     } else {
         let words = format!(
             "stable: the slowest disturbance, {}, decays at {:.4} /s",
             at(first),
             -growth
         );
-        (Stability::Stable, words)
+        (CycleStability::Stable, words)
     };
-    Verdict {
+    CycleVerdict {
         stability,
         growth_per_s: growth,
         words,
@@ -94,7 +94,7 @@ fn unstable(m: &Multiplier, driven: bool) -> String {
     };
     let kind = format!("{kind}, multiplier {value}");
     match (m.part, driven) {
-        (Part::Bending(_), true) => format!("parametric resonance of {} ({kind}) {rate}", m.part),
+        (EnergyPart::Bending(_), true) => format!("parametric resonance of {} ({kind}) {rate}", m.part),
         (_, true) => format!("instability of {} ({kind}) {rate}", m.part),
         (_, false) if angle < REAL => format!("divergence of {} {rate}", m.part),
         (_, false) => format!("flutter of {} {rate}", at(m)),

@@ -4,9 +4,9 @@
 
 use nalgebra::Complex;
 
-use super::{Fluid, Linearised, Mode, Shapes, Tally, failed, mode};
+use super::{FluidBehavior, Linearised, Mode, Shapes, Tally, failed, mode};
 use crate::error::Result;
-use crate::spectral::{self, Options, Pencil, SpectralError};
+use crate::spectral::{self, EigenvalueOptions, Pencil, SpectralError};
 
 /// Numbers of pairs searched beside a place on the imaginary axis: several, or fewer if they do not converge.
 const BESIDE: [usize; 3] = [4, 2, 1];
@@ -32,7 +32,13 @@ impl Clustered {
     ///
     /// # Errors
     /// The search was interrupted.
-    pub fn modes(&self, about: &Linearised, fluid: Fluid, pencil: &Pencil, tally: &mut Tally) -> Result<Vec<Mode>> {
+    pub fn modes(
+        &self,
+        about: &Linearised,
+        fluid: FluidBehavior,
+        pencil: &Pencil,
+        tally: &mut Tally,
+    ) -> Result<Vec<Mode>> {
         let fewer = |count: &usize| (*count > 3).then_some(count / 2);
         let counts: Vec<usize> = std::iter::successors(Some(self.converged), fewer).collect();
         let mut modes = near(about, fluid, pencil, (self.shift, &counts), tally)?;
@@ -58,17 +64,17 @@ impl Clustered {
 /// Modes nearest to a place, for the first of the counts that converges.
 fn near(
     about: &Linearised,
-    fluid: Fluid,
+    fluid: FluidBehavior,
     pencil: &Pencil,
     (shift, counts): (Complex<f64>, &[usize]),
     tally: &mut Tally,
 ) -> Result<Vec<Mode>> {
     for &count in counts {
-        match spectral::nearest(pencil, shift, count, &Options::default()) {
+        match spectral::nearest(pencil, shift, count, &EigenvalueOptions::default()) {
             Ok(found) => {
                 tally.factorizations += found.factorizations;
                 tally.solves += found.solves;
-                if fluid == Fluid::Flowing {
+                if fluid == FluidBehavior::Flowing {
                     tally.finite = found.finite;
                 }
                 let mut shapes = Shapes::new(about);

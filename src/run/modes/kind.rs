@@ -3,13 +3,13 @@
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
-use super::shape::Shape;
+use super::shape::ModeShape;
 use crate::spectral::Pair;
 
 /// Behavior of a mode in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum TimeBehavior {
     /// Oscillates without growth.
     Oscillation,
     /// Decays without oscillation.
@@ -24,7 +24,7 @@ pub enum Kind {
     Volume,
 }
 
-impl Kind {
+impl TimeBehavior {
     /// Name of the kind.
     pub fn word(self) -> &'static str {
         match self {
@@ -61,13 +61,13 @@ const SHARE: f64 = 1e-9;
 const STILL: f64 = 1e-12;
 
 /// Kind of a pair, and `s` without the parts that are round-off. `frequency` [1/s] is that of the beam.
-pub fn judge(pair: &Pair, shape: &Shape, frequency: f64, length: f64) -> (Kind, Complex<f64>) {
+pub fn judge(pair: &Pair, shape: &ModeShape, frequency: f64, length: f64) -> (TimeBehavior, Complex<f64>) {
     let still = BEYOND * pair.error + STILL * frequency;
     if pair.s.norm() <= still {
         let kind = if shape.without_pressure(length) {
-            Kind::Rigid
+            TimeBehavior::Rigid
         } else {
-            Kind::Volume
+            TimeBehavior::Volume
         };
         return (kind, Complex::default());
     }
@@ -75,10 +75,10 @@ pub fn judge(pair: &Pair, shape: &Shape, frequency: f64, length: f64) -> (Kind, 
     let part = |x: f64| if x.abs() > least { x } else { 0.0 };
     let s = Complex::new(part(pair.s.re), part(pair.s.im));
     let kind = match (s.re > 0.0, s.im != 0.0) {
-        (false, true) => Kind::Oscillation,
-        (false, false) => Kind::Decay,
-        (true, true) => Kind::Flutter,
-        (true, false) => Kind::Divergence,
+        (false, true) => TimeBehavior::Oscillation,
+        (false, false) => TimeBehavior::Decay,
+        (true, true) => TimeBehavior::Flutter,
+        (true, false) => TimeBehavior::Divergence,
     };
     (kind, s)
 }

@@ -7,12 +7,12 @@ use crate::error::{At, Code, Error, Result, SolverError};
 use crate::functions::signals::Clock;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
-use crate::run::equilibrium::{self, Options};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::spectral::Pencil;
 
 /// Behavior of the fluid in the linearized equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fluid {
+pub enum FluidBehavior {
     /// The fluid flows.
     Flowing,
     /// The fluid does not flow: every bladder keeps its volume (undrained, μ → ∞).
@@ -53,7 +53,7 @@ pub struct Linearised {
 /// [`Error::Solver`] if there are no consistent pressures, or if derivatives are not finite.
 pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearised> {
     if let (None, Some(start)) = (state, &case.start.equilibrium) {
-        return about_equilibrium(case, &Options::of_start(start));
+        return about_equilibrium(case, &EquilibriumOptions::of_start(start));
     }
     let mut dae = held(case, at)?;
     let (system, now) = dae.instant(at);
@@ -66,10 +66,10 @@ pub fn linearise(case: &Case, at: f64, state: Option<&[f64]>) -> Result<Linearis
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] if there is no equilibrium.
 pub fn at_equilibrium(case: &Case, at: f64) -> Result<Linearised> {
-    about_equilibrium(case, &Options::at(at))
+    about_equilibrium(case, &EquilibriumOptions::at(at))
 }
 
-fn about_equilibrium(case: &Case, options: &Options) -> Result<Linearised> {
+fn about_equilibrium(case: &Case, options: &EquilibriumOptions) -> Result<Linearised> {
     let at = options.at_s;
     let mut dae = held(case, at)?;
     let at_rest = vec![0.0; dae.len()];
@@ -145,7 +145,7 @@ impl Linearised {
 
     /// Entries of A and B with another behavior of the fluid. The rows of storage, `Δs a' - inflow`, become `a = 0` if the fluid is
     /// sealed; their flows are multiplied by a factor if it is free. No second model is needed, whatever valves and turbines there are.
-    pub fn with(&self, fluid: Fluid) -> (Vec<f64>, Vec<f64>) {
+    pub fn with(&self, fluid: FluidBehavior) -> (Vec<f64>, Vec<f64>) {
         let (mut a, mut b) = (self.a.clone(), self.b.clone());
         let (pattern, l) = (self.dae.pattern(), &self.system().layout);
         let storage = l.network.area.clone();
@@ -153,10 +153,10 @@ impl Linearised {
             for entry in pattern.column(column) {
                 let row = pattern.rows[entry] as usize;
                 match fluid {
-                    Fluid::Flowing => {}
+                    FluidBehavior::Flowing => {}
                     _ if !storage.contains(&row) => {}
-                    Fluid::Sealed => (a[entry], b[entry]) = (f64::from(u8::from(row == column)), 0.0),
-                    Fluid::Free => a[entry] *= FREE,
+                    FluidBehavior::Sealed => (a[entry], b[entry]) = (f64::from(u8::from(row == column)), 0.0),
+                    FluidBehavior::Free => a[entry] *= FREE,
                 }
             }
         }

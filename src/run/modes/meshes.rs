@@ -6,7 +6,9 @@
 use nalgebra::Complex;
 
 use super::shape::{alike, likeness};
-use super::{Fluid, Limit, Linearised, Mode, Modes, Plan, Tally, at_equilibrium, linearise, search};
+use super::{
+    FluidBehavior, LimitingMode, Linearised, Mode, ModeOptions, Modes, Tally, at_equilibrium, linearise, search,
+};
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::discrete::resolution::LIMIT as LARGE;
@@ -41,7 +43,7 @@ impl ByMesh {
 ///
 /// # Errors
 /// None: if a mesh has no modes, or not these, its effect remains unknown.
-pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &Plan, found: &mut Modes) {
+pub fn compare_meshes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOptions, found: &mut Modes) {
     let at = found.about.at;
     let about = |case: &Case| match at_rest_under {
         Some(at) => at_equilibrium(case, at),
@@ -71,7 +73,7 @@ fn halved(case: &Case) -> Option<Case> {
     Some(case)
 }
 
-fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
+fn along_the_beam(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) {
     let fourth = found.about.system().mesh.fourth;
     // a mesh of few cells has another order
     if about.as_ref().is_ok_and(|other| other.system().mesh.fourth != fourth) {
@@ -94,11 +96,11 @@ fn along_the_beam(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
         mode.by_mesh.fourth = fourth;
         mode.coarse = other
             .frequency_hz()
-            .map(|frequency_hz| Limit { frequency_hz, likeness });
+            .map(|frequency_hz| LimitingMode { frequency_hz, likeness });
     }
 }
 
-fn along_bladders(about: Result<Linearised>, plan: &Plan, found: &mut Modes) {
+fn along_bladders(about: Result<Linearised>, plan: &ModeOptions, found: &mut Modes) {
     let modes = found.modes.clone();
     let Some((others, pairs)) = elsewhere(about, plan, &modes, found) else {
         return;
@@ -116,18 +118,18 @@ const MORE: usize = 4;
 #[allow(clippy::type_complexity)]
 fn elsewhere(
     about: Result<Linearised>,
-    plan: &Plan,
+    plan: &ModeOptions,
     modes: &[Mode],
     found: &mut Modes,
 ) -> Option<(Vec<Mode>, Vec<(usize, usize, f64)>)> {
     let about = about.ok()?;
     let mut tally = Tally::default();
     let others = [MORE, 0].into_iter().find_map(|more| {
-        let plan = Plan {
+        let plan = ModeOptions {
             count: plan.count + more,
             ..*plan
         };
-        search(&about, Fluid::Flowing, &plan, &mut tally).ok()
+        search(&about, FluidBehavior::Flowing, &plan, &mut tally).ok()
     })?;
     found.factorizations += tally.factorizations;
     found.solves += tally.solves;

@@ -28,19 +28,19 @@ use serde::{Deserialize, Serialize};
 use crate::case::Case;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::run::null;
-use crate::spectral::{self, Options, Pair, Pencil, SpectralError};
+use crate::spectral::{self, EigenvalueOptions, Pair, Pencil, SpectralError};
 
 use clustered::Clustered;
-pub use kind::Kind;
-pub use linearise::{Fluid, Linearised, at_equilibrium, linearise};
+pub use kind::TimeBehavior;
+pub use linearise::{FluidBehavior, Linearised, at_equilibrium, linearise};
 pub use meshes::{ByMesh, compare_meshes};
-pub use sensitivity::{Sensitivity, differentiate};
-pub use shape::{Shape, Shapes, likeness};
+pub use sensitivity::{ModeSensitivity, differentiate};
+pub use shape::{ModeShape, Shapes, likeness};
 pub use sort::Sort;
 
 /// Options of a search for modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plan {
+pub struct ModeOptions {
     /// Number of modes, not counting those with s = 0.
     pub count: usize,
     /// Frequency near which modes are searched [Hz].
@@ -49,7 +49,7 @@ pub struct Plan {
     pub limits: bool,
 }
 
-impl Plan {
+impl ModeOptions {
     /// `2πi near` [1/s].
     fn target(&self) -> Complex<f64> {
         Complex::new(0.0, std::f64::consts::TAU * self.near_hz)
@@ -58,7 +58,7 @@ impl Plan {
 
 /// The same mode with sealed or free fluid, or on another mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct LimitingMode {
     /// Frequency [Hz].
     #[serde(deserialize_with = "null::number")]
     pub frequency_hz: f64,
@@ -71,7 +71,7 @@ pub struct Limit {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Kind of the mode.
-    pub kind: Kind,
+    pub kind: TimeBehavior,
     /// s [1/s], without parts that are round-off.
     pub s: Complex<f64>,
     /// Bound of the error of s, to first order [1/s].
@@ -79,13 +79,13 @@ pub struct Mode {
     /// Backward error of the pair.
     pub residual: f64,
     /// Shape of the mode.
-    pub shape: Shape,
+    pub shape: ModeShape,
     /// The mode with every bladder sealed.
-    pub undrained: Option<Limit>,
+    pub undrained: Option<LimitingMode>,
     /// The mode with networks of one pressure.
-    pub drained: Option<Limit>,
+    pub drained: Option<LimitingMode>,
     /// The mode on a mesh of half the cells.
-    pub coarse: Option<Limit>,
+    pub coarse: Option<LimitingMode>,
     /// Errors due to the meshes.
     pub by_mesh: ByMesh,
 }
@@ -179,7 +179,7 @@ pub struct Modes {
 ///
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] if eigenvalues do not converge.
-pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
+pub fn modes(case: &Case, plan: &ModeOptions) -> Result<Modes> {
     of(linearise(case, 0.0, None)?, plan)
 }
 
@@ -187,16 +187,16 @@ pub fn modes(case: &Case, plan: &Plan) -> Result<Modes> {
 ///
 /// # Errors
 /// [`Error::Solver`] if eigenvalues do not converge.
-pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
+pub fn of(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
     let mut tally = Tally::default();
-    let mut modes = search(&about, Fluid::Flowing, plan, &mut tally)?;
+    let mut modes = search(&about, FluidBehavior::Flowing, plan, &mut tally)?;
     let (lost, clustered) = (tally.lost, tally.clustered);
     if plan.limits && about.flows() {
-        let wider = Plan {
+        let wider = ModeOptions {
             count: plan.count + 4,
             ..*plan
         };
-        for fluid in [Fluid::Sealed, Fluid::Free] {
+        for fluid in [FluidBehavior::Sealed, FluidBehavior::Free] {
             // the larger number may not converge; a limit that is not found is not shown
             let Ok(others) =
                 search(&about, fluid, &wider, &mut tally).or_else(|_| search(&about, fluid, plan, &mut tally))
@@ -207,9 +207,9 @@ pub fn of(about: Linearised, plan: &Plan) -> Result<Modes> {
                 let Some(frequency_hz) = others[j].frequency_hz() else {
                     continue;
                 };
-                let limit = Limit { frequency_hz, likeness };
+                let limit = LimitingMode { frequency_hz, likeness };
                 match fluid {
-                    Fluid::Sealed => modes[k].undrained = Some(limit),
+                    FluidBehavior::Sealed => modes[k].undrained = Some(limit),
                     _ => modes[k].drained = Some(limit),
                 }
             }
@@ -242,7 +242,7 @@ struct Tally {
 /// their eigenvalues, and is probably nearer to zero than all others.
 const BESIDE: f64 = 0.1;
 
-fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
+fn search(about: &Linearised, fluid: FluidBehavior, plan: &ModeOptions, tally: &mut Tally) -> Result<Vec<Mode>> {
     let (a, b) = about.with(fluid);
     match relaxing::relaxes(about) {
         false => near_to(about, fluid, [&a, &b], plan, tally),
@@ -254,7 +254,13 @@ fn search(about: &Linearised, fluid: Fluid, plan: &Plan, tally: &mut Tally) -> R
 const QUICK: usize = 500;
 
 /// Finds the planned modes of a pencil with entries A and B.
-fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, tally: &mut Tally) -> Result<Vec<Mode>> {
+fn near_to(
+    about: &Linearised,
+    fluid: FluidBehavior,
+    [a, b]: [&[f64]; 2],
+    plan: &ModeOptions,
+    tally: &mut Tally,
+) -> Result<Vec<Mode>> {
     let pencil = Pencil { a, b, ..about.pencil() };
     let target = plan.target();
     let shift = if plan.near_hz > 0.0 {
@@ -263,10 +269,10 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
         Complex::new(BESIDE * about.frequency(), 0.0)
     };
     let options = match plan.near_hz > 0.0 {
-        true => Options::default(),
-        false => Options {
+        true => EigenvalueOptions::default(),
+        false => EigenvalueOptions {
             at_last_dense_up_to: QUICK,
-            ..Options::default()
+            ..EigenvalueOptions::default()
         },
     };
     let mut asked = plan.count + 2;
@@ -276,7 +282,7 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
             Ok(found) => {
                 tally.factorizations += found.factorizations;
                 tally.solves += found.solves;
-                if fluid == Fluid::Flowing {
+                if fluid == FluidBehavior::Flowing {
                     (tally.finite, tally.dense) = (found.finite, found.dense);
                 }
                 let mut shapes = Shapes::new(about);
@@ -284,7 +290,7 @@ fn near_to(about: &Linearised, fluid: Fluid, [a, b]: [&[f64]; 2], plan: &Plan, t
                 (modes, found.pairs.len() < 2 * asked)
             }
             Err(SpectralError::Slow { converged, .. }) if plan.near_hz == 0.0 && converged > 1 => {
-                tally.clustered |= fluid == Fluid::Flowing;
+                tally.clustered |= fluid == FluidBehavior::Flowing;
                 let wanted = plan.count;
                 let search = Clustered {
                     shift,

@@ -4,12 +4,12 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use nalgebra::Complex;
 
-use super::{Fluid, Linearised, Mode, Plan, Shapes, Tally, likeness, mode, near_to};
+use super::{FluidBehavior, Linearised, Mode, ModeOptions, Shapes, Tally, likeness, mode, near_to};
 use crate::case::relaxation::{dynamic_modulus, vibration};
 use crate::case::schema::Effect;
 use crate::error::Result;
-use crate::model::effects::Cause;
-use crate::spectral::{self, Options, Pencil};
+use crate::model::effects::DecisionCause;
+use crate::spectral::{self, EigenvalueOptions, Pencil};
 
 /// Numbers of pairs searched around the place where one is expected, in this order.
 const AROUND: [usize; 2] = [1, 4];
@@ -17,7 +17,7 @@ const AROUND: [usize; 2] = [1, 4];
 /// True if there are branches of a solid that relaxes, or of unsteady friction that is not requested by name.
 pub fn relaxes(about: &Linearised) -> bool {
     let system = about.system();
-    let asked = system.model.effects.decision(Effect::UnsteadyFriction).cause == Cause::Asked;
+    let asked = system.model.effects.decision(Effect::UnsteadyFriction).cause == DecisionCause::Asked;
     !system.model.relaxation.is_empty() || (!asked && !system.layout.network.branch.is_empty())
 }
 
@@ -30,9 +30,9 @@ pub fn relaxes(about: &Linearised) -> bool {
 /// Those of the first search.
 pub fn search(
     about: &Linearised,
-    fluid: Fluid,
+    fluid: FluidBehavior,
     [a, b]: [&[f64]; 2],
-    plan: &Plan,
+    plan: &ModeOptions,
     tally: &mut Tally,
 ) -> Result<Vec<Mode>> {
     let branches = &about.system().model.relaxation;
@@ -49,7 +49,7 @@ pub fn search(
         }
     }
     let target = plan.target();
-    let softer = Plan {
+    let softer = ModeOptions {
         near_hz: plan.near_hz / dynamic_modulus(branches, target.im)[0].sqrt(),
         ..*plan
     };
@@ -69,7 +69,7 @@ pub fn search(
             false => expected.s,
         };
         let again = AROUND.into_iter().find_map(|count| {
-            let found = spectral::nearest(&pencil, shift, count, &Options::default()).ok()?;
+            let found = spectral::nearest(&pencil, shift, count, &EigenvalueOptions::default()).ok()?;
             tally.factorizations += found.factorizations;
             tally.solves += found.solves;
             let mut shapes = Shapes::new(about);

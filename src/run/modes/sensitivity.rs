@@ -8,11 +8,11 @@ use crate::case::Case;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
-use crate::spectral::{self, Options, Pair};
+use crate::spectral::{self, EigenvalueOptions, Pair};
 
 /// Derivatives by one parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensitivity {
+pub struct ModeSensitivity {
     /// The parameter.
     pub parameter: Parameter,
     /// Derivative of s of each mode [1/s over the parameter's unit].
@@ -36,12 +36,12 @@ pub fn differentiate(
     about: &Linearised,
     modes: &[Mode],
     parameters: &[Parameter],
-) -> Result<Vec<Sensitivity>> {
+) -> Result<Vec<ModeSensitivity>> {
     let pairs: Vec<Pair> = modes
         .iter()
         .map(|mode| {
-            let found =
-                spectral::nearest(&about.pencil(), mode.s, 1, &Options::default()).map_err(|f| failed(about, &f))?;
+            let found = spectral::nearest(&about.pencil(), mode.s, 1, &EigenvalueOptions::default())
+                .map_err(|f| failed(about, &f))?;
             found
                 .pairs
                 .into_iter()
@@ -49,7 +49,7 @@ pub fn differentiate(
                 .ok_or_else(|| Error::Usage("a mode was not found again".into()))
         })
         .collect::<Result<_>>()?;
-    let of = |parameter: &Parameter| -> Result<Sensitivity> {
+    let of = |parameter: &Parameter| -> Result<ModeSensitivity> {
         let mut a = vec![0.0; about.a.len()];
         let mut b = a.clone();
         for (steps, weight) in STEPS {
@@ -70,7 +70,7 @@ pub fn differentiate(
             .iter()
             .map(|pair| -spectral::quotient(about.dae.pattern(), &a, &b, &about.b, pair))
             .collect();
-        Ok(Sensitivity {
+        Ok(ModeSensitivity {
             parameter: parameter.clone(),
             s,
         })

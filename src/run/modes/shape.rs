@@ -8,7 +8,7 @@ use crate::numerics::dual::Dual;
 
 /// Amplitudes of a mode: real parts cos, imaginary parts minus sin of the phase at t = 0.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shape {
+pub struct ModeShape {
     /// Transverse displacement of each node [m].
     pub u1: Vec<Complex<f64>>,
     /// Axial displacement of each node [m].
@@ -43,7 +43,7 @@ impl<'a> Shapes<'a> {
 
     /// Shape of a vector, normalized to a hundredth of the length or 1 kPa, whichever is reached first. Its phase is zero where
     /// displacements (of pure flow: pressures) are largest.
-    pub fn shape(&mut self, x: &[Complex<f64>]) -> Shape {
+    pub fn shape(&mut self, x: &[Complex<f64>]) -> ModeShape {
         let system = self.of.system();
         let scales = &system.layout.scales;
         let along = |k: usize| Dual {
@@ -61,7 +61,7 @@ impl<'a> Shapes<'a> {
             values.map(|v| Complex::new(v.derivative[0], v.derivative[1])).collect()
         };
         let w = &self.workspace;
-        Shape {
+        ModeShape {
             u1: complex(&mut w.motion.u.iter().map(|u| u.x)),
             u3: complex(&mut w.motion.u.iter().map(|u| u.z)),
             pressure: complex(&mut w.fluid.mean_pressure.iter().copied()),
@@ -70,7 +70,7 @@ impl<'a> Shapes<'a> {
     }
 }
 
-impl Shape {
+impl ModeShape {
     /// Normalizes size and phase, see [`Shapes::shape`].
     fn normalised(mut self, length: f64) -> Self {
         let moved = largest(self.u1.iter().chain(&self.u3)) / (DISPLACEMENT * length);
@@ -135,12 +135,12 @@ const NOTHING: f64 = 1e-6;
 /// ```
 ///
 /// Compares pressures if neither shape moves the beam.
-pub fn likeness(a: &Shape, b: &Shape) -> f64 {
+pub fn likeness(a: &ModeShape, b: &ModeShape) -> f64 {
     if a.displacement() == 0.0 && b.displacement() == 0.0 {
         return alike(a, b, 1.0);
     }
     let last = a.u1.len().saturating_sub(1);
-    let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
+    let inner = |a: &ModeShape, b: &ModeShape| -> Complex<f64> {
         let part = |u: &[Complex<f64>], w: &[Complex<f64>]| -> Complex<f64> {
             let terms = u.iter().zip(w).enumerate();
             terms
@@ -153,8 +153,8 @@ pub fn likeness(a: &Shape, b: &Shape) -> f64 {
 }
 
 /// Likeness of displacements and pressures together, each over its normalization, for motions that are mostly flow; `length` [m].
-pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
-    let inner = |a: &Shape, b: &Shape| -> Complex<f64> {
+pub fn alike(a: &ModeShape, b: &ModeShape, length: f64) -> f64 {
+    let inner = |a: &ModeShape, b: &ModeShape| -> Complex<f64> {
         let part = |u: &[Complex<f64>], w: &[Complex<f64>], size: f64| -> Complex<f64> {
             let sum: Complex<f64> = u.iter().zip(w).map(|(u, w)| u.conj() * w).sum();
             sum / (size * size * u.len().max(1) as f64)
@@ -166,7 +166,7 @@ pub fn alike(a: &Shape, b: &Shape, length: f64) -> f64 {
 }
 
 /// Squared cosine of the angle between two shapes by an inner product; 0 if one of them is zero.
-fn alignment(a: &Shape, b: &Shape, inner: impl Fn(&Shape, &Shape) -> Complex<f64>) -> f64 {
+fn alignment(a: &ModeShape, b: &ModeShape, inner: impl Fn(&ModeShape, &ModeShape) -> Complex<f64>) -> f64 {
     let whole = inner(a, a).re * inner(b, b).re;
     if whole > 0.0 {
         inner(a, b).norm_sqr() / whole

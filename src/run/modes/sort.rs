@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Kind, Linearised, Mode, Modes, Plan, of};
+use super::{Linearised, Mode, ModeOptions, Modes, TimeBehavior, of};
 use crate::error::Result;
 
 /// Sort of modes to select.
@@ -19,10 +19,10 @@ pub enum Sort {
 
 impl Sort {
     /// True if a mode of this kind belongs to the sort.
-    pub fn has(self, kind: Kind) -> bool {
+    pub fn has(self, kind: TimeBehavior) -> bool {
         match self {
             Self::Oscillation => kind.swings(),
-            Self::Decay => kind == Kind::Decay,
+            Self::Decay => kind == TimeBehavior::Decay,
             Self::Growth => kind.grows(),
         }
     }
@@ -48,7 +48,7 @@ const AMONG: usize = 8;
 ///
 /// # Errors
 /// As [`of`].
-pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Modes, Plan)> {
+pub fn of_sort(about: Linearised, plan: &ModeOptions, sort: Option<Sort>) -> Result<(Modes, ModeOptions)> {
     // hundreds of decays of the fluid may lie nearer to zero than oscillations and growth, which are listed first
     let (sort, most) = match sort {
         Some(sort) => (sort, MOST),
@@ -57,7 +57,7 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
         }
         None => return Ok((of(about, plan)?, *plan)),
     };
-    let mut wider = Plan { limits: false, ..*plan };
+    let mut wider = ModeOptions { limits: false, ..*plan };
     let mut about = about;
     loop {
         let found = of(about, &wider)?;
@@ -65,7 +65,7 @@ pub fn of_sort(about: Linearised, plan: &Plan, sort: Option<Sort>) -> Result<(Mo
         let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
         let more = own < plan.count && moving >= wider.count && wider.count < most;
         if !more {
-            let plan = Plan {
+            let plan = ModeOptions {
                 limits: plan.limits,
                 ..wider
             };
@@ -87,11 +87,11 @@ pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
         modes.retain(|mode| sort.has(mode.kind));
     }
     let group = |mode: &Mode| match mode.kind {
-        Kind::Flutter | Kind::Divergence => 0,
-        Kind::Oscillation => 1,
-        Kind::Decay => 2,
-        Kind::Rigid => 3,
-        Kind::Volume => 4,
+        TimeBehavior::Flutter | TimeBehavior::Divergence => 0,
+        TimeBehavior::Oscillation => 1,
+        TimeBehavior::Decay => 2,
+        TimeBehavior::Rigid => 3,
+        TimeBehavior::Volume => 4,
     };
     let pace = |mode: &Mode| if mode.kind.swings() { mode.s.im } else { mode.s.norm() };
     // of modes beside a frequency, the nearest are kept

@@ -6,16 +6,16 @@
 use super::scene::whole;
 use crate::case::schema::Case;
 use crate::dae::BeamDae;
-use crate::discrete::fluid_mesh::{FluidMesh, MeshLink, Place};
+use crate::discrete::fluid_mesh::{FluidMesh, LinkEnd, MeshLink};
 use crate::discrete::{System, Workspace, start};
 use crate::error::numbers::quantity;
 use crate::error::{Error, Result};
 use crate::functions::Clock;
 use crate::model::LumpedKind;
-use crate::model::network::{Feed, Network, Source};
+use crate::model::network::{Feed, PrescribedFlow, ResolvedNetwork};
 use crate::numerics::sets::Sets;
 use crate::run::drive::{settled, settles_at};
-use crate::run::equilibrium::{self, Options};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 
 /// Net inflow over a period, relative to the largest flow times the period, that counts as zero.
 const NOTHING: f64 = 1e-9;
@@ -76,7 +76,7 @@ impl Part {
     }
 
     /// Volume that sources add from `from`, with signals as just before or after this instant, to the instant `to` [m^3].
-    fn let_in(&self, network: &Network, from: Clock, to: f64) -> f64 {
+    fn let_in(&self, network: &ResolvedNetwork, from: Clock, to: f64) -> f64 {
         let lumped = matches!(self.stores, Stores::Lumped(_));
         let of = |source: &usize| match &network.sources[*source].feed {
             Feed::Flow(flow) => flow.integral(to) - flow.integral(from.t),
@@ -94,7 +94,7 @@ fn parts(system: &System) -> Vec<Part> {
     };
     let network = &wet.network;
     let given = fluid.cells + fluid.junctions.len();
-    let index = |place: Place| place_of(fluid, place);
+    let index = |place: LinkEnd| place_of(fluid, place);
     let shut = |link: &MeshLink| link.number.is_some_and(|number| network.links[number].is_shut());
     let mut sets = Sets::new(given + 1);
     fluid.faces().for_each(|[a, b]| sets.join(a, b));
@@ -141,11 +141,11 @@ fn parts(system: &System) -> Vec<Part> {
 }
 
 /// Index of a place: cells, junctions, then one for all prescribed pressures.
-fn place_of(fluid: &FluidMesh, place: Place) -> usize {
+fn place_of(fluid: &FluidMesh, place: LinkEnd) -> usize {
     match place {
-        Place::Cell(c) => c,
-        Place::Junction(j) => fluid.cells + j,
-        Place::Port(_) => fluid.cells + fluid.junctions.len(),
+        LinkEnd::Cell(c) => c,
+        LinkEnd::Junction(j) => fluid.cells + j,
+        LinkEnd::Port(_) => fluid.cells + fluid.junctions.len(),
     }
 }
 
@@ -199,7 +199,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
             };
             (Some(kept.options.clone()), since)
         }
-        (None, Some(start)) => (Some(Options::of_start(start)), outset),
+        (None, Some(start)) => (Some(EquilibriumOptions::of_start(start)), outset),
         (None, None) => (None, outset),
     };
     if let Some(options) = options {
@@ -237,7 +237,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
 /// Rejects parts with a net inflow over a period: each period begins with more fluid than the one before.
 fn gathering(system: &System, case: &Case, parts: &[Part], period: f64) -> Result<()> {
     let Some(wet) = &system.model.wet else { return Ok(()) };
-    let flow = |source: &Source| match &source.feed {
+    let flow = |source: &PrescribedFlow| match &source.feed {
         Feed::Flow(flow) => [flow.integral(period), flow.largest(period).value * period],
         Feed::Volume(_) => [0.0; 2],
     };

@@ -18,6 +18,6 @@ pub mod settle;
 pub mod shoot;
 pub mod subharmonic;
 
-pub use scene::Scene;
+pub use scene::PeriodicScene;
 pub use settle::{Settled, settle};
-pub use shoot::{Cycle, Search, shoot};
+pub use shoot::{Cycle, ShootingRecord, shoot};

@@ -1,6 +1,6 @@
 //! One period of a cycle as a run of its own, recorded like any other.
 
-use super::scene::Scene;
+use super::scene::PeriodicScene;
 use super::shoot::Cycle;
 use crate::case::schema::Case;
 use crate::error::Result;
@@ -15,7 +15,7 @@ const OUTPUTS: f64 = 200.0;
 ///
 /// # Errors
 /// The recorder fails. A failing solver is part of the [`Outcome`].
-pub fn record(case: &Case, scene: &Scene, cycle: &Cycle, recorder: &mut dyn Recorder) -> Result<Outcome> {
+pub fn record(case: &Case, scene: &PeriodicScene, cycle: &Cycle, recorder: &mut dyn Recorder) -> Result<Outcome> {
     let case = one_period(case, scene.drive.period);
     let mut outcome = dynamics::go_on(&case, scene.system.clone(), [&cycle.y, &cycle.yp], None, recorder)?;
     outcome.summary.warnings.extend(scene.trapped.clone());

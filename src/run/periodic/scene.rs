@@ -1,7 +1,7 @@
 //! Scene of a cycle: a case in the long run, as a map of its state over a period.
 
 use super::fluid;
-use super::shoot::Search;
+use super::shoot::ShootingRecord;
 use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
@@ -10,9 +10,9 @@ use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{Absolute, IntegrationError, StartOptions, consistent_start};
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
-use crate::onestep::{Method, OneStep, OneStepOptions, StepMap};
-use crate::run::drive::{Drive, drive, settled, settled_opening};
-use crate::run::stop::{INTERRUPTED, Stop};
+use crate::onestep::{OneStep, OneStepOptions, StepMap, TableauMethod};
+use crate::run::drive::{PeriodicDrive, drive, settled, settled_opening};
+use crate::run::stop::{INTERRUPTED, StopFlag};
 
 /// Least number of steps in a period: signals are smooth, but a mode at rest does not affect the error test.
 const LEAST_STEPS: f64 = 32.0;
@@ -20,19 +20,19 @@ const LEAST_STEPS: f64 = 32.0;
 const MOST_STEPS: usize = 5000;
 
 /// Method of the steps.
-pub const METHOD: Method = Method::Esdirk46;
+pub const METHOD: TableauMethod = TableauMethod::Esdirk46;
 
 /// A case in the long run: the full case, signals without their starts, and a period.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct PeriodicScene {
     /// The system.
     pub system: System,
     /// Periodic excitation.
-    pub drive: Drive,
+    pub drive: PeriodicDrive,
     /// Tolerance of a step.
     pub rtol: f64,
     /// Method of the steps.
-    pub method: Method,
+    pub method: TableauMethod,
     /// Number of drive periods in one period of the cycle.
     pub periods: usize,
     /// First state of the search, scaled: the start of the case, at rest relative to its ends, with its amount of fluid in
@@ -41,12 +41,12 @@ pub struct Scene {
     /// Warning about fluid trapped behind closed valves, if there is any.
     pub trapped: Option<String>,
     /// Stop request for the search.
-    pub stop: Stop,
+    pub stop: StopFlag,
     /// Conserved quantities: `w · y` of the scaled unknowns does not change. The vectors are orthonormal.
     pub conserved: Vec<Vec<f64>>,
 }
 
-impl Scene {
+impl PeriodicScene {
     /// The case in the long run; `period` [s] is used if no signal is periodic.
     ///
     /// Includes every effect that the case does not switch off by name, even if `auto` would neglect it. A disturbance may grow from
@@ -63,7 +63,7 @@ impl Scene {
     }
 
     /// Scene of another model of the case with settled signals; rejected as by [`System::new`].
-    pub fn of(case: &Case, model: Model, drive: Drive) -> Result<Self> {
+    pub fn of(case: &Case, model: Model, drive: PeriodicDrive) -> Result<Self> {
         let system = System::with(case, model)?.accepted(case)?;
         let (guess, trapped) = guess(&system, case, drive.period)?;
         Ok(Self {
@@ -72,7 +72,7 @@ impl Scene {
             conserved: fluid::conserved(&system),
             system,
             drive,
-            stop: Stop::default(),
+            stop: StopFlag::default(),
             periods: 1,
             rtol: case.solver.rtol,
             method: METHOD,
@@ -80,7 +80,7 @@ impl Scene {
     }
 
     /// Sets the stop request that ends the search.
-    pub fn heeding(mut self, stop: &Stop) -> Self {
+    pub fn heeding(mut self, stop: &StopFlag) -> Self {
         self.stop = stop.clone();
         self
     }
@@ -178,7 +178,12 @@ impl Scene {
     ///
     /// # Errors
     /// The integrator cannot follow the motion.
-    pub fn go_on(&self, y: &[f64], periods: usize, search: &mut Search) -> std::result::Result<Vec<f64>, StepError> {
+    pub fn go_on(
+        &self,
+        y: &[f64],
+        periods: usize,
+        search: &mut ShootingRecord,
+    ) -> std::result::Result<Vec<f64>, StepError> {
         let (mut dae, mut y, mut yp) = (self.dae(), y.to_vec(), vec![0.0; y.len()]);
         consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())
             .map_err(|failure| StepError::new(0.0, failure.to_string()))?;

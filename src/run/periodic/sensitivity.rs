@@ -1,7 +1,7 @@
 //! Derivatives of a cycle by numbers of its case.
 
 use super::record::one_period;
-use super::scene::{Scene, fault};
+use super::scene::{PeriodicScene, fault};
 use super::settle::Settled;
 use crate::case::Case;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::numerics::krylov;
 use crate::onestep::step_map::StepError;
 use crate::run::drive::drive;
-use crate::run::dynamics::{self, Along, Outcome};
+use crate::run::dynamics::{self, ContinuedDerivatives, Outcome};
 use crate::run::record::Recorder;
 
 /// Relative residual of the linear equations.
@@ -68,7 +68,7 @@ pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: 
         all.push(s);
     }
     let case = one_period(case, scene.drive.period);
-    let along = Along {
+    let along = ContinuedDerivatives {
         by: parameters,
         alike: &|case| scene.like(case),
         s: &all,
@@ -83,12 +83,12 @@ pub fn differentiate(settled: &mut Settled, parameters: &[Parameter], recorder: 
 ///
 /// # Errors
 /// [`Error::Usage`] for a number that changes the period or the unknowns.
-pub fn allowed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<()> {
+pub fn allowed(case: &Case, scene: &PeriodicScene, parameters: &[Parameter]) -> Result<()> {
     perturbed(case, scene, parameters).map(|_| ())
 }
 
 /// Equations of a scene, including those for the changed numbers.
-fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<BeamDae> {
+fn perturbed(case: &Case, scene: &PeriodicScene, parameters: &[Parameter]) -> Result<BeamDae> {
     let dae = scene.dae();
     let mut all = vec![];
     for parameter in parameters {
@@ -122,7 +122,7 @@ fn perturbed(case: &Case, scene: &Scene, parameters: &[Parameter]) -> Result<Bea
 /// Part of the derivative of a cycle's state along the conserved quantities, which the amount of fluid in the case determines.
 fn kept(
     case: &Case,
-    scene: &Scene,
+    scene: &PeriodicScene,
     y: &[f64],
     parameter: &Parameter,
     changed: &mut PerturbedSystems,
@@ -132,7 +132,7 @@ fn kept(
     let [a, b, c, d] = cases;
     let cases = [a?, b?, c?, d?];
     changed.derivative(&mut part, |j, beam, out| {
-        out.copy_from_slice(&Scene::kept(beam.system(), &cases[j], scene.drive.period, y)?);
+        out.copy_from_slice(&PeriodicScene::kept(beam.system(), &cases[j], scene.drive.period, y)?);
         Ok::<(), Error>(())
     })?;
     let mut s = vec![0.0; y.len()];

@@ -6,8 +6,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::record;
-use super::scene::Scene;
-use super::shoot::{Cycle, Search, attempt, shoot};
+use super::scene::PeriodicScene;
+use super::shoot::{Cycle, ShootingRecord, attempt, shoot};
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::energies::{open_over_window, too_open};
@@ -24,7 +24,7 @@ pub struct Settled {
     /// The case.
     pub case: Case,
     /// Scene of the cycle.
-    pub scene: Scene,
+    pub scene: PeriodicScene,
     /// The cycle.
     pub cycle: Cycle,
     /// Refinement, if the tolerance is not that of the case.
@@ -33,7 +33,7 @@ pub struct Settled {
 
 impl Settled {
     /// A cycle at the tolerance at which it was found.
-    pub fn as_found(case: &Case, scene: Scene, cycle: Cycle) -> Self {
+    pub fn as_found(case: &Case, scene: PeriodicScene, cycle: Cycle) -> Self {
         Self {
             case: case.clone(),
             scene,
@@ -72,7 +72,7 @@ impl Refined {
 ///
 /// # Errors
 /// Those of a run that cannot be recorded. If no cycle is found or followed at a tolerance, the one before remains.
-pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
+pub fn settle(case: &Case, scene: PeriodicScene, cycle: Cycle) -> Result<Settled> {
     let mut now = Settled::as_found(case, scene, cycle);
     let Some(mut open) = open(&now)? else { return Ok(now) };
     let first = open;
@@ -88,7 +88,7 @@ pub fn settle(case: &Case, scene: Scene, cycle: Cycle) -> Result<Settled> {
         // a cycle of several periods is only searched from here: elsewhere one of a single period may be found
         let found = match scene.periods {
             1 => shoot(&scene, Some(&now.cycle.y)),
-            _ => attempt(&scene, now.cycle.y.clone(), &mut Search::default()),
+            _ => attempt(&scene, now.cycle.y.clone(), &mut ShootingRecord::default()),
         };
         let Ok(cycle) = found else { break };
         let tried = Settled {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::scene::Scene;
+use super::scene::PeriodicScene;
 use crate::dae::BeamDae;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::numerics::krylov;
@@ -34,12 +34,12 @@ pub struct Cycle {
     /// Period map around the state, evaluated on its steps.
     pub march: StepMap<BeamDae>,
     /// Record of the search.
-    pub search: Search,
+    pub search: ShootingRecord,
 }
 
 /// Record of the search for a cycle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Search {
+pub struct ShootingRecord {
     /// Number of simulated periods: one for each Newton step, more if a step was shortened or a start was simulated.
     pub periods: u64,
     /// Newton steps.
@@ -65,8 +65,8 @@ pub struct Search {
 ///
 /// # Errors
 /// No cycle was found; the error has the instant and the reason.
-pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
-    let mut search = Search::default();
+pub fn shoot(scene: &PeriodicScene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
+    let mut search = ShootingRecord::default();
     let begin = from.unwrap_or(&scene.guess);
     match attempt(scene, begin.to_vec(), &mut search) {
         Ok(cycle) => Ok(cycle),
@@ -79,7 +79,7 @@ pub fn shoot(scene: &Scene, from: Option<&[f64]>) -> Result<Cycle, StepError> {
 }
 
 /// Newton's iteration from one state.
-pub(super) fn attempt(scene: &Scene, mut y: Vec<f64>, search: &mut Search) -> Result<Cycle, StepError> {
+pub(super) fn attempt(scene: &PeriodicScene, mut y: Vec<f64>, search: &mut ShootingRecord) -> Result<Cycle, StepError> {
     let mut march = scene.map(scene.dae(), &y)?;
     let mut fresh = false;
     let mut back = depart(scene, &mut march, &y, search)?;
@@ -139,7 +139,12 @@ fn move_by(y: &mut [f64], step: &[f64], part: f64) {
 }
 
 /// Simulates one period. Returns the final state minus the initial one.
-fn depart(scene: &Scene, march: &mut StepMap<BeamDae>, y: &[f64], search: &mut Search) -> Result<Vec<f64>, StepError> {
+fn depart(
+    scene: &PeriodicScene,
+    march: &mut StepMap<BeamDae>,
+    y: &[f64],
+    search: &mut ShootingRecord,
+) -> Result<Vec<f64>, StepError> {
     let (mut end, mut yp) = (y.to_vec(), vec![0.0; y.len()]);
     search.periods += 1;
     march.go(&mut end, &mut yp)?;
@@ -148,7 +153,12 @@ fn depart(scene: &Scene, march: &mut StepMap<BeamDae>, y: &[f64], search: &mut S
     Ok(back)
 }
 
-fn finish(scene: &Scene, march: StepMap<BeamDae>, mut y: Vec<f64>, search: &Search) -> Result<Cycle, StepError> {
+fn finish(
+    scene: &PeriodicScene,
+    march: StepMap<BeamDae>,
+    mut y: Vec<f64>,
+    search: &ShootingRecord,
+) -> Result<Cycle, StepError> {
     let mut yp = vec![0.0; y.len()];
     let mut dae = scene.dae();
     consistent_start(&mut dae, 0.0, &mut y, &mut yp, &StartOptions::default())

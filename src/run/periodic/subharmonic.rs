@@ -5,15 +5,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Scene;
+use super::PeriodicScene;
 use super::scene::fault;
-use super::shoot::{Cycle, Search, attempt, shoot};
+use super::shoot::{Cycle, ShootingRecord, attempt, shoot};
 use crate::case::schema::Case;
-use crate::discrete::layout::Line;
+use crate::discrete::layout::LineLayout;
 use crate::error::{Error, Result};
 use crate::numerics::krylov;
 use crate::onestep::step_map::StepError;
-use crate::run::stop::Stop;
+use crate::run::stop::StopFlag;
 
 /// Largest number of periods of a cycle.
 pub const MOST: usize = 64;
@@ -83,19 +83,19 @@ impl Periods {
 ///
 /// # Errors
 /// The case has no period, the number of periods is out of range, or no cycle was found.
-pub fn find(case: &Case, asked: usize) -> Result<(Scene, Cycle, Periods)> {
-    find_until(case, asked, &Stop::default())
+pub fn find(case: &Case, asked: usize) -> Result<(PeriodicScene, Cycle, Periods)> {
+    find_until(case, asked, &StopFlag::default())
 }
 
 /// Finds the cycle of [`find`] unless `stop` requests an end.
 ///
 /// # Errors
 /// As [`find`], or a stop was requested.
-pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycle, Periods)> {
+pub fn find_until(case: &Case, asked: usize, stop: &StopFlag) -> Result<(PeriodicScene, Cycle, Periods)> {
     if !(1..=MOST).contains(&asked) {
         return Err(Error::Usage(format!("--periods {asked}: must be from 1 to {MOST}")));
     }
-    let single = Scene::new(case, None)?.heeding(stop);
+    let single = PeriodicScene::new(case, None)?.heeding(stop);
     single.held(&case.name)?;
     let of_one = shoot(&single, None);
     let periods = |shortest, waited, beside| Periods {
@@ -118,7 +118,7 @@ pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycl
     let mut shorter: Option<(Cycle, usize)> = None;
     let (mut nearer, mut distance) = (0, f64::INFINITY);
     let mut last = StepError::new(0.0, "no cycle was found");
-    let mut search = Search::default();
+    let mut search = ShootingRecord::default();
     for tries in 1..=TRIES {
         let waited = tries * PATIENCE * asked;
         y = single.go_on(&y, PATIENCE * asked, &mut search).map_err(fault)?;
@@ -146,16 +146,16 @@ pub fn find_until(case: &Case, asked: usize, stop: &Stop) -> Result<(Scene, Cycl
 }
 
 /// Distance of a state from another, in tolerances.
-fn far(scene: &Scene, y: &[f64], other: &[f64]) -> f64 {
+fn far(scene: &PeriodicScene, y: &[f64], other: &[f64]) -> f64 {
     let mut change: Vec<f64> = y.iter().zip(other).map(|(a, b)| a - b).collect();
     scene.admit(&mut change);
     scene.size(&change, other)
 }
 
 /// Smallest number of periods, a divisor of `asked`, after which a state recurs.
-fn shortest(single: &Scene, y: &[f64], asked: usize) -> std::result::Result<usize, StepError> {
+fn shortest(single: &PeriodicScene, y: &[f64], asked: usize) -> std::result::Result<usize, StepError> {
     for count in (1..asked).filter(|count| asked.is_multiple_of(*count)) {
-        let back = single.go_on(y, count, &mut Search::default())?;
+        let back = single.go_on(y, count, &mut ShootingRecord::default())?;
         if far(single, &back, y) < SAME {
             return Ok(count);
         }
@@ -164,7 +164,7 @@ fn shortest(single: &Scene, y: &[f64], asked: usize) -> std::result::Result<usiz
 }
 
 /// A state beside a cycle, along the disturbance that grows most; `None` if none grows.
-fn beside(scene: &Scene, cycle: &mut Cycle) -> Option<Vec<f64>> {
+fn beside(scene: &PeriodicScene, cycle: &mut Cycle) -> Option<Vec<f64>> {
     let (count, residual, most) = MULTIPLIERS;
     let mut start = krylov::everything(cycle.y.len());
     scene.admit(&mut start);
@@ -177,7 +177,7 @@ fn beside(scene: &Scene, cycle: &mut Cycle) -> Option<Vec<f64>> {
     let grows = found.into_iter().find(|eigen| eigen.value.norm() > 1.0)?;
     let [v, _] = grows.vector;
     let l = &scene.system.layout;
-    let moved = l.lines.iter().flat_map(Line::unknowns);
+    let moved = l.lines.iter().flat_map(LineLayout::unknowns);
     let largest = moved.map(|(_, u, _)| (v[u] * l.scales[u]).abs()).fold(0.0, f64::max);
     // a disturbance of the fluid alone is limited by the scales of its unknowns
     let by_fluid = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

@@ -3,7 +3,7 @@
 use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, Row, probes, stations};
+use crate::discrete::quantities::{Extremes, Look, ObservableRow, probes, stations};
 use crate::functions::Signal;
 use crate::functions::signals::Polynomial;
 use crate::integrate::halt;
@@ -54,7 +54,7 @@ pub struct Instant<'a> {
     /// Value of the input. `opens` is true if it is an opening, which is limited to 0 to 1.
     value: f64,
     opens: bool,
-    rows: [Row; 2],
+    rows: [ObservableRow; 2],
     integrals: Vec<f64>,
 }
 
@@ -65,8 +65,8 @@ impl<'a> Instant<'a> {
         let system = dae.system();
         let probed = probes::columns(system).count();
         let rows = [
-            Row::new(motion(system), [stations::columns(system, true).len(), probed]),
-            Row::new(vec![], [stations::columns(system, false).len(), 0]),
+            ObservableRow::new(motion(system), [stations::columns(system, true).len(), probed]),
+            ObservableRow::new(vec![], [stations::columns(system, false).len(), 0]),
         ];
         Self {
             yp: vec![0.0; about.y.len()],

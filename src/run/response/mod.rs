@@ -27,13 +27,13 @@ use crate::error::numbers::counted;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::halt;
 use crate::model::effects::EffectSet;
-use crate::model::{Model, Network};
+use crate::model::{Model, ResolvedNetwork};
 use crate::run::modes::{Linearised, at_equilibrium, linearise};
-use crate::run::record::Column;
+use crate::run::record::HistoryColumn;
 use crate::spectral::{Factors, SpectralError};
 
 /// A scaled linear response from one input to outputs.
-pub struct Response {
+pub struct LinearResponse {
     /// The linearization.
     pub about: Linearised,
     /// True if unsteady friction of tubes was added for the response.
@@ -41,7 +41,7 @@ pub struct Response {
     /// JSON pointer of the input.
     pub input: String,
     /// Outputs, in the order of their columns.
-    pub outputs: Vec<Column>,
+    pub outputs: Vec<HistoryColumn>,
     /// Value of the input.
     pub u0: f64,
     /// Values of the outputs.
@@ -54,7 +54,7 @@ pub struct Response {
     direct: Vec<[f64; 3]>,
 }
 
-impl Response {
+impl LinearResponse {
     /// Linearizes a case about its start, or about the equilibrium under the loads at an instant [s].
     ///
     /// # Errors
@@ -130,7 +130,7 @@ impl Response {
 
 /// Solver of the response at frequencies.
 pub struct Frequencies<'a> {
-    of: &'a Response,
+    of: &'a LinearResponse,
     factors: Factors<'a>,
 }
 
@@ -188,7 +188,7 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
 fn with_memory(case: Case) -> Result<(Case, bool)> {
     let memory = Effect::UnsteadyFriction;
     let mut choices = case.effects.choices();
-    let there = EffectSet::whole(&case, Network::of(&case)?.as_ref()).has(memory);
+    let there = EffectSet::whole(&case, ResolvedNetwork::of(&case)?.as_ref()).has(memory);
     if choices.of(memory) != Choice::Auto || !there {
         return Ok((case, false));
     }
@@ -198,8 +198,8 @@ fn with_memory(case: Case) -> Result<(Case, bool)> {
 }
 
 /// Columns with a response of first order: motion of the tip, pressures, flows, forces, probes.
-pub fn columns(system: &System) -> Vec<Column> {
-    let motion = motion(system).into_iter().map(Column::from);
+pub fn columns(system: &System) -> Vec<HistoryColumn> {
+    let motion = motion(system).into_iter().map(HistoryColumn::from);
     let [at_rest, moving] = [true, false].map(|at_rest| stations::columns(system, at_rest));
     motion
         .chain(at_rest)
@@ -215,15 +215,19 @@ fn motion(system: &System) -> Vec<Observable> {
 }
 
 /// Index of an output by its name, with or without its unit.
-fn find(columns: &[Column], name: &str) -> Result<usize> {
+fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
     // the volume through a port is an integral
-    let integral = |column: &Column| column.name.starts_with("port_") && column.unit == "m^3";
-    let known = |column: &Column| !matches!(column.unit, "W" | "J") && !integral(column);
+    let integral = |column: &HistoryColumn| column.name.starts_with("port_") && column.unit == "m^3";
+    let known = |column: &HistoryColumn| !matches!(column.unit, "W" | "J") && !integral(column);
     let place = columns
         .iter()
         .position(|column| known(column) && (column.name == name || column.key() == name));
     place.ok_or_else(|| {
-        let mut keys: Vec<String> = columns.iter().filter(|column| known(column)).map(Column::key).collect();
+        let mut keys: Vec<String> = columns
+            .iter()
+            .filter(|column| known(column))
+            .map(HistoryColumn::key)
+            .collect();
         keys.sort_by_key(|key| key.starts_with("bladder_"));
         let mut seen = BTreeSet::new();
         keys.retain(|key| seen.insert(key.clone()));

@@ -10,7 +10,7 @@
 //! If rates of an input appear, as for a moved end or a volume, the input of the model is the highest of them. The lower ones are
 //! further states.
 
-use super::Response;
+use super::LinearResponse;
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::sparse::Lu;
 
@@ -45,7 +45,7 @@ impl StateSpace {
     ///
     /// # Errors
     /// The equations cannot be solved for rates, or an output is the rate of an unknown without inertia.
-    pub fn new(response: &Response) -> Result<Self> {
+    pub fn new(response: &LinearResponse) -> Result<Self> {
         let about = &response.about;
         let pencil = about.pencil();
         let n = about.y.len();

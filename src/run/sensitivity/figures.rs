@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::discrete::quantities::{Group, Interest, Observable, Source};
+use crate::discrete::quantities::{Group, Interest, InterestSource, Observable};
 use crate::run::summary::Quantity;
 
 /// Derivatives with respect to one number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sensitivity {
+pub struct FigureSensitivity {
     /// Value of the number, in the unit of its key.
     pub value: f64,
     /// Derivatives of the quantities per unit of the number, by the names and keys of the quantities.
@@ -102,7 +102,7 @@ impl Track {
 
 /// Accumulates a history and its derivatives; the quantities are those of [`crate::run::figures::Figures`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
+pub struct DerivativeAccumulator {
     window_start: f64,
     turbines: bool,
     tracks: BTreeMap<Interest, Track>,
@@ -112,7 +112,7 @@ pub struct Figures {
     spent: Track,
 }
 
-impl Figures {
+impl DerivativeAccumulator {
     /// Creates the figures with a window from `window_start` [s] on; `turbines` is true if there are any.
     pub fn new(window_start: f64, turbines: bool) -> Self {
         Self {
@@ -134,9 +134,9 @@ impl Figures {
         let sum = |group: Group| Observable::grouped(group).fold([0.0; 2], |sum, of| add(sum, 1.0, of));
         for one in Interest::of([true, self.turbines]) {
             let now = match one.source() {
-                Source::Motion(_) => motion(one, &at),
-                Source::Energy(group) => Some(sum(group)),
-                Source::Efficiency => None,
+                InterestSource::Motion(_) => motion(one, &at),
+                InterestSource::Energy(group) => Some(sum(group)),
+                InterestSource::Efficiency => None,
             };
             if let Some(now) = now {
                 self.tracks.entry(one).or_default().take(t, now, in_window);
@@ -157,7 +157,8 @@ impl Figures {
         probes: impl ExactSizeIterator<Item = [f64; 2]>,
     ) {
         let in_window = t >= self.window_start;
-        let swings = Interest::of([true, self.turbines]).filter(|one| matches!(one.source(), Source::Motion(_)));
+        let swings =
+            Interest::of([true, self.turbines]).filter(|one| matches!(one.source(), InterestSource::Motion(_)));
         for one in swings {
             if let Some(now) = motion(one, &at) {
                 self.tracks.entry(one).or_default().see(now, in_window);
@@ -187,7 +188,7 @@ impl Figures {
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let of = |(one, track): (&Interest, &Track)| {
             let quantity = match one.source() {
-                Source::Energy(_) => track.energy(),
+                InterestSource::Energy(_) => track.energy(),
                 _ => track.sizes(),
             };
             (one.name().to_string(), quantity)

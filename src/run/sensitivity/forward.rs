@@ -5,41 +5,41 @@
 
 use std::collections::BTreeMap;
 
-use super::figures::{Figures, Sensitivity};
-use super::kept::Kept;
+use super::figures::{DerivativeAccumulator, FigureSensitivity};
+use super::kept::StoredSensitivities;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
-use crate::discrete::quantities::probes::{self, Column};
+use crate::discrete::quantities::probes::{self, HistoryColumn};
 use crate::discrete::quantities::stations;
 use crate::discrete::quantities::{Observable, Read};
 use crate::discrete::{System, start};
 use crate::error::{At, Code, Error, Result, SolverError};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
-use crate::run::equilibrium::{self, Options};
-use crate::run::schedule::{self, Stop};
+use crate::run::equilibrium::{self, EquilibriumOptions};
+use crate::run::schedule::{self, ScheduledStop};
 use crate::sundials::Ida;
 
 /// Sensitivities of a run to some numbers of its case.
-pub struct Forward<'a> {
+pub struct ForwardSensitivities<'a> {
     pub(super) parameters: &'a [Parameter],
     /// Changed cases, four for each number in the order of [`STEPS`].
     cases: Vec<[Case; 4]>,
     /// Stops of the changed cases.
-    stops: Vec<[Vec<Stop>; 4]>,
+    stops: Vec<[Vec<ScheduledStop>; 4]>,
     /// Quantities of the history that are differentiated.
     pub(super) columns: Vec<Observable>,
     /// Columns of ports, accumulators, walls and reactions.
-    pub(super) stations: Vec<Column>,
+    pub(super) stations: Vec<HistoryColumn>,
     /// For each of these columns, the port whose volume it contains, if any.
     pub(super) volumes: Vec<Option<usize>>,
     /// Columns at probes.
-    pub(super) probes: Vec<Column>,
+    pub(super) probes: Vec<HistoryColumn>,
     pub(super) s: Vec<Vec<f64>>,
     pub(super) sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the last restart.
     pub(super) carried: Vec<Vec<f64>>,
-    pub(super) figures: Vec<Figures>,
+    pub(super) figures: Vec<DerivativeAccumulator>,
     pub(super) row: Vec<f64>,
     pub(super) states_only: bool,
 }
@@ -81,7 +81,7 @@ pub struct Before {
     integrands: Vec<f64>,
 }
 
-impl<'a> Forward<'a> {
+impl<'a> ForwardSensitivities<'a> {
     /// Sensitivities of a run of a case to some of its numbers. Also returns the equations with the changed systems.
     ///
     /// # Errors
@@ -110,7 +110,8 @@ impl<'a> Forward<'a> {
             let [a, b, c, d] = cases.each_ref().map(like);
             let systems = [a?, b?, c?, d?];
             let stops = [0, 1, 2, 3].map(|j| schedule::stops(&cases[j], &systems[j].model));
-            let kinds = |stops: &[Stop]| -> Vec<_> { stops.iter().map(|s| (s.switches, s.checkpoint)).collect() };
+            let kinds =
+                |stops: &[ScheduledStop]| -> Vec<_> { stops.iter().map(|s| (s.switches, s.checkpoint)).collect() };
             if stops.iter().any(|other| kinds(other) != kinds(&own)) {
                 return Err(refuse(
                     "changes the order of switching times, or moves one past the end of the run",
@@ -144,7 +145,7 @@ impl<'a> Forward<'a> {
             s: vec![vec![0.0; dae.len()]; count],
             sp: vec![vec![0.0; dae.len()]; count],
             carried: vec![vec![0.0; dae.integrals()]; count],
-            figures: vec![Figures::new(window_start, turbines); count],
+            figures: vec![DerivativeAccumulator::new(window_start, turbines); count],
             row: vec![],
         };
         Ok((forward, dae.with_perturbed(perturbed)))
@@ -182,7 +183,7 @@ impl<'a> Forward<'a> {
                 let (system, now) = beam.instant(0.0);
                 let mut state = start::state(system, case, now);
                 if let Some(start) = &case.start.equilibrium {
-                    state = equilibrium::at_start(case, &Options::of_start(start), beam, &state)?;
+                    state = equilibrium::at_start(case, &EquilibriumOptions::of_start(start), beam, &state)?;
                 }
                 out.copy_from_slice(&state);
                 Ok(())
@@ -237,8 +238,8 @@ impl<'a> Forward<'a> {
     }
 
     /// Data for a checkpoint, to be called after [`Forward::leave`].
-    pub fn kept(&self) -> Kept {
-        Kept {
+    pub fn kept(&self) -> StoredSensitivities {
+        StoredSensitivities {
             parameters: self.parameters.to_vec(),
             s: self.s.clone(),
             sp: self.sp.clone(),
@@ -248,7 +249,7 @@ impl<'a> Forward<'a> {
     }
 
     /// Restores the data of a checkpoint at a state there, on the left side of its stop.
-    pub fn take_up(&mut self, kept: &Kept, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
+    pub fn take_up(&mut self, kept: &StoredSensitivities, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
         self.s.clone_from(&kept.s);
         self.sp.clone_from(&kept.sp);
         self.carried.clone_from(&kept.carried);
@@ -341,10 +342,10 @@ impl<'a> Forward<'a> {
     }
 
     /// Derivatives for the summary.
-    pub fn summary(&self) -> BTreeMap<String, Sensitivity> {
+    pub fn summary(&self) -> BTreeMap<String, FigureSensitivity> {
         let names: Vec<String> = self.probes.iter().map(|one| probes::key(&one.name, one.unit)).collect();
-        let of = |(parameter, figures): (&Parameter, &Figures)| {
-            let sensitivity = Sensitivity {
+        let of = |(parameter, figures): (&Parameter, &DerivativeAccumulator)| {
+            let sensitivity = FigureSensitivity {
                 value: parameter.value,
                 quantities: figures.quantities(),
                 probes: figures.at_probes(&names),
@@ -362,7 +363,7 @@ fn moved_by([change, later]: [f64; 2], [y, yp, s]: [&[f64]; 3]) -> Vec<f64> {
 }
 
 /// The middle of the interval before a stop [s].
-fn middle(stops: &[Stop], stop: usize) -> f64 {
+fn middle(stops: &[ScheduledStop], stop: usize) -> f64 {
     let start = stop.checked_sub(1).map_or(0.0, |before| stops[before].t);
     0.5 * (start + stops[stop].t)
 }

@@ -2,12 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::figures::Figures;
+use super::figures::DerivativeAccumulator;
 use crate::case::parameter::Parameter;
 
 /// Sensitivities stored in a checkpoint, from which a run resumes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
+pub struct StoredSensitivities {
     /// Numbers by which the run is differentiated.
     pub parameters: Vec<Parameter>,
     /// Sensitivities on the left side of the checkpoint, and their rates.
@@ -15,10 +15,10 @@ pub struct Kept {
     pub(super) sp: Vec<Vec<f64>>,
     /// Derivatives of the integrals up to the checkpoint.
     pub(super) carried: Vec<Vec<f64>>,
-    pub(super) figures: Vec<Figures>,
+    pub(super) figures: Vec<DerivativeAccumulator>,
 }
 
-impl Kept {
+impl StoredSensitivities {
     /// True if there is one finite number for each unknown and each parameter.
     pub fn fits(&self, unknowns: usize, integrals: usize) -> bool {
         let fits = |all: &[Vec<f64>], len: usize| {

@@ -1,16 +1,16 @@
 //! Derivatives read from the sensitivities within a step: of the history at output times, and of values at which they are largest.
 
-use super::forward::Forward;
+use super::forward::ForwardSensitivities;
 use crate::dae::BeamDae;
 use crate::discrete::ledger::{self, ports};
-use crate::discrete::quantities::{Extremes, Look, Observable, Read, Row, probes, stations};
+use crate::discrete::quantities::{Extremes, Look, Observable, ObservableRow, Read, probes, stations};
 use crate::integrate::IntegrationError;
 use crate::sundials::Ida;
 
 /// Functions that read a number from a state.
 type Reads = Vec<fn(&Look) -> f64>;
 
-impl Forward<'_> {
+impl ForwardSensitivities<'_> {
     /// Reads sensitivities from the integrator at time `t` [s] within its last step, and those of integrals into `integrals`.
     pub(super) fn read(
         &mut self,
@@ -34,7 +34,7 @@ impl Forward<'_> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         state: [&[f64]; 2],
-        row: &Row,
+        row: &ObservableRow,
     ) -> std::result::Result<&[f64], Box<IntegrationError>> {
         self.derive(ida, t, state)?;
         if self.states_only {

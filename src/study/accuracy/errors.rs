@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 use super::norms::Norms;
-use super::reference::{Limit, Temporal};
-use super::trial::Trial;
+use super::reference::{MeshLimit, Temporal};
+use super::trial::StudyTrial;
 
 /// Relative errors of one signal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Errors {
+pub struct SignalErrors {
     /// Temporal error: difference from the best run on the same mesh. For that run itself, its own estimated error.
     pub temporal: Option<Norms>,
     /// Spatial error: difference of the best run on the mesh from the limit. Equal for all points of a mesh; `None`
@@ -27,10 +27,10 @@ pub struct Errors {
 pub const BETTER: f64 = 10.0;
 
 /// Computes the errors of every signal of a finished run.
-pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Vec<Errors>> {
+pub fn errors(trial: &StudyTrial, meshes: &[Temporal], limits: &[MeshLimit]) -> Option<Vec<SignalErrors>> {
     let signals = trial.signals.as_ref()?;
     let mesh = meshes.iter().find(|m| m.cells == trial.setting.cells);
-    let one = |(k, limit): (usize, &Limit)| {
+    let one = |(k, limit): (usize, &MeshLimit)| {
         let values = &signals[k].values;
         let own = limit.own();
         // Without extrapolation the finest mesh replaces the limit. No error is then below the spatial error of that
@@ -54,7 +54,7 @@ pub fn errors(trial: &Trial, meshes: &[Temporal], limits: &[Limit]) -> Option<Ve
         let total = itself.map_or(total, |m| total.or_larger(m.own[k]));
         let parts = temporal.unwrap_or_default().or_larger(spatial.unwrap_or_default());
         let bound = total.with(own, |t, o| t + o).or_larger(parts);
-        Errors {
+        SignalErrors {
             temporal,
             spatial,
             total,

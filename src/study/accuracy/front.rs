@@ -6,7 +6,7 @@ use crate::run::null;
 
 /// Error and cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mark {
+pub struct CostMark {
     /// Relative error.
     pub error: f64,
     /// Wall time [s].
@@ -14,7 +14,7 @@ pub struct Mark {
 }
 
 /// Indices of the Pareto-optimal points (no other point has both less error and less cost), by falling error.
-pub fn front(marks: &[Mark]) -> Vec<usize> {
+pub fn front(marks: &[CostMark]) -> Vec<usize> {
     let mut by_cost: Vec<usize> = (0..marks.len())
         .filter(|&k| marks[k].error.is_finite() && marks[k].cost.is_finite())
         .collect();
@@ -33,7 +33,7 @@ pub fn front(marks: &[Mark]) -> Vec<usize> {
 
 /// Cheapest point that reaches an accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Answer {
+pub struct CheapestPoint {
     /// Required accuracy, relative.
     pub accuracy: f64,
     /// Cheapest point that reaches the accuracy; `None` if no point does.
@@ -41,11 +41,11 @@ pub struct Answer {
 }
 
 /// Returns the cheapest point on the front for each required accuracy.
-pub fn answers(marks: &[Mark], front: &[usize], accuracies: &[f64]) -> Vec<Answer> {
+pub fn answers(marks: &[CostMark], front: &[usize], accuracies: &[f64]) -> Vec<CheapestPoint> {
     let cheapest = |accuracy: f64| front.iter().copied().find(|&k| marks[k].error <= accuracy);
     accuracies
         .iter()
-        .map(|&accuracy| Answer {
+        .map(|&accuracy| CheapestPoint {
             accuracy,
             point: cheapest(accuracy),
         })
@@ -86,7 +86,7 @@ pub fn cost_minimum(line: &[usize], cost: &[f64], work: &[f64]) -> Option<CostMi
 
 /// Point of a line at which temporal and spatial error are equal. The spatial error is constant along the line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Balance {
+pub struct ErrorBalance {
     /// Tolerance.
     pub rtol: f64,
     /// Total error there.
@@ -96,10 +96,10 @@ pub struct Balance {
 }
 
 /// Tolerance, temporal error, total error and cost of a run. Lines are ordered from loose to tight.
-pub type Along = (f64, f64, f64, f64);
+pub type WorkPrecisionLine = (f64, f64, f64, f64);
 
 /// Interpolates in logarithms between the last point whose temporal error exceeds the spatial error and the next point.
-pub fn balance(line: &[Along], spatial: f64) -> Option<Balance> {
+pub fn balance(line: &[WorkPrecisionLine], spatial: f64) -> Option<ErrorBalance> {
     let pair = line.windows(2).rev().find(|w| w[0].1 > spatial && w[1].1 <= spatial)?;
     let (a, b) = (pair[0], pair[1]);
     let share = ((a.1 / spatial).ln() / (a.1 / b.1).ln()).clamp(0.0, 1.0);
@@ -107,7 +107,7 @@ pub fn balance(line: &[Along], spatial: f64) -> Option<Balance> {
         return None;
     }
     let at = |a: f64, b: f64| (a.ln() * (1.0 - share) + b.ln() * share).exp();
-    Some(Balance {
+    Some(ErrorBalance {
         rtol: at(a.0, b.0),
         error: at(a.2, b.2),
         cost: at(a.3, b.3),

@@ -35,7 +35,7 @@ pub mod tolerances;
 pub mod trial;
 
 pub use norms::Norms;
-pub use plan::{Budget, Plan, Setting};
+pub use plan::{Budget, StudyPlan, StudySetting};
 pub use scheme::Scheme;
 pub use study::{Study, study};
-pub use sweep::Event;
+pub use sweep::StudyEvent;

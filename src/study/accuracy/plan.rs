@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// Mesh, time integration and tolerance of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Setting {
+pub struct StudySetting {
     /// Beam cells per segment; half as many fluid cells per bladder.
     pub cells: usize,
     /// Time integration: method and order.
@@ -52,7 +52,7 @@ pub fn of_best_order(case: &Case) -> Case {
     }
 }
 
-impl Setting {
+impl StudySetting {
     /// Returns the case with this setting.
     pub fn case(&self, case: &Case) -> Case {
         let mut case = refined(case, self.cells, self.rtol);
@@ -91,7 +91,7 @@ impl Budget {
 
 /// Requested settings, each list in the order of the runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct StudyPlan {
     /// Tolerances, loose to tight.
     pub rtols: Vec<f64>,
     /// Meshes, coarse to fine.
@@ -109,7 +109,7 @@ pub struct Plan {
 /// Tightest tolerance of a reference; below it, rounding errors of the residual limit the accuracy.
 const TIGHTEST: f64 = 1e-11;
 
-impl Plan {
+impl StudyPlan {
     /// Validates the plan and sorts its lists.
     ///
     /// # Errors

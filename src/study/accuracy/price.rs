@@ -1,18 +1,18 @@
 //! Expected cost of the next run, from earlier runs.
 
-use super::plan::Setting;
-use super::trial::{Ending, Trial};
+use super::plan::StudySetting;
+use super::trial::{Ending, StudyTrial};
 
 /// Expected cost of a setting, in the unit of the trials' costs; `None` if no similar setting has finished.
 ///
 /// Along a line of tolerances, the number of steps of order `p` grows as `τ^(-1/(p+1))`; the two nearest looser runs
 /// are extrapolated. From mesh to mesh, the cost grows with the unknowns if accuracy limits the step, and with their
 /// cube if stability does (orders above 2). The least estimate counts: a run that proves too slow is stopped anyway.
-pub fn expected(trials: &[Trial], next: Setting) -> Option<f64> {
+pub fn expected(trials: &[StudyTrial], next: StudySetting) -> Option<f64> {
     let finished = || trials.iter().filter(|t| t.finished());
     let mut guesses = vec![];
-    let same_line = |t: &&Trial| t.line() == (next.cells, next.scheme);
-    let mut line: Vec<&Trial> = finished().filter(same_line).collect();
+    let same_line = |t: &&StudyTrial| t.line() == (next.cells, next.scheme);
+    let mut line: Vec<&StudyTrial> = finished().filter(same_line).collect();
     line.sort_by(|a, b| a.setting.rtol.total_cmp(&b.setting.rtol));
     for known in line.iter().filter(|t| t.setting.rtol > next.rtol).take(2) {
         // A single run may lie where tighter tolerances cost less: assume no growth.
@@ -47,12 +47,12 @@ fn along(order: u8, from: f64, to: f64) -> f64 {
 
 /// True if a line is not continued: a run after the last finished one was stopped, or two were stopped and none
 /// finished.
-pub fn hopeless(trials: &[Trial], next: Setting) -> bool {
-    let line: Vec<&Trial> = trials
+pub fn hopeless(trials: &[StudyTrial], next: StudySetting) -> bool {
+    let line: Vec<&StudyTrial> = trials
         .iter()
         .filter(|t| t.line() == (next.cells, next.scheme))
         .collect();
-    let slow = |t: &&&Trial| t.ending == Ending::Stopped;
+    let slow = |t: &&&StudyTrial| t.ending == Ending::Stopped;
     match line.iter().rposition(|t| t.finished()) {
         Some(last) => line[last..].iter().any(|t| slow(&t)),
         None => line.iter().filter(slow).count() >= 2,

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::norms::Norms;
 use super::scheme::Scheme;
-use super::signals::{Kind, Signal};
+use super::signals::{ComparedSignal, SignalKind};
 use super::tolerances::ToleranceSequence;
-use super::trial::Trial;
+use super::trial::StudyTrial;
 use crate::run::null;
 
 /// The best run on a mesh.
@@ -43,7 +43,7 @@ const LOOSER: f64 = 1e4;
 /// Returns the best run on a mesh; `None` if none finished. `sizes` are the sizes of the signals; `headline` is the
 /// signal by which runs are ranked.
 pub fn temporal(
-    trials: &[Trial],
+    trials: &[StudyTrial],
     cells: usize,
     schemes: &[Scheme],
     sizes: &[Norms],
@@ -122,13 +122,13 @@ fn believed(by_tolerance: Option<Norms>, by_order: Option<Norms>, expected: Opti
 
 /// One signal in the limit of vanishing mesh size.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Limit {
+pub struct MeshLimit {
     /// Name.
     pub name: String,
     /// Unit.
     pub unit: String,
     /// Kind.
-    pub kind: Kind,
+    pub kind: SignalKind,
     /// Size to which errors refer.
     pub size: Norms,
     /// Order of convergence in the mesh size, from the three finest meshes.
@@ -146,7 +146,7 @@ pub struct Limit {
     pub values: Vec<f64>,
 }
 
-impl Limit {
+impl MeshLimit {
     /// Error of the limit, relative.
     pub fn own(&self) -> Norms {
         self.own_temporal
@@ -155,9 +155,9 @@ impl Limit {
 }
 
 /// Computes the limit of signal `k` from the references of the meshes, coarse to fine; `None` without references.
-pub fn limit(meshes: &[Temporal], signal: &Signal, k: usize, size: Norms) -> Option<Limit> {
+pub fn limit(meshes: &[Temporal], signal: &ComparedSignal, k: usize, size: Norms) -> Option<MeshLimit> {
     let finest = meshes.last()?;
-    let mut limit = Limit {
+    let mut limit = MeshLimit {
         name: signal.name.clone(),
         unit: signal.unit.clone(),
         kind: signal.kind,

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::discrete::quantities::{Field, Interest, Observable, Role};
+use crate::discrete::quantities::{BeamField, Interest, Observable, QuantityRole};
 use crate::error::Result;
 use crate::run::ports;
 use crate::run::record::{Control, Header, Progress, Recorder};
@@ -15,12 +15,14 @@ fn histories() -> impl Iterator<Item = Observable> {
     Observable::ALL
         .iter()
         .copied()
-        .filter(|one| one.role() >= Role::Studied)
+        .filter(|one| one.role() >= QuantityRole::Studied)
 }
 
 /// Compared fields, at the nodes between segments, which all meshes share.
-fn fields() -> impl Iterator<Item = Field> {
-    Field::ALL.into_iter().filter(|one| one.role() >= Role::Studied)
+fn fields() -> impl Iterator<Item = BeamField> {
+    BeamField::ALL
+        .into_iter()
+        .filter(|one| one.role() >= QuantityRole::Studied)
 }
 
 /// True if a case may have a signal of this name. Names of summary figures, `quantity.figure`, always pass: they are
@@ -31,14 +33,14 @@ pub fn possible(name: &str) -> bool {
 
 /// Names of histories and fields.
 pub fn names() -> String {
-    let all = histories().map(Observable::name).chain(fields().map(Field::name));
+    let all = histories().map(Observable::name).chain(fields().map(BeamField::name));
     all.collect::<Vec<_>>().join(", ")
 }
 
 /// Kind of a signal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum SignalKind {
     /// One number per output time.
     History,
     /// Numbers at the nodes between segments, one output time after another.
@@ -49,13 +51,13 @@ pub enum Kind {
 
 /// Vector by which runs are compared.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Signal {
+pub struct ComparedSignal {
     /// Column, field or quantity: `tip_u1`, `v1_m_s`, `tip_u1_m.max_abs`.
     pub name: String,
     /// Unit.
     pub unit: String,
     /// Kind of the signal.
-    pub kind: Kind,
+    pub kind: SignalKind,
     /// Values.
     pub values: Vec<f64>,
     /// Size to which errors refer, if it is not the signal's own; a final value may be zero.
@@ -64,7 +66,7 @@ pub struct Signal {
 
 /// Limit at which a run is stopped.
 #[derive(Clone, Copy, Debug)]
-pub enum Limit {
+pub enum StopLimit {
     /// Wall-clock time.
     Wall(Instant),
     /// Number of steps.
@@ -80,15 +82,15 @@ const LOOK: u64 = 64;
 /// Recorder of the compared signals.
 #[derive(Debug)]
 pub struct Keep {
-    limit: Limit,
+    limit: StopLimit,
     stride: usize,
-    columns: Vec<(usize, Signal)>,
-    fields: Vec<(usize, Signal)>,
+    columns: Vec<(usize, ComparedSignal)>,
+    fields: Vec<(usize, ComparedSignal)>,
 }
 
 impl Keep {
     /// Creates a recorder for a mesh of `cells` beam cells per segment.
-    pub fn new(cells: usize, limit: Limit) -> Self {
+    pub fn new(cells: usize, limit: StopLimit) -> Self {
         Self {
             limit,
             stride: cells,
@@ -98,23 +100,23 @@ impl Keep {
     }
 
     /// Returns all signals after the run.
-    pub fn signals(self, summary: &Summary) -> Vec<Signal> {
+    pub fn signals(self, summary: &Summary) -> Vec<ComparedSignal> {
         let kept = self.columns.into_iter().chain(self.fields).map(|(_, signal)| signal);
         kept.chain(quantities(summary)).collect()
     }
 }
 
-fn quantities(summary: &Summary) -> Vec<Signal> {
+fn quantities(summary: &Summary) -> Vec<ComparedSignal> {
     let mut all = vec![];
     let of_ports = summary.ports.iter().map(|(name, q)| (name, q, ports::unit(name)));
     let own = summary.quantities.iter();
     let own = own.map(|(name, q)| (name, q, Interest::named(name).map_or("1", Interest::unit)));
     for (name, q, unit) in own.chain(of_ports) {
         let scale = q.size();
-        all.extend(q.figures().map(|(figure, value)| Signal {
+        all.extend(q.figures().map(|(figure, value)| ComparedSignal {
             name: format!("{name}.{figure}"),
             unit: unit.into(),
-            kind: Kind::Quantity,
+            kind: SignalKind::Quantity,
             values: vec![value],
             scale: Some(scale),
         }));
@@ -122,8 +124,8 @@ fn quantities(summary: &Summary) -> Vec<Signal> {
     all
 }
 
-fn empty(name: &str, unit: &str, kind: Kind) -> Signal {
-    Signal {
+fn empty(name: &str, unit: &str, kind: SignalKind) -> ComparedSignal {
+    ComparedSignal {
         name: name.into(),
         unit: unit.into(),
         kind,
@@ -140,14 +142,16 @@ impl Recorder for Keep {
             .enumerate()
             .filter(|(_, c)| histories().any(|one| one.name() == c.name));
         self.columns = wanted
-            .map(|(k, c)| (k, empty(&c.name, c.unit, Kind::History)))
+            .map(|(k, c)| (k, empty(&c.name, c.unit, SignalKind::History)))
             .collect();
         let wanted = header
             .fields
             .iter()
             .enumerate()
             .filter(|(_, f)| fields().any(|one| one.name() == f.name));
-        self.fields = wanted.map(|(k, f)| (k, empty(f.name, f.unit, Kind::Field))).collect();
+        self.fields = wanted
+            .map(|(k, f)| (k, empty(f.name, f.unit, SignalKind::Field)))
+            .collect();
         Ok(())
     }
 
@@ -167,8 +171,8 @@ impl Recorder for Keep {
 
     fn progress(&mut self, progress: &Progress) -> Result<Control> {
         let over = match self.limit {
-            Limit::Steps(most) => progress.steps >= most && progress.t < progress.end,
-            Limit::Wall(end) => progress.steps.is_multiple_of(LOOK) && Instant::now() >= end,
+            StopLimit::Steps(most) => progress.steps >= most && progress.t < progress.end,
+            StopLimit::Wall(end) => progress.steps.is_multiple_of(LOOK) && Instant::now() >= end,
         };
         Ok(if over {
             Control::Stop(format!(

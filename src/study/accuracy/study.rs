@@ -2,15 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::errors::{self, BETTER, Errors};
-use super::front::{self, Answer, Balance, CostMinimum, Mark};
+use super::errors::{self, BETTER, SignalErrors};
+use super::front::{self, CheapestPoint, CostMark, CostMinimum, ErrorBalance};
 use super::norms::Norms;
-use super::plan::Plan;
-use super::reference::{self, Limit, Temporal};
+use super::plan::StudyPlan;
+use super::reference::{self, MeshLimit, Temporal};
 use super::scheme::Scheme;
-use super::signals::{self, Kind, Signal};
-use super::sweep::{self, Watch};
-use super::trial::{Role, Trial};
+use super::signals::{self, ComparedSignal, SignalKind};
+use super::sweep::{self, StudyWatch};
+use super::trial::{RunPurpose, StudyTrial};
 use crate::case::units::suffixed;
 use crate::case::{Case, Rotation, Translation};
 use crate::discrete::quantities::Observable;
@@ -25,11 +25,11 @@ const NOTHING: f64 = 1e-6;
 
 /// A run with its errors.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Point {
+pub struct StudyPoint {
     /// The run.
-    pub trial: Trial,
+    pub trial: StudyTrial,
     /// Errors in every measure; finished runs only.
-    pub errors: Option<Vec<Errors>>,
+    pub errors: Option<Vec<SignalErrors>>,
     /// True if no other point is both more accurate and cheaper, in the headline measure.
     pub on_front: bool,
 }
@@ -42,7 +42,7 @@ pub struct LineBalance {
     /// Time integration.
     pub scheme: Scheme,
     /// Tolerance, error and cost at the balance.
-    pub at: Balance,
+    pub at: ErrorBalance,
 }
 
 /// Result of a study.
@@ -51,11 +51,11 @@ pub struct Study {
     /// Name of the case.
     pub case: String,
     /// Requested settings.
-    pub plan: Plan,
+    pub plan: StudyPlan,
     /// Total cost, in the unit of the budget.
     pub spent: f64,
     /// Measures, each in the limit of vanishing mesh size.
-    pub measures: Vec<Limit>,
+    pub measures: Vec<MeshLimit>,
     /// Signals that are not measured: prescribed, not in all runs, or rounding errors only.
     pub left_out: Vec<String>,
     /// Index of the measure shown by picture, table and sentence, in the maximum norm.
@@ -63,11 +63,11 @@ pub struct Study {
     /// The best run on each mesh.
     pub references: Vec<Temporal>,
     /// All runs, references included.
-    pub points: Vec<Point>,
+    pub points: Vec<StudyPoint>,
     /// Points of the Pareto front, by falling error.
     pub front: Vec<usize>,
     /// Cheapest points for errors of 10 %, 1 %, 0.1 %, 0.01 %.
-    pub answers: Vec<Answer>,
+    pub answers: Vec<CheapestPoint>,
     /// Cost minima of lines on which looser tolerances cost more.
     pub feet: Vec<CostMinimum>,
     /// Points at which temporal and spatial error are equal.
@@ -78,12 +78,12 @@ pub struct Study {
 
 impl Study {
     /// Returns the headline measure.
-    pub fn measure(&self) -> Option<&Limit> {
+    pub fn measure(&self) -> Option<&MeshLimit> {
         self.measures.get(self.headline)
     }
 
     /// Returns the errors of a point in the headline measure.
-    pub fn error(&self, point: usize) -> Option<&Errors> {
+    pub fn error(&self, point: usize) -> Option<&SignalErrors> {
         self.points.get(point)?.errors.as_ref()?.get(self.headline)
     }
 
@@ -92,7 +92,7 @@ impl Study {
         let mut line: Vec<usize> = (0..self.points.len())
             .filter(|&k| {
                 let trial = &self.points[k].trial;
-                trial.role == Role::Point && trial.finished() && trial.line() == (cells, scheme)
+                trial.role == RunPurpose::Point && trial.finished() && trial.line() == (cells, scheme)
             })
             .collect();
         line.sort_by(|&a, &b| {
@@ -107,7 +107,13 @@ impl Study {
 }
 
 /// Studies a case; `measure` names the headline measure, by default the tip deflection. Runs stored in `evaluations` are not repeated.
-pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evaluations, watch: Watch) -> Result<Study> {
+pub fn study(
+    case: &Case,
+    plan: StudyPlan,
+    measure: Option<&str>,
+    evaluations: &Evaluations,
+    watch: StudyWatch,
+) -> Result<Study> {
     if let Some(name) = measure.filter(|name| !signals::possible(name)) {
         return Err(Error::Usage(format!(
             "--measure {name}: unknown measure. Use one of {}, or a figure such as tip_u1_m.max_abs",
@@ -135,25 +141,25 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evalu
         .filter(|r| plan.cells.contains(&r.cells))
         .cloned()
         .collect::<Vec<_>>();
-    let limit = |(k, signal): (usize, &Signal)| {
+    let limit = |(k, signal): (usize, &ComparedSignal)| {
         let limits = [&references, &without].map(|meshes| reference::limit(meshes, signal, k, sizes[k]));
         limits
             .into_iter()
             .flatten()
             .min_by(|a, b| a.own().max.total_cmp(&b.own().max))
     };
-    let measures: Vec<Limit> = best(&trials)
+    let measures: Vec<MeshLimit> = best(&trials)
         .iter()
         .flat_map(|signals| signals.iter().enumerate())
         .filter_map(limit)
         .collect();
     trials.sort_by(|a, b| {
-        let key = |t: &Trial| (t.role == Role::Reference, t.line());
+        let key = |t: &StudyTrial| (t.role == RunPurpose::Reference, t.line());
         key(a).cmp(&key(b)).then(b.setting.rtol.total_cmp(&a.setting.rtol))
     });
     let points = trials
         .into_iter()
-        .map(|trial| Point {
+        .map(|trial| StudyPoint {
             errors: errors::errors(&trial, &references, &measures),
             trial,
             on_front: false,
@@ -180,7 +186,7 @@ pub fn study(case: &Case, plan: Plan, measure: Option<&str>, evaluations: &Evalu
 }
 
 /// Signals of the finished run with the finest mesh and, on that mesh, the tightest tolerance.
-fn best(trials: &[Trial]) -> Option<&Vec<Signal>> {
+fn best(trials: &[StudyTrial]) -> Option<&Vec<ComparedSignal>> {
     let finest = trials.iter().filter(|t| t.finished()).max_by(|a, b| {
         a.setting
             .cells
@@ -205,23 +211,25 @@ fn prescribed(case: &Case) -> Vec<&'static str> {
 
 /// Retains the signals that all finished runs have, that are not prescribed and that exceed rounding errors, in the same order in all runs.
 /// Returns the names of the others, and the sizes of those retained.
-fn agree(trials: &mut [Trial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>) {
+fn agree(trials: &mut [StudyTrial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>) {
     let Some(best) = best(trials) else {
         return (vec![], vec![]);
     };
-    let size = |s: &Signal| s.scale.map_or_else(|| Norms::of(s.values.iter().copied()), Norms::both);
+    let size = |s: &ComparedSignal| s.scale.map_or_else(|| Norms::of(s.values.iter().copied()), Norms::both);
     let largest = |unit: &str| {
-        let alike = best.iter().filter(|s| s.unit == unit && s.kind != Kind::Quantity);
+        let alike = best.iter().filter(|s| s.unit == unit && s.kind != SignalKind::Quantity);
         alike.map(|s| size(s).max).fold(0.0, f64::max)
     };
-    let everywhere = |signal: &Signal| {
-        let same = |s: &Signal| s.name == signal.name && s.kind == signal.kind && s.values.len() == signal.values.len();
+    let everywhere = |signal: &ComparedSignal| {
+        let same = |s: &ComparedSignal| {
+            s.name == signal.name && s.kind == signal.kind && s.values.len() == signal.values.len()
+        };
         trials
             .iter()
             .filter_map(|t| t.signals.as_ref())
             .all(|signals| signals.iter().any(same))
     };
-    let counts = |s: &&Signal| {
+    let counts = |s: &&ComparedSignal| {
         let size = size(s).max;
         // a figure of a quantity is named `tip_u3_m.max_abs`
         let name = s
@@ -231,12 +239,13 @@ fn agree(trials: &mut [Trial], prescribed: &[&str]) -> (Vec<String>, Vec<Norms>)
             .map_or("", |name| suffixed(name).map_or(name, |(plain, _)| plain));
         !prescribed.contains(&name) && size > 0.0 && size >= NOTHING * largest(&s.unit) && everywhere(s)
     };
-    let (kept, others): (Vec<&Signal>, Vec<&Signal>) = best.iter().partition(counts);
+    let (kept, others): (Vec<&ComparedSignal>, Vec<&ComparedSignal>) = best.iter().partition(counts);
     let left_out = others.iter().map(|s| s.name.clone()).collect();
     let sizes = kept.iter().map(|s| size(s)).collect();
-    let kept: Vec<(String, Kind)> = kept.iter().map(|s| (s.name.clone(), s.kind)).collect();
+    let kept: Vec<(String, SignalKind)> = kept.iter().map(|s| (s.name.clone(), s.kind)).collect();
     for signals in trials.iter_mut().filter_map(|t| t.signals.as_mut()) {
-        let find = |(name, kind): &(String, Kind)| signals.iter().find(|s| s.name == *name && s.kind == *kind).cloned();
+        let find =
+            |(name, kind): &(String, SignalKind)| signals.iter().find(|s| s.name == *name && s.kind == *kind).cloned();
         *signals = kept.iter().filter_map(find).collect();
     }
     (left_out, sizes)
@@ -259,13 +268,13 @@ fn headline(names: &[String], wanted: Option<&str>) -> Result<usize> {
 
 fn conclude(study: &mut Study) {
     let all = 0..study.points.len();
-    let none = Mark {
+    let none = CostMark {
         error: f64::INFINITY,
         cost: f64::INFINITY,
     };
-    let marks = |error: fn(&Errors) -> f64| -> Vec<Mark> {
+    let marks = |error: fn(&SignalErrors) -> f64| -> Vec<CostMark> {
         let mark = |k: usize| match study.error(k) {
-            Some(errors) if study.points[k].trial.role == Role::Point => Mark {
+            Some(errors) if study.points[k].trial.role == RunPurpose::Point => CostMark {
                 error: error(errors),
                 cost: study.points[k].trial.wall_min_s,
             },
@@ -322,7 +331,7 @@ fn notes(study: &Study) -> Vec<String> {
     };
     let own = measure.own().max;
     let judged: Vec<bool> = (0..study.points.len())
-        .filter(|&k| study.points[k].trial.role == Role::Point)
+        .filter(|&k| study.points[k].trial.role == RunPurpose::Point)
         .filter_map(|k| Some(study.error(k)?.judged))
         .collect();
     let unjudged = judged.iter().filter(|j| !**j).count();

@@ -3,11 +3,11 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::plan::{Budget, Plan, Setting};
+use super::plan::{Budget, StudyPlan, StudySetting};
 use super::price;
 use super::scheme::Scheme;
 use super::tolerances::ToleranceSequence;
-use super::trial::{self, Allowance, Role, Trial};
+use super::trial::{self, Allowance, RunPurpose, StudyTrial};
 use crate::case::Case;
 use crate::error::Result;
 use crate::study::evaluations::Evaluations;
@@ -22,11 +22,11 @@ const REPEATS: f64 = 0.015;
 
 /// Event before each run.
 #[derive(Clone, Copy, Debug)]
-pub struct Event {
+pub struct StudyEvent {
     /// Setting of the run.
-    pub setting: Setting,
+    pub setting: StudySetting,
     /// Purpose of the run.
-    pub role: Role,
+    pub role: RunPurpose,
     /// Expected cost of one run, if known.
     pub expected: Option<f64>,
     /// Cost so far.
@@ -40,11 +40,11 @@ pub struct Event {
 }
 
 /// Callback before each run.
-pub type Watch<'a> = &'a (dyn Fn(&Event) + Sync);
+pub type StudyWatch<'a> = &'a (dyn Fn(&StudyEvent) + Sync);
 
 #[derive(Default)]
 struct State {
-    trials: Vec<Trial>,
+    trials: Vec<StudyTrial>,
     spent: f64,
     reserved: f64,
     done: usize,
@@ -55,15 +55,20 @@ struct State {
 
 struct Sweep<'a> {
     case: &'a Case,
-    plan: &'a Plan,
+    plan: &'a StudyPlan,
     begin: Instant,
     state: Mutex<State>,
     evaluations: &'a Evaluations,
-    watch: Watch<'a>,
+    watch: StudyWatch<'a>,
 }
 
 /// Runs points, then references; returns the trials and the total cost.
-pub fn sweep(case: &Case, plan: &Plan, evaluations: &Evaluations, watch: Watch) -> Result<(Vec<Trial>, f64)> {
+pub fn sweep(
+    case: &Case,
+    plan: &StudyPlan,
+    evaluations: &Evaluations,
+    watch: StudyWatch,
+) -> Result<(Vec<StudyTrial>, f64)> {
     let sweep = Sweep {
         case,
         plan,
@@ -81,7 +86,7 @@ pub fn sweep(case: &Case, plan: &Plan, evaluations: &Evaluations, watch: Watch) 
         let mut room = sweep.room(lines.len());
         plan.rtols
             .iter()
-            .try_for_each(|&rtol| sweep.point(Setting { cells, scheme, rtol }, &mut room))
+            .try_for_each(|&rtol| sweep.point(StudySetting { cells, scheme, rtol }, &mut room))
     })?;
     let meshes = plan.reference_cells();
     let numbers: Vec<usize> = (0..meshes.len()).collect();
@@ -120,9 +125,9 @@ impl Sweep<'_> {
         2.0 * (POINTS * self.plan.budget.size() - self.spent(&state)).max(0.0) / to_come
     }
 
-    fn point(&self, setting: Setting, room: &mut f64) -> Result<()> {
+    fn point(&self, setting: StudySetting, room: &mut f64) -> Result<()> {
         let budget = self.plan.budget;
-        let role = Role::Point;
+        let role = RunPurpose::Point;
         let (left, expected, hopeless) = {
             let state = self.lock();
             let left = (POINTS * budget.size() - self.spent(&state)).min(*room);
@@ -145,7 +150,7 @@ impl Sweep<'_> {
         };
         if let Some(reason) = reason {
             let mut state = self.lock();
-            state.trials.push(Trial::skipped(setting, role, reason));
+            state.trials.push(StudyTrial::skipped(setting, role, reason));
             state.done += 1;
             return Ok(());
         }
@@ -161,14 +166,14 @@ impl Sweep<'_> {
     }
 
     /// Runs a setting and returns its cost.
-    fn run(&self, setting: Setting, role: Role, expected: Option<f64>, allowed: Allowance) -> Result<f64> {
+    fn run(&self, setting: StudySetting, role: RunPurpose, expected: Option<f64>, allowed: Allowance) -> Result<f64> {
         let most = allowed.run + allowed.repeats;
         let event = {
             let mut state = self.lock();
             let spent = self.spent(&state);
             state.reserved += most;
             let of = self.plan.cells.len() * (self.plan.schemes.len() * self.plan.rtols.len() + 1) + 1;
-            Event {
+            StudyEvent {
                 setting,
                 role,
                 expected,
@@ -227,7 +232,7 @@ impl Sweep<'_> {
                     // Without a finished run of this line, begin with its tightest point.
                     candidates.retain(|rtol| self.plan.rtols.contains(rtol));
                 }
-                let setting = |rtol| Setting { cells, scheme, rtol };
+                let setting = |rtol| StudySetting { cells, scheme, rtol };
                 let priced = candidates.into_iter().filter(tighter).map(|rtol| {
                     let setting = setting(rtol);
                     (setting, price::expected(&state.trials, setting))
@@ -243,7 +248,7 @@ impl Sweep<'_> {
                 repeats: 0.0,
                 wanted: 0,
             };
-            left -= self.run(next, Role::Reference, expected, allowed)?;
+            left -= self.run(next, RunPurpose::Reference, expected, allowed)?;
             let finished = self
                 .lock()
                 .trials

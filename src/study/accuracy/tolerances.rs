@@ -2,7 +2,7 @@
 
 use super::norms::Norms;
 use super::scheme::Scheme;
-use super::trial::Trial;
+use super::trial::StudyTrial;
 
 /// Finished runs of one line, loose to tight.
 #[derive(Clone, Debug)]
@@ -10,13 +10,13 @@ pub struct ToleranceSequence<'a> {
     /// Time integration.
     pub scheme: Scheme,
     /// Runs.
-    pub runs: Vec<&'a Trial>,
+    pub runs: Vec<&'a StudyTrial>,
 }
 
 impl<'a> ToleranceSequence<'a> {
     /// Collects the runs of a mesh and a scheme.
-    pub fn of(trials: &'a [Trial], cells: usize, scheme: Scheme) -> Self {
-        let mut runs: Vec<&Trial> = trials
+    pub fn of(trials: &'a [StudyTrial], cells: usize, scheme: Scheme) -> Self {
+        let mut runs: Vec<&StudyTrial> = trials
             .iter()
             .filter(|t| t.finished() && t.line() == (cells, scheme))
             .collect();
@@ -25,7 +25,7 @@ impl<'a> ToleranceSequence<'a> {
     }
 
     /// Tightest run.
-    pub fn last(&self) -> Option<&'a Trial> {
+    pub fn last(&self) -> Option<&'a StudyTrial> {
         self.runs.last().copied()
     }
 

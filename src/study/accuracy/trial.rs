@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
-use super::plan::{Budget, Setting};
+use super::plan::{Budget, StudySetting};
 use super::scheme::Scheme;
-use super::signals::{Keep, Limit, Signal};
+use super::signals::{ComparedSignal, Keep, StopLimit};
 use crate::case::Case;
 use crate::error::Result;
 use crate::integrate::halt;
@@ -18,7 +18,7 @@ use crate::study::evaluations::Evaluations;
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Role {
+pub enum RunPurpose {
     /// A point of the study.
     Point,
     /// Run tighter than requested, a reference of points.
@@ -41,11 +41,11 @@ pub enum Ending {
 
 /// Setting and the outcome of its runs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trial {
+pub struct StudyTrial {
     /// Setting.
-    pub setting: Setting,
+    pub setting: StudySetting,
     /// Purpose.
-    pub role: Role,
+    pub role: RunPurpose,
     /// Outcome.
     pub ending: Ending,
     /// Reason why it did not finish.
@@ -67,12 +67,12 @@ pub struct Trial {
     pub cost: f64,
     /// Compared signals; finished runs only.
     #[serde(skip)]
-    pub signals: Option<Vec<Signal>>,
+    pub signals: Option<Vec<ComparedSignal>>,
 }
 
-impl Trial {
+impl StudyTrial {
     /// Returns a setting that is not run, with the reason.
-    pub fn skipped(setting: Setting, role: Role, reason: String) -> Self {
+    pub fn skipped(setting: StudySetting, role: RunPurpose, reason: String) -> Self {
         Self {
             setting,
             role,
@@ -115,13 +115,13 @@ pub struct Allowance {
 /// The first run is a warm-up. It counts if no further runs are allowed: a long run needs no warm-up.
 pub fn run(
     case: &Case,
-    (setting, role): (Setting, Role),
+    (setting, role): (StudySetting, RunPurpose),
     budget: Budget,
     allowed: Allowance,
     evaluations: &Evaluations,
-) -> Result<(Trial, f64)> {
+) -> Result<(StudyTrial, f64)> {
     if halt::asked() {
-        return Ok((Trial::skipped(setting, role, "interrupted".into()), 0.0));
+        return Ok((StudyTrial::skipped(setting, role, "interrupted".into()), 0.0));
     }
     let compute = || {
         let (mut trial, spent) = computed(case, setting, role, budget, allowed)?;
@@ -129,16 +129,22 @@ pub fn run(
         Ok((trial, signals, spent))
     };
     let (trial, signals, spent) = evaluations.try_get(&(setting, role), &halt::asked, compute)?;
-    Ok((Trial { signals, ..trial }, spent))
+    Ok((StudyTrial { signals, ..trial }, spent))
 }
 
-fn computed(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: Allowance) -> Result<(Trial, f64)> {
+fn computed(
+    case: &Case,
+    setting: StudySetting,
+    role: RunPurpose,
+    budget: Budget,
+    allowed: Allowance,
+) -> Result<(StudyTrial, f64)> {
     let variant = setting.case(case);
-    let once = |most: f64| -> Result<(Trial, f64)> {
+    let once = |most: f64| -> Result<(StudyTrial, f64)> {
         let begin = Instant::now();
         let limit = match budget {
-            Budget::Wall(_) => Limit::Wall(begin + Duration::from_secs_f64(most.clamp(0.0, 1e9))),
-            Budget::Steps(_) => Limit::Steps(most.max(1.0) as u64),
+            Budget::Wall(_) => StopLimit::Wall(begin + Duration::from_secs_f64(most.clamp(0.0, 1e9))),
+            Budget::Steps(_) => StopLimit::Steps(most.max(1.0) as u64),
         };
         let mut keep = Keep::new(setting.cells, limit);
         let outcome = dynamics::run(&variant, &mut keep)?;
@@ -167,7 +173,7 @@ fn computed(case: &Case, setting: Setting, role: Role, budget: Budget, allowed: 
             Budget::Wall(_) => wall,
             Budget::Steps(_) => summary.solver.steps as f64,
         };
-        let trial = Trial {
+        let trial = StudyTrial {
             setting,
             role,
             ending,

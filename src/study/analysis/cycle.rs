@@ -1,18 +1,18 @@
 //! Steady cycles.
 
-use super::derivatives::{Slopes, of_summary, until};
+use super::derivatives::{FigureSlopes, of_summary, until};
 use super::power::{self, POWERS};
-use super::{Analysis, Ask, Found, RunCase, accurate, errors, run};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors, run};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Result};
-use crate::run::floquet::{self, Floquet, Stability};
+use crate::run::floquet::{self, CycleStability, Floquet};
 use crate::run::periodic::scene::fault;
 use crate::run::periodic::sensitivity::{allowed, differentiate};
-use crate::run::periodic::{Scene, Settled, record, settle, shoot};
+use crate::run::periodic::{PeriodicScene, Settled, record, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
-use crate::run::stop::Stop;
+use crate::run::stop::StopFlag;
 use crate::run::summary::{Status, Summary};
 use crate::study::refine::{self, meshes, numbers};
 
@@ -24,10 +24,10 @@ pub struct Periodic;
 
 impl Analysis for Periodic {
     fn check(&self, case: &Case) -> Result<()> {
-        Scene::new(case, None)?.held(&case.name)
+        PeriodicScene::new(case, None)?.held(&case.name)
     }
 
-    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
         cycle(case, ask)
     }
 
@@ -40,7 +40,7 @@ impl Analysis for Periodic {
     }
 
     fn allows(&self, case: &Case, parameters: &[Parameter]) -> Result<()> {
-        allowed(case, &Scene::new(case, None)?, parameters)
+        allowed(case, &PeriodicScene::new(case, None)?, parameters)
     }
 
     fn derivatives(
@@ -49,8 +49,8 @@ impl Analysis for Periodic {
         parameters: &[Parameter],
         _: Option<&System>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)> {
-        let scene = Scene::new(case, None)?;
+    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
+        let scene = PeriodicScene::new(case, None)?;
         scene.held(&case.name)?;
         let first = shoot(&scene, None).map_err(fault)?;
         let mut settled = settle(case, scene, first)?;
@@ -77,14 +77,14 @@ impl Analysis for Periodic {
 }
 
 /// Computes the steady cycle.
-fn cycle(case: &Case, ask: Ask) -> Result<Found> {
-    let mut of = |case: &Case| numbers::of_cycle(case, 1, &Stop::default());
+fn cycle(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
+    let mut of = |case: &Case| numbers::of_cycle(case, 1, &StopFlag::default());
     let refined = ask
         .accuracy
         .map(|accuracy| refine::refine(case, accuracy, true, &mut of))
         .transpose()?;
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
-    let scene = Scene::new(case, None)?;
+    let scene = PeriodicScene::new(case, None)?;
     scene.held(&case.name)?;
     let first = shoot(&scene, None).map_err(fault)?;
     let Settled {
@@ -108,16 +108,16 @@ fn cycle(case: &Case, ask: Ask) -> Result<Found> {
 }
 
 /// Returns the figures of the summary of a cycle over its period [s], and its stability if that is known.
-pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> Found {
-    let mut found = Found {
+pub fn of_cycle(summary: &Summary, period: f64, steps: u64, stability: Option<&Floquet>) -> AnalysisOutcome {
+    let mut found = AnalysisOutcome {
         steps: Some(steps),
         status: summary.status,
         reason: summary.reason.clone(),
-        ..Found::finished()
+        ..AnalysisOutcome::finished()
     };
     found.put("period_s", period);
     if let Some(all) = stability {
-        let stable = all.verdict.stability != Stability::Unstable;
+        let stable = all.verdict.stability != CycleStability::Unstable;
         found.put("stable", f64::from(u8::from(stable)));
         found.put("growth_per_s", all.multipliers.first().map(|m| m.growth_per_s));
     }

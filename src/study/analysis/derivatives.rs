@@ -10,7 +10,7 @@ use crate::run::record::Control;
 use crate::run::summary::{Status, Summary};
 
 /// Derivatives of each figure with respect to the numbers, in their order.
-pub type Slopes = BTreeMap<String, Vec<f64>>;
+pub type FigureSlopes = BTreeMap<String, Vec<f64>>;
 
 /// Stops a run, or a path of equilibria, once `stop` returns true; checked after every step.
 pub fn until<T>(stop: &dyn Fn() -> bool) -> impl FnMut(&T) -> Control + '_ {
@@ -71,7 +71,7 @@ impl Gathered {
     }
 
     /// Returns the figures whose derivatives with respect to all numbers are known.
-    pub fn whole(self) -> Slopes {
+    pub fn whole(self) -> FigureSlopes {
         let known = |(name, slopes): (String, Vec<Option<f64>>)| {
             let slopes: Option<Vec<f64>> = slopes.into_iter().collect();
             Some((name, slopes?))

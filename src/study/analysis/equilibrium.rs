@@ -1,13 +1,13 @@
 //! Equilibria under the loads at the end of a case.
 
-use super::derivatives::{Gathered, Slopes, until};
-use super::{Analysis, Ask, Found, RunCase, accurate, errors};
+use super::derivatives::{FigureSlopes, Gathered, until};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Error, Result};
-use crate::run::equilibrium::{self, Options, Path};
-use crate::run::record::Column;
+use crate::run::equilibrium::{self, EquilibriumOptions, Path};
+use crate::run::record::HistoryColumn;
 use crate::run::summary::Status;
 use crate::run::{known, slow};
 use crate::study::refine::{self, meshes, numbers};
@@ -16,14 +16,20 @@ use crate::study::refine::{self, meshes, numbers};
 const POINTS: usize = 16;
 
 /// `slcbeam equilibrium`.
-pub struct Equilibrium;
+pub struct EquilibriumAnalysis;
 
-impl Analysis for Equilibrium {
+impl Analysis for EquilibriumAnalysis {
     fn check(&self, case: &Case) -> Result<()> {
         equilibrium::system(case, case.time.end_s).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+    fn figures(
+        &self,
+        case: &Case,
+        ask: AnalysisRequest,
+        stop: &dyn Fn() -> bool,
+        _: RunCase,
+    ) -> Result<AnalysisOutcome> {
         at_rest(case, ask, stop)
     }
 
@@ -39,7 +45,7 @@ impl Analysis for Equilibrium {
         parameters: &[Parameter],
         _: Option<&System>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)> {
+    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         let options = at_the_end(case);
         let path = equilibrium::follow(case, &options, &mut until(stop))?;
         if let Some(fault) = path.fault {
@@ -66,15 +72,15 @@ impl Analysis for Equilibrium {
 }
 
 /// Options of the search for the equilibrium under the loads at the end of a case.
-fn at_the_end(case: &Case) -> Options {
-    Options {
+fn at_the_end(case: &Case) -> EquilibriumOptions {
+    EquilibriumOptions {
         points: Some(POINTS),
-        ..Options::at(case.time.end_s)
+        ..EquilibriumOptions::at(case.time.end_s)
     }
 }
 
 /// Computes the equilibrium under the loads at the end.
-fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
+fn at_rest(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result<AnalysisOutcome> {
     let options = at_the_end(case);
     let mut of = |case: &Case| numbers::of_equilibrium(case, &options);
     let refined = ask
@@ -104,10 +110,10 @@ fn at_rest(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Found> {
 }
 
 /// Figures of the last state of a path.
-pub fn of_path(columns: &[Column], path: &Path) -> Found {
-    let mut found = Found {
+pub fn of_path(columns: &[HistoryColumn], path: &Path) -> AnalysisOutcome {
+    let mut found = AnalysisOutcome {
         steps: Some(path.work.iterations),
-        ..Found::finished()
+        ..AnalysisOutcome::finished()
     };
     if let Some(fault) = &path.fault {
         found.status = Status::Failed;

@@ -10,7 +10,7 @@ const ALIKE: f64 = 1e-6;
 
 /// Result of the analysis of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct AnalysisOutcome {
     /// Outcome of the computation.
     pub status: Status,
     /// Reason, if it did not finish or missed the requested accuracy.
@@ -26,7 +26,7 @@ pub struct Found {
     pub messages: Vec<String>,
 }
 
-impl Found {
+impl AnalysisOutcome {
     /// Creates an empty result with the status finished.
     pub fn finished() -> Self {
         Self {

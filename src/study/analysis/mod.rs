@@ -38,8 +38,8 @@ use crate::run::summary::{Accuracy, Status};
 use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes};
 use crate::study::{companion, target};
-use derivatives::Slopes;
-pub use found::{Found, word};
+use derivatives::FigureSlopes;
+pub use found::{AnalysisOutcome, word};
 
 /// Name of the figure that is 1 if the requested accuracy is reached, otherwise 0.
 pub const ACCURACY: &str = "accuracy_reached";
@@ -59,7 +59,13 @@ pub trait Analysis: Sync {
     ///
     /// # Errors
     /// Those of the command.
-    fn figures(&self, case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Result<Found>;
+    fn figures(
+        &self,
+        case: &Case,
+        ask: AnalysisRequest,
+        stop: &dyn Fn() -> bool,
+        run: RunCase,
+    ) -> Result<AnalysisOutcome>;
 
     /// Names of the figures of a case.
     ///
@@ -87,7 +93,7 @@ pub trait Analysis: Sync {
         parameters: &[Parameter],
         alike: Option<&System>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)>;
+    ) -> Result<(AnalysisOutcome, FigureSlopes)>;
 
     /// Error code of a case without figures.
     fn fault(&self) -> Code;
@@ -131,8 +137,8 @@ impl AnalysisKind {
         match self {
             Self::Run => &run::Run,
             Self::Periodic => &cycle::Periodic,
-            Self::Equilibrium => &equilibrium::Equilibrium,
-            Self::Modes => &modes::Modes,
+            Self::Equilibrium => &equilibrium::EquilibriumAnalysis,
+            Self::Modes => &modes::ModesAnalysis,
             Self::Floquet => &multipliers::Multipliers,
         }
     }
@@ -140,25 +146,25 @@ impl AnalysisKind {
 
 /// A request for the figures of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ask {
+pub struct AnalysisRequest {
     /// The analysis.
     pub what: AnalysisKind,
     /// Requested relative error of every figure.
     pub accuracy: Option<f64>,
     /// Initial mesh and tolerance of the search for the accuracy.
-    pub from: Option<target::Setting>,
+    pub from: Option<target::ReachedSetting>,
     /// True if errors are estimated: for runs by a companion, for other analyses by two or three meshes.
     pub meshes: bool,
 }
 
 /// Computes the figures of a case; `run` runs it in time, if the analysis needs that. `None` if `stop` became true
 /// meanwhile.
-pub fn found(case: &Case, ask: Ask, stop: &dyn Fn() -> bool, run: RunCase) -> Option<Found> {
+pub fn found(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool, run: RunCase) -> Option<AnalysisOutcome> {
     let found = ask.what.analysis().figures(case, ask, stop, run);
     if stop() {
         return None;
     }
-    Some(found.unwrap_or_else(|error| Found::failed(&error)))
+    Some(found.unwrap_or_else(|error| AnalysisOutcome::failed(&error)))
 }
 
 /// Returns the result stored under a key of a journal, with its warnings; without one, the result of `found`.
@@ -166,21 +172,21 @@ pub fn stored(
     evaluations: &Evaluations,
     key: &impl Serialize,
     stop: &dyn Fn() -> bool,
-    found: impl FnOnce() -> Option<Found>,
-) -> Option<Found> {
-    let apart = |mut found: Found| {
+    found: impl FnOnce() -> Option<AnalysisOutcome>,
+) -> Option<AnalysisOutcome> {
+    let apart = |mut found: AnalysisOutcome| {
         let messages = std::mem::take(&mut found.messages);
         (found, messages)
     };
     let (found, messages) = evaluations.get(key, stop, || found().map(apart))?;
-    Some(Found { messages, ..found })
+    Some(AnalysisOutcome { messages, ..found })
 }
 
 /// Runs a case without recording histories and fields.
 ///
 /// # Errors
 /// Those of [`companion::run`].
-pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+pub fn run(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     let wait = Cell::new(0_u32);
     let hook = |_: &Progress| {
         wait.set(wait.get() + 1);
@@ -199,7 +205,7 @@ pub fn run(case: &Case, ask: Ask, stop: &dyn Fn() -> bool) -> Result<Outcome> {
 }
 
 /// Adds the errors that the search for an accuracy estimated.
-fn accurate(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
+fn accurate(found: &mut AnalysisOutcome, accuracy: &Accuracy, name: &dyn Fn(&str) -> String) {
     for (own, estimate) in &accuracy.quantities {
         found.put(format!("{}.error", name(own)), estimate.total);
     }
@@ -207,7 +213,7 @@ fn accurate(found: &mut Found, accuracy: &Accuracy, name: &dyn Fn(&str) -> Strin
 }
 
 /// Adds a figure that is 1 if the requested accuracy is reached. Otherwise the reason of the row reports the miss, too.
-fn reached(found: &mut Found, accuracy: &Accuracy) {
+fn reached(found: &mut AnalysisOutcome, accuracy: &Accuracy) {
     found.put(ACCURACY, f64::from(u8::from(accuracy.reached)));
     if let (false, None, Status::Finished) = (accuracy.reached, &found.reason, found.status) {
         found.reason = Some(format!(
@@ -220,7 +226,7 @@ fn reached(found: &mut Found, accuracy: &Accuracy) {
 }
 
 /// Adds the errors estimated by comparing meshes.
-fn errors(found: &mut Found, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
+fn errors(found: &mut AnalysisOutcome, by_mesh: &meshes::Meshes, name: &dyn Fn(&str) -> String) {
     for (own, share) in &by_mesh.quantities {
         let total = share.known().then(|| share.total());
         found.put(format!("{}.error", name(own)), total);

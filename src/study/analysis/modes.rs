@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::derivatives::{Gathered, Slopes};
-use super::{Analysis, Ask, Found, RunCase, reached};
+use super::derivatives::{FigureSlopes, Gathered};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, reached};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -19,14 +19,14 @@ const MOST_MODES: usize = 384;
 const STRONG: f64 = 0.5;
 
 /// `slcbeam modes`.
-pub struct Modes;
+pub struct ModesAnalysis;
 
-impl Analysis for Modes {
+impl Analysis for ModesAnalysis {
     fn check(&self, case: &Case) -> Result<()> {
         System::new(case).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
         small(case, ask)
     }
 
@@ -42,7 +42,7 @@ impl Analysis for Modes {
         parameters: &[Parameter],
         _: Option<&System>,
         _: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)> {
+    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         let (found, _) = swinging(case)?;
         let slopes = modes::differentiate(case, None, &found.about, &found.modes, parameters)?;
         let mut all = Gathered::new(parameters.len());
@@ -76,8 +76,8 @@ impl Analysis for Modes {
 ///
 /// # Errors
 /// Those of [`modes::modes`].
-pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::Plan)> {
-    let mut plan = modes::Plan {
+pub fn swinging(case: &Case) -> Result<(modes::Modes, modes::ModeOptions)> {
+    let mut plan = modes::ModeOptions {
         count: 2 * MODES,
         near_hz: 0.0,
         limits: false,
@@ -100,7 +100,7 @@ pub fn lowest(all: &[modes::Mode]) -> Vec<usize> {
 }
 
 /// Figures of small motions about the initial state: the lowest modes that oscillate.
-fn small(case: &Case, ask: Ask) -> Result<Found> {
+fn small(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
     let (mut all, plan) = swinging(case)?;
     let mut of = |case: &Case| numbers::of_modes(case, None, &plan);
     let refined = ask
@@ -134,8 +134,8 @@ fn small(case: &Case, ask: Ask) -> Result<Found> {
 }
 
 /// Figures of the lowest modes that oscillate.
-pub fn of_modes(all: &modes::Modes) -> Found {
-    let mut found = Found::finished();
+pub fn of_modes(all: &modes::Modes) -> AnalysisOutcome {
+    let mut found = AnalysisOutcome::finished();
     let stable = !all.modes.iter().any(|mode| mode.kind.grows());
     found.put("stable", f64::from(u8::from(stable)));
     for (k, mode) in lowest(&all.modes)

@@ -1,15 +1,15 @@
 //! Floquet multipliers of cycles, named by the part of the motion that dominates each of them, since their order may
 //! change.
 
-use super::derivatives::Slopes;
-use super::{Analysis, Ask, Found, RunCase};
+use super::derivatives::FigureSlopes;
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Error, Result};
-use crate::run::floquet::{self, Floquet, Stability};
-use crate::run::periodic::Scene;
-use crate::run::stop::Stop;
+use crate::run::floquet::{self, CycleStability, Floquet};
+use crate::run::periodic::PeriodicScene;
+use crate::run::stop::StopFlag;
 use crate::study::refine::{meshes, numbers};
 
 /// Number of multipliers with figures, the largest ones.
@@ -20,10 +20,10 @@ pub struct Multipliers;
 
 impl Analysis for Multipliers {
     fn check(&self, case: &Case) -> Result<()> {
-        Scene::new(case, None)?.held(&case.name)
+        PeriodicScene::new(case, None)?.held(&case.name)
     }
 
-    fn figures(&self, case: &Case, ask: Ask, _: &dyn Fn() -> bool, _: RunCase) -> Result<Found> {
+    fn figures(&self, case: &Case, ask: AnalysisRequest, _: &dyn Fn() -> bool, _: RunCase) -> Result<AnalysisOutcome> {
         multipliers(case, ask)
     }
 
@@ -41,7 +41,7 @@ impl Analysis for Multipliers {
         _: &[Parameter],
         _: Option<&System>,
         _: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)> {
+    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         Err(no_derivatives())
     }
 
@@ -55,8 +55,8 @@ fn no_derivatives() -> Error {
 }
 
 /// Computes the multipliers of a case, with errors estimated by comparing meshes on request.
-fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
-    let stop = Stop::default();
+fn multipliers(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
+    let stop = StopFlag::default();
     let (scene, mut cycle) = numbers::cycle(case, None, &stop)?;
     let all = floquet::multipliers(&scene, &mut cycle, COUNT);
     let mut found = of_multipliers(&all);
@@ -104,9 +104,9 @@ fn multipliers(case: &Case, ask: Ask) -> Result<Found> {
 }
 
 /// Moduli, rates and frequencies by part of the motion, and the rate of the largest multiplier.
-fn of_multipliers(all: &Floquet) -> Found {
-    let mut found = Found::finished();
-    let stable = all.verdict.stability != Stability::Unstable;
+fn of_multipliers(all: &Floquet) -> AnalysisOutcome {
+    let mut found = AnalysisOutcome::finished();
+    let stable = all.verdict.stability != CycleStability::Unstable;
     found.put("period_s", all.period_s);
     found.put("stable", f64::from(u8::from(stable)));
     found.put("growth_per_s", all.multipliers.first().map(|m| m.growth_per_s));

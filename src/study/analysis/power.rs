@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Found;
+use super::AnalysisOutcome;
 use crate::discrete::quantities::Interest;
 use crate::run::summary::Quantity;
 
@@ -15,7 +15,7 @@ pub const POWERS: [(Interest, &str); 2] = [
 
 /// A figure of the energy of a cycle.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct CycleFigure {
     /// Name in the table of a sweep.
     pub name: String,
     /// Description.
@@ -28,7 +28,7 @@ pub struct Figure {
     pub open: Option<f64>,
 }
 
-impl Figure {
+impl CycleFigure {
     /// Returns the name of the residual of its balance.
     pub fn open_name(&self) -> String {
         format!("{}_error", self.name)
@@ -36,7 +36,7 @@ impl Figure {
 }
 
 /// Returns the energy figures over a period [s], those of turbines if the case has some.
-pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<Figure> {
+pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<CycleFigure> {
     let mut all = vec![];
     let words = [
         (Interest::InputEnergy, "put in over the cycle", "mean power put in"),
@@ -47,7 +47,7 @@ pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<Figu
         let Some((q, value)) = quantities.get(one.name()).and_then(|q| Some((q, q.window?))) else {
             continue;
         };
-        all.push(Figure {
+        all.push(CycleFigure {
             name: format!("{}.window", one.name()),
             words,
             unit: one.unit(),
@@ -55,7 +55,7 @@ pub fn figures(quantities: &BTreeMap<String, Quantity>, period: f64) -> Vec<Figu
             open: q.window_error,
         });
         if let Some((_, name)) = POWERS.iter().find(|(energy, _)| *energy == one) {
-            all.push(Figure {
+            all.push(CycleFigure {
                 name: (*name).into(),
                 words: of_power,
                 unit: "W",
@@ -74,7 +74,7 @@ pub fn energy_of(power: &str) -> Option<String> {
 }
 
 /// Copies the relative errors of energies to their mean powers, after the former are known.
-pub(super) fn share_errors(found: &mut Found) {
+pub(super) fn share_errors(found: &mut AnalysisOutcome) {
     for (_, power) in POWERS {
         let error = energy_of(power).and_then(|energy| found.figure(&format!("{energy}.error")));
         found.put(format!("{power}.error"), error);

@@ -1,11 +1,11 @@
 //! Runs in time.
 
-use super::derivatives::{Slopes, alike_or_own, of_summary, until};
-use super::{Analysis, Ask, Found, RunCase, reached};
+use super::derivatives::{FigureSlopes, alike_or_own, of_summary, until};
+use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, reached};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
-use crate::discrete::quantities::{Interest, Source, probes};
+use crate::discrete::quantities::{Interest, InterestSource, probes};
 use crate::error::{Code, Result};
 use crate::run::dynamics;
 use crate::run::record::Unrecorded;
@@ -19,7 +19,7 @@ impl Analysis for Run {
         System::new(case).map(|_| ())
     }
 
-    fn figures(&self, case: &Case, _: Ask, _: &dyn Fn() -> bool, run: RunCase) -> Result<Found> {
+    fn figures(&self, case: &Case, _: AnalysisRequest, _: &dyn Fn() -> bool, run: RunCase) -> Result<AnalysisOutcome> {
         run(case).map(|outcome| of_run(&outcome.summary))
     }
 
@@ -34,7 +34,7 @@ impl Analysis for Run {
         parameters: &[Parameter],
         alike: Option<&System>,
         stop: &dyn Fn() -> bool,
-    ) -> Result<(Found, Slopes)> {
+    ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         let system = alike_or_own(case, alike)?;
         let outcome = dynamics::run_with(case, system, parameters, &mut Unrecorded(until(stop)))?;
         let all = of_summary(&outcome.summary, parameters);
@@ -54,7 +54,7 @@ pub(super) fn names(case: &Case, motion: &[&str], sums: &[&str]) -> Result<Vec<S
     let mut all = vec![];
     for one in Interest::of([network.is_some(), turbines]) {
         let figures = match one.source() {
-            Source::Motion(_) => motion,
+            InterestSource::Motion(_) => motion,
             _ => sums,
         };
         all.extend(figures.iter().map(|figure| format!("{}.{figure}", one.name())));
@@ -66,8 +66,8 @@ pub(super) fn names(case: &Case, motion: &[&str], sums: &[&str]) -> Result<Vec<S
 }
 
 /// Figures of a summary.
-pub fn of_run(summary: &Summary) -> Found {
-    let mut found = Found {
+pub fn of_run(summary: &Summary) -> AnalysisOutcome {
+    let mut found = AnalysisOutcome {
         status: summary.status,
         reason: summary.reason.clone(),
         steps: Some(summary.solver.steps),
@@ -94,7 +94,7 @@ pub fn of_run(summary: &Summary) -> Found {
 }
 
 /// Adds every figure of a quantity.
-fn put(found: &mut Found, name: &str, quantity: &Quantity) {
+fn put(found: &mut AnalysisOutcome, name: &str, quantity: &Quantity) {
     for (figure, value) in quantity.figures() {
         found.put(format!("{name}.{figure}"), value);
     }

@@ -7,8 +7,8 @@
 
 use std::collections::BTreeMap;
 
-use super::changes::{Ended, changes};
-use super::variant::{Cause, has_few_cells};
+use super::changes::{ChangesStatus, changes};
+use super::variant::{ErrorCause, has_few_cells};
 use super::{Accurate, error, work};
 use crate::case::Case;
 use crate::error::numbers::error_percent as percent;
@@ -48,15 +48,15 @@ pub fn unknown(status: Status, reason: &str) -> Option<String> {
 /// Errors of all figures by their causes, as far as they are measured.
 enum Causes {
     /// All that apply.
-    Complete(BTreeMap<Cause, Figures>),
+    Complete(BTreeMap<ErrorCause, Figures>),
     /// Some, since a run did not reach its end.
-    Partial(BTreeMap<Cause, Figures>),
+    Partial(BTreeMap<ErrorCause, Figures>),
     Interrupted,
     TooLarge,
 }
 
 impl Causes {
-    fn known(&self) -> Option<&BTreeMap<Cause, Figures>> {
+    fn known(&self) -> Option<&BTreeMap<ErrorCause, Figures>> {
         match self {
             Self::Complete(causes) | Self::Partial(causes) => Some(causes),
             Self::Interrupted | Self::TooLarge => None,
@@ -82,8 +82,8 @@ pub(super) fn attribute(
         summary.errors = errors;
     }
     let mut found = accuracy.map_or_else(BTreeMap::new, |accuracy| believed(accuracy, summary, floors));
-    if accuracy.is_some() && !tolerance_binds(summary) && !found.contains_key(&Cause::TimeSteps) {
-        changes(case, summary, cells, vec![Cause::TimeSteps], &mut found, recorder)?;
+    if accuracy.is_some() && !tolerance_binds(summary) && !found.contains_key(&ErrorCause::TimeSteps) {
+        changes(case, summary, cells, vec![ErrorCause::TimeSteps], &mut found, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
         summary.errors = added(&of_companion, &found, f64::INFINITY);
     }
@@ -110,7 +110,7 @@ pub(super) fn attribute(
     {
         let finer = [2 * case.mesh.cells_per_segment, cells[1]];
         let mut by_mesh = BTreeMap::new();
-        changes(case, summary, finer, vec![Cause::BeamMesh], &mut by_mesh, recorder)?;
+        changes(case, summary, finer, vec![ErrorCause::BeamMesh], &mut by_mesh, recorder)?;
         let of_companion = std::mem::take(&mut summary.errors);
         summary.errors = added(&of_companion, &by_mesh, f64::INFINITY);
         causes = match causes {
@@ -138,7 +138,7 @@ fn least(accuracy: Option<&Accurate>) -> f64 {
 }
 
 /// Expected errors by cause that the companion does not contradict and that need not be known better.
-fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap<Cause, Figures> {
+fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap<ErrorCause, Figures> {
     let (asked, mut expected) = (accuracy.asked, accuracy.expected.clone());
     let with = |part: f64| {
         let mut errors = summary.errors.clone();
@@ -178,7 +178,7 @@ fn large(summary: &Summary, floors: &Floors, least: f64) -> Vec<(String, f64)> {
 }
 
 /// Errors of the companion, bounded by the sums over causes, and by so many times these.
-fn added(of_companion: &Figures, causes: &BTreeMap<Cause, Figures>, most: f64) -> Figures {
+fn added(of_companion: &Figures, causes: &BTreeMap<ErrorCause, Figures>, most: f64) -> Figures {
     let sum = |name: &String, figure: &String, error: f64| {
         let parts = causes.values().filter_map(|errors| errors.get(name)?.get(figure));
         let sum: f64 = parts.sum();
@@ -199,20 +199,20 @@ fn measure(
     floors: &Floors,
     cells: [usize; 2],
     accuracy: Option<&Accurate>,
-    mut found: BTreeMap<Cause, Figures>,
+    mut found: BTreeMap<ErrorCause, Figures>,
     recorder: &mut dyn Recorder,
 ) -> Result<Causes> {
     let effects = full(case)?.map_or(vec![], |full| full.left_out);
-    let mut first = vec![Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
+    let mut first = vec![ErrorCause::BeamMesh, ErrorCause::FluidMesh, ErrorCause::TimeSteps];
     first.extend(match effects.as_slice() {
         [] => None,
-        [one] => Some(Cause::Effect(*one)),
-        _ => Some(Cause::Effects),
+        [one] => Some(ErrorCause::Effect(*one)),
+        _ => Some(ErrorCause::Effects),
     });
-    let by_effect = found.keys().any(|cause| matches!(cause, Cause::Effect(_)));
-    first.retain(|cause| !(found.contains_key(cause) || *cause == Cause::Effects && by_effect));
+    let by_effect = found.keys().any(|cause| matches!(cause, ErrorCause::Effect(_)));
+    first.retain(|cause| !(found.contains_key(cause) || *cause == ErrorCause::Effects && by_effect));
     let mut causes = changes(case, summary, cells, first, &mut found, recorder)?;
-    let together = found.get(&Cause::Effects);
+    let together = found.get(&ErrorCause::Effects);
     let share = |errors: &Figures| {
         error::relative(summary, errors, floors)
             .into_values()
@@ -221,32 +221,35 @@ fn measure(
     if effects.len() > 1
         && !by_effect
         && together.is_none_or(|errors| share(errors) > NAMED * least(accuracy))
-        && causes != Ended::Interrupted
+        && causes != ChangesStatus::Interrupted
     {
-        found.remove(&Cause::Effects);
-        let each = effects.into_iter().map(Cause::Effect).collect();
+        found.remove(&ErrorCause::Effects);
+        let each = effects.into_iter().map(ErrorCause::Effect).collect();
         causes = causes.max(changes(case, summary, cells, each, &mut found, recorder)?);
     }
     if accuracy.is_some()
-        && let Some(errors) = found.get_mut(&Cause::TimeSteps)
+        && let Some(errors) = found.get_mut(&ErrorCause::TimeSteps)
     {
         error::raise_to_balance(summary, errors, floors);
     }
     Ok(match causes {
-        Ended::All => Causes::Complete(found),
-        Ended::Some => Causes::Partial(found),
-        Ended::Interrupted => Causes::Interrupted,
+        ChangesStatus::All => Causes::Complete(found),
+        ChangesStatus::Some => Causes::Partial(found),
+        ChangesStatus::Interrupted => Causes::Interrupted,
     })
 }
 
 /// Shares of each cause in the largest error of each quantity.
-fn shares(summary: &Summary, causes: Option<&BTreeMap<Cause, Figures>>) -> BTreeMap<String, Vec<(Cause, f64)>> {
+fn shares(
+    summary: &Summary,
+    causes: Option<&BTreeMap<ErrorCause, Figures>>,
+) -> BTreeMap<String, Vec<(ErrorCause, f64)>> {
     let of = |name: &String| {
         let size = |errors: &Figures| errors.get(name).and_then(largest_error).unwrap_or(0.0);
         let quantity = [&summary.quantities, &summary.probes, &summary.ports];
         let largest = quantity.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size());
         let each = causes.into_iter().flatten();
-        let mut all: Vec<(Cause, f64)> = each.map(|(c, errors)| (*c, size(errors) / largest)).collect();
+        let mut all: Vec<(ErrorCause, f64)> = each.map(|(c, errors)| (*c, size(errors) / largest)).collect();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
         (name.clone(), all)
     };
@@ -257,7 +260,7 @@ fn words(
     case: &Case,
     large: &[(String, f64)],
     measured: &Causes,
-    shares: &BTreeMap<String, Vec<(Cause, f64)>>,
+    shares: &BTreeMap<String, Vec<(ErrorCause, f64)>>,
 ) -> String {
     let names: Vec<String> = large
         .iter()
@@ -276,7 +279,7 @@ fn words(
         .map(|(cause, share)| format!("{} {}", cause.name(), percent(*share)))
         .collect();
     // the largest cause of each quantity, and others that are above the limit by themselves
-    let mut wanted: BTreeMap<Cause, f64> = BTreeMap::new();
+    let mut wanted: BTreeMap<ErrorCause, f64> = BTreeMap::new();
     for (name, error) in large {
         let sum: f64 = of(name).iter().map(|(_, share)| share).sum();
         let named = of(name).iter().filter(|(_, share)| *share >= NAMED * error);
@@ -305,7 +308,7 @@ fn words(
     ))
 }
 
-impl Cause {
+impl ErrorCause {
     fn name(self) -> String {
         match self {
             Self::BeamMesh => "beam mesh".into(),

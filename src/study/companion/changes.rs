@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::variant::{Cause, Variant};
+use super::variant::{ErrorCause, Variant};
 use super::{Limits, SMALL_WORK, error, finish, progress, wait, work};
 use crate::case::Case;
 use crate::error::Result;
@@ -19,7 +19,7 @@ const MORE_STEPS: f64 = 1.55;
 
 /// Outcome of the runs with one change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Ended {
+pub enum ChangesStatus {
     All,
     Some,
     Interrupted,
@@ -30,10 +30,10 @@ pub fn changes(
     case: &Case,
     summary: &Summary,
     cells: [usize; 2],
-    causes: Vec<Cause>,
-    found: &mut BTreeMap<Cause, Figures>,
+    causes: Vec<ErrorCause>,
+    found: &mut BTreeMap<ErrorCause, Figures>,
     recorder: &mut dyn Recorder,
-) -> Result<Ended> {
+) -> Result<ChangesStatus> {
     let limits = &Limits {
         cancelled: false.into(),
         work: (LONGEST * work(summary) + SMALL_WORK).into(),
@@ -41,10 +41,10 @@ pub fn changes(
     let own = error::figures(summary);
     let steps = summary.solver.steps;
     let heard = &halt::heard();
-    let mut all = Ended::All;
+    let mut all = ChangesStatus::All;
     for pair in causes.chunks(2) {
         let (ended, stopped) = std::thread::scope(|scope| {
-            let change = |cause: Cause| move || heard.during(|| changed(case, cells, cause, steps, limits));
+            let change = |cause: ErrorCause| move || heard.during(|| changed(case, cells, cause, steps, limits));
             let tasks: Vec<_> = pair.iter().map(|cause| threads::begin(scope, change(*cause))).collect();
             let mut stopped = Ok(None);
             for task in &tasks {
@@ -55,14 +55,14 @@ pub fn changes(
             (ended, stopped)
         });
         if stopped?.is_some() || halt::asked() {
-            return Ok(Ended::Interrupted);
+            return Ok(ChangesStatus::Interrupted);
         }
         for (cause, run) in pair.iter().zip(ended) {
             let (run, factor) = match run? {
                 Changed::Finished(run, factor) => (run, factor),
                 Changed::Absent => continue,
                 Changed::Unfinished => {
-                    all = Ended::Some;
+                    all = ChangesStatus::Some;
                     continue;
                 }
             };
@@ -86,7 +86,7 @@ enum Changed {
 
 /// Runs a case with one change. The tolerance is tightened until the run takes more steps than before: as long as loads and outputs decide on
 /// the steps, two tolerances agree whatever the error.
-fn changed(case: &Case, cells: [usize; 2], cause: Cause, steps: u64, limits: &Limits) -> Result<Changed> {
+fn changed(case: &Case, cells: [usize; 2], cause: ErrorCause, steps: u64, limits: &Limits) -> Result<Changed> {
     let mut last = Changed::Absent;
     for tighter in TIGHTER {
         let Some((variant, factor)) = Variant::with_change(case, cells, cause, tighter)? else {
@@ -100,7 +100,7 @@ fn changed(case: &Case, cells: [usize; 2], cause: Cause, steps: u64, limits: &Li
         };
         let binds = run.solver.steps as f64 >= MORE_STEPS * steps as f64;
         last = Changed::Finished(Box::new(run), factor);
-        if cause != Cause::TimeSteps || binds {
+        if cause != ErrorCause::TimeSteps || binds {
             break;
         }
     }

@@ -44,7 +44,7 @@ use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress, Recorder, Unrecorded};
 use crate::run::summary::{CompanionRun, Figures, Status, Summary};
 use attribution::attribute;
-use variant::{Cause, Variant};
+use variant::{ErrorCause, Variant};
 
 /// Largest work of a companion with all effects, relative to the work of the run; above it the companion has the effects of the run.
 const LARGEST_WORK: u64 = 3;
@@ -92,7 +92,7 @@ pub struct Accurate {
     /// Relative error.
     pub asked: f64,
     /// Errors by their causes, as a coarser run leads to expect them.
-    expected: BTreeMap<Cause, Figures>,
+    expected: BTreeMap<ErrorCause, Figures>,
 }
 
 impl Accurate {
@@ -109,12 +109,12 @@ impl Accurate {
         let Some(companion) = &coarser.companion else { return };
         let effects = from.effects != to.effects;
         let causes = companion.causes.iter().filter_map(|(pointer, errors)| {
-            let cause = Cause::at(pointer)?;
+            let cause = ErrorCause::at(pointer)?;
             let left = cause.left(from, to);
             let mut errors = errors.clone();
             let values = errors.values_mut().flat_map(BTreeMap::values_mut);
             values.for_each(|error| *error *= left);
-            (!(effects && Cause::is_effect(pointer))).then_some((cause, errors))
+            (!(effects && ErrorCause::is_effect(pointer))).then_some((cause, errors))
         });
         self.expected = causes.collect();
     }

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, Effects};
-use crate::discrete::{Mesh, System, resolution};
+use crate::discrete::{BeamMesh, System, resolution};
 use crate::error::Result;
 use crate::run::summary::{CompanionRun, Summary};
 use crate::study::accuracy::plan::unrecorded;
@@ -30,7 +30,7 @@ pub struct Variant {
 
 /// A setting of a case that makes an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Cause {
+pub enum ErrorCause {
     /// `/mesh/cells_per_segment`.
     BeamMesh,
     /// `/mesh/cells_per_bladder`.
@@ -43,7 +43,7 @@ pub enum Cause {
     Effect(Effect),
 }
 
-impl Cause {
+impl ErrorCause {
     /// True if the cause at a pointer is an effect that is left out, or all of them.
     pub fn is_effect(pointer: &str) -> bool {
         pointer.starts_with(&Self::Effects.pointer())
@@ -158,37 +158,37 @@ impl Variant {
     pub fn with_change(
         case: &Case,
         [beam, fluid]: [usize; 2],
-        cause: Cause,
+        cause: ErrorCause,
         tighter: f64,
     ) -> Result<Option<(Self, f64)>> {
         let mut other = unrecorded(case);
         let mut added = vec![];
         let factor = match cause {
-            Cause::BeamMesh => {
+            ErrorCause::BeamMesh => {
                 other.mesh.cells_per_segment = beam;
                 // some quantities of a mesh of fourth order are of second
                 let order = if case.mesh.order() == 4 { 3 } else { 2 };
                 share(case.mesh.cells_per_segment, beam, order)
             }
-            Cause::FluidMesh => {
+            ErrorCause::FluidMesh => {
                 if !has_cells_along_bladders(case)? {
                     return Ok(None);
                 }
                 other.mesh.cells_per_bladder = fluid;
                 share(case.mesh.cells_per_bladder, fluid, 1)
             }
-            Cause::TimeSteps => {
+            ErrorCause::TimeSteps => {
                 other.solver.rtol = (case.solver.rtol / tighter).max(TOLERANCES[0]);
                 1.0
             }
-            Cause::Effects => {
+            ErrorCause::Effects => {
                 let Some(full) = full(case)? else {
                     return Ok(None);
                 };
                 (other, added) = (unrecorded(&full.case), full.left_out);
                 1.0
             }
-            Cause::Effect(effect) => {
+            ErrorCause::Effect(effect) => {
                 let mut choices = case.effects.choices();
                 choices.set(effect, Choice::On);
                 other = with(&other, Effects::Chosen(choices));
@@ -234,7 +234,7 @@ fn other_cells(case: &Case) -> usize {
     } else {
         cells.div_ceil(2)
     };
-    let possible = fewer < cells && fewer * case.segments() >= Mesh::fewest(case.mesh.order());
+    let possible = fewer < cells && fewer * case.segments() >= BeamMesh::fewest(case.mesh.order());
     if possible { fewer } else { 2 * cells }
 }
 

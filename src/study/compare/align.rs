@@ -2,23 +2,23 @@
 
 use super::interpolate::{cubic, hermite, interval, monotone};
 use super::recording::{Array, Recording};
-use crate::discrete::quantities::{Axis, Field};
+use crate::discrete::quantities::{BeamField, FieldAxis};
 
 /// Name of the field that contains the time derivatives of another.
 pub fn slopes_of(name: &str) -> Option<&'static str> {
-    Some(Field::named(name)?.rate()?.name())
+    Some(BeamField::named(name)?.rate()?.name())
 }
 
 /// Coordinate of a field.
-pub fn axis_of(name: &str) -> Axis {
-    Field::named(name).map_or(Axis::Nodes, Field::axis)
+pub fn axis_of(name: &str) -> FieldAxis {
+    BeamField::named(name).map_or(FieldAxis::Nodes, BeamField::axis)
 }
 
 /// Positions of a field. Positions along the beam are relative to its length, so that beams of different length can be
 /// compared. Positions along the network are divided into pieces, one per connected array, across which nothing is
 /// interpolated.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places {
+pub struct FieldPositions {
     /// Positions.
     pub x: Vec<f64>,
     /// Pieces, as ranges of positions.
@@ -27,15 +27,15 @@ pub struct Places {
     pub rough: bool,
 }
 
-impl Places {
+impl FieldPositions {
     /// Returns the positions of a field in a recording; `None` if its coordinate is missing.
     pub fn of(recording: &Recording, field: &Array) -> Option<Self> {
         let axis = axis_of(&field.name);
         let raw = recording.axis(axis.name()).filter(|x| x.len() == field.len)?;
-        let rough = axis == Axis::Network;
+        let rough = axis == FieldAxis::Network;
         let length = if rough { 1.0 } else { recording.length() };
         let x: Vec<f64> = raw.iter().map(|x| x / length).collect();
-        let number = recording.axis(Axis::Array.name()).filter(|_| rough);
+        let number = recording.axis(FieldAxis::Array.name()).filter(|_| rough);
         let mut pieces = vec![];
         let mut begin = 0;
         for k in 1..=x.len() {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::align::{self, Places};
+use super::align::{self, FieldPositions};
 use super::changes::{self, Change};
 use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
@@ -295,7 +295,7 @@ fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Re
     if times.is_empty() {
         return Err("no common times");
     }
-    let places = |r, f| Places::of(r, f).ok_or("its coordinate is missing");
+    let places = |r, f| FieldPositions::of(r, f).ok_or("its coordinate is missing");
     let (at_a, at_b) = (places(a, of_a)?, places(b, of_b)?);
     if !at_a.alike(&at_b) {
         return Err("the networks differ");

@@ -8,7 +8,7 @@ use super::recording::Recording;
 
 /// Several results compared with one of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Beside {
+pub struct ManyComparison {
     /// Folder of the reference.
     pub reference: String,
     /// Comparisons of the reference, always the first, with each of the others, in the order in which these were named.
@@ -17,7 +17,7 @@ pub struct Beside {
 
 /// Figure of all results.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct ComparedFigure {
     /// `tip_u1_m.max_abs`.
     pub name: String,
     /// Value in the reference.
@@ -27,7 +27,7 @@ pub struct Figure {
     pub others: Vec<Option<(f64, Option<f64>)>>,
 }
 
-impl Beside {
+impl ManyComparison {
     /// Compares all other recordings with the reference, given by its index.
     pub fn of(all: &[Recording], reference: usize) -> Self {
         let others = all.iter().enumerate().filter(|(k, _)| *k != reference);
@@ -55,12 +55,12 @@ impl Beside {
     }
 
     /// Figures that the reference shares with at least one of the others.
-    pub fn figures(&self) -> Vec<Figure> {
-        let mut all: Vec<Figure> = vec![];
+    pub fn figures(&self) -> Vec<ComparedFigure> {
+        let mut all: Vec<ComparedFigure> = vec![];
         for (k, one) in self.comparisons.iter().enumerate() {
             for figure in &one.figures {
                 let at = all.iter().position(|own| own.name == figure.name).unwrap_or_else(|| {
-                    all.push(Figure {
+                    all.push(ComparedFigure {
                         name: figure.name.clone(),
                         reference: figure.a,
                         others: vec![None; self.comparisons.len()],

@@ -22,5 +22,5 @@ pub mod many;
 pub mod recording;
 
 pub use difference::{Comparison, compare};
-pub use many::Beside;
+pub use many::ManyComparison;
 pub use recording::{Array, Recording, Series};

@@ -38,7 +38,7 @@ impl Array {
 
 /// Properties of the case that a comparison needs. A case of another version may not be readable as a whole.
 #[derive(Clone, Debug, Deserialize)]
-pub struct Known {
+pub struct ComparedCase {
     beam: Long,
     bladders: Option<Long>,
     time: Times,
@@ -65,7 +65,7 @@ pub struct Recording {
     /// `case.json`.
     pub case: Value,
     /// Properties read from the case.
-    pub known: Known,
+    pub known: ComparedCase,
     /// `summary.json`.
     pub summary: Summary,
     /// Times of the history [s].

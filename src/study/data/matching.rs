@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::places;
-use super::table::Table;
+use super::table::DataTable;
 use crate::case::nearest;
 use crate::case::schema::Case;
 use crate::case::units::suffixed;
@@ -103,7 +103,7 @@ pub type Named = (String, String);
 /// # Errors
 /// [`Error::Usage`] for unknown columns and quantities, units that do not match, two matches of one column, a column
 /// without numbers; [`Error::Case`] for cells that are not numbers.
-pub fn resolve(table: &Table, matches: &[Match], names: &[String], columns: &[Named]) -> Result<Vec<Matched>> {
+pub fn resolve(table: &DataTable, matches: &[Match], names: &[String], columns: &[Named]) -> Result<Vec<Matched>> {
     if matches.is_empty() {
         let what = "nothing to compare. Use --match COLUMN=QUANTITY[@PLACE], such as angle_deg=tip_angle";
         return Err(Error::Usage(what.into()));

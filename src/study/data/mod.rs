@@ -11,4 +11,4 @@ pub mod places;
 pub mod table;
 
 pub use matching::{Match, Matched};
-pub use table::Table;
+pub use table::DataTable;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::case::heading::Heading;
-use crate::case::{self, Source, nearest};
+use crate::case::{self, CaseSource, nearest};
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result, Violation, listed, shown};
 use crate::study::measure::table::{MOST, cells, fault, lines};
@@ -26,8 +26,8 @@ struct Row {
 
 /// Table of measurements, as read.
 #[derive(Clone, Debug)]
-pub struct Table {
-    source: Source,
+pub struct DataTable {
+    source: CaseSource,
     /// Check sum of the text.
     pub crc32: u32,
     /// Headings of the columns.
@@ -35,7 +35,7 @@ pub struct Table {
     rows: Vec<Row>,
 }
 
-impl Table {
+impl DataTable {
     /// Reads a file.
     ///
     /// # Errors
@@ -50,7 +50,7 @@ impl Table {
     /// [`Error::Case`] with the position of every fault: no headings, duplicate headings, no rows, rows of another
     /// length.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let source = Source::of(path, text);
+        let source = CaseSource::of(path, text);
         let mut lines = lines(text);
         let Some(header) = lines.next() else {
             let what = "no headings. The first line must name the columns, such as t_s, angle_deg";
@@ -283,13 +283,13 @@ impl Table {
 
 #[cfg(test)]
 mod tests {
-    use super::Table;
+    use super::DataTable;
 
-    fn read(text: &str) -> crate::error::Result<Table> {
-        Table::parse("data.csv".as_ref(), text)
+    fn read(text: &str) -> crate::error::Result<DataTable> {
+        DataTable::parse("data.csv".as_ref(), text)
     }
 
-    fn faults(text: &str, then: impl Fn(&Table) -> crate::error::Result<()>) -> String {
+    fn faults(text: &str, then: impl Fn(&DataTable) -> crate::error::Result<()>) -> String {
         match read(text).and_then(|table| then(&table)) {
             Err(crate::error::Error::Case(fault)) => fault.violations.iter().map(|v| v.what.clone() + ";").collect(),
             Err(error) => error.to_string(),
@@ -318,8 +318,8 @@ mod tests {
 
     #[test]
     fn faults_name_line_and_column() {
-        let none = |_: &Table| Ok(());
-        let times = |table: &Table| table.instants(0).map(|_| ());
+        let none = |_: &DataTable| Ok(());
+        let times = |table: &DataTable| table.instants(0).map(|_| ());
         for (text, what) in [
             ("", "no headings"),
             ("t_s,a\n", "no rows"),

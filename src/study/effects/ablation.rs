@@ -3,10 +3,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Changes, Judged, Measure, Reference, Size, judge, largest};
+use super::change::{Changes, Judged, ModelMeasure, Reference, Size, judge, largest};
 use super::choices::{Out, candidates, effects, guards, whole, with, without};
 use super::recommend::{Recommendation, recommend};
-use super::trial::{Plan, Runs, Trial, Watch};
+use super::trial::{ModelTrial, Runs, TrialPlan, TrialWatch};
 use crate::case::Case;
 use crate::case::schema::{Effect, Effects};
 use crate::error::{Error, Result};
@@ -27,7 +27,7 @@ pub const LARGEST: &str = "largest";
 /// Verdict on an effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum EffectVerdict {
     /// Without it, results change by more than the tolerance.
     Needed,
     /// Without it, results change by less than the tolerance, and nothing is saved.
@@ -46,9 +46,9 @@ pub enum Verdict {
 
 /// Run compared with another run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Compared {
+pub struct ComparedRun {
     /// The run.
-    pub trial: Trial,
+    pub trial: ModelTrial,
     /// Model with which it is compared.
     pub against: String,
     /// Relative change by quantity.
@@ -71,11 +71,11 @@ pub struct Compared {
 
 /// Row of the table: one effect.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Row {
+pub struct AblationRow {
     /// The effect.
     pub name: Effect,
     /// Verdict.
-    pub verdict: Verdict,
+    pub verdict: EffectVerdict,
     /// Reason why it was not run, or did not finish.
     pub reason: Option<String>,
     /// True if `"auto"` keeps it.
@@ -87,7 +87,7 @@ pub struct Row {
     /// Effects that have no meaning without it.
     pub takes: Vec<Effect>,
     /// Comparison of the model without it.
-    pub left_out: Option<Compared>,
+    pub left_out: Option<ComparedRun>,
 }
 
 /// Result of an ablation: the influence of each effect on a case.
@@ -96,7 +96,7 @@ pub struct Ablation {
     /// Name of the case.
     pub case: String,
     /// Requested repeats and budget.
-    pub plan: Plan,
+    pub plan: TrialPlan,
     /// The case's `effects_tolerance`.
     pub tolerance: f64,
     /// Relative tolerance of the integrator.
@@ -104,17 +104,17 @@ pub struct Ablation {
     /// Figures that are compared: only those over the window if the motion cannot be followed.
     pub judged_by: Judged,
     /// Quantities of the full model.
-    pub measures: Vec<Measure>,
+    pub measures: Vec<ModelMeasure>,
     /// The full model.
-    pub full: Trial,
+    pub full: ModelTrial,
     /// The full model at a tenth of the tolerance.
-    pub tighter: Trial,
+    pub tighter: ModelTrial,
     /// Rows of the table, one per effect.
-    pub rows: Vec<Row>,
+    pub rows: Vec<AblationRow>,
     /// The automatic choice.
-    pub auto: Option<Compared>,
+    pub auto: Option<ComparedRun>,
     /// The choices that the case sets by name, if any.
-    pub given: Option<Compared>,
+    pub given: Option<ComparedRun>,
     /// Recommended choices.
     pub recommendation: Option<Recommendation>,
     /// Wall time of everything [s].
@@ -124,21 +124,21 @@ pub struct Ablation {
 /// Criteria of comparisons, from the full model.
 pub struct Judge {
     reference: Reference,
-    measures: Vec<Measure>,
+    measures: Vec<ModelMeasure>,
     tolerance: f64,
     timed: bool,
 }
 
 impl Judge {
     /// Compares the run `other` with the run `base`; `None` if only the latter did not finish.
-    pub fn compare(&self, runs: &Runs, base: usize, other: usize) -> Option<Compared> {
+    pub fn compare(&self, runs: &Runs, base: usize, other: usize) -> Option<ComparedRun> {
         let (base, trial) = (runs.trial(base), runs.trial(other));
         let changes = match &trial.summary {
             Some(summary) => self.reference.changes(base.summary.as_ref()?, summary),
             None => Changes::new(),
         };
         let most = largest(&changes, &self.measures, self.tolerance).filter(|_| trial.summary.is_some());
-        Some(Compared {
+        Some(ComparedRun {
             trial: trial.clone(),
             against: base.what.clone(),
             changes,
@@ -151,13 +151,13 @@ impl Judge {
     }
 
     /// Verdict of a comparison; `scatter` is the relative scatter of the wall times of `base`.
-    pub fn verdict(&self, compared: &Compared, scatter: f64) -> Verdict {
+    pub fn verdict(&self, compared: &ComparedRun, scatter: f64) -> EffectVerdict {
         if compared.trial.summary.is_none() {
-            return Verdict::Failed;
+            return EffectVerdict::Failed;
         }
         match judge(&compared.changes, &self.measures, self.tolerance) {
-            Size::Large => Verdict::Needed,
-            Size::Hidden => Verdict::Undecided,
+            Size::Large => EffectVerdict::Needed,
+            Size::Hidden => EffectVerdict::Undecided,
             Size::Small => {
                 let timed = self.timed && compared.trial.repeats > 1;
                 let clear = WORTH + scatter.max(compared.trial.scatter());
@@ -166,9 +166,9 @@ impl Judge {
                     timed && compared.wall > 1.0 + clear,
                 );
                 if faster || compared.work < 1.0 - WORTH && !slower {
-                    Verdict::Saves
+                    EffectVerdict::Saves
                 } else {
-                    Verdict::Harmless
+                    EffectVerdict::Harmless
                 }
             }
         }
@@ -182,10 +182,10 @@ impl Judge {
 /// [`Error::Usage`] for a measure that the full model lacks.
 pub fn ablate(
     case: &Case,
-    plan: Plan,
+    plan: TrialPlan,
     measure: Option<&str>,
     evaluations: &Evaluations,
-    watch: Watch,
+    watch: TrialWatch,
 ) -> Result<Ablation> {
     let auto_case = with(case, Effects::Auto);
     let decided = effects(&auto_case)?;
@@ -196,8 +196,8 @@ pub fn ablate(
         rtol: case.solver.rtol,
         judged_by: Judged::Figures,
         measures: vec![],
-        full: Trial::skipped("full"),
-        tighter: Trial::skipped("full, a tenth of the tolerance"),
+        full: ModelTrial::skipped("full"),
+        tighter: ModelTrial::skipped("full, a tenth of the tolerance"),
         rows: vec![],
         auto: None,
         given: None,
@@ -209,9 +209,9 @@ pub fn ablate(
     let full_case = whole(case)?;
     let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();
-    let row = |name: Effect, out: &Out| Row {
+    let row = |name: Effect, out: &Out| AblationRow {
         name,
-        verdict: Verdict::Failed,
+        verdict: EffectVerdict::Failed,
         reason: None,
         auto: decided.has(name),
         number: decided.decision(name).cause.to_string(),
@@ -265,8 +265,8 @@ pub fn ablate(
                     .clone()
                     .or_else(|| runs.trial(base).reason.clone());
                 let verdict = left_out.as_ref().map(|c| judge.verdict(c, runs.trial(base).scatter()));
-                Row {
-                    verdict: verdict.unwrap_or(Verdict::Failed),
+                AblationRow {
+                    verdict: verdict.unwrap_or(EffectVerdict::Failed),
                     reason: failed,
                     left_out,
                     ..row(candidate.effect, out)
@@ -275,8 +275,12 @@ pub fn ablate(
             (out, _) => {
                 let kept = out.as_ref().err();
                 let there = kept.is_some_and(|k| k.there);
-                Row {
-                    verdict: if there { Verdict::Kept } else { Verdict::Absent },
+                AblationRow {
+                    verdict: if there {
+                        EffectVerdict::Kept
+                    } else {
+                        EffectVerdict::Absent
+                    },
                     reason: kept.map(|k| k.why.clone()),
                     ..row(candidate.effect, &Out::default())
                 }
@@ -292,7 +296,7 @@ pub fn ablate(
 }
 
 /// Rejects an unknown measure.
-fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
+fn known(measure: Option<&str>, measures: &[ModelMeasure]) -> Result<()> {
     let Some(name) = measure else { return Ok(()) };
     let names: Vec<&str> = [LARGEST]
         .into_iter()
@@ -309,7 +313,7 @@ fn known(measure: Option<&str>, measures: &[Measure]) -> Result<()> {
 
 /// Returns the criteria of comparisons: every figure, or only those over the window if the integrator cannot follow the
 /// motion.
-fn judged(found: &mut Ablation, plan: Plan, floors: &Floors) -> Option<Judge> {
+fn judged(found: &mut Ablation, plan: TrialPlan, floors: &Floors) -> Option<Judge> {
     let full = found.full.summary.as_ref()?;
     let mut reference = Reference::new(full, floors);
     let own = |reference: &Reference| Some(reference.changes(full, found.tighter.summary.as_ref()?));

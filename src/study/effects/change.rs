@@ -24,7 +24,7 @@ pub type Changes = BTreeMap<String, f64>;
 
 /// A quantity of the full model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measure {
+pub struct ModelMeasure {
     /// Its name, unit included.
     pub name: String,
     /// Its largest figure, in its unit.
@@ -72,8 +72,8 @@ impl Reference {
     }
 
     /// Returns the quantities with the integrator's own error.
-    pub fn measures(&self, own: Option<&Changes>) -> Vec<Measure> {
-        let measure = |(name, q): (&String, &Quantity)| Measure {
+    pub fn measures(&self, own: Option<&Changes>) -> Vec<ModelMeasure> {
+        let measure = |(name, q): (&String, &Quantity)| ModelMeasure {
             name: name.clone(),
             size: q.size(),
             own: own.and_then(|own| own.get(name)).copied(),
@@ -94,7 +94,7 @@ pub enum Size {
 }
 
 /// Compares changes with a tolerance.
-pub fn judge(changes: &Changes, measures: &[Measure], tolerance: f64) -> Size {
+pub fn judge(changes: &Changes, measures: &[ModelMeasure], tolerance: f64) -> Size {
     let beyond: Vec<_> = measures.iter().filter(|m| of(changes, m) > tolerance).collect();
     if beyond.iter().any(|m| of(changes, m) > m.own.unwrap_or(0.0)) {
         Size::Large
@@ -107,16 +107,16 @@ pub fn judge(changes: &Changes, measures: &[Measure], tolerance: f64) -> Size {
 
 /// Returns the quantity with the largest change. Changes above the integrator's own error have priority, unless that
 /// error hides whether the tolerance is met.
-pub fn largest<'a>(changes: &Changes, measures: &'a [Measure], tolerance: f64) -> Option<(&'a Measure, f64)> {
+pub fn largest<'a>(changes: &Changes, measures: &'a [ModelMeasure], tolerance: f64) -> Option<(&'a ModelMeasure, f64)> {
     let hidden = judge(changes, measures, tolerance) == Size::Hidden;
-    let above = |m: &&Measure| !hidden && of(changes, m) > m.own.unwrap_or(0.0);
-    let most = |all: &mut dyn Iterator<Item = &'a Measure>| {
+    let above = |m: &&ModelMeasure| !hidden && of(changes, m) > m.own.unwrap_or(0.0);
+    let most = |all: &mut dyn Iterator<Item = &'a ModelMeasure>| {
         all.max_by(|a, b| of(changes, a).total_cmp(&of(changes, b)))
             .map(|m| (m, of(changes, m)))
     };
     most(&mut measures.iter().filter(above)).or_else(|| most(&mut measures.iter()))
 }
 
-fn of(changes: &Changes, measure: &Measure) -> f64 {
+fn of(changes: &Changes, measure: &ModelMeasure) -> f64 {
     changes.get(&measure.name).copied().unwrap_or(1.0)
 }

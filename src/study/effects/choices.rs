@@ -3,16 +3,16 @@
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
 use crate::error;
-use crate::model::effects::{Cause, EffectSet, Scene, needs};
-use crate::model::{Model, Network};
+use crate::model::effects::{DecisionCause, EffectScene, EffectSet, needs};
+use crate::model::{Model, ResolvedNetwork};
 
 /// Effect, and the way to leave it out.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
+pub struct EffectCandidate {
     /// The effect.
     pub effect: Effect,
     /// Way to leave it out, or the reason to keep it.
-    pub out: Result<Out, Kept>,
+    pub out: Result<Out, KeepReason>,
 }
 
 /// Way to leave an effect out.
@@ -26,7 +26,7 @@ pub struct Out {
 
 /// Reason to keep an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Kept {
+pub struct KeepReason {
     /// True if it is in the full model.
     pub there: bool,
     /// Reason, one clause.
@@ -55,7 +55,7 @@ pub fn whole(case: &Case) -> error::Result<Case> {
 /// Those of [`Network::of`].
 pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let named = case.effects.choices();
-    let full = EffectSet::whole(&with(case, Effects::Full), Network::of(case)?.as_ref());
+    let full = EffectSet::whole(&with(case, Effects::Full), ResolvedNetwork::of(case)?.as_ref());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
         // effects that need an omitted effect are omitted, too
@@ -80,8 +80,11 @@ pub fn effects(case: &Case) -> error::Result<EffectSet> {
 pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
     let full = whole(case)?;
     let model = Model::new(&full)?;
-    let why = Scene::new(&full, &model.section, model.wet.as_ref()).unstable();
-    let guarded = auto.decisions.iter().filter(|d| matches!(d.cause, Cause::Unstable(_)));
+    let why = EffectScene::new(&full, &model.section, model.wet.as_ref()).unstable();
+    let guarded = auto
+        .decisions
+        .iter()
+        .filter(|d| matches!(d.cause, DecisionCause::Unstable(_)));
     Ok(why.map(|why| Guard {
         effects: guarded.map(|d| d.effect).collect(),
         why,
@@ -98,11 +101,11 @@ pub struct Guard {
 }
 
 /// Returns all effects with the way to leave each out.
-pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
+pub fn candidates(case: &Case) -> error::Result<Vec<EffectCandidate>> {
     let (full, plain) = (effects(&whole(case)?)?, effects(&with(case, Effects::Full))?);
-    let candidate = |effect: Effect| -> error::Result<Candidate> {
+    let candidate = |effect: Effect| -> error::Result<EffectCandidate> {
         let there = full.has(effect);
-        let kept = |why: String| Err(Kept { there, why });
+        let kept = |why: String| Err(KeepReason { there, why });
         let out = if !there {
             kept(plain.decision(effect).cause.to_string())
         } else if !Effect::CHOSEN.contains(&effect) {
@@ -110,7 +113,7 @@ pub fn candidates(case: &Case) -> error::Result<Vec<Candidate>> {
         } else {
             leave_out(case, effect, &full)?.or_else(kept)
         };
-        Ok(Candidate { effect, out })
+        Ok(EffectCandidate { effect, out })
     };
     Effect::ALL.iter().copied().map(candidate).collect()
 }
@@ -138,7 +141,7 @@ fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Res
         }
     }
     let refused = alone.decisions.iter().filter_map(|d| match &d.cause {
-        Cause::Refused(obstacle) => Some(obstacle.what.clone()),
+        DecisionCause::Refused(obstacle) => Some(obstacle.what.clone()),
         _ => None,
     });
     Ok(Err(refused.collect::<Vec<_>>().join("; ")))

@@ -20,6 +20,6 @@ pub mod full;
 mod recommend;
 pub mod trial;
 
-pub use ablation::{Ablation, Row, Verdict, ablate};
+pub use ablation::{Ablation, AblationRow, EffectVerdict, ablate};
 pub use recommend::Recommendation;
-pub use trial::{Event, Plan};
+pub use trial::{TrialEvent, TrialPlan};

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::ablation::{Compared, Judge, Row, Verdict};
+use super::ablation::{AblationRow, ComparedRun, EffectVerdict, Judge};
 use super::choices::{Guard, effects, with, without};
 use super::trial::Runs;
 use crate::case::Case;
@@ -23,7 +23,7 @@ pub struct Recommendation {
     /// Effects that are retained after all, with the reasons.
     pub dropped: Vec<(Effect, String)>,
     /// The recommended model compared with the full one.
-    pub run: Option<Compared>,
+    pub run: Option<ComparedRun>,
 }
 
 /// Never leaves out effects that the program keeps for stability. Otherwise leaves out every effect that saves work,
@@ -31,7 +31,7 @@ pub struct Recommendation {
 /// the rest together changes nothing.
 pub fn recommend(
     case: &Case,
-    rows: &[Row],
+    rows: &[AblationRow],
     guard: Option<&Guard>,
     judge: &Judge,
     runs: &mut Runs,
@@ -39,19 +39,20 @@ pub fn recommend(
     let row = |name: Effect| rows.iter().find(|r| r.name == name);
     let guarded = |name: Effect| guard.is_some_and(|g| g.effects.contains(&name));
     let small = |name: &Effect| {
-        !guarded(*name) && row(*name).is_some_and(|r| matches!(r.verdict, Verdict::Saves | Verdict::Harmless))
+        !guarded(*name)
+            && row(*name).is_some_and(|r| matches!(r.verdict, EffectVerdict::Saves | EffectVerdict::Harmless))
     };
     let mut off: Vec<Effect> = vec![];
     for r in rows
         .iter()
-        .filter(|r| r.verdict == Verdict::Saves && r.without.iter().all(small))
+        .filter(|r| r.verdict == EffectVerdict::Saves && r.without.iter().all(small))
     {
         off.extend(r.without.iter().chain([&r.name]));
     }
     // Harmless effects follow the choice of the program.
     off.extend(
         rows.iter()
-            .filter(|r| r.verdict == Verdict::Harmless && !r.auto && r.without.is_empty())
+            .filter(|r| r.verdict == EffectVerdict::Harmless && !r.auto && r.without.is_empty())
             .map(|r| r.name),
     );
     let mut dropped = vec![];
@@ -81,7 +82,7 @@ pub fn recommend(
             runs.repeat();
             let run = judge.compare(runs, 0, number);
             let verdict = run.as_ref().map(|run| judge.verdict(run, 0.0));
-            if off.is_empty() || matches!(verdict, Some(Verdict::Saves | Verdict::Harmless)) {
+            if off.is_empty() || matches!(verdict, Some(EffectVerdict::Saves | EffectVerdict::Harmless)) {
                 return Ok(Recommendation {
                     effects: value(&effects),
                     off,

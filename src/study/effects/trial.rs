@@ -23,7 +23,7 @@ const LOOK: u64 = 64;
 
 /// Requested repeats and budget.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct TrialPlan {
     /// Timed runs of each model, after a warm-up run; without any, verdicts ignore time.
     pub repeats: usize,
     /// Budget of wall time [s].
@@ -32,7 +32,7 @@ pub struct Plan {
 
 /// Event before each run.
 #[derive(Clone, Debug)]
-pub struct Event<'a> {
+pub struct TrialEvent<'a> {
     /// Name of the model.
     pub what: &'a str,
     /// Runs so far.
@@ -44,11 +44,11 @@ pub struct Event<'a> {
 }
 
 /// Callback before each run.
-pub type Watch<'a> = &'a dyn Fn(&Event);
+pub type TrialWatch<'a> = &'a dyn Fn(&TrialEvent);
 
 /// Model, and the outcome of its runs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Trial {
+pub struct ModelTrial {
     /// Name of the model.
     pub what: String,
     /// Outcome.
@@ -71,7 +71,7 @@ pub struct Trial {
     pub summary: Option<Summary>,
 }
 
-impl Trial {
+impl ModelTrial {
     /// Returns a trial that was not started.
     pub fn skipped(what: &str) -> Self {
         Self {
@@ -101,11 +101,11 @@ impl Trial {
 
 /// All runs, each set of effects and tolerance once.
 pub struct Runs<'a> {
-    plan: Plan,
+    plan: TrialPlan,
     begin: Instant,
-    watch: Watch<'a>,
+    watch: TrialWatch<'a>,
     evaluations: Evaluations,
-    all: Vec<(Case, EffectSet, Trial)>,
+    all: Vec<(Case, EffectSet, ModelTrial)>,
     done: usize,
     /// Wall time of the runs that an interrupted command had finished [s].
     earlier_s: f64,
@@ -113,7 +113,7 @@ pub struct Runs<'a> {
 
 impl<'a> Runs<'a> {
     /// Creates an empty collection; runs stored in `evaluations` are not repeated.
-    pub fn new(plan: Plan, evaluations: &Evaluations, watch: Watch<'a>) -> Self {
+    pub fn new(plan: TrialPlan, evaluations: &Evaluations, watch: TrialWatch<'a>) -> Self {
         Self {
             plan,
             begin: Instant::now(),
@@ -126,7 +126,7 @@ impl<'a> Runs<'a> {
     }
 
     /// Returns a run by its number.
-    pub fn trial(&self, k: usize) -> &Trial {
+    pub fn trial(&self, k: usize) -> &ModelTrial {
         &self.all[k].2
     }
 
@@ -153,8 +153,8 @@ impl<'a> Runs<'a> {
         Ok(self.all.len() - 1)
     }
 
-    fn first(&mut self, what: &str, case: &Case, set: &EffectSet) -> Trial {
-        let mut trial = Trial::skipped(what);
+    fn first(&mut self, what: &str, case: &Case, set: &EffectSet) -> ModelTrial {
+        let mut trial = ModelTrial::skipped(what);
         if let Err(Error::Case(fault)) = System::new(case) {
             trial.reason = fault.violations.first().map(|refusal| refusal.what.clone());
             return trial;
@@ -245,7 +245,7 @@ impl<'a> Runs<'a> {
     }
 
     fn report(&mut self, what: &str) {
-        (self.watch)(&Event {
+        (self.watch)(&TrialEvent {
             what,
             done: self.done,
             spent_s: self.spent_s(),

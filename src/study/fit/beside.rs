@@ -7,11 +7,11 @@ use crate::case::schema::Case;
 use crate::error::{Error, Result};
 use crate::study::compare::Recording;
 use crate::study::compare::interpolate::cubic;
-use crate::study::data::{Match, Matched, Table, matching, places};
+use crate::study::data::{DataTable, Match, Matched, matching, places};
 
 /// Run compared with data.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Beside {
+pub struct DataComparison {
     /// Name of the case.
     pub case: String,
     /// Folder of the run.
@@ -21,12 +21,12 @@ pub struct Beside {
     /// Checksum of the data file.
     pub data_crc32: u32,
     /// Columns of the data.
-    pub columns: Vec<Column>,
+    pub columns: Vec<ComparedColumn>,
 }
 
 /// Column of the data compared with a quantity of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct ComparedColumn {
     /// Requested assignment.
     pub matched: Match,
     /// Name of the quantity, without unit.
@@ -53,11 +53,11 @@ pub struct Column {
 pub fn compare(
     run: &Recording,
     case: Option<&Case>,
-    table: &Table,
+    table: &DataTable,
     data: &str,
     matches: &[Match],
     time: Option<&str>,
-) -> Result<Beside> {
+) -> Result<DataComparison> {
     let names = matches
         .iter()
         .map(|one| placed(one, case))
@@ -80,7 +80,7 @@ pub fn compare(
         table.fault(row, column, &what)
     });
     table.sound(faults.collect())?;
-    Ok(Beside {
+    Ok(DataComparison {
         case: run.summary.case.clone(),
         run: run.label.clone(),
         data: data.into(),
@@ -107,7 +107,7 @@ fn placed(one: &Match, case: Option<&Case>) -> Result<String> {
     }
 }
 
-fn beside(run: &Recording, one: &Matched, instants: &[f64]) -> Column {
+fn beside(run: &Recording, one: &Matched, instants: &[f64]) -> ComparedColumn {
     let series = &run.columns[one.index];
     let measured = instants
         .iter()
@@ -118,7 +118,7 @@ fn beside(run: &Recording, one: &Matched, instants: &[f64]) -> Column {
     let computed: Vec<f64> = computed.collect();
     let far = |k: &usize| (computed[*k] - measured[*k]).abs();
     let most = (0..times_s.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
-    Column {
+    ComparedColumn {
         matched: one.asked.clone(),
         quantity: one.name.clone(),
         unit: one.unit.clone(),

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::problem::{Drive, Through};
+use super::problem::{DrivenNumber, FitAnalysis};
 use super::robust::Loss;
 use crate::run::null;
 use crate::study::data::Match;
@@ -18,23 +18,23 @@ pub struct Fit {
     /// Checksum of the data file.
     pub data_crc32: u32,
     /// Analysis of the case: a run or equilibria.
-    pub command: Through,
+    pub command: FitAnalysis,
     /// Numbers of the case that each row of the data sets.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub drives: Vec<Drive>,
+    pub drives: Vec<DrivenNumber>,
     /// True if the search ended at a minimum, as far as the data determine it.
     pub found: bool,
     /// True if the search was stopped early: estimates are the best so far.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub interrupted: bool,
     /// Estimates.
-    pub parameters: Vec<Estimate>,
+    pub parameters: Vec<FittedNumber>,
     /// Covariance of the estimates, in their units; `None` for a number that is held at a bound or not determined.
     pub covariance: Vec<Vec<Option<f64>>>,
     /// Correlation of the estimates; `None` as in `covariance`.
     pub correlation: Vec<Vec<Option<f64>>>,
     /// Columns of the data.
-    pub columns: Vec<Column>,
+    pub columns: Vec<FittedColumn>,
     /// Headings of the columns that the fit does not use.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_alone: Vec<String>,
@@ -51,9 +51,9 @@ pub struct Fit {
     /// Warnings.
     pub warnings: Vec<String>,
     /// Error of the simulator.
-    pub simulator: Simulator,
+    pub simulator: SimulatorError,
     /// Searches from all starts.
-    pub starts: Vec<Start>,
+    pub starts: Vec<FitStart>,
     /// Total number of steps of all searches.
     pub steps: usize,
     /// Number of simulations of all data.
@@ -64,7 +64,7 @@ pub struct Fit {
 
 /// Estimate of a number of the case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Estimate {
+pub struct FittedNumber {
     /// JSON pointer into the case.
     pub pointer: String,
     /// Lower bound, in the unit that the key names.
@@ -90,7 +90,7 @@ pub struct Estimate {
 
 /// Column of the data compared with its quantity.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct FittedColumn {
     /// Requested assignment.
     pub matched: Match,
     /// Name of the quantity with its unit.
@@ -157,7 +157,7 @@ impl Left {
 
 /// Error of the simulator in the estimates.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Simulator {
+pub struct SimulatorError {
     /// Mesh and tolerance of the additional, finer simulation at the estimates.
     pub finer: String,
     /// Reason why that simulation failed, if it did.
@@ -166,7 +166,7 @@ pub struct Simulator {
 
 /// Search from one start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Start {
+pub struct FitStart {
     /// Start.
     pub from: Vec<f64>,
     /// End; `None` if the case could not be simulated.

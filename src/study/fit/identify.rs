@@ -12,12 +12,12 @@
 
 use nalgebra::DMatrix;
 
-use crate::study::span::Span;
+use crate::study::span::ParameterBounds;
 
 /// Estimates with bounds, derivatives and noise.
-pub struct Seen<'a> {
+pub struct IdentificationInput<'a> {
     /// Numbers and bounds.
-    pub spans: &'a [Span],
+    pub spans: &'a [ParameterBounds],
     /// Their estimates.
     pub values: &'a [f64],
     /// Derivatives of the values over their standard deviations, with respect to positions between the bounds.
@@ -45,7 +45,7 @@ const WIDE: f64 = 0.5;
 const PART: f64 = 0.1;
 
 /// Returns all directions that the data do not determine.
-pub fn unseen(seen: &Seen) -> Vec<Unseen> {
+pub fn unseen(seen: &IdentificationInput) -> Vec<Unseen> {
     let lengths: Vec<f64> = seen.jacobian.column_iter().map(|column| column.norm()).collect();
     let longest = lengths.iter().copied().fold(0.0, f64::max);
     let mut all = vec![];
@@ -141,13 +141,13 @@ mod tests {
     use super::*;
 
     fn words(rows: &[[f64; 2]], spread: f64) -> Vec<String> {
-        let spans = ["/a", "/b"].map(|pointer| Span {
+        let spans = ["/a", "/b"].map(|pointer| ParameterBounds {
             pointer: pointer.into(),
             low: 1.0,
             high: 3.0,
         });
         let jacobian = DMatrix::from_fn(rows.len(), 2, |i, k| rows[i][k]);
-        let seen = Seen {
+        let seen = IdentificationInput {
             spans: &spans,
             values: &[2.0, 2.0],
             jacobian: &jacobian,

@@ -27,15 +27,15 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::case::Case;
 use crate::error::{Code, Result};
-use crate::numerics::levenberg::{self, Ended, Evaluation};
-use crate::study::analysis::{self, Ask};
-use crate::study::data::Table;
-use crate::study::span::Span;
-use found::{Bound, Column, Estimate, Fit, Left, Simulator};
-use identify::{Seen, unseen};
-use problem::{Asked, Drive, Problem, Through};
-use search::{Reached, Search};
-use statistics::Basis;
+use crate::numerics::levenberg::{self, LevenbergStatus, ResidualEvaluation};
+use crate::study::analysis::{self, AnalysisRequest};
+use crate::study::data::DataTable;
+use crate::study::span::ParameterBounds;
+use found::{Bound, Fit, FittedColumn, FittedNumber, Left, SimulatorError};
+use identify::{IdentificationInput, unseen};
+use problem::{DrivenNumber, FitAnalysis, FitProblem, FitRequest};
+use search::{FitOutcome, FitSearch};
+use statistics::CovarianceInput;
 
 /// Relative error of the derivatives of equilibria.
 const EXACT: f64 = 1e-8;
@@ -61,7 +61,7 @@ pub struct Fitted {
 
 /// Headings of the columns that the fit does not use: neither matched, nor time, nor set by rows, nor noise of a
 /// matched column.
-pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
+pub fn left_alone(table: &DataTable, asked: &FitRequest) -> Vec<String> {
     let matched = asked.matches.iter().filter_map(|one| table.find(&one.column));
     let noise = matched.clone().filter_map(|k| table.deviation(k));
     let driven = asked.drives.iter().filter_map(|drive| table.find(&drive.column));
@@ -83,14 +83,14 @@ pub fn left_alone(table: &Table, asked: &Asked) -> Vec<String> {
 /// # Errors
 /// The case cannot be simulated at any start.
 pub fn fit(
-    problem: &Problem,
-    asked: &Asked,
+    problem: &FitProblem,
+    asked: &FitRequest,
     data: (&str, u32),
     stop: &(dyn Fn() -> bool + Sync),
     report: &(dyn Fn(usize, f64) + Sync),
 ) -> Result<Fitted> {
     let begin = Instant::now();
-    let search = Search::new(problem, asked, stop, report);
+    let search = FitSearch::new(problem, asked, stop, report);
     let reached = search.go()?;
     let interrupted = stop();
     let (values, count) = (&reached.values, problem.observations.len());
@@ -106,17 +106,17 @@ pub fn fit(
         (false, _) => asked.loss.variance(residuals.as_slice(), free.len()),
     };
     let exact = match problem.through() {
-        Through::Run => CARRIED * problem.case.solver.rtol,
-        Through::Equilibrium => EXACT,
+        FitAnalysis::Run => CARRIED * problem.case.solver.rtol,
+        FitAnalysis::Equilibrium => EXACT,
     };
-    let blind = unseen(&Seen {
+    let blind = unseen(&IdentificationInput {
         spans: &problem.spans,
         values,
         jacobian: &jacobian,
         spread: variance.sqrt(),
         exact,
     });
-    let basis = Basis {
+    let basis = CovarianceInput {
         spans: &problem.spans,
         values,
         free: &free,
@@ -128,8 +128,8 @@ pub fn fit(
     let errors = basis.errors();
     let (finer, moved) = finer(problem, &reached, asked.jobs, &free, stop);
     let estimate = |k: usize| {
-        let span: &Span = &problem.spans[k];
-        Estimate {
+        let span: &ParameterBounds = &problem.spans[k];
+        FittedNumber {
             pointer: span.pointer.clone(),
             low: span.low,
             high: span.high,
@@ -142,7 +142,7 @@ pub fn fit(
             finer_change: moved.as_ref().map(|moved| moved[k]),
         }
     };
-    let parameters: Vec<Estimate> = (0..values.len()).map(estimate).collect();
+    let parameters: Vec<FittedNumber> = (0..values.len()).map(estimate).collect();
     let columns = columns(problem, &reached);
     let mut fit = Fit {
         case: problem.case.name.clone(),
@@ -151,9 +151,12 @@ pub fn fit(
         command: problem.through(),
         drives: match &problem.abscissa {
             problem::Abscissa::Time(_) => vec![],
-            problem::Abscissa::Drives(drives) => drives.iter().map(|(drive, _): &(Drive, _)| drive.clone()).collect(),
+            problem::Abscissa::Drives(drives) => drives
+                .iter()
+                .map(|(drive, _): &(DrivenNumber, _)| drive.clone())
+                .collect(),
         },
-        found: reached.minimum.ended != Ended::Unfinished && !interrupted,
+        found: reached.minimum.ended != LevenbergStatus::Unfinished && !interrupted,
         interrupted,
         parameters,
         covariance: errors.covariance,
@@ -201,11 +204,11 @@ fn bound(place: f64, free: bool) -> Option<Bound> {
 }
 
 /// Deviations of each column.
-fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
+fn columns(problem: &FitProblem, reached: &FitOutcome) -> Vec<FittedColumn> {
     let of = |(k, one): (usize, &crate::study::data::Matched)| {
         let model: Vec<f64> = problem.of(k).map(|(i, _)| reached.simulated.values[i]).collect();
         let data: Vec<f64> = problem.of(k).map(|(_, one)| one.value).collect();
-        Column {
+        FittedColumn {
             matched: one.asked.clone(),
             quantity: one.key(),
             left: Left::of(&model, &data),
@@ -219,12 +222,12 @@ fn columns(problem: &Problem, reached: &Reached) -> Vec<Column> {
 /// Change of the estimates on a finer mesh with a tenth of the tolerance: one Gauss-Newton step from the change of the
 /// simulated values.
 fn finer(
-    problem: &Problem,
-    reached: &Reached,
+    problem: &FitProblem,
+    reached: &FitOutcome,
     jobs: usize,
     free: &[usize],
     stop: &(dyn Fn() -> bool + Sync),
-) -> (Simulator, Option<Vec<f64>>) {
+) -> (SimulatorError, Option<Vec<f64>>) {
     let mut other = problem.clone();
     other.evaluations = problem.evaluations.scoped("finer");
     other.case.mesh.cells_per_segment *= 2;
@@ -233,7 +236,7 @@ fn finer(
         other.case.mesh.cells_per_bladder *= 2;
         with.push(format!("{} a bladder", other.case.mesh.cells_per_bladder));
     }
-    if problem.through() == Through::Run {
+    if problem.through() == FitAnalysis::Run {
         other.case.solver.rtol = (problem.case.solver.rtol / 10.0).max(1e-12);
         with.push(format!("rtol {:.1e}", other.case.solver.rtol));
     }
@@ -241,7 +244,7 @@ fn finer(
     match simulate::simulate(&other, &reached.values, jobs, stop) {
         Err(error) => {
             let unknown = Some(error.to_string());
-            (Simulator { finer, unknown }, None)
+            (SimulatorError { finer, unknown }, None)
         }
         Ok(there) => {
             let here = &reached.simulated.values;
@@ -253,23 +256,23 @@ fn finer(
             for (k, d) in free.iter().zip(step.iter()) {
                 moved[*k] = d * problem.spans[*k].slope(reached.values[*k]);
             }
-            (Simulator { finer, unknown: None }, Some(moved))
+            (SimulatorError { finer, unknown: None }, Some(moved))
         }
     }
 }
 
-fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
+fn warnings(fit: &Fit, ended: LevenbergStatus, known: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Fit.warning(what));
     match ended {
         _ if fit.interrupted => say("interrupted. Estimates and errors are those of the best fit so far".into()),
-        Ended::Found => {}
-        Ended::Unfinished => say(
+        LevenbergStatus::Found => {}
+        LevenbergStatus::Unfinished => say(
             "the search reached its limit of steps before it converged. Estimates are those of the last step. Use \
              them as starting values of another fit (--set)"
                 .into(),
         ),
-        Ended::Stuck => say(
+        LevenbergStatus::Stuck => say(
             "the search ended early: no step reduces the sum of squares, although its derivatives predict a \
              reduction. The numerical error exceeds the remaining reduction. Use a smaller /solver/rtol"
                 .into(),
@@ -337,11 +340,11 @@ fn warnings(fit: &Fit, ended: Ended, known: bool) -> Vec<String> {
 }
 
 /// Warnings of the plain command at the estimates.
-fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)) -> Vec<String> {
+fn of_the_model(problem: &FitProblem, case: &Case, stop: &(dyn Fn() -> bool + Sync)) -> Vec<String> {
     if stop() {
         return vec![];
     }
-    let ask = Ask {
+    let ask = AnalysisRequest {
         what: problem.through().command(),
         accuracy: None,
         from: None,
@@ -353,7 +356,7 @@ fn of_the_model(problem: &Problem, case: &Case, stop: &(dyn Fn() -> bool + Sync)
 }
 
 /// Residuals and derivatives over the standard deviations, as the search needs them.
-fn evaluation(model: &simulate::Simulated, problem: &Problem, values: &[f64], scale: &[f64]) -> Evaluation {
+fn evaluation(model: &simulate::Simulated, problem: &FitProblem, values: &[f64], scale: &[f64]) -> ResidualEvaluation {
     let all = &problem.observations;
     let slope: Vec<f64> = problem
         .spans
@@ -361,7 +364,7 @@ fn evaluation(model: &simulate::Simulated, problem: &Problem, values: &[f64], sc
         .zip(values)
         .map(|(span, value)| span.slope(*value))
         .collect();
-    Evaluation {
+    ResidualEvaluation {
         residuals: DVector::from_fn(all.len(), |i, _| scale[i] * (model.values[i] - all[i].value)),
         jacobian: DMatrix::from_fn(all.len(), values.len(), |i, k| {
             scale[i] * model.slopes[(i, k)] * slope[k]

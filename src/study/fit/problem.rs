@@ -15,21 +15,21 @@ use crate::run::equilibrium;
 use crate::run::observe::Observer;
 use crate::study::analysis::AnalysisKind;
 use crate::study::data::matching::Named;
-use crate::study::data::{Match, Matched, Table, matching};
+use crate::study::data::{DataTable, Match, Matched, matching};
 use crate::study::evaluations::Evaluations;
-use crate::study::span::{self, Span};
+use crate::study::span::{self, ParameterBounds};
 
 /// Analysis of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Through {
+pub enum FitAnalysis {
     /// Run in time: one row per instant.
     Run,
     /// Equilibria: one case per row.
     Equilibrium,
 }
 
-impl Through {
+impl FitAnalysis {
     /// Returns the command.
     pub fn command(self) -> AnalysisKind {
         match self {
@@ -41,14 +41,14 @@ impl Through {
 
 /// `COLUMN=POINTER`: a number of the case that every row sets.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Drive {
+pub struct DrivenNumber {
     /// Column of the data.
     pub column: String,
     /// JSON pointer into the case.
     pub pointer: String,
 }
 
-impl Drive {
+impl DrivenNumber {
     /// Parses `COLUMN=POINTER`.
     ///
     /// # Errors
@@ -72,15 +72,15 @@ impl Drive {
 
 /// Requested fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct FitRequest {
     /// Numbers to be fitted, with bounds.
-    pub spans: Vec<Span>,
+    pub spans: Vec<ParameterBounds>,
     /// Assignments of columns to quantities.
     pub matches: Vec<Match>,
     /// Column of time of a run.
     pub time: Option<String>,
     /// Numbers that rows set, for equilibria; empty for a run.
-    pub drives: Vec<Drive>,
+    pub drives: Vec<DrivenNumber>,
     /// Standard deviations of columns in their own units.
     pub noise: Vec<(String, f64)>,
     /// Loss function.
@@ -97,7 +97,7 @@ pub enum Abscissa {
     /// Instants [s].
     Time(Vec<f64>),
     /// Numbers of the case, with a list of values each.
-    Drives(Vec<(Drive, Vec<f64>)>),
+    Drives(Vec<(DrivenNumber, Vec<f64>)>),
 }
 
 /// A measured value.
@@ -115,11 +115,11 @@ pub struct Observation {
 
 /// All data of a fit.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct FitProblem {
     /// Case, with the probes that are compared.
     pub case: Case,
     /// Numbers to be fitted, with bounds.
-    pub spans: Vec<Span>,
+    pub spans: Vec<ParameterBounds>,
     /// Initial values.
     pub start: Vec<f64>,
     /// Matched columns.
@@ -132,12 +132,12 @@ pub struct Problem {
     pub evaluations: Evaluations,
 }
 
-impl Problem {
+impl FitProblem {
     /// Combines a case and data.
     ///
     /// # Errors
     /// Inconsistent input, found before anything is computed.
-    pub fn new(case: &Case, table: &Table, asked: &Asked) -> Result<Self> {
+    pub fn new(case: &Case, table: &DataTable, asked: &FitRequest) -> Result<Self> {
         if asked.spans.is_empty() {
             let what = "nothing to fit. Use --vary POINTER=LOW:HIGH, such as /beam/young_modulus_pa=1e5:1e7";
             return Err(Error::Usage(what.into()));
@@ -149,9 +149,9 @@ impl Problem {
         let names = asked.matches.iter().map(|one| one.placed(&mut case));
         let names = names.collect::<Result<Vec<_>>>()?;
         let through = if asked.drives.is_empty() {
-            Through::Run
+            FitAnalysis::Run
         } else {
-            Through::Equilibrium
+            FitAnalysis::Equilibrium
         };
         let columns = columns(&case, through)?;
         let matched = matching::resolve(table, &asked.matches, &names, &columns)?;
@@ -166,8 +166,8 @@ impl Problem {
         let measured = |row: &usize| matched.iter().any(|one| one.values[*row].is_some());
         let rows: Vec<usize> = (0..table.len()).filter(measured).collect();
         let abscissa = match through {
-            Through::Run => Abscissa::Time(instants(&case, table, asked, &rows)?),
-            Through::Equilibrium => Abscissa::Drives(driven(&case, table, asked, &rows)?),
+            FitAnalysis::Run => Abscissa::Time(instants(&case, table, asked, &rows)?),
+            FitAnalysis::Equilibrium => Abscissa::Drives(driven(&case, table, asked, &rows)?),
         };
         let mut observations = vec![];
         for (place, row) in rows.iter().enumerate() {
@@ -217,10 +217,10 @@ impl Problem {
     }
 
     /// Returns the analysis of the case.
-    pub fn through(&self) -> Through {
+    pub fn through(&self) -> FitAnalysis {
         match self.abscissa {
-            Abscissa::Time(_) => Through::Run,
-            Abscissa::Drives(_) => Through::Equilibrium,
+            Abscissa::Time(_) => FitAnalysis::Run,
+            Abscissa::Drives(_) => FitAnalysis::Equilibrium,
         }
     }
 
@@ -264,10 +264,10 @@ impl Problem {
 }
 
 /// Columns of the result of a case.
-fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
+fn columns(case: &Case, through: FitAnalysis) -> Result<Vec<Named>> {
     let all = match through {
-        Through::Run => Observer::header(case, &System::new(case)?).columns,
-        Through::Equilibrium => equilibrium::columns(&equilibrium::system(case, case.time.end_s)?),
+        FitAnalysis::Run => Observer::header(case, &System::new(case)?).columns,
+        FitAnalysis::Equilibrium => equilibrium::columns(&equilibrium::system(case, case.time.end_s)?),
     };
     Ok(all
         .into_iter()
@@ -276,7 +276,7 @@ fn columns(case: &Case, through: Through) -> Result<Vec<Named>> {
 }
 
 /// Returns the instants of the rows; rejects instants after the end of the run.
-fn instants(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<f64>> {
+fn instants(case: &Case, table: &DataTable, asked: &FitRequest, rows: &[usize]) -> Result<Vec<f64>> {
     let column = table.time(asked.time.as_deref())?;
     let all = table.instants(column)?;
     let end = case.time.end_s;
@@ -293,7 +293,7 @@ fn instants(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result
 }
 
 /// Returns the values that each row sets.
-fn driven(case: &Case, table: &Table, asked: &Asked, rows: &[usize]) -> Result<Vec<(Drive, Vec<f64>)>> {
+fn driven(case: &Case, table: &DataTable, asked: &FitRequest, rows: &[usize]) -> Result<Vec<(DrivenNumber, Vec<f64>)>> {
     let resolved = serde_json::to_value(case.resolved()).unwrap_or_default();
     let mut all = vec![];
     for drive in &asked.drives {
@@ -356,7 +356,7 @@ fn unnamed(column: &Heading, pointer: &str) -> std::result::Result<f64, String> 
 }
 
 /// Standard deviations of each column in the unit of its quantity, row by row; `None` if not given.
-fn sigmas(table: &Table, matched: &[Matched], asked: &Asked) -> Result<Vec<Option<Vec<f64>>>> {
+fn sigmas(table: &DataTable, matched: &[Matched], asked: &FitRequest) -> Result<Vec<Option<Vec<f64>>>> {
     for (name, _) in &asked.noise {
         let column = table.wanted(name, "--noise")?;
         if !matched.iter().any(|one| one.column == column) {

@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use nalgebra::{DMatrix, DVector};
 
 use super::evaluation;
-use super::found::Start;
-use super::problem::{Asked, Problem};
+use super::found::FitStart;
+use super::problem::{FitProblem, FitRequest};
 use super::robust::Loss;
 use super::simulate::{Simulated, simulate};
 use crate::error::{Error, Result};
-use crate::numerics::levenberg::{Ended, Minimum, minimise};
+use crate::numerics::levenberg::{LevenbergMinimum, LevenbergStatus, minimise};
 use crate::run::stop::INTERRUPTED;
 use crate::study::span;
 use crate::study::sweep::pool;
@@ -26,9 +26,9 @@ const SAME: f64 = 1e-3;
 const LEAST: f64 = 1e-12;
 
 /// Search for the minimum.
-pub struct Search<'a> {
-    problem: &'a Problem,
-    asked: &'a Asked,
+pub struct FitSearch<'a> {
+    problem: &'a FitProblem,
+    asked: &'a FitRequest,
     stop: &'a (dyn Fn() -> bool + Sync),
     report: &'a (dyn Fn(usize, f64) + Sync),
     simulations: AtomicUsize,
@@ -38,14 +38,14 @@ pub struct Search<'a> {
 /// Minimum, and the simulation there.
 #[derive(Clone, Debug)]
 struct Found {
-    minimum: Minimum,
+    minimum: LevenbergMinimum,
     simulated: Simulated,
 }
 
 /// Result of all searches.
-pub struct Reached {
+pub struct FitOutcome {
     /// The minimum.
-    pub minimum: Minimum,
+    pub minimum: LevenbergMinimum,
     /// Values of the numbers at the minimum.
     pub values: Vec<f64>,
     /// Simulation at the minimum.
@@ -57,25 +57,25 @@ pub struct Reached {
     /// Weight of each observation by the loss function.
     pub weights: Vec<f64>,
     /// Searches from all starts.
-    pub starts: Vec<Start>,
+    pub starts: Vec<FitStart>,
     /// Total number of steps.
     pub steps: usize,
 }
 
-impl Reached {
+impl FitOutcome {
     /// Residuals and derivatives over the standard deviations, without the weights of the loss.
-    pub fn plain(&self, problem: &Problem) -> (DVector<f64>, DMatrix<f64>) {
+    pub fn plain(&self, problem: &FitProblem) -> (DVector<f64>, DMatrix<f64>) {
         let scale: Vec<f64> = self.sigmas.iter().map(|sigma| sigma.recip()).collect();
         let plain = evaluation(&self.simulated, problem, &self.values, &scale);
         (plain.residuals, plain.jacobian)
     }
 }
 
-impl<'a> Search<'a> {
+impl<'a> FitSearch<'a> {
     /// Creates the search of a problem.
     pub fn new(
-        problem: &'a Problem,
-        asked: &'a Asked,
+        problem: &'a FitProblem,
+        asked: &'a FitRequest,
         stop: &'a (dyn Fn() -> bool + Sync),
         report: &'a (dyn Fn(usize, f64) + Sync),
     ) -> Self {
@@ -98,7 +98,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// The case cannot be simulated at any start, or the search was stopped before the first simulation.
-    pub fn go(&self) -> Result<Reached> {
+    pub fn go(&self) -> Result<FitOutcome> {
         let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
         let mut weights = vec![1.0; sigmas.len()];
@@ -110,7 +110,7 @@ impl<'a> Search<'a> {
         let found = pool::all(places.len(), many, &one);
         let found: Vec<Option<Found>> = found.into_iter().map(Option::flatten).collect();
         let mut steps = found.iter().flatten().map(|one| one.minimum.steps).sum();
-        let start = |(from, found): (&Vec<f64>, &Option<Found>)| Start {
+        let start = |(from, found): (&Vec<f64>, &Option<Found>)| FitStart {
             from: self.problem.values(from),
             to: found.as_ref().map(|one| self.problem.values(&one.minimum.x)),
             chi_square: found.as_ref().map(|one| one.minimum.at.cost()),
@@ -147,7 +147,7 @@ impl<'a> Search<'a> {
         let Found { mut minimum, simulated } = best;
         let values = self.problem.values(&minimum.x);
         minimum.at = evaluation(&simulated, self.problem, &values, &scale(&sigmas, &weights));
-        Ok(Reached {
+        Ok(FitOutcome {
             values,
             minimum,
             simulated,
@@ -184,10 +184,10 @@ impl<'a> Search<'a> {
                 .all(|x| x.is_finite());
             let cost = found.cost();
             if finite && best.as_ref().is_none_or(|best| cost < best.minimum.at.cost()) {
-                let minimum = Minimum {
+                let minimum = LevenbergMinimum {
                     x: places.to_vec(),
                     at: found.clone(),
-                    ended: Ended::Unfinished,
+                    ended: LevenbergStatus::Unfinished,
                     steps: 0,
                     evaluations: 0,
                 };

@@ -3,17 +3,17 @@
 
 use nalgebra::DMatrix;
 
-use super::problem::{Abscissa, Drive, Problem};
+use super::problem::{Abscissa, DrivenNumber, FitProblem};
 use crate::case::parameter::with;
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::run::dynamics;
-use crate::run::equilibrium::{self, Options};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::record::Control;
 use crate::run::sensitivity::forward::By;
 use crate::run::stop::INTERRUPTED;
 use crate::study::analysis::derivatives;
-use crate::study::followed::{Followed, Row};
+use crate::study::followed::{Followed, FollowedRow};
 use crate::study::sweep::pool;
 
 /// Result of a simulation.
@@ -30,7 +30,12 @@ pub struct Simulated {
 /// # Errors
 /// The case is not valid with them, or the simulation does not reach the end of the data, for example because of
 /// `stop`.
-pub fn simulate(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
+pub fn simulate(
+    problem: &FitProblem,
+    values: &[f64],
+    jobs: usize,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Simulated> {
     let compute = || {
         let found = computed(problem, values, jobs, stop)?;
         Ok((found.values, found.slopes.as_slice().to_vec()))
@@ -42,7 +47,7 @@ pub fn simulate(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn()
     })
 }
 
-fn computed(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
+fn computed(problem: &FitProblem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> bool + Sync)) -> Result<Simulated> {
     let rows = match &problem.abscissa {
         Abscissa::Time(instants) => run(problem, values, instants, stop)?,
         Abscissa::Drives(drives) => rest(problem, values, drives, jobs, stop)?,
@@ -55,7 +60,12 @@ fn computed(problem: &Problem, values: &[f64], jobs: usize, stop: &(dyn Fn() -> 
     })
 }
 
-fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> bool + Sync)) -> Result<Vec<Row>> {
+fn run(
+    problem: &FitProblem,
+    values: &[f64],
+    instants: &[f64],
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Vec<FollowedRow>> {
     let case = problem.with(values)?;
     // keep the effects of the case itself: the sum of squares must not jump where others would be chosen
     let system = derivatives::alike_or_own(&case, Some(&System::new(&problem.case)?))?;
@@ -69,14 +79,14 @@ fn run(problem: &Problem, values: &[f64], instants: &[f64], stop: &(dyn Fn() -> 
 
 /// Computes an equilibrium for every row, up to `jobs` in parallel.
 fn rest(
-    problem: &Problem,
+    problem: &FitProblem,
     values: &[f64],
-    drives: &[(Drive, Vec<f64>)],
+    drives: &[(DrivenNumber, Vec<f64>)],
     jobs: usize,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Vec<Row>> {
+) -> Result<Vec<FollowedRow>> {
     let numbers: Vec<usize> = (0..problem.rows()).collect();
-    let mut rows: Vec<Option<Row>> = vec![None; numbers.len()];
+    let mut rows: Vec<Option<FollowedRow>> = vec![None; numbers.len()];
     pool::each(
         &numbers,
         jobs,
@@ -90,12 +100,12 @@ fn rest(
 }
 
 fn of_row(
-    problem: &Problem,
+    problem: &FitProblem,
     values: &[f64],
-    drives: &[(Drive, Vec<f64>)],
+    drives: &[(DrivenNumber, Vec<f64>)],
     row: usize,
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Row> {
+) -> Result<FollowedRow> {
     if stop() {
         return Err(Error::Interrupted(INTERRUPTED.into()));
     }
@@ -104,9 +114,9 @@ fn of_row(
         .map(|(drive, values)| (drive.pointer.as_str(), values[row]));
     let changes: Vec<(&str, f64)> = problem.changes(values).chain(driven).collect();
     let case = with(&problem.case, &changes)?;
-    let options = Options {
+    let options = EquilibriumOptions {
         points: Some(1),
-        ..Options::at(case.time.end_s)
+        ..EquilibriumOptions::at(case.time.end_s)
     };
     let path = equilibrium::follow(&case, &options, &mut |_| match stop() {
         true => Control::Stop(INTERRUPTED.into()),

@@ -13,11 +13,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::identify::Unseen;
 use crate::numerics::{normal, student};
-use crate::study::span::Span;
+use crate::study::span::ParameterBounds;
 
 /// Errors of estimates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Errors {
+pub struct EstimateErrors {
     /// Standard errors, in units of the numbers.
     pub standard: Vec<Option<f64>>,
     /// Intervals of 95 %, limited to the bounds.
@@ -29,9 +29,9 @@ pub struct Errors {
 }
 
 /// Input of the error estimate.
-pub struct Basis<'a> {
+pub struct CovarianceInput<'a> {
     /// Numbers and bounds.
-    pub spans: &'a [Span],
+    pub spans: &'a [ParameterBounds],
     /// Estimates.
     pub values: &'a [f64],
     /// Indices of the numbers that are not at a bound.
@@ -46,9 +46,9 @@ pub struct Basis<'a> {
     pub freedom: Option<f64>,
 }
 
-impl Basis<'_> {
+impl CovarianceInput<'_> {
     /// Computes the errors of the estimates.
-    pub fn errors(&self) -> Errors {
+    pub fn errors(&self) -> EstimateErrors {
         let m = self.spans.len();
         let lost = |k: &usize| {
             let at_bound = |one: &Unseen| one.numbers.iter().any(|other| !self.free.contains(other));
@@ -74,7 +74,7 @@ impl Basis<'_> {
         let table = |value: &dyn Fn(usize, usize) -> Option<f64>| -> Vec<Vec<Option<f64>>> {
             (0..m).map(|i| (0..m).map(|k| value(i, k)).collect()).collect()
         };
-        Errors {
+        EstimateErrors {
             standard: (0..m).map(|k| Some(of(k, k)?.sqrt() * slope(k).abs())).collect(),
             intervals: (0..m).map(interval).collect(),
             covariance: table(&|i, k| Some(of(i, k)? * slope(i) * slope(k))),
@@ -111,12 +111,12 @@ impl Basis<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::fit::identify::{Seen, unseen};
+    use crate::study::fit::identify::{IdentificationInput, unseen};
 
     /// Goal: if the data determine only a product and one factor ends at its bound, the other factor has no interval.
     #[test]
     fn a_factor_beside_one_at_its_bound_has_no_interval() {
-        let spans = ["/a", "/b", "/c"].map(|pointer| Span {
+        let spans = ["/a", "/b", "/c"].map(|pointer| ParameterBounds {
             pointer: pointer.into(),
             low: 1.0,
             high: 3.0,
@@ -124,14 +124,14 @@ mod tests {
         let rows = [[10.0, 10.0, 1.0], [20.0, 20.0, -3.0], [5.0, 5.0, 20.0]];
         let jacobian = DMatrix::from_fn(3, 3, |i, k| rows[i][k]);
         let values = [2.0, 3.0, 2.0];
-        let seen = Seen {
+        let seen = IdentificationInput {
             spans: &spans,
             values: &values,
             jacobian: &jacobian,
             spread: 1.0,
             exact: 1e-8,
         };
-        let basis = Basis {
+        let basis = CovarianceInput {
             spans: &spans,
             values: &values,
             free: &[0, 2],

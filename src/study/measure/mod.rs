@@ -20,7 +20,7 @@ use crate::case::Case;
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::numerics::regression::{self, Regression};
-use table::{Points, Quantity};
+use table::{MeasuredQuantity, Points};
 
 /// Experiment: the relation that was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,22 +67,22 @@ impl Experiment {
     }
 
     /// Returns the quantity that is set, and the quantity that is measured.
-    pub fn columns(self) -> [Quantity; 2] {
+    pub fn columns(self) -> [MeasuredQuantity; 2] {
         match self {
-            Self::PressureVolume => [Quantity::Pressure, Quantity::Volume],
-            Self::MomentVolume => [Quantity::Moment, Quantity::Volume],
-            Self::ForceVolume => [Quantity::Force, Quantity::Volume],
-            Self::ForceExtension => [Quantity::Force, Quantity::Extension],
-            Self::MomentCurvature => [Quantity::Moment, Quantity::Curvature],
-            Self::PressureCurvature => [Quantity::Pressure, Quantity::Curvature],
-            Self::FlowPressure => [Quantity::Pressure, Quantity::Flow],
+            Self::PressureVolume => [MeasuredQuantity::Pressure, MeasuredQuantity::Volume],
+            Self::MomentVolume => [MeasuredQuantity::Moment, MeasuredQuantity::Volume],
+            Self::ForceVolume => [MeasuredQuantity::Force, MeasuredQuantity::Volume],
+            Self::ForceExtension => [MeasuredQuantity::Force, MeasuredQuantity::Extension],
+            Self::MomentCurvature => [MeasuredQuantity::Moment, MeasuredQuantity::Curvature],
+            Self::PressureCurvature => [MeasuredQuantity::Pressure, MeasuredQuantity::Curvature],
+            Self::FlowPressure => [MeasuredQuantity::Pressure, MeasuredQuantity::Flow],
         }
     }
 }
 
 /// Options of the fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Options {
+pub struct MeasureOptions {
     /// True if the line passes through zero.
     pub through_zero: bool,
     /// True if the fit has a cubic term.
@@ -95,7 +95,7 @@ pub struct Options {
 
 /// A number with its errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimate {
+pub struct MeasuredNumber {
     /// Most likely value.
     pub value: f64,
     /// Standard error.
@@ -104,7 +104,7 @@ pub struct Estimate {
     pub interval: [f64; 2],
 }
 
-impl Estimate {
+impl MeasuredNumber {
     fn of(fit: &Regression, weights: &[f64]) -> Self {
         let (value, half) = (fit.value(weights), fit.half_width(weights));
         Self {
@@ -146,9 +146,9 @@ pub struct Sides {
     /// Probability of slopes that differ at least as much if the true slopes are equal.
     pub chance: f64,
     /// Slope above zero.
-    pub above: Estimate,
+    pub above: MeasuredNumber,
     /// Slope below zero.
-    pub below: Estimate,
+    pub below: MeasuredNumber,
 }
 
 /// A coefficient of the case.
@@ -159,12 +159,12 @@ pub struct Coefficient {
     /// Unit.
     pub unit: &'static str,
     /// Estimate.
-    pub estimate: Estimate,
+    pub estimate: MeasuredNumber,
 }
 
 /// Result of a measurement.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct Measurement {
     /// The experiment.
     pub experiment: Experiment,
     /// The data [SI].
@@ -172,9 +172,9 @@ pub struct Measured {
     /// Fit: slope, then offset and cubic term, if it has them.
     pub fit: Regression,
     /// Slope.
-    pub slope: Estimate,
+    pub slope: MeasuredNumber,
     /// Value at zero, if it is fitted.
-    pub offset: Option<Estimate>,
+    pub offset: Option<MeasuredNumber>,
     /// Share of the data's variance that the fit explains; for lines through zero, of the mean square.
     pub explained: f64,
     /// Probability of a cubic term as large if there is none; `None` if there are too few points.
@@ -183,14 +183,14 @@ pub struct Measured {
     pub sides: Option<Sides>,
     /// Coefficients of the case.
     pub coefficients: Vec<Coefficient>,
-    options: Options,
+    options: MeasureOptions,
 }
 
 /// Significance level below which a deviation from the straight line is reported and slopes of both sides are used.
 pub const SIGNIFICANT: f64 = 0.05;
 
 /// Regressors of the fit at a value of the set quantity.
-fn regressors(options: Options, x: f64) -> Vec<f64> {
+fn regressors(options: MeasureOptions, x: f64) -> Vec<f64> {
     let offset = (!options.through_zero).then_some(1.0);
     let cubic = options.cubic.then_some(x.powi(3));
     [Some(x), offset, cubic].into_iter().flatten().collect()
@@ -206,7 +206,7 @@ fn columns(points: &Points, of: impl Fn(f64) -> Vec<f64>) -> Vec<Vec<f64>> {
 ///
 /// # Errors
 /// [`Error::Usage`]: too few points, a slope not significantly different from zero, or a case without data that the coefficient needs.
-pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Options) -> Result<Measured> {
+pub fn measure(experiment: Experiment, points: Points, case: &Case, options: MeasureOptions) -> Result<Measurement> {
     let [x, y] = experiment.columns();
     let fit = regression::fit(&columns(&points, |x| regressors(options, x)), &points.y).ok_or_else(|| {
         let needed = regressors(options, 1.0).len() + 1;
@@ -222,12 +222,12 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
             .map(|j| f64::from(u8::from(j == k)))
             .collect::<Vec<_>>()
     };
-    let slope = Estimate::of(&fit, &unit(0));
-    let offset = (!options.through_zero).then(|| Estimate::of(&fit, &unit(1)));
+    let slope = MeasuredNumber::of(&fit, &unit(0));
+    let offset = (!options.through_zero).then(|| MeasuredNumber::of(&fit, &unit(1)));
     let with = |extra: fn(f64) -> f64| {
         let of = |x: f64| {
             let mut row = regressors(
-                Options {
+                MeasureOptions {
                     cubic: false,
                     ..options
                 },
@@ -254,7 +254,7 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
                     }
                 })
                 .collect();
-            Estimate::of(&fit, &weights)
+            MeasuredNumber::of(&fit, &weights)
         };
         Sides {
             chance: fit.chance(last),
@@ -280,7 +280,7 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
             )));
         }
     }
-    Ok(Measured {
+    Ok(Measurement {
         experiment,
         explained: if total > 0.0 { 1.0 - left / total } else { 0.0 },
         slope,
@@ -294,7 +294,7 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Opt
     })
 }
 
-impl Measured {
+impl Measurement {
     /// Fit at a value of the set quantity, and half the width of the band that contains the true curve there in 95 of 100 repetitions.
     pub fn at(&self, x: f64) -> [f64; 2] {
         let row = regressors(self.options, x);
@@ -306,8 +306,8 @@ impl Measured {
 fn coefficients(
     experiment: Experiment,
     case: &Case,
-    options: Options,
-    slope: Estimate,
+    options: MeasureOptions,
+    slope: MeasuredNumber,
     sides: Option<Sides>,
 ) -> Result<Vec<Coefficient>> {
     let lacks = |what: &str| Error::Usage(format!("the case has no {what}, which {} needs", experiment.name()));
@@ -315,7 +315,7 @@ fn coefficients(
     let (l, h, w, young) = (beam.length_m, beam.height_m, beam.width_m, beam.young_modulus_pa);
     let bladders = || case.bladders.as_ref().ok_or_else(|| lacks("bladders"));
     let per_length = || bladders().map(|b| 1.0 / (options.bladders.map_or(b.per_row as f64, f64::from) * b.length_m));
-    let nonzero = |estimate: Option<Estimate>| {
+    let nonzero = |estimate: Option<MeasuredNumber>| {
         let what = "the slope is not significantly different from zero: its interval contains both signs";
         estimate.ok_or_else(|| Error::Usage(what.into()))
     };

@@ -5,12 +5,12 @@ use std::ops::Range;
 use std::path::Path;
 
 use crate::case::heading::Heading;
-use crate::case::{Source, nearest, units};
+use crate::case::{CaseSource, nearest, units};
 use crate::error::{Code, Result, Violation};
 
 /// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum MeasuredQuantity {
     /// Pressure above the atmosphere, or a difference [Pa].
     Pressure,
     /// Volume that flowed into the bladders [m^3].
@@ -27,7 +27,7 @@ pub enum Quantity {
     Flow,
 }
 
-impl Quantity {
+impl MeasuredQuantity {
     /// Name of its column.
     pub fn name(self) -> &'static str {
         match self {
@@ -71,8 +71,8 @@ pub(in crate::study) const MOST: usize = 20;
 ///
 /// # Errors
 /// [`crate::error::Error::Case`] with the position of every header and row that cannot be read.
-pub fn read(path: &Path, text: &str, x: Quantity, y: Quantity) -> Result<Points> {
-    let source = Source::of(path, text);
+pub fn read(path: &Path, text: &str, x: MeasuredQuantity, y: MeasuredQuantity) -> Result<Points> {
+    let source = CaseSource::of(path, text);
     let mut lines = lines(text);
     let Some(header) = lines.next() else {
         let what = format!(
@@ -168,7 +168,7 @@ pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
 }
 
 /// Index and scale of the column of a quantity.
-fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: Quantity) -> Read<(usize, f64)> {
+fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: MeasuredQuantity) -> Read<(usize, f64)> {
     let (name, unit) = (quantity.name(), quantity.unit());
     let headings: Vec<Heading> = names.iter().map(|(cell, _)| Heading::of(cell)).collect();
     let mut of_name = (0..headings.len()).filter(|k| headings[*k].name.to_lowercase() == name);

@@ -3,8 +3,8 @@
 use nalgebra::DMatrix;
 
 use super::found::Curvature;
-use super::problem::Problem;
-use super::search::{Reached, Search};
+use super::problem::OptimizationProblem;
+use super::search::{OptimizationOutcome, OptimizationSearch};
 
 /// Change of a position in a difference, to either side.
 const BESIDE: f64 = 0.01;
@@ -24,7 +24,12 @@ pub struct Bend {
 
 /// Computes second derivatives of the goal with respect to the numbers that are not at a bound. `None` if a design next
 /// to the optimum cannot be computed, or if there is a kink or noise.
-pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: usize) -> Option<Bend> {
+pub fn bend(
+    problem: &OptimizationProblem,
+    search: &OptimizationSearch<'_>,
+    reached: &OptimizationOutcome,
+    start: usize,
+) -> Option<Bend> {
     let minimum = &reached.minimum;
     let inside = |k: &usize| minimum.at_bounds[*k] == 0.0 && minimum.x[*k] > BESIDE && minimum.x[*k] < 1.0 - BESIDE;
     let free: Vec<usize> = (0..problem.spans.len()).filter(inside).collect();
@@ -52,7 +57,7 @@ pub fn bend(problem: &Problem, search: &Search<'_>, reached: &Reached, start: us
 impl Bend {
     /// Values of a number on both sides of the optimum at which the figure would be worse by 1 %, with the others
     /// fixed; `None` if one of the values lies beyond its bounds.
-    pub fn within(&self, problem: &Problem, reached: &Reached, k: usize) -> Option<[f64; 2]> {
+    pub fn within(&self, problem: &OptimizationProblem, reached: &OptimizationOutcome, k: usize) -> Option<[f64; 2]> {
         let i = self.free.iter().position(|own| *own == k)?;
         let bend = self.matrix[(i, i)];
         let worse = SHARE * reached.minimum.at.value.abs();
@@ -64,7 +69,7 @@ impl Bend {
     }
 
     /// Returns the second derivatives of the figure itself, with respect to numbers or their logarithms.
-    pub fn curvature(&self, problem: &Problem, reached: &Reached) -> Curvature {
+    pub fn curvature(&self, problem: &OptimizationProblem, reached: &OptimizationOutcome) -> Curvature {
         let per = |k: usize| {
             let span = &problem.spans[k];
             match span.logarithmic() {

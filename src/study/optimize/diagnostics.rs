@@ -1,14 +1,14 @@
 //! Warnings about an optimum.
 
 use super::REACHED;
-use super::found::{Derivatives, Design, Held, Optimum};
-use super::problem::{Limit, Problem};
+use super::found::{ComputedDesign, DerivativeSource, Held, Optimum};
+use super::problem::{FigureLimit, OptimizationProblem};
 use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::error::numbers::{counted, rounded};
-use crate::numerics::sqp::Ended;
-use crate::study::analysis::Found;
-use crate::study::span::Span;
+use crate::numerics::sqp::SqpStatus;
+use crate::study::analysis::AnalysisOutcome;
+use crate::study::span::ParameterBounds;
 
 /// Largest relative difference from the plain command without a warning.
 const SAME: f64 = 1e-3;
@@ -19,8 +19,8 @@ fn six(number: f64) -> String {
 }
 
 /// Warns of limits that the plain command violates at the optimum.
-pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
-    let of = |limit: &Limit| {
+pub(super) fn broken(problem: &OptimizationProblem, plain: &AnalysisOutcome) -> Vec<String> {
+    let of = |limit: &FigureLimit| {
         let value = plain.figure(&limit.figure)?;
         (limit.beyond(value) > REACHED * limit.bound.abs()).then(|| {
             Code::Optimum.warning(format!(
@@ -38,18 +38,18 @@ pub(super) fn broken(problem: &Problem, plain: &Found) -> Vec<String> {
 }
 
 /// Reason why a search ended.
-pub(super) fn ended(ended: Ended, stopped: bool) -> &'static str {
+pub(super) fn ended(ended: SqpStatus, stopped: bool) -> &'static str {
     match ended {
         _ if stopped => "it was interrupted",
-        Ended::Found => "converged: derivatives predict no improvement",
-        Ended::Stuck => "no step improves the figure, although derivatives predict it",
-        Ended::Apart => "no step reduces the violation of the limits",
-        Ended::Unfinished => "it reached its limit of steps",
+        SqpStatus::Found => "converged: derivatives predict no improvement",
+        SqpStatus::Stuck => "no step improves the figure, although derivatives predict it",
+        SqpStatus::Apart => "no step reduces the violation of the limits",
+        SqpStatus::Unfinished => "it reached its limit of steps",
     }
 }
 
 /// Warnings about the end of the search.
-pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped: bool) -> Vec<String> {
+pub(super) fn warnings(problem: &OptimizationProblem, found: &Optimum, ended: SqpStatus, stopped: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Optimum.warning(what));
     let beyond: Vec<&Held> = found.limits.iter().filter(|held| held.beyond()).collect();
@@ -65,27 +65,27 @@ pub(super) fn warnings(problem: &Problem, found: &Optimum, ended: Ended, stopped
                 names.join(" and ")
             ));
         }
-        Ended::Found | Ended::Apart => {}
-        Ended::Unfinished => say(
+        SqpStatus::Found | SqpStatus::Apart => {}
+        SqpStatus::Unfinished => say(
             "the search reached its limit of steps before it converged. The reported design is that of the last step. \
              Continue from it (--set)"
                 .into(),
         ),
-        Ended::Stuck if !found.failed.is_empty() => say(format!(
+        SqpStatus::Stuck if !found.failed.is_empty() => say(format!(
             "the search ended early: no step improves the figure, although its derivatives predict an improvement, \
              and {} of {} could not be computed. The optimum lies at the edge of the computable designs, or the \
              figure has a kink or ripples there. Use bounds that exclude failed designs, or other starts (--starts)",
             found.failed.values().sum::<usize>(),
             counted(found.evaluations as u64, "design")
         )),
-        Ended::Stuck => say(
+        SqpStatus::Stuck => say(
             "the search ended early: no step improves the figure, although its derivatives predict an improvement. \
              The numerical error exceeds the remaining improvement, or the figure has a kink or ripples there. Use a \
              smaller /solver/rtol, or other starts (--starts)"
                 .into(),
         ),
     }
-    if found.derivatives == Derivatives::Differences {
+    if found.derivatives == DerivativeSource::Differences {
         let why = match &problem.differences {
             Some(why) => why.clone(),
             None => "a figure has no exact derivatives, or a number lies at the limit of its admissible range".into(),
@@ -117,18 +117,18 @@ const COVERED: f64 = 0.1;
 
 /// Warns that the figure does not depend on the optimized numbers, if designs across the bounds differ by no more than
 /// its error.
-pub(super) fn flat(problem: &Problem, found: &Optimum, history: &[Design]) -> Option<String> {
+pub(super) fn flat(problem: &OptimizationProblem, found: &Optimum, history: &[ComputedDesign]) -> Option<String> {
     if !found.alternatives.is_empty() {
         return None;
     }
     let finished = || history.iter().filter(|design| design.figures.is_some());
-    let range = |of: &dyn Fn(&Design) -> f64| {
+    let range = |of: &dyn Fn(&ComputedDesign) -> f64| {
         let all = finished().map(of);
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (low.min(x), high.max(x))
         })
     };
-    let covers = |(k, span): (usize, &Span)| {
+    let covers = |(k, span): (usize, &ParameterBounds)| {
         let (low, high) = range(&|design| design.values.get(k).copied().unwrap_or(f64::NAN));
         high - low >= COVERED * (span.high - span.low)
     };

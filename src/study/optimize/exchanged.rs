@@ -1,6 +1,6 @@
 //! Modes at the optimum that differ from the initial modes of the same number.
 
-use super::problem::Problem;
+use super::problem::OptimizationProblem;
 use crate::case::Case;
 use crate::error::Code;
 use crate::run::modes::{Mode, likeness};
@@ -15,7 +15,7 @@ const APART: f64 = 0.1;
 
 /// Warns if a mode in goal or limits is, by its shape [E33], another mode at the optimum than at the start of the
 /// search.
-pub fn warnings(problem: &Problem, best: &Case) -> Vec<String> {
+pub fn warnings(problem: &OptimizationProblem, best: &Case) -> Vec<String> {
     let mut numbers: Vec<usize> = problem.figures().into_iter().filter_map(number).collect();
     numbers.sort_unstable();
     numbers.dedup();

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::REACHED;
-use super::problem::{Goal, Limit};
-use super::search::Reached;
+use super::problem::{FigureLimit, Goal};
+use super::search::OptimizationOutcome;
 use super::wiring::Alternative;
 use crate::error::Result;
 use crate::numerics::sqp::HELD;
@@ -34,7 +34,7 @@ pub struct Optimum {
     pub begin: Option<f64>,
     /// Compared alternatives, each at its optimum; empty if there was no choice.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub alternatives: Vec<Compared>,
+    pub alternatives: Vec<ComparedAlternative>,
     /// Index of the best alternative, from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<usize>,
@@ -49,9 +49,9 @@ pub struct Optimum {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<String>,
     /// Source of the derivatives.
-    pub derivatives: Derivatives,
+    pub derivatives: DerivativeSource,
     /// Searches; the first starts from the case's own numbers.
-    pub starts: Vec<Start>,
+    pub starts: Vec<OptimizationStart>,
     /// Number of designs computed for the search.
     pub evaluations: usize,
     /// Number of failed designs by reason.
@@ -64,7 +64,7 @@ pub struct Optimum {
 
 /// Alternative at its optimum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compared {
+pub struct ComparedAlternative {
     /// Name.
     pub name: String,
     /// Settings in the case, each as `POINTER=JSON`.
@@ -79,9 +79,9 @@ pub struct Compared {
     pub reason: Option<String>,
 }
 
-impl Compared {
+impl ComparedAlternative {
     /// Summarizes the end of the search with an alternative.
-    pub(super) fn of(alternative: &Alternative, reached: &Result<Reached>) -> Self {
+    pub(super) fn of(alternative: &Alternative, reached: &Result<OptimizationOutcome>) -> Self {
         let there = reached.as_ref().ok();
         Self {
             name: alternative.name.clone(),
@@ -97,7 +97,7 @@ impl Compared {
 /// Source of the derivatives of figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Derivatives {
+pub enum DerivativeSource {
     /// Exact derivatives, those of `--sensitivity`.
     Exact,
     /// Differences of designs, two for each number.
@@ -133,7 +133,7 @@ pub struct Variable {
 pub struct Held {
     /// The limit.
     #[serde(flatten)]
-    pub limit: Limit,
+    pub limit: FigureLimit,
     /// Figure at the optimum.
     pub value: f64,
     /// True if the limit is active.
@@ -167,7 +167,7 @@ pub struct Curvature {
 
 /// Search from one start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Start {
+pub struct OptimizationStart {
     /// Start.
     pub from: Vec<f64>,
     /// End; `None` if the start could not be computed.
@@ -182,7 +182,7 @@ pub struct Start {
 
 /// Computed design: a row of `history.csv`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Design {
+pub struct ComputedDesign {
     /// Index of its alternative.
     pub alternative: usize,
     /// Index of the search; the number of searches for designs about the optimum.

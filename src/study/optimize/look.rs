@@ -2,17 +2,17 @@
 
 use std::time::Instant;
 
-use super::found::Derivatives;
-use super::problem::Problem;
+use super::found::DerivativeSource;
+use super::problem::OptimizationProblem;
 use crate::case::Case;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::Unrecorded;
 use crate::run::summary::Status;
-use crate::study::analysis::Found;
+use crate::study::analysis::AnalysisOutcome;
 use crate::study::analysis::derivatives;
-use crate::study::analysis::{self, Ask};
+use crate::study::analysis::{self, AnalysisRequest};
 use crate::study::span;
 
 /// Change of a position between the bounds in a difference, to either side.
@@ -20,13 +20,13 @@ const BESIDE: f64 = 0.01;
 
 /// Figures and derivatives of a design.
 #[derive(Clone, Debug)]
-pub struct Seen {
+pub struct EvaluatedDesign {
     /// Figures in the order of [`Problem::figures`].
     pub figures: Vec<f64>,
     /// Derivatives of each figure with respect to positions between the bounds.
     pub slopes: Vec<Vec<f64>>,
     /// Source of the derivatives.
-    pub from: Derivatives,
+    pub from: DerivativeSource,
 }
 
 /// Callback after each design: values of the numbers, figures or the reason of a failure, wall time [s].
@@ -37,11 +37,11 @@ pub type ReportDesign<'a> = dyn Fn(&[f64], &std::result::Result<Vec<f64>, String
 /// # Errors
 /// Reason of the failure, as text.
 pub fn look(
-    problem: &Problem,
+    problem: &OptimizationProblem,
     places: &[f64],
     stop: &dyn Fn() -> bool,
     report: &ReportDesign<'_>,
-) -> std::result::Result<Seen, String> {
+) -> std::result::Result<EvaluatedDesign, String> {
     let mut known = None;
     if let Some(found) = exactly(problem, places, stop, report) {
         match found? {
@@ -70,21 +70,26 @@ pub fn look(
             slopes[k] = (high - low) / (above - below);
         }
     }
-    Ok(Seen {
+    Ok(EvaluatedDesign {
         figures,
         slopes,
         from: match places.is_empty() {
-            true => Derivatives::Exact,
-            false => Derivatives::Differences,
+            true => DerivativeSource::Exact,
+            false => DerivativeSource::Differences,
         },
     })
 }
 
 /// Figures of a design, with derivatives if exact ones are available.
-type Exactly = std::result::Result<(Vec<f64>, Option<Seen>), String>;
+type Exactly = std::result::Result<(Vec<f64>, Option<EvaluatedDesign>), String>;
 
 /// Evaluates a position with exact derivatives; `None` if these are not available.
-fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, report: &ReportDesign<'_>) -> Option<Exactly> {
+fn exactly(
+    problem: &OptimizationProblem,
+    places: &[f64],
+    stop: &dyn Fn() -> bool,
+    report: &ReportDesign<'_>,
+) -> Option<Exactly> {
     let begin = Instant::now();
     let values = span::values(&problem.spans, places);
     if problem.differences.is_some() || places.is_empty() || at_an_end(problem, &values) {
@@ -102,10 +107,10 @@ fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, report: &
                     *slope *= problem.spans[k].slope(values[k]);
                 }
             }
-            Seen {
+            EvaluatedDesign {
                 figures: figures.clone(),
                 slopes,
-                from: Derivatives::Exact,
+                from: DerivativeSource::Exact,
             }
         });
         (figures, seen)
@@ -113,7 +118,7 @@ fn exactly(problem: &Problem, places: &[f64], stop: &dyn Fn() -> bool, report: &
 }
 
 /// True if a number is so close to the end of its valid range that the steps of its derivatives lie outside.
-fn at_an_end(problem: &Problem, values: &[f64]) -> bool {
+fn at_an_end(problem: &OptimizationProblem, values: &[f64]) -> bool {
     let Ok(case) = problem.with(values) else { return false };
     let beyond = |one: &Parameter| {
         let to = |(step, _): &(f64, f64)| one.changed(&case, one.value * (1.0 + step * CHANGE)).is_err();
@@ -127,13 +132,17 @@ type Exact = (Vec<f64>, Option<Vec<Vec<f64>>>);
 
 /// Returns figures with exact derivatives; `None` if derivatives with respect to one of the numbers are rejected, so
 /// that differences are used.
-fn exact(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> Option<std::result::Result<Exact, String>> {
+fn exact(
+    problem: &OptimizationProblem,
+    values: &[f64],
+    stop: &dyn Fn() -> bool,
+) -> Option<std::result::Result<Exact, String>> {
     let compute = || differentiated(problem, values, stop);
     problem.evaluations.get(&("exact", values), stop, compute)
 }
 
 fn differentiated(
-    problem: &Problem,
+    problem: &OptimizationProblem,
     values: &[f64],
     stop: &dyn Fn() -> bool,
 ) -> Option<std::result::Result<Exact, String>> {
@@ -163,14 +172,22 @@ fn differentiated(
 }
 
 /// Figures of a design from the plain command.
-fn plain(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
+fn plain(
+    problem: &OptimizationProblem,
+    values: &[f64],
+    stop: &dyn Fn() -> bool,
+) -> std::result::Result<Vec<f64>, String> {
     let compute = || computed(problem, values, stop);
     problem.evaluations.get(&("plain", values), stop, compute)
 }
 
-fn computed(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::result::Result<Vec<f64>, String> {
+fn computed(
+    problem: &OptimizationProblem,
+    values: &[f64],
+    stop: &dyn Fn() -> bool,
+) -> std::result::Result<Vec<f64>, String> {
     let case = problem.with(values).map_err(|error| why(&error))?;
-    let ask = Ask {
+    let ask = AnalysisRequest {
         what: problem.what,
         accuracy: None,
         from: None,
@@ -181,13 +198,13 @@ fn computed(problem: &Problem, values: &[f64], stop: &dyn Fn() -> bool) -> std::
     wanted(problem, &found)
 }
 
-fn run(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
+fn run(problem: &OptimizationProblem, case: &Case, stop: &dyn Fn() -> bool) -> Result<Outcome> {
     let system = derivatives::alike_or_own(case, problem.system.as_ref())?;
     dynamics::run_with(case, system, &[], &mut Unrecorded(derivatives::until(stop)))
 }
 
 /// Selects the figures of goal and limits from the result of a design.
-fn wanted(problem: &Problem, found: &Found) -> std::result::Result<Vec<f64>, String> {
+fn wanted(problem: &OptimizationProblem, found: &AnalysisOutcome) -> std::result::Result<Vec<f64>, String> {
     if found.status != Status::Finished {
         return Err(found.reason.clone().unwrap_or_else(|| "the run did not finish".into()));
     }
@@ -196,5 +213,5 @@ fn wanted(problem: &Problem, found: &Found) -> std::result::Result<Vec<f64>, Str
 }
 
 fn why(error: &Error) -> String {
-    Found::failed(error).reason.unwrap_or_default()
+    AnalysisOutcome::failed(error).reason.unwrap_or_default()
 }

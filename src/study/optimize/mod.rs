@@ -29,15 +29,15 @@ use std::time::Instant;
 
 use crate::case::Case;
 use crate::error::{Code, Result};
-use crate::numerics::sqp::{Ended, HELD};
-use crate::study::analysis::Found;
-use crate::study::analysis::{self, Ask};
+use crate::numerics::sqp::{HELD, SqpStatus};
+use crate::study::analysis::AnalysisOutcome;
+use crate::study::analysis::{self, AnalysisRequest};
 use crate::study::span::Bound;
 use crate::study::sweep::pool;
 use diagnostics::{broken, warnings};
-use found::{Compared, Derivatives, Design, Held, Optimum, Variable};
-use problem::{Asked, Limit, Problem};
-use search::{Reached, Search, better};
+use found::{ComparedAlternative, ComputedDesign, DerivativeSource, Held, Optimum, Variable};
+use problem::{FigureLimit, OptimizationProblem, OptimizationRequest};
+use search::{OptimizationOutcome, OptimizationSearch, better};
 use wiring::Alternative;
 
 /// Distance of a figure from a limit, over its size, below which the limit is active.
@@ -49,7 +49,7 @@ pub struct Candidate {
     /// Alternative.
     pub alternative: Alternative,
     /// The case with the alternative, and the goal.
-    pub problem: Problem,
+    pub problem: OptimizationProblem,
 }
 
 /// Optimum, with the additional data of its files.
@@ -58,11 +58,11 @@ pub struct Optimised {
     /// The result.
     pub optimum: Optimum,
     /// Problem with the best alternative.
-    pub problem: Problem,
+    pub problem: OptimizationProblem,
     /// The case with the optimized numbers.
     pub case: Case,
     /// Every design that was computed.
-    pub history: Vec<Design>,
+    pub history: Vec<ComputedDesign>,
 }
 
 /// Optimizes every candidate. `report` is called after every design with their number and the best figure so far; `stop`
@@ -72,14 +72,16 @@ pub struct Optimised {
 /// No design can be computed at any start.
 pub fn optimise(
     candidates: &[Candidate],
-    asked: &Asked,
+    asked: &OptimizationRequest,
     stop: &(dyn Fn() -> bool + Sync),
     report: &(dyn Fn(usize, Option<f64>) + Sync),
 ) -> Result<Optimised> {
     let begin = Instant::now();
     let report_all = together(asked, report);
     let searches = candidates.iter().map(|one| &one.problem).enumerate();
-    let searches: Vec<Search<'_>> = searches.map(|one| Search::new(one, asked, stop, &report_all)).collect();
+    let searches: Vec<OptimizationSearch<'_>> = searches
+        .map(|one| OptimizationSearch::new(one, asked, stop, &report_all))
+        .collect();
     // one search runs its starts in parallel; several searches run in parallel themselves
     let mut all = match &searches[..] {
         [search] => vec![search.go(asked.jobs)],
@@ -92,7 +94,7 @@ pub fn optimise(
         [_] => vec![],
         _ => {
             let each = candidates.iter().zip(&all);
-            each.map(|(one, reached)| Compared::of(&one.alternative, reached))
+            each.map(|(one, reached)| ComparedAlternative::of(&one.alternative, reached))
                 .collect()
         }
     };
@@ -100,7 +102,7 @@ pub fn optimise(
         .iter()
         .enumerate()
         .filter_map(|(k, end)| Some((k, end.as_ref().ok()?)));
-    let of = |end: &Reached| end.sizes[0];
+    let of = |end: &OptimizationOutcome| end.sizes[0];
     let best = ends.min_by(|(_, a), (_, b)| better((&a.minimum, of(a)), (&b.minimum, of(b))));
     let chosen = best.map_or(0, |(k, _)| k);
     let reached = all.swap_remove(chosen)?;
@@ -109,7 +111,7 @@ pub fn optimise(
 
 /// Counts the designs of all searches, and keeps the best figure of all.
 fn together<'a>(
-    asked: &Asked,
+    asked: &OptimizationRequest,
     report: &'a (dyn Fn(usize, Option<f64>) + Sync),
 ) -> impl Fn(usize, Option<f64>) + Sync + use<'a> {
     let sign = asked.goal.sign();
@@ -126,29 +128,31 @@ fn together<'a>(
 /// Result at the end of the best search: curvature, active limits, and figures of the plain command.
 fn finish(
     candidates: &[Candidate],
-    searches: &[Search<'_>],
-    (chosen, reached): (usize, Reached),
-    alternatives: Vec<Compared>,
+    searches: &[OptimizationSearch<'_>],
+    (chosen, reached): (usize, OptimizationOutcome),
+    alternatives: Vec<ComparedAlternative>,
     stop: &(dyn Fn() -> bool + Sync),
     begin: Instant,
 ) -> Result<Optimised> {
     let (problem, search) = (&candidates[chosen].problem, &searches[chosen]);
     let minimum = &reached.minimum;
     let case = problem.with(&reached.values)?;
-    let found = minimum.ended == Ended::Found && minimum.at.violation() <= HELD;
+    let found = minimum.ended == SqpStatus::Found && minimum.at.violation() <= HELD;
     // at an active limit the figure changes with numbers to first order
     let inner = minimum.multipliers.iter().all(|gain| *gain == 0.0) && !minimum.x.is_empty();
     let bend = (found && inner && !stop())
         .then(|| curvature::bend(problem, search, &reached, reached.starts.len()))
         .flatten();
     let checked = check(problem, &case, stop);
-    let exact = searches.iter().all(|search| search.derivatives() == Derivatives::Exact);
-    let history: Vec<Design> = searches.iter().flat_map(Search::history).collect();
+    let exact = searches
+        .iter()
+        .all(|search| search.derivatives() == DerivativeSource::Exact);
+    let history: Vec<ComputedDesign> = searches.iter().flat_map(OptimizationSearch::history).collect();
     let mut failed = BTreeMap::new();
     for reason in history.iter().filter_map(|design| design.reason.clone()) {
         *failed.entry(reason).or_insert(0) += 1;
     }
-    let own = |found: &Found| found.figure(&problem.goal.figure);
+    let own = |found: &AnalysisOutcome| found.figure(&problem.goal.figure);
     let mut optimum = Optimum {
         case: problem.case.name.clone(),
         command: problem.what,
@@ -170,8 +174,8 @@ fn finish(
         curvature: bend.as_ref().map(|bend| bend.curvature(problem, &reached)),
         ended: (!minimum.x.is_empty()).then(|| diagnostics::ended(minimum.ended, stop()).into()),
         derivatives: match exact {
-            true => Derivatives::Exact,
-            false => Derivatives::Differences,
+            true => DerivativeSource::Exact,
+            false => DerivativeSource::Differences,
         },
         starts: reached.starts.clone(),
         evaluations: history.len(),
@@ -209,8 +213,8 @@ fn finish(
 }
 
 /// Result of the plain command at the optimum, with errors.
-fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Found> {
-    let ask = Ask {
+fn check(problem: &OptimizationProblem, case: &Case, stop: &dyn Fn() -> bool) -> Option<AnalysisOutcome> {
+    let ask = AnalysisRequest {
         what: problem.what,
         accuracy: None,
         from: None,
@@ -221,7 +225,7 @@ fn check(problem: &Problem, case: &Case, stop: &dyn Fn() -> bool) -> Option<Foun
 }
 
 /// Estimated absolute error of a figure.
-fn error(found: &Found, figure: &str) -> Option<f64> {
+fn error(found: &AnalysisOutcome, figure: &str) -> Option<f64> {
     let quantity = figure.split('.').next().unwrap_or_default();
     let relative = [figure, quantity]
         .iter()
@@ -229,7 +233,12 @@ fn error(found: &Found, figure: &str) -> Option<f64> {
     Some(relative * found.figure(figure)?.abs())
 }
 
-fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>, k: usize) -> Variable {
+fn variable(
+    problem: &OptimizationProblem,
+    reached: &OptimizationOutcome,
+    bend: Option<&curvature::Bend>,
+    k: usize,
+) -> Variable {
     let (span, place) = (&problem.spans[k], reached.minimum.x[k]);
     let slope = reached.minimum.at_bounds[k];
     let at_bound = match place {
@@ -252,8 +261,8 @@ fn variable(problem: &Problem, reached: &Reached, bend: Option<&curvature::Bend>
     }
 }
 
-fn held(problem: &Problem, reached: &Reached, i: usize) -> Held {
-    let limit: &Limit = &problem.limits[i];
+fn held(problem: &OptimizationProblem, reached: &OptimizationOutcome, i: usize) -> Held {
+    let limit: &FigureLimit = &problem.limits[i];
     Held {
         limit: limit.clone(),
         value: reached.figures[i + 1],

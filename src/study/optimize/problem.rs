@@ -9,7 +9,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
-use crate::study::span::{self, Span};
+use crate::study::span::{self, ParameterBounds};
 
 /// Figure to be maximized or minimized.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,7 +39,7 @@ pub enum Side {
 
 /// Limit of a figure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
+pub struct FigureLimit {
     /// The figure.
     pub figure: String,
     /// Side of the bound.
@@ -48,7 +48,7 @@ pub struct Limit {
     pub bound: f64,
 }
 
-impl Limit {
+impl FigureLimit {
     /// Parses `FIGURE<=VALUE` or `FIGURE>=VALUE`.
     ///
     /// # Errors
@@ -96,15 +96,15 @@ impl Limit {
 
 /// Requested optimization.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct OptimizationRequest {
     /// Analysis of every design.
     pub what: AnalysisKind,
     /// Numbers to be optimized, with bounds.
-    pub spans: Vec<Span>,
+    pub spans: Vec<ParameterBounds>,
     /// Goal, its figure as typed.
     pub goal: Goal,
     /// Limits, their figures as typed.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<FigureLimit>,
     /// Number of searches, each from another start.
     pub starts: usize,
     /// Number of parallel designs.
@@ -113,7 +113,7 @@ pub struct Asked {
 
 /// All data of an optimization.
 #[derive(Clone, Debug)]
-pub struct Problem {
+pub struct OptimizationProblem {
     /// The case.
     pub case: Case,
     /// Analysis of every design.
@@ -121,33 +121,33 @@ pub struct Problem {
     /// System of a run, whose effects every design uses: a figure must not jump where others would be chosen.
     pub system: Option<System>,
     /// Numbers to be optimized, with bounds.
-    pub spans: Vec<Span>,
+    pub spans: Vec<ParameterBounds>,
     /// Initial values.
     pub start: Vec<f64>,
     /// Goal.
     pub goal: Goal,
     /// Limits.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<FigureLimit>,
     /// Reason why exact derivatives are not available, if they are not.
     pub differences: Option<String>,
     /// Stored designs.
     pub evaluations: Evaluations,
 }
 
-impl Problem {
+impl OptimizationProblem {
     /// Combines a case and a request.
     ///
     /// # Errors
     /// Inconsistent input, found before anything is computed.
-    pub fn new(case: &Case, asked: &Asked) -> Result<Self> {
+    pub fn new(case: &Case, asked: &OptimizationRequest) -> Result<Self> {
         let start = span::begin(case, &asked.spans, std::iter::empty())?;
         asked.what.analysis().check(case)?;
         let names = asked.what.analysis().names(case)?;
         let option = if asked.goal.largest { "--maximize" } else { "--minimize" };
         let figure = resolve(option, &asked.goal.figure, asked.what, &names)?;
-        let limit = |one: &Limit| {
+        let limit = |one: &FigureLimit| {
             let figure = resolve("--subject-to", &one.figure, asked.what, &names)?;
-            Ok(Limit { figure, ..one.clone() })
+            Ok(FigureLimit { figure, ..one.clone() })
         };
         let limits = asked.limits.iter().map(limit).collect::<Result<Vec<_>>>()?;
         contradictions(&limits)?;
@@ -191,7 +191,7 @@ impl Problem {
 
     /// Returns the optimized numbers at values.
     pub fn parameters(&self, values: &[f64]) -> Vec<Parameter> {
-        let parameter = |(span, value): (&Span, &f64)| Parameter {
+        let parameter = |(span, value): (&ParameterBounds, &f64)| Parameter {
             pointer: span.pointer.clone(),
             value: *value,
         };
@@ -206,7 +206,7 @@ impl Problem {
 }
 
 /// Rejects limits of one figure that contradict each other.
-fn contradictions(limits: &[Limit]) -> Result<()> {
+fn contradictions(limits: &[FigureLimit]) -> Result<()> {
     for low in limits.iter().filter(|one| one.side == Side::AtLeast) {
         let high = limits
             .iter()

@@ -6,11 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::found::{Derivatives, Design, Start};
-use super::look::{Seen, look};
-use super::problem::{Asked, Problem};
+use super::found::{ComputedDesign, DerivativeSource, OptimizationStart};
+use super::look::{EvaluatedDesign, look};
+use super::problem::{OptimizationProblem, OptimizationRequest};
 use crate::error::{At, Error, Result, SolverError};
-use crate::numerics::sqp::{Ended, HELD, Minimum, Options, Point, minimise};
+use crate::numerics::sqp::{HELD, SqpMinimum, SqpOptions, SqpPoint, SqpStatus, minimise};
 use crate::study::span;
 use crate::study::sweep::pool;
 
@@ -30,20 +30,20 @@ const STEEP: f64 = 2e-2;
 const EXACT: f64 = 1e-9;
 
 /// A search.
-pub struct Search<'a> {
-    problem: &'a Problem,
-    asked: &'a Asked,
+pub struct OptimizationSearch<'a> {
+    problem: &'a OptimizationProblem,
+    asked: &'a OptimizationRequest,
     stop: &'a (dyn Fn() -> bool + Sync),
     report: &'a (dyn Fn(usize, Option<f64>) + Sync),
-    history: Mutex<Vec<Design>>,
+    history: Mutex<Vec<ComputedDesign>>,
     differences: AtomicBool,
     alternative: usize,
 }
 
 /// Result of all searches.
-pub struct Reached {
+pub struct OptimizationOutcome {
     /// Minimum of the best search.
-    pub minimum: Minimum,
+    pub minimum: SqpMinimum,
     /// Values of the numbers at the minimum.
     pub values: Vec<f64>,
     /// Figures at the minimum.
@@ -51,15 +51,15 @@ pub struct Reached {
     /// Sizes by which figures are divided, in their order.
     pub sizes: Vec<f64>,
     /// Searches from all starts.
-    pub starts: Vec<Start>,
+    pub starts: Vec<OptimizationStart>,
 }
 
-impl<'a> Search<'a> {
+impl<'a> OptimizationSearch<'a> {
     /// Creates the search of a problem, one of several alternatives. `report` is called after every design with their
     /// number and the best figure that meets the limits.
     pub fn new(
-        (alternative, problem): (usize, &'a Problem),
-        asked: &'a Asked,
+        (alternative, problem): (usize, &'a OptimizationProblem),
+        asked: &'a OptimizationRequest,
         stop: &'a (dyn Fn() -> bool + Sync),
         report: &'a (dyn Fn(usize, Option<f64>) + Sync),
     ) -> Self {
@@ -75,15 +75,15 @@ impl<'a> Search<'a> {
     }
 
     /// Every design so far.
-    pub fn history(&self) -> Vec<Design> {
+    pub fn history(&self) -> Vec<ComputedDesign> {
         self.history.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     /// Source of the derivatives.
-    pub fn derivatives(&self) -> Derivatives {
+    pub fn derivatives(&self) -> DerivativeSource {
         match self.differences.load(Relaxed) {
-            true => Derivatives::Differences,
-            false => Derivatives::Exact,
+            true => DerivativeSource::Differences,
+            false => DerivativeSource::Exact,
         }
     }
 
@@ -92,7 +92,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// No design can be computed at any start.
-    pub fn go(&self, jobs: usize) -> Result<Reached> {
+    pub fn go(&self, jobs: usize) -> Result<OptimizationOutcome> {
         // without numbers there is only one start
         let starts = if self.problem.spans.is_empty() {
             1
@@ -102,12 +102,12 @@ impl<'a> Search<'a> {
         let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
         let one = |k: usize| (!(self.stop)()).then(|| self.minimise(k, &places[k]));
         let found = pool::all(places.len(), jobs, &one);
-        let found: Vec<Option<(Minimum, Vec<f64>)>> = found.into_iter().map(Option::flatten).collect();
-        let start = |(from, found): (&Vec<f64>, &Option<(Minimum, Vec<f64>)>)| {
+        let found: Vec<Option<(SqpMinimum, Vec<f64>)>> = found.into_iter().map(Option::flatten).collect();
+        let start = |(from, found): (&Vec<f64>, &Option<(SqpMinimum, Vec<f64>)>)| {
             let at = found
                 .as_ref()
                 .map(|(minimum, sizes)| (minimum, self.figures(minimum, sizes)));
-            Start {
+            OptimizationStart {
                 from: span::values(&self.problem.spans, from),
                 to: at
                     .as_ref()
@@ -141,7 +141,7 @@ impl<'a> Search<'a> {
                 ),
             })));
         };
-        Ok(Reached {
+        Ok(OptimizationOutcome {
             values: span::values(&self.problem.spans, &minimum.x),
             figures: self.figures(&minimum, &sizes),
             minimum,
@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
     }
 
     /// Figures at the end of a search.
-    fn figures(&self, minimum: &Minimum, sizes: &[f64]) -> Vec<f64> {
+    fn figures(&self, minimum: &SqpMinimum, sizes: &[f64]) -> Vec<f64> {
         let goal = self.problem.goal.sign() * minimum.at.value * sizes[0];
         let limits = self
             .problem
@@ -164,14 +164,14 @@ impl<'a> Search<'a> {
     }
 
     /// Minimizes from one start; returns the minimum and the sizes of figures.
-    fn minimise(&self, start: usize, from: &[f64]) -> Option<(Minimum, Vec<f64>)> {
+    fn minimise(&self, start: usize, from: &[f64]) -> Option<(SqpMinimum, Vec<f64>)> {
         let mut sizes: Option<Vec<f64>> = None;
-        let options = Options {
+        let options = SqpOptions {
             steps: STEPS,
             close: CLOSE,
             noise: self.noise(),
         };
-        let mut found: Option<Minimum> = None;
+        let mut found: Option<SqpMinimum> = None;
         for _ in 0..AGAIN {
             let from = found.as_ref().map_or(from, |found| &found.x);
             // do not compute the end of the last search again
@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
             let steps = found.as_ref().map_or(0, |found| found.steps);
             let moved = next.steps > 0;
             let first = found.is_none();
-            let next = Minimum {
+            let next = SqpMinimum {
                 steps: steps + next.steps,
                 ..next
             };
@@ -204,8 +204,8 @@ impl<'a> Search<'a> {
             }
         }
         let mut found = found?;
-        if found.ended == Ended::Found && steepness(&found) > STEEP {
-            found.ended = Ended::Stuck;
+        if found.ended == SqpStatus::Found && steepness(&found) > STEEP {
+            found.ended = SqpStatus::Stuck;
         }
         Some((found, sizes?))
     }
@@ -219,14 +219,14 @@ impl<'a> Search<'a> {
     }
 
     /// Point at the end of a search, scaled with the size of the figure there.
-    fn rescaled(&self, found: &Minimum, sizes: &[f64]) -> (Point, Vec<f64>) {
+    fn rescaled(&self, found: &SqpMinimum, sizes: &[f64]) -> (SqpPoint, Vec<f64>) {
         let figures = self.figures(found, sizes);
         let mut own = sizes.to_vec();
         if figures[0] != 0.0 {
             own[0] = figures[0].abs();
         }
         let share = sizes[0] / own[0];
-        let point = Point {
+        let point = SqpPoint {
             value: found.at.value * share,
             slope: &found.at.slope * share,
             ..found.at.clone()
@@ -247,11 +247,11 @@ impl<'a> Search<'a> {
     }
 
     /// Converts figures and derivatives of a design to the scaled form of the search.
-    pub fn point(&self, seen: &Seen, sizes: &[f64]) -> Point {
+    pub fn point(&self, seen: &EvaluatedDesign, sizes: &[f64]) -> SqpPoint {
         let (n, limits) = (self.problem.spans.len(), &self.problem.limits);
         let scale = self.problem.goal.sign() / sizes[0];
         let by = |i: usize| limits[i].sense() / sizes[i + 1];
-        Point {
+        SqpPoint {
             value: scale * seen.figures[0],
             slope: DVector::from_fn(n, |k, _| scale * seen.slopes[0][k]),
             inequalities: DVector::from_fn(limits.len(), |i, _| {
@@ -262,7 +262,7 @@ impl<'a> Search<'a> {
     }
 
     /// Evaluates a position, and stores the designs that are computed for it.
-    pub fn look(&self, start: usize, places: &[f64]) -> Option<Seen> {
+    pub fn look(&self, start: usize, places: &[f64]) -> Option<EvaluatedDesign> {
         if (self.stop)() {
             return None;
         }
@@ -273,7 +273,7 @@ impl<'a> Search<'a> {
             self.keep(start, values, figures, wall_s);
         };
         let seen = look(self.problem, places, &|| (self.stop)(), &keep).ok()?;
-        if seen.from == Derivatives::Differences {
+        if seen.from == DerivativeSource::Differences {
             self.differences.store(true, Relaxed);
         }
         let finite = seen
@@ -291,7 +291,7 @@ impl<'a> Search<'a> {
             each.map(|(limit, figure)| (limit.beyond(*figure), limit.bound.abs()))
                 .all(|(beyond, size)| beyond <= 1e-5 * size)
         };
-        let design = Design {
+        let design = ComputedDesign {
             alternative: self.alternative,
             start,
             values: values.to_vec(),
@@ -312,8 +312,8 @@ impl<'a> Search<'a> {
 
 /// Compares the ends of two searches, each with the size of the figure: less violation of the limits is better, then
 /// the better figure.
-pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
-    let worth = |(minimum, size): (&Minimum, f64)| {
+pub fn better(a: (&SqpMinimum, f64), b: (&SqpMinimum, f64)) -> Ordering {
+    let worth = |(minimum, size): (&SqpMinimum, f64)| {
         let violation = minimum.at.violation();
         let beyond = if violation > HELD { violation } else { 0.0 };
         (beyond, minimum.at.value * size)
@@ -324,7 +324,7 @@ pub fn better(a: (&Minimum, f64), b: (&Minimum, f64)) -> Ordering {
 
 /// Steepness at the end of a search, relative to the figure there: the largest slope of the goal, including limits with
 /// their multipliers, with respect to numbers that no bound holds.
-fn steepness(found: &Minimum) -> f64 {
+fn steepness(found: &SqpMinimum) -> f64 {
     let lambda = DVector::from_column_slice(&found.multipliers);
     let slope = &found.at.slope + found.at.slopes.tr_mul(&lambda);
     let free = slope

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Numbers, SAFETY, has_cells_along_bladders};
+use super::{RefinedNumbers, SAFETY, has_cells_along_bladders};
 use crate::case::Case;
 use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::numbers::error_percent as percent;
@@ -22,7 +22,7 @@ use crate::study::effects::full::full;
 
 /// Errors of one number due to meshes and effects, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Share {
+pub struct ErrorShare {
     /// Error due to the cells of the beam; `None` if the other mesh has no such number.
     pub beam: Option<f64>,
     /// Error due to the cells along bladders; `None` as for `beam`.
@@ -32,7 +32,7 @@ pub struct Share {
     pub effects: Option<f64>,
 }
 
-impl Share {
+impl ErrorShare {
     /// Sum of all errors.
     pub fn total(&self) -> f64 {
         let parts = [self.beam, self.bladders, self.effects];
@@ -49,7 +49,7 @@ impl Share {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Meshes {
     /// Relative errors by name.
-    pub quantities: BTreeMap<String, Share>,
+    pub quantities: BTreeMap<String, ErrorShare>,
     /// Absolute errors by name, each in the unit of its number.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub errors: BTreeMap<String, f64>,
@@ -62,7 +62,11 @@ pub struct Meshes {
 ///
 /// # Errors
 /// As [`System::new`](crate::discrete::System::new).
-pub fn judge(case: &Case, here: &Numbers, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<Meshes> {
+pub fn judge(
+    case: &Case,
+    here: &RefinedNumbers,
+    compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>,
+) -> Result<Meshes> {
     let mut found = Meshes::default();
     let mut other = case.clone();
     let halved = case.mesh.cells_per_segment.is_multiple_of(2);
@@ -91,8 +95,8 @@ impl Meshes {
     pub fn with_effects(
         mut self,
         case: &Case,
-        here: &Numbers,
-        compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
+        here: &RefinedNumbers,
+        compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>,
     ) -> Result<Self> {
         if let Some(full) = full(case)? {
             self.compare("effects", here, compute(&full.case), 1.0, |share| &mut share.effects);
@@ -104,10 +108,10 @@ impl Meshes {
     fn compare(
         &mut self,
         which: &str,
-        here: &Numbers,
-        there: Result<Numbers>,
+        here: &RefinedNumbers,
+        there: Result<RefinedNumbers>,
         factor: f64,
-        part: fn(&mut Share) -> &mut Option<f64>,
+        part: fn(&mut ErrorShare) -> &mut Option<f64>,
     ) {
         let there = match there {
             Ok(numbers) => numbers,
@@ -130,13 +134,13 @@ impl Meshes {
     }
 
     /// Computes the absolute errors from the relative ones.
-    fn sum(&mut self, here: &Numbers) {
+    fn sum(&mut self, here: &RefinedNumbers) {
         let known = self.quantities.iter().filter(|(_, share)| share.known());
         let error = known.filter_map(|(name, share)| Some((name.clone(), share.total() * here.get(name)?.counted())));
         self.errors = error.filter(|(_, error)| error.is_finite()).collect();
     }
 
-    fn worst(&self) -> Option<(&String, &Share)> {
+    fn worst(&self) -> Option<(&String, &ErrorShare)> {
         self.quantities
             .iter()
             .max_by(|a, b| a.1.total().total_cmp(&b.1.total()))
@@ -193,7 +197,7 @@ impl Meshes {
     }
 }
 
-impl Share {
+impl ErrorShare {
     fn parts(&self) -> String {
         let parts = [
             (self.beam, "the cells of the beam"),

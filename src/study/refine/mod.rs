@@ -19,11 +19,11 @@ use std::time::Instant;
 use super::accuracy::plan;
 use crate::case::Case;
 use crate::case::schema::Effect;
-use crate::discrete::{Mesh, System};
+use crate::discrete::{BeamMesh, System};
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::model::Model;
-use crate::run::summary::{Accuracy, Estimate, Pilot};
+use crate::run::summary::{Accuracy, ErrorEstimate, Pilot};
 
 /// Finest meshes and tightest tolerance: cells per segment, cells per bladder, decades.
 const FINEST: usize = 64;
@@ -87,14 +87,14 @@ impl At {
 
 /// Computed number, and the reference size of its error if the number itself is smaller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number {
+pub struct ReferencedNumber {
     /// Its value.
     pub value: f64,
     /// Reference size.
     pub size: f64,
 }
 
-impl Number {
+impl ReferencedNumber {
     /// Creates a number with its reference size.
     pub fn new(value: f64, size: f64) -> Self {
         Self { value, size }
@@ -107,7 +107,7 @@ impl Number {
 }
 
 /// Numbers by name.
-pub type Numbers = BTreeMap<String, Number>;
+pub type RefinedNumbers = BTreeMap<String, ReferencedNumber>;
 
 /// Finds the mesh, and the tolerance if `in_time`, at which every number of `compute` has an estimated relative error below `asked`.
 /// Returns the case with these settings, and the accuracy.
@@ -118,7 +118,7 @@ pub fn refine(
     case: &Case,
     asked: f64,
     in_time: bool,
-    compute: &mut dyn FnMut(&Case) -> Result<Numbers>,
+    compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>,
 ) -> Result<(Case, Accuracy)> {
     let case = &plan::of_best_order(case);
     let along = has_cells_along_bladders(case)?;
@@ -134,7 +134,7 @@ pub fn refine(
         pilots: vec![],
     };
     // a quarter of the cells must allow the same order
-    let cells = (4 * Mesh::fewest(case.mesh.order())).div_ceil(case.segments());
+    let cells = (4 * BeamMesh::fewest(case.mesh.order())).div_ceil(case.segments());
     let mut at = At {
         along: along.then_some(FIRST_ALONG_BLADDERS),
         cells: FIRST.cells.max(cells.next_power_of_two()),
@@ -179,7 +179,7 @@ pub fn sensible(asked: f64) -> bool {
 
 /// Warns if an accuracy is not reached.
 pub fn warning(found: &Accuracy) -> Option<String> {
-    let short = |(name, e): (&String, &Estimate)| {
+    let short = |(name, e): (&String, &ErrorEstimate)| {
         let parts = [
             ("time steps", e.time),
             ("meshes", e.space),
@@ -227,7 +227,7 @@ struct Search<'a> {
     case: &'a Case,
     axes: Vec<Axis>,
     in_time: bool,
-    runs: BTreeMap<At, Numbers>,
+    runs: BTreeMap<At, RefinedNumbers>,
     /// Errors of every axis, in the order of `axes`.
     known: Vec<Errors>,
     pilots: Vec<Pilot>,
@@ -248,7 +248,7 @@ impl Search<'_> {
     }
 
     /// Computes the results from which the errors of a setting are estimated.
-    fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+    fn look(&mut self, at: At, settled: f64, compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>) -> Result<()> {
         // at first, coarse before fine
         if self.known.is_empty() {
             for &axis in &self.axes.clone() {
@@ -296,7 +296,7 @@ impl Search<'_> {
         (stuck <= asked).then_some(best.1)
     }
 
-    fn run(&mut self, at: At, compute: &mut dyn FnMut(&Case) -> Result<Numbers>) -> Result<()> {
+    fn run(&mut self, at: At, compute: &mut dyn FnMut(&Case) -> Result<RefinedNumbers>) -> Result<()> {
         if self.runs.contains_key(&at) {
             return Ok(());
         }
@@ -322,7 +322,7 @@ impl Search<'_> {
             .collect()
     }
 
-    fn estimates(&self, at: At) -> BTreeMap<String, Estimate> {
+    fn estimates(&self, at: At) -> BTreeMap<String, ErrorEstimate> {
         let names = self.runs.get(&at).into_iter().flat_map(BTreeMap::keys);
         let of = |name: &String| {
             let along = |wanted: fn(Axis) -> bool| {
@@ -331,7 +331,7 @@ impl Search<'_> {
                 errors.reduce(|a, b| Some(a? + b?)).flatten()
             };
             let (space, time) = (along(|axis| axis != Axis::Time), along(|axis| axis == Axis::Time));
-            let estimate = Estimate {
+            let estimate = ErrorEstimate {
                 time,
                 space,
                 total: if self.in_time {
@@ -339,7 +339,7 @@ impl Search<'_> {
                 } else {
                     space
                 },
-                ..Estimate::default()
+                ..ErrorEstimate::default()
             };
             (name.clone(), estimate)
         };
@@ -347,7 +347,7 @@ impl Search<'_> {
     }
 
     /// Error of a number, relative to it, from its values at two coarser settings.
-    fn series(&self, name: &str, number: &Number, [coarsest, coarse]: [At; 2]) -> Option<f64> {
+    fn series(&self, name: &str, number: &ReferencedNumber, [coarsest, coarse]: [At; 2]) -> Option<f64> {
         let value = |at: At| Some(self.runs.get(&at)?.get(name)?.value);
         let (coarsest, coarse) = (value(coarsest)?, value(coarse)?);
         let (before, last) = ((coarse - coarsest).abs(), (number.value - coarse).abs());
@@ -365,7 +365,7 @@ impl Search<'_> {
     }
 }
 
-fn largest(estimates: &BTreeMap<String, Estimate>) -> f64 {
+fn largest(estimates: &BTreeMap<String, ErrorEstimate>) -> f64 {
     most(estimates.values().map(|e| e.total))
 }
 

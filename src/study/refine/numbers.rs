@@ -2,18 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use super::{Number, Numbers};
+use super::{ReferencedNumber, RefinedNumbers};
 use crate::case::Case;
 use crate::discrete::quantities::{Observable, probes};
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::run::equilibrium::{self, Options, Path};
+use crate::run::equilibrium::{self, EquilibriumOptions, Path};
 use crate::run::floquet::{self, Floquet, Multiplier};
-use crate::run::modes::{self, Kind, Mode, Plan};
+use crate::run::modes::{self, Mode, ModeOptions, TimeBehavior};
 use crate::run::periodic::scene::fault;
-use crate::run::periodic::{Cycle, Scene, record, shoot, subharmonic};
-use crate::run::record::{Column, Control, Unrecorded};
-use crate::run::stop::Stop;
+use crate::run::periodic::{Cycle, PeriodicScene, record, shoot, subharmonic};
+use crate::run::record::{Control, HistoryColumn, Unrecorded};
+use crate::run::stop::StopFlag;
 use crate::run::summary::{Status, Summary};
 use crate::study::counted::{Floors, counted};
 
@@ -32,7 +32,7 @@ const DAMPING: f64 = 0.01;
 ///
 /// # Errors
 /// The path ends early.
-pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
+pub fn of_equilibrium(case: &Case, options: &EquilibriumOptions) -> Result<RefinedNumbers> {
     let path = equilibrium::follow(case, options, &mut |_| Control::Continue)?;
     if let Some(fault) = path.fault {
         return Err(Error::Solver(Box::new(fault)));
@@ -42,12 +42,12 @@ pub fn of_equilibrium(case: &Case, options: &Options) -> Result<Numbers> {
 }
 
 /// Numbers of the last state of a load path that was computed before.
-pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> {
+pub fn of_path(case: &Case, columns: &[HistoryColumn], path: &Path) -> Result<RefinedNumbers> {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
     let modulus = case.beam.young_modulus_pa;
     // compare angles with displacements, stresses of the solid with strains
-    let alike = |column: &Column| match column.unit {
+    let alike = |column: &HistoryColumn| match column.unit {
         "rad" => ("m", length),
         "Pa" if probes::is_stress(&column.name) => ("1", 1.0 / modulus),
         unit => (unit, 1.0),
@@ -80,7 +80,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         "W" => conductance * even * even,
         _ => 0.0,
     };
-    let number = |column: &Column, value: f64| {
+    let number = |column: &HistoryColumn, value: f64| {
         let (unit, factor) = alike(column);
         // compare pressures with those of ports, forces with those that act
         let acting = match unit {
@@ -95,7 +95,7 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
         } else {
             BESIDE
         };
-        Number::new(value, (part * largest(unit).max(acting)).max(floor(unit)) / factor)
+        ReferencedNumber::new(value, (part * largest(unit).max(acting)).max(floor(unit)) / factor)
     };
     Ok(all().map(|(c, x)| (c.name.clone(), number(c, *x))).collect())
 }
@@ -104,24 +104,24 @@ pub fn of_path(case: &Case, columns: &[Column], path: &Path) -> Result<Numbers> 
 ///
 /// # Errors
 /// As [`modes::modes`].
-pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &Plan) -> Result<Numbers> {
+pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOptions) -> Result<RefinedNumbers> {
     let about = match at_rest_under {
         Some(at) => modes::at_equilibrium(case, at)?,
         None => modes::linearise(case, 0.0, None)?,
     };
-    let plan = Plan { limits: false, ..*plan };
+    let plan = ModeOptions { limits: false, ..*plan };
     let found = modes::of(about, &plan)?;
     let mut counts = BTreeMap::new();
-    let mut all = Numbers::new();
+    let mut all = RefinedNumbers::new();
     for mode in found.modes.iter().filter(|mode| !mode.kind.stays()) {
         let what = sort(mode);
         let count = counts.entry(what).or_insert(0);
         *count += 1;
         let name = format!("{what}_{count}");
         if let Some(value) = mode.frequency_hz() {
-            all.insert(format!("{name}_frequency_hz"), Number { value, size: 0.0 });
+            all.insert(format!("{name}_frequency_hz"), ReferencedNumber { value, size: 0.0 });
         }
-        let growth = Number::new(mode.s.re, DAMPING * mode.s.norm());
+        let growth = ReferencedNumber::new(mode.s.re, DAMPING * mode.s.norm());
         all.insert(format!("{name}_growth_per_s"), growth);
     }
     Ok(all)
@@ -130,8 +130,8 @@ pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &Plan) -> Result<
 /// Kind of a mode, independent of the mesh.
 fn sort(mode: &Mode) -> &'static str {
     match mode.shape.transverse() {
-        _ if !mode.kind.swings() && mode.kind != Kind::Volume => "decaying",
-        _ if mode.kind == Kind::Volume || mode.shape.displacement() == 0.0 => "fluid",
+        _ if !mode.kind.swings() && mode.kind != TimeBehavior::Volume => "decaying",
+        _ if mode.kind == TimeBehavior::Volume || mode.shape.displacement() == 0.0 => "fluid",
         share if share > 0.5 => "across",
         _ => "along",
     }
@@ -141,8 +141,8 @@ fn sort(mode: &Mode) -> &'static str {
 ///
 /// # Errors
 /// There is no cycle, or nothing holds the beam.
-pub fn cycle(case: &Case, period: Option<f64>, stop: &Stop) -> Result<(Scene, Cycle)> {
-    let scene = Scene::new(case, period)?.heeding(stop);
+pub fn cycle(case: &Case, period: Option<f64>, stop: &StopFlag) -> Result<(PeriodicScene, Cycle)> {
+    let scene = PeriodicScene::new(case, period)?.heeding(stop);
     scene.held(&case.name)?;
     let cycle = shoot(&scene, None).map_err(fault)?;
     Ok((scene, cycle))
@@ -152,12 +152,12 @@ pub fn cycle(case: &Case, period: Option<f64>, stop: &Stop) -> Result<(Scene, Cy
 ///
 /// # Errors
 /// As [`cycle`], and if the cycle cannot be followed for a period.
-pub fn of_cycle(case: &Case, periods: usize, stop: &Stop) -> Result<Numbers> {
+pub fn of_cycle(case: &Case, periods: usize, stop: &StopFlag) -> Result<RefinedNumbers> {
     let (scene, cycle, _) = subharmonic::find_until(case, periods, stop)?;
     recorded(case, &scene, &cycle)
 }
 
-fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
+fn recorded(case: &Case, scene: &PeriodicScene, cycle: &Cycle) -> Result<RefinedNumbers> {
     let outcome = record::record(case, scene, cycle, &mut Unrecorded(|_| Control::Continue))?;
     if outcome.summary.status != Status::Finished {
         let reason = outcome.summary.reason.unwrap_or_default();
@@ -170,12 +170,12 @@ fn recorded(case: &Case, scene: &Scene, cycle: &Cycle) -> Result<Numbers> {
 }
 
 /// Figures over a recorded cycle.
-pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
-    let mut all = Numbers::new();
+pub fn of_summary(case: &Case, summary: &Summary) -> Result<RefinedNumbers> {
+    let mut all = RefinedNumbers::new();
     for (name, quantity) in counted(summary, &Floors::of(case)?) {
         let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
-            all.insert(format!("{name}.{figure}"), Number { value, size: largest });
+            all.insert(format!("{name}.{figure}"), ReferencedNumber { value, size: largest });
         }
     }
     Ok(all)
@@ -185,7 +185,7 @@ pub fn of_summary(case: &Case, summary: &Summary) -> Result<Numbers> {
 ///
 /// # Errors
 /// As [`of_cycle`].
-pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize, stop: &Stop) -> Result<Numbers> {
+pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize, stop: &StopFlag) -> Result<RefinedNumbers> {
     let (scene, mut cycle, _) = subharmonic::find_until(case, periods, stop)?;
     let mut all = recorded(case, &scene, &cycle)?;
     all.extend(of_stability(&floquet::multipliers(&scene, &mut cycle, count)));
@@ -196,7 +196,7 @@ pub fn of_cycle_and_multipliers(case: &Case, periods: usize, count: usize, stop:
 ///
 /// # Errors
 /// As [`cycle`].
-pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize, stop: &Stop) -> Result<Numbers> {
+pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize, stop: &StopFlag) -> Result<RefinedNumbers> {
     let (scene, mut cycle) = cycle(case, period, stop)?;
     Ok(of_floquet(&floquet::multipliers(&scene, &mut cycle, count)))
 }
@@ -205,16 +205,16 @@ pub fn of_multipliers(case: &Case, period: Option<f64>, count: usize, stop: &Sto
 ///
 /// # Errors
 /// As [`cycle`].
-pub fn of_growth(case: &Case, period: Option<f64>, count: usize, stop: &Stop) -> Result<Numbers> {
+pub fn of_growth(case: &Case, period: Option<f64>, count: usize, stop: &StopFlag) -> Result<RefinedNumbers> {
     let (scene, mut cycle) = cycle(case, period, stop)?;
     Ok(of_stability(&floquet::multipliers(&scene, &mut cycle, count)))
 }
 
 /// Moduli of multipliers, and growth rates of those above [`GONE`].
-pub fn of_stability(found: &Floquet) -> Numbers {
+pub fn of_stability(found: &Floquet) -> RefinedNumbers {
     let mut all = of_floquet(found);
     for (k, m) in found.multipliers.iter().enumerate().filter(|(_, m)| m.modulus > GONE) {
-        let growth = Number::new(
+        let growth = ReferencedNumber::new(
             m.growth_per_s,
             DAMPING * m.growth_per_s.hypot(std::f64::consts::TAU * m.frequency_hz),
         );
@@ -224,9 +224,9 @@ pub fn of_stability(found: &Floquet) -> Numbers {
 }
 
 /// Moduli of multipliers.
-fn of_floquet(found: &Floquet) -> Numbers {
+fn of_floquet(found: &Floquet) -> RefinedNumbers {
     let all = named(found).into_iter();
-    all.map(|(name, m)| (format!("{name}.modulus"), Number::new(m.modulus, 1.0)))
+    all.map(|(name, m)| (format!("{name}.modulus"), ReferencedNumber::new(m.modulus, 1.0)))
         .collect()
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::numerics::inverse::{Linear, Posterior, Seen};
+use crate::numerics::inverse::{Observability, Posterior, ReducedProblem};
 
 /// Criterion for a set of sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Criterion {
 
 /// A set of sensors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Choice {
+pub struct SensorSet {
     /// Rows of the matrix, ascending.
     pub sensors: Vec<usize>,
     /// Standard error of each unknown for data of deviation 1; none if the data do not determine it by itself.
@@ -34,7 +34,7 @@ const BETTER: f64 = 1e-9;
 /// ```
 ///
 /// `before` are the rows R of the prior. The number of determined directions counts first, the criterion second.
-pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> Vec<Choice> {
+pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion) -> Vec<SensorSet> {
     let rank_before = before.nrows();
     let least = matrix.ncols().saturating_sub(rank_before).max(1);
     let mut sensors: Vec<usize> = vec![];
@@ -49,10 +49,10 @@ pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion
         if count >= least {
             let mut chosen = sensors.clone();
             chosen.sort_unstable();
-            let alone = Seen::of(&rows_of(&chosen, matrix, before)).alone;
+            let alone = Observability::of(&rows_of(&chosen, matrix, before)).alone;
             let spread = posterior(&chosen, matrix, before).spread;
             let error = |k: usize| alone[k].then(|| spread[(k, k)].max(0.0).sqrt());
-            all.push(Choice {
+            all.push(SensorSet {
                 errors: (0..matrix.ncols()).map(error).collect(),
                 sensors: chosen,
             });
@@ -72,7 +72,7 @@ fn rows_of(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> DMatr
 fn posterior(set: &[usize], matrix: &DMatrix<f64>, before: &DMatrix<f64>) -> Posterior {
     let rows = rows_of(set, matrix, before);
     let right = DVector::zeros(rows.nrows());
-    Linear::new(rows, right).posterior(&DMatrix::zeros(0, matrix.ncols()))
+    ReducedProblem::new(rows, right).posterior(&DMatrix::zeros(0, matrix.ncols()))
 }
 
 /// Number of undetermined directions, and the criterion; both are minimized.

@@ -3,9 +3,9 @@
 use nalgebra::DVector;
 
 use super::basis::Amplitude;
-use super::estimate::{Estimate, Found, Problem};
-use super::find::Asked;
-use super::pressures::Measured;
+use super::estimate::{EstimatedAmplitudes, LoadEstimates, SenseProblem};
+use super::find::SenseOptions;
+use super::pressures::PressureTable;
 use super::sensed::{Banded, Noise, NoiseFrom, Sensed};
 use crate::case::wiring::bladder_label;
 use crate::error::Code;
@@ -25,7 +25,7 @@ pub(super) fn alone(amplitudes: &[Amplitude], which: usize) -> Vec<f64> {
 }
 
 /// Value and band of a sum of amplitudes over their sizes; none if the data do not determine it.
-pub(super) fn banded(estimate: &Estimate, found: &Found, factors: &[f64]) -> Option<Banded> {
+pub(super) fn banded(estimate: &LoadEstimates, found: &EstimatedAmplitudes, factors: &[f64]) -> Option<Banded> {
     found.seen.observes(factors).then(|| {
         let factors = DVector::from_column_slice(factors);
         let value = factors.dot(&found.mean);
@@ -40,7 +40,7 @@ pub(super) fn banded(estimate: &Estimate, found: &Found, factors: &[f64]) -> Opt
     })
 }
 
-pub(super) fn noise(asked: &Asked, measured: &Measured, estimate: &Estimate) -> Noise {
+pub(super) fn noise(asked: &SenseOptions, measured: &PressureTable, estimate: &LoadEstimates) -> Noise {
     let (from, sd_pa) = match (&measured.deviations, asked.noise_pa) {
         (Some(_), _) => (NoiseFrom::Table, None),
         (None, Some(given)) => (NoiseFrom::Given, Some(given)),
@@ -76,8 +76,8 @@ pub(super) struct Left {
 
 /// Residuals of the measured values of a problem; value `k` belongs to bladder `bladders[k % bladders.len()]`.
 pub(super) fn left<'a>(
-    problem: &'a Problem,
-    found: &'a Found,
+    problem: &'a SenseProblem,
+    found: &'a EstimatedAmplitudes,
     bladders: &'a [usize],
 ) -> impl Iterator<Item = Left> + 'a {
     let data = problem.data.iter().zip(&problem.deviation).enumerate();
@@ -97,7 +97,7 @@ const NO_NUMBERS: &str =
 
 /// Warnings that put the result in doubt: a misfit beyond known noise, with the worst bladder; a misfit so far below it that the given
 /// noise seems wrong; unexplained pressures taken for noise; implausibly large loads.
-pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &Estimate) -> Vec<String> {
+pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &LoadEstimates) -> Vec<String> {
     let mut all = vec![];
     let sizes = estimate.found.iter().map(|one| one.mean.amax());
     let times = sizes.fold(0.0, f64::max);

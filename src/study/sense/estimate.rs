@@ -7,11 +7,11 @@ use super::misfit::Misfit;
 use super::weight::{choose, heaviest};
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
-use crate::numerics::inverse::{Linear, Posterior, Seen};
+use crate::numerics::inverse::{Observability, Posterior, ReducedProblem};
 use crate::numerics::{normal, student};
 
 /// Forward model: values as a function of amplitudes.
-pub trait Forward {
+pub trait ForwardModel {
     /// Values at given amplitudes, and their derivatives: a row per value, a column per amplitude.
     ///
     /// # Errors
@@ -30,9 +30,9 @@ pub trait Forward {
 }
 
 /// Measurements to be explained by one set of amplitudes.
-pub struct Problem<'a> {
+pub struct SenseProblem<'a> {
     /// Forward model of the measured values.
-    pub forward: Box<dyn Forward + 'a>,
+    pub forward: Box<dyn ForwardModel + 'a>,
     /// Measured values; `None` for a missing one.
     pub data: Vec<Option<f64>>,
     /// Deviation of the noise of each value if known, else in proportion to it.
@@ -45,7 +45,7 @@ pub struct Problem<'a> {
     pub first: (DVector<f64>, DMatrix<f64>),
 }
 
-impl Problem<'_> {
+impl SenseProblem<'_> {
     /// Adds the line of the measurements to an error.
     pub(super) fn named(&self, mut error: Error) -> Error {
         if let (Error::Solver(fault), Some(line)) = (&mut error, self.line) {
@@ -71,7 +71,7 @@ pub enum Smoothing {
 }
 
 /// Options of the estimate.
-pub struct Ask<'a> {
+pub struct EstimateOptions<'a> {
     /// Rows of differences that the prior assumes to be small; no rows, no prior.
     pub differences: &'a DMatrix<f64>,
     /// Weight of the prior.
@@ -82,7 +82,7 @@ pub struct Ask<'a> {
 
 /// Estimated amplitudes of one problem.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct EstimatedAmplitudes {
     /// Mean of the amplitudes.
     pub mean: DVector<f64>,
     /// Covariance of the amplitudes.
@@ -92,7 +92,7 @@ pub struct Found {
     /// Derivatives of the modelled values.
     pub jacobian: DMatrix<f64>,
     /// Observability by measurements and prior.
-    pub seen: Seen,
+    pub seen: Observability,
     /// Number of evaluations of the forward model.
     pub runs: u32,
     /// True if the last iteration converged.
@@ -101,9 +101,9 @@ pub struct Found {
 
 /// Estimates of all problems, and their common quantities.
 #[derive(Clone, Debug)]
-pub struct Estimate {
+pub struct LoadEstimates {
     /// One per problem.
-    pub found: Vec<Found>,
+    pub found: Vec<EstimatedAmplitudes>,
     /// Deviation of the noise over the given one; 1 if it is known.
     pub noise: f64,
     /// Residuals of all values.
@@ -139,7 +139,7 @@ const SAME_WEIGHT: f64 = 0.02;
 ///
 /// # Errors
 /// Those of the problems; [`Error::Usage`] if there are too few values to estimate the noise.
-pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
+pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<LoadEstimates> {
     let rank = match ask.smoothing {
         Smoothing::Off => 0,
         _ => rank(ask.differences),
@@ -160,7 +160,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
     };
     let mut states: Vec<State> = problems.iter().map(State::of).collect();
     // if loads alone can reproduce every pressure, a weight chosen by the data would make the noise vanish
-    let alone = |state: &State| state.measured.len() - Seen::of(&state.weighted()).values.len();
+    let alone = |state: &State| state.measured.len() - Observability::of(&state.weighted()).values.len();
     if !ask.noise_known && chosen && states.iter().map(alone).sum::<usize>() == 0 {
         return Err(few(&states));
     }
@@ -192,7 +192,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         if !chosen {
             break;
         }
-        let linear: Vec<Linear> = states.iter().map(State::linear).collect();
+        let linear: Vec<ReducedProblem> = states.iter().map(State::linear).collect();
         let next = choose(&linear, &before, rank, ask, most);
         let same = (next / weight).ln().abs() < SAME_WEIGHT;
         weight = next;
@@ -219,16 +219,19 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
         freedom: sums.freedom,
         by_discrepancy: rank > 0 && ask.smoothing == Smoothing::Discrepancy,
     };
-    let found = states.into_iter().zip(posteriors).map(|(state, posterior)| Found {
-        seen: Seen::of(&stacked(&state.weighted(), &before(own))),
-        mean: state.at,
-        covariance: posterior.spread * (noise * noise),
-        predicted: state.values,
-        jacobian: state.jacobian,
-        runs: state.runs,
-        settled: state.settled,
-    });
-    Ok(Estimate {
+    let found = states
+        .into_iter()
+        .zip(posteriors)
+        .map(|(state, posterior)| EstimatedAmplitudes {
+            seen: Observability::of(&stacked(&state.weighted(), &before(own))),
+            mean: state.at,
+            covariance: posterior.spread * (noise * noise),
+            predicted: state.values,
+            jacobian: state.jacobian,
+            runs: state.runs,
+            settled: state.settled,
+        });
+    Ok(LoadEstimates {
         found: found.collect(),
         noise,
         widened: misfit.beyond_chance().filter(|_| ask.noise_known).unwrap_or(1.0),
@@ -245,7 +248,7 @@ pub fn estimate(problems: &mut [Problem], ask: &Ask) -> Result<Estimate> {
 fn rank(differences: &DMatrix<f64>) -> usize {
     match differences.is_empty() {
         true => 0,
-        false => Seen::of(differences).values.len(),
+        false => Observability::of(differences).values.len(),
     }
 }
 
@@ -313,7 +316,7 @@ struct State {
 }
 
 impl State {
-    fn of(problem: &Problem) -> Self {
+    fn of(problem: &SenseProblem) -> Self {
         let measured = problem.data.iter().zip(&problem.deviation).enumerate();
         let measured = measured.filter_map(|(k, (value, deviation))| Some((k, (*value)?, *deviation)));
         let (values, jacobian) = problem.first.clone();
@@ -345,14 +348,14 @@ impl State {
     }
 
     /// Linearization about the current iterate.
-    fn linear(&self) -> Linear {
+    fn linear(&self) -> ReducedProblem {
         let jacobian = self.weighted();
         let right = self.residual(&self.values) + &jacobian * &self.at;
-        Linear::new(jacobian, right)
+        ReducedProblem::new(jacobian, right)
     }
 
     /// Iterates to the minimum.
-    fn descend(&mut self, problem: &mut Problem, before: &DMatrix<f64>) -> Result<Posterior> {
+    fn descend(&mut self, problem: &mut SenseProblem, before: &DMatrix<f64>) -> Result<Posterior> {
         let size = self
             .measured
             .iter()

@@ -5,22 +5,24 @@ use nalgebra::{DMatrix, DVector};
 use super::basis::{self, Amplitude, Basis};
 use super::choose::{self, Criterion};
 use super::diagnostics::{self, Left, alone, banded, doubts, left};
-use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
+use super::estimate::{
+    EstimateOptions, EstimatedAmplitudes, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
+};
 use super::local_mean::{FineFound, FineLoad, local_band, local_means};
 use super::over_time;
-use super::pressures::Measured;
+use super::pressures::PressureTable;
 use super::rest::{AtRest, labels, probed};
-use super::sensed::{BandKind, Banded, Chosen, Row, Sensed, Smoothed};
+use super::sensed::{BandKind, Banded, ChosenSensors, MeasurementRow, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
 use crate::case::schema::Case;
 use crate::error::{Code, Error, Result};
-use crate::numerics::inverse::{Seen, second_differences};
-use crate::run::equilibrium::{self, Options};
+use crate::numerics::inverse::{Observability, second_differences};
+use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::{known, slow};
 
 /// Options of the estimate.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Asked {
+pub struct SenseOptions {
     /// Loads to estimate; [`Basis::usual`] if empty.
     pub loads: Vec<Basis>,
     /// Standard deviation of the noise [Pa], if known.
@@ -42,7 +44,7 @@ pub struct Dynamic {
     pub knots: Option<usize>,
 }
 
-impl Asked {
+impl SenseOptions {
     /// Loads to estimate: the given ones or the usual ones.
     pub(super) fn loads(&self, case: &Case) -> Vec<Basis> {
         match self.loads.is_empty() {
@@ -71,21 +73,26 @@ const SAME: f64 = 1e-6;
 /// # Errors
 /// [`Error::Usage`] for a case without pressures, loads that no pressure responds to, or noise that cannot be estimated; errors of states
 /// that are not found.
-pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn Fn() -> bool) -> Result<Sensed> {
+pub fn find(
+    case: &Case,
+    measured: Option<&PressureTable>,
+    asked: &SenseOptions,
+    stop: &dyn Fn() -> bool,
+) -> Result<Sensed> {
     if let (Some(dynamic), Some(measured)) = (&asked.dynamic, measured) {
         return over_time::find(case, measured, asked, dynamic.knots, stop);
     }
     let loads = asked.loads(case);
     let amplitudes = basis::amplitudes(case, &loads)?;
     let (probed, names) = probed(case)?;
-    let options = Options::at(asked.at_s);
+    let options = EquilibriumOptions::at(asked.at_s);
     let mut model = AtRest::new(&probed, &names, &amplitudes, &options)?.until(stop);
     let zeros = vec![0.0; amplitudes.len()];
     let first = model.at(&zeros)?;
     let all = labels(case);
     let columns = measured.map_or_else(|| (0..all.len()).collect(), |measured| measured.bladders.clone());
     let own = first.1.select_rows(&columns);
-    let seen = Seen::of(&own);
+    let seen = Observability::of(&own);
     // sensitivities for the choice of bladders: at the largest loads found, else at zero load
     let mut about = first.1.clone();
     let system = equilibrium::system(case, asked.at_s)?;
@@ -110,13 +117,13 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
         let differences = differences(&amplitudes, &found.loads);
         let whole = whole(measured, &columns, all.len());
         let deviations = measured.deviations.as_deref();
-        let mut problems: Vec<Problem> = (0..measured.rows.len())
+        let mut problems: Vec<SenseProblem> = (0..measured.rows.len())
             .map(|row| {
                 let mut deviation = vec![asked.noise_pa.unwrap_or(1.0); all.len()];
                 for (place, own) in columns.iter().zip(deviations.map_or(&[][..], |all| &all[row])) {
                     deviation[*place] = *own;
                 }
-                Problem {
+                SenseProblem {
                     line: measured.lines.get(row).copied(),
                     forward: Box::new(model.clone()),
                     data: whole[row].clone(),
@@ -126,7 +133,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
                 }
             })
             .collect();
-        let ask = Ask {
+        let ask = EstimateOptions {
             differences: &differences,
             smoothing: match asked.smoothing {
                 Smoothing::Fixed(deviation) => Smoothing::Fixed(deviation / spread(&amplitudes)),
@@ -174,14 +181,15 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
             }
         };
         // local means do not add up like amplitudes of a piecewise linear load, so sums have no bands here
-        let sum =
-            |one: &Found, factors: &Vec<f64>| means.is_empty().then(|| banded(&all_found, one, factors)).flatten();
+        let sum = |one: &EstimatedAmplitudes, factors: &Vec<f64>| {
+            means.is_empty().then(|| banded(&all_found, one, factors)).flatten()
+        };
         found.rows = measured
             .rows
             .iter()
             .enumerate()
             .zip(&all_found.found)
-            .map(|((k, row), one)| Row {
+            .map(|((k, row), one)| MeasurementRow {
                 line: measured.lines[k],
                 t_s: measured.times.as_ref().map(|times| times[k]),
                 amplitudes: each(k),
@@ -223,7 +231,7 @@ pub fn find(case: &Case, measured: Option<&Measured>, asked: &Asked, stop: &dyn 
 }
 
 /// Measurements padded to all bladders; `None` for a bladder that was not measured.
-fn whole(measured: &Measured, columns: &[usize], count: usize) -> Vec<Vec<Option<f64>>> {
+fn whole(measured: &PressureTable, columns: &[usize], count: usize) -> Vec<Vec<Option<f64>>> {
     let of = |row: &Vec<Option<f64>>| {
         let mut all = vec![None; count];
         for (place, value) in columns.iter().zip(row) {
@@ -257,7 +265,7 @@ pub(super) fn differences(amplitudes: &[Amplitude], loads: &[Basis]) -> DMatrix<
 }
 
 /// Row with the largest loads, and its estimate.
-fn largest(estimate: &Estimate) -> Option<(usize, &Found)> {
+fn largest(estimate: &LoadEstimates) -> Option<(usize, &EstimatedAmplitudes)> {
     let rows = estimate.found.iter().enumerate();
     rows.max_by(|(_, a), (_, b)| a.mean.norm().total_cmp(&b.mean.norm()))
 }
@@ -294,9 +302,9 @@ fn chosen(
     amplitudes: &[Amplitude],
     criterion: Criterion,
     noise: f64,
-) -> Vec<Chosen> {
+) -> Vec<ChosenSensors> {
     let none = DMatrix::zeros(0, amplitudes.len());
-    let of = |choice: choose::Choice| Chosen {
+    let of = |choice: choose::SensorSet| ChosenSensors {
         errors: choice
             .errors
             .iter()

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Amplitude, loaded};
-use super::estimate::Forward;
+use super::estimate::ForwardModel;
 use crate::case::parameter::Parameter;
 use crate::case::schema::Case;
 use crate::discrete::System;
@@ -132,7 +132,7 @@ fn with(case: &Case, amplitudes: &[Amplitude], knots: &Knots, values: &[f64]) ->
     loaded(case, amplitudes, signals)
 }
 
-impl Forward for InTime<'_> {
+impl ForwardModel for InTime<'_> {
     fn at(&mut self, values: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)> {
         if (self.stop)() {
             return Err(interrupted());

@@ -57,7 +57,7 @@ struct Kernel {
 
 /// Posterior of a quantity that is linear in the amplitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Interval {
+pub struct PosteriorInterval {
     /// Mean.
     pub mean: f64,
     /// Standard deviation.
@@ -74,7 +74,7 @@ pub struct MixturePosterior {
     /// Mean of all amplitudes.
     pub mean: DVector<f64>,
     /// Intervals of the requested quantities.
-    pub intervals: Vec<Interval>,
+    pub intervals: Vec<PosteriorInterval>,
     /// `bᵀ S⁻¹ b` of the component with the largest weight; expected to be about the number of measurements.
     pub chi_square: f64,
     /// Scale σ of that component, in the unit of the amplitudes: largest deviation of the load.
@@ -194,7 +194,7 @@ impl LoadPrior {
 }
 
 /// Mean, deviation and 95 % interval of one quantity.
-fn interval(row: usize, determined: bool, members: &[Member], weights: &[f64]) -> Interval {
+fn interval(row: usize, determined: bool, members: &[Member], weights: &[f64]) -> PosteriorInterval {
     let all = || members.iter().zip(weights);
     let mean: f64 = all().map(|(one, w)| w * one.means[row]).sum();
     let variance = |one: &Member| one.variances[row] + (one.means[row] - mean).powi(2);
@@ -217,7 +217,7 @@ fn interval(row: usize, determined: bool, members: &[Member], weights: &[f64]) -
             false => high = middle,
         }
     }
-    Interval {
+    PosteriorInterval {
         mean,
         deviation,
         half: high,

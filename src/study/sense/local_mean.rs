@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Amplitude, Basis};
 use super::diagnostics::left;
-use super::estimate::{Estimate, Forward, Problem};
+use super::estimate::{ForwardModel, LoadEstimates, SenseProblem};
 use super::find::unobservable;
 use super::load_prior::{LoadPrior, MixturePosterior};
 use super::misfit::Misfit;
@@ -104,8 +104,8 @@ pub struct FineFound {
 /// # Errors
 /// Those of states that are not found.
 pub fn find(
-    forward: &mut dyn Forward,
-    problem: &Problem,
+    forward: &mut dyn ForwardModel,
+    problem: &SenseProblem,
     prior: &LoadPrior,
     (start, noise): (DVector<f64>, f64),
     quantities: &DMatrix<f64>,
@@ -149,8 +149,8 @@ pub fn find(
 
 /// Replaces the amplitudes of a profile at its places by local means, for each row of measurements.
 pub(super) fn local_means(
-    problems: &[Problem],
-    estimate: &mut Estimate,
+    problems: &[SenseProblem],
+    estimate: &mut LoadEstimates,
     (fine, model): (&FineLoad, &mut AtRest),
     noise_known: bool,
 ) -> Result<Vec<FineFound>> {
@@ -192,7 +192,7 @@ pub(super) fn local_means(
 
 /// Local mean around a place with its band; none if the measurements do not determine it.
 pub(super) fn local_band(
-    estimate: &Estimate,
+    estimate: &LoadEstimates,
     found: &FineFound,
     which: usize,
     amplitude: &Amplitude,

@@ -13,18 +13,20 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::{self, Amplitude};
 use super::diagnostics::{self, Left, alone, banded, doubts, left};
-use super::estimate::{Ask, Estimate, Forward as _, Found, Problem, Smoothing, estimate};
-use super::find::{Asked, differences as along_the_beam, unobservable};
+use super::estimate::{
+    EstimateOptions, EstimatedAmplitudes, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
+};
+use super::find::{SenseOptions, differences as along_the_beam, unobservable};
 use super::in_time::{InTime, Knots};
-use super::pressures::Measured;
+use super::pressures::PressureTable;
 use super::rest::{labels, probed};
-use super::sensed::{BandKind, OverTime, Row, Sensed, Smoothed};
+use super::sensed::{BandKind, MeasurementRow, OverTime, Sensed, Smoothed};
 use super::sight::{over_sizes, sight};
 use crate::case::schema::Case;
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result};
 use crate::model::characteristic;
-use crate::numerics::inverse::{Seen, second_differences};
+use crate::numerics::inverse::{Observability, second_differences};
 use crate::run::known;
 
 /// Largest number of knots at which a warning still suggests more.
@@ -45,8 +47,8 @@ const UNLIKELY: f64 = 4.0;
 /// runs.
 pub(super) fn find(
     case: &Case,
-    measured: &Measured,
-    asked: &Asked,
+    measured: &PressureTable,
+    asked: &SenseOptions,
     knots: Option<usize>,
     stop: &dyn Fn() -> bool,
 ) -> Result<Sensed> {
@@ -74,7 +76,7 @@ pub(super) fn find(
         ..Sensed::default()
     };
     let lasting = constant(&first.1, amplitudes.len());
-    if Seen::of(&lasting).values.is_empty() {
+    if Observability::of(&lasting).values.is_empty() {
         return Err(unobservable());
     }
     sight(&mut found, &amplitudes, &lasting);
@@ -85,7 +87,7 @@ pub(super) fn find(
     });
     let system = model.system(&model.loaded(&zeros))?;
     let warnings = known::lasting(case, &system, &characteristic::numbers(case, &system.model));
-    let mut problems = [Problem {
+    let mut problems = [SenseProblem {
         line: None,
         forward: Box::new(model),
         data: measured.rows.iter().flatten().copied().collect(),
@@ -93,7 +95,7 @@ pub(super) fn find(
         start: DVector::zeros(zeros.len()),
         first,
     }];
-    let ask = Ask {
+    let ask = EstimateOptions {
         differences: &differences,
         smoothing: asked.smoothing,
         noise_known: measured.deviations.is_some() || asked.noise_pa.is_some(),
@@ -137,7 +139,7 @@ pub(super) fn find(
 }
 
 /// Instants of the measurements within the run [s].
-fn instants(case: &Case, measured: &Measured) -> Result<Vec<f64>> {
+fn instants(case: &Case, measured: &PressureTable) -> Result<Vec<f64>> {
     let usage = |what: String| Error::Usage(format!("--dynamic: {what}"));
     let Some(times) = &measured.times else {
         return Err(usage(
@@ -210,10 +212,10 @@ fn differences(amplitudes: &[Amplitude], found: &Sensed, knots: usize) -> DMatri
 /// One row per instant: loads and sums of loads, evaluated on their splines.
 fn rows(
     found: &Sensed,
-    measured: &Measured,
+    measured: &PressureTable,
     (knots, amplitudes): (&Knots, &[Amplitude]),
-    estimate: &Estimate,
-) -> Vec<Row> {
+    estimate: &LoadEstimates,
+) -> Vec<MeasurementRow> {
     let (one, loads, each) = (&estimate.found[0], amplitudes.len(), measured.bladders.len());
     let sums: Vec<Vec<f64>> = found
         .seen
@@ -228,7 +230,7 @@ fn rows(
             let whole = weights.iter().flat_map(|w| factors.iter().map(move |f| w * f));
             banded(estimate, one, &whole.collect::<Vec<_>>())
         };
-        Row {
+        MeasurementRow {
             line: measured.lines[k],
             t_s: Some(*t),
             amplitudes: (0..loads).map(|j| of(&alone(amplitudes, j))).collect(),
@@ -241,7 +243,7 @@ fn rows(
 }
 
 /// Number of knot values of each load that the data determine: its share of the trace of `cov a J^T J/σ^2`.
-fn resolved(one: &Found, problem: &Problem, estimate: &Estimate, loads: usize) -> Vec<f64> {
+fn resolved(one: &EstimatedAmplitudes, problem: &SenseProblem, estimate: &LoadEstimates, loads: usize) -> Vec<f64> {
     let measured: Vec<usize> = (0..problem.data.len()).filter(|k| problem.data[*k].is_some()).collect();
     let weighted = DMatrix::from_fn(measured.len(), one.jacobian.ncols(), |i, j| {
         one.jacobian[(measured[i], j)] / (problem.deviation[measured[i]] * estimate.noise)

@@ -5,11 +5,11 @@ use std::path::Path;
 use crate::case::schema::Case;
 use crate::case::wiring::{bladder_index, bladder_label};
 use crate::error::{Error, Result, listed, visible};
-use crate::study::data::Table;
+use crate::study::data::DataTable;
 
 /// Table of measured pressures.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measured {
+pub struct PressureTable {
     /// Instants [s], if the table has them.
     pub times: Option<Vec<f64>>,
     /// Indices of the measured bladders among all, ascending.
@@ -31,20 +31,20 @@ enum Holds {
     Deviation(i64),
 }
 
-impl Measured {
+impl PressureTable {
     /// Reads a file.
     ///
     /// # Errors
     /// The file cannot be read; a bladder does not exist or has two columns; a unit is not one of pressure; there is no pressure.
     pub fn read(path: &Path, case: &Case) -> Result<Self> {
-        Self::of(&Table::read(path)?, path, case)
+        Self::of(&DataTable::read(path)?, path, case)
     }
 
     /// Reads measurements from a table.
     ///
     /// # Errors
     /// As [`Measured::read`].
-    pub fn of(table: &Table, path: &Path, case: &Case) -> Result<Self> {
+    pub fn of(table: &DataTable, path: &Path, case: &Case) -> Result<Self> {
         let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
         let wrong = |what: String| Error::Usage(format!("{}: {what}", path.display()));
         let time = table
@@ -200,10 +200,10 @@ fn of_probe(name: &str, case: &Case) -> Option<i64> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Measured> {
+    fn read(text: &str) -> Result<PressureTable> {
         let sets = ["/probes=[{\"name\": \"mid-2\", \"at\": 0.45}]".to_owned()];
         let case = crate::case::load("cases/tour-sensor.json".as_ref(), &sets)?;
-        Measured::of(&Table::parse("p.csv".as_ref(), text)?, "p.csv".as_ref(), &case)
+        PressureTable::of(&DataTable::parse("p.csv".as_ref(), text)?, "p.csv".as_ref(), &case)
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Amplitude, loaded};
-use super::estimate::Forward;
+use super::estimate::ForwardModel;
 use super::in_time::interrupted;
 use crate::case::parameter::CHANGE;
 use crate::case::schema::{Case, Probe};
@@ -11,7 +11,7 @@ use crate::case::wiring::bladder_label;
 use crate::error::{Error, Result};
 use crate::functions::Signal;
 use crate::functions::signals::{Ramp, RampShape};
-use crate::run::equilibrium::{self, Direction, Options, Resting};
+use crate::run::equilibrium::{self, EquilibriumOptions, ParameterDirection, Resting};
 
 /// Adds a probe in the middle of each pair of bladders. Returns the case and the names of the pressure columns, upper row first.
 ///
@@ -56,7 +56,7 @@ pub fn labels(case: &Case) -> Vec<i64> {
 pub struct AtRest<'a> {
     case: &'a Case,
     amplitudes: &'a [Amplitude],
-    options: &'a Options,
+    options: &'a EquilibriumOptions,
     /// Columns of the pressures in a state.
     columns: Vec<usize>,
     /// The last state.
@@ -76,7 +76,12 @@ impl<'a> AtRest<'a> {
     ///
     /// # Errors
     /// There is no such state.
-    pub fn new(case: &'a Case, names: &[String], amplitudes: &'a [Amplitude], options: &'a Options) -> Result<Self> {
+    pub fn new(
+        case: &'a Case,
+        names: &[String],
+        amplitudes: &'a [Amplitude],
+        options: &'a EquilibriumOptions,
+    ) -> Result<Self> {
         // fluid behind a closed valve was trapped before the estimated loads began
         let since = options.resolved(case)?.via_s.last().copied();
         let own = with(case, amplitudes, &vec![0.0; amplitudes.len()], since);
@@ -155,13 +160,13 @@ fn with(case: &Case, amplitudes: &[Amplitude], sizes: &[f64], since: Option<f64>
     loaded(case, amplitudes, signals)
 }
 
-impl Forward for AtRest<'_> {
+impl ForwardModel for AtRest<'_> {
     fn at(&mut self, amplitudes: &[f64]) -> Result<(DVector<f64>, DMatrix<f64>)> {
         let values = self.go(amplitudes)?;
         let direction = |(k, amplitude): (usize, &Amplitude)| {
             let (own, all, since) = (self.case, self.amplitudes, self.since);
             let from = amplitudes.to_vec();
-            Direction {
+            ParameterDirection {
                 name: format!("--load {}", amplitude.name),
                 step: CHANGE,
                 moved: Box::new(move |steps| {
@@ -171,7 +176,7 @@ impl Forward for AtRest<'_> {
                 }),
             }
         };
-        let directions: Vec<Direction> = self.amplitudes.iter().enumerate().map(direction).collect();
+        let directions: Vec<ParameterDirection> = self.amplitudes.iter().enumerate().map(direction).collect();
         let case = with(self.case, self.amplitudes, amplitudes, self.since);
         let derivatives = self.last.along(&case, self.options, &directions)?;
         let mut jacobian = DMatrix::from_fn(self.columns.len(), derivatives.len(), |i, j| {

@@ -45,9 +45,9 @@ pub struct Sensed {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub over_time: Option<OverTime>,
     /// One per row of the measurements.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MeasurementRow>,
     /// Best sets of bladders to measure, if requested.
-    pub choice: Vec<Chosen>,
+    pub choice: Vec<ChosenSensors>,
     /// Noise [Pa] assumed for `choice`.
     pub choice_noise_pa: f64,
     /// Doubts about the result, such as pressures that the loads do not explain. They are among the warnings, too.
@@ -193,7 +193,7 @@ pub struct Banded {
 
 /// One row of the measurements.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct MeasurementRow {
     /// Line in the file.
     pub line: usize,
     /// Instant [s], if the file has a time column.
@@ -211,7 +211,7 @@ pub struct Row {
 
 /// A set of bladders to measure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Chosen {
+pub struct ChosenSensors {
     /// The bladders.
     pub bladders: Vec<i64>,
     /// Standard errors of the amplitudes; none for an undetermined one.

@@ -4,11 +4,11 @@ use nalgebra::{DMatrix, DVector};
 
 use super::basis::Amplitude;
 use super::sensed::{Combination, Sensed, Sight, Unknown};
-use crate::numerics::inverse::{Linear, Posterior, Seen};
+use crate::numerics::inverse::{Observability, Posterior, ReducedProblem};
 
 /// Stores amplitudes and observability in `found`.
 pub(super) fn sight(found: &mut Sensed, amplitudes: &[Amplitude], jacobian: &DMatrix<f64>) {
-    let seen = Seen::of(jacobian);
+    let seen = Observability::of(jacobian);
     found.amplitudes = unknowns(amplitudes, &seen, jacobian);
     let most = seen.values.first().copied().unwrap_or(1.0);
     found.seen = Sight {
@@ -27,7 +27,7 @@ pub(super) fn over_sizes(sum: &Combination, amplitudes: &[Amplitude]) -> Vec<f64
         .collect()
 }
 
-fn unknowns(amplitudes: &[Amplitude], seen: &Seen, jacobian: &DMatrix<f64>) -> Vec<Unknown> {
+fn unknowns(amplitudes: &[Amplitude], seen: &Observability, jacobian: &DMatrix<f64>) -> Vec<Unknown> {
     let spread = linear(jacobian).spread;
     let of = |(k, a): (usize, &Amplitude)| Unknown {
         name: a.name.clone(),
@@ -40,7 +40,7 @@ fn unknowns(amplitudes: &[Amplitude], seen: &Seen, jacobian: &DMatrix<f64>) -> V
 
 fn linear(jacobian: &DMatrix<f64>) -> Posterior {
     let none = DMatrix::zeros(0, jacobian.ncols());
-    Linear::new(jacobian.clone(), DVector::zeros(jacobian.nrows())).posterior(&none)
+    ReducedProblem::new(jacobian.clone(), DVector::zeros(jacobian.nrows())).posterior(&none)
 }
 
 /// Change of each amplitude in its unit, for a change of the leading amplitude by 1.
@@ -55,7 +55,7 @@ fn leading(row: &[f64]) -> usize {
 }
 
 /// Determined combinations of more than one amplitude.
-fn combinations(seen: &Seen, amplitudes: &[Amplitude]) -> Vec<Combination> {
+fn combinations(seen: &Observability, amplitudes: &[Amplitude]) -> Vec<Combination> {
     let several = |one: &&Vec<f64>| one.iter().filter(|c| **c != 0.0).count() > 1;
     let of = |one: &Vec<f64>| {
         let first = leading(one);

@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use super::estimate::{Ask, Smoothing};
-use crate::numerics::inverse::{Linear, Posterior};
+use super::estimate::{EstimateOptions, Smoothing};
+use crate::numerics::inverse::{Posterior, ReducedProblem};
 
 /// Largest ratio of prior rows to measured rows.
 const HEAVIEST: f64 = 1e6;
@@ -12,10 +12,10 @@ const WEIGHTS: (f64, f64, usize) = (-14.0, 25.0, 79);
 
 /// Weight of the prior by the criterion of `ask.smoothing`: maximum likelihood or discrepancy.
 pub(super) fn choose(
-    linear: &[Linear],
+    linear: &[ReducedProblem],
     before: &dyn Fn(f64) -> DMatrix<f64>,
     rank: usize,
-    ask: &Ask,
+    ask: &EstimateOptions,
     most: f64,
 ) -> f64 {
     let rows: usize = linear.iter().map(|one| one.rows).sum();

@@ -9,9 +9,9 @@ use crate::error::{Code, Result};
 use crate::run::floquet::{self, Floquet};
 use crate::run::known;
 use crate::run::periodic::settle::Refined;
-use crate::run::periodic::{Scene, Search, Settled, record, settle, shoot};
+use crate::run::periodic::{PeriodicScene, Settled, ShootingRecord, record, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
-use crate::run::stop::{INTERRUPTED, Stop};
+use crate::run::stop::{INTERRUPTED, StopFlag};
 use crate::run::summary::{Quantity, Status};
 use crate::study::evaluations::Evaluations;
 
@@ -20,13 +20,13 @@ const COUNT: usize = 4;
 
 /// Cycle at one value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Member {
+pub struct CycleMember {
     /// Value of the parameter.
     pub value: f64,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Search for the cycle.
-    pub search: Search,
+    pub search: ShootingRecord,
     /// Stability of the cycle.
     pub floquet: Floquet,
     /// Quantities over the period.
@@ -40,7 +40,7 @@ pub struct Member {
 
 /// Cycles at all values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Along {
+pub struct CyclePath {
     /// Name of the case.
     pub case: String,
     /// JSON pointer of the parameter.
@@ -48,7 +48,7 @@ pub struct Along {
     /// True if the values are evenly spaced in their logarithms.
     pub logarithmic: bool,
     /// Cycles.
-    pub members: Vec<Member>,
+    pub members: Vec<CycleMember>,
     /// Values without a cycle, with reasons.
     pub missing: Vec<(f64, String)>,
     /// Warnings about the first case.
@@ -58,7 +58,7 @@ pub struct Along {
 /// Result at one value, with the state that the next one needs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Step {
-    found: std::result::Result<Member, String>,
+    found: std::result::Result<CycleMember, String>,
     /// Warning that its energies do not add up.
     open: Option<String>,
     /// State of its cycle.
@@ -75,10 +75,10 @@ pub fn along(
     (pointer, logarithmic): (&str, bool),
     cases: &[(f64, Case)],
     evaluations: &Evaluations,
-    stop: &Stop,
+    stop: &StopFlag,
     report: &dyn Fn(usize),
-) -> Result<Along> {
-    let mut found = Along {
+) -> Result<CyclePath> {
+    let mut found = CyclePath {
         case: cases.first().map_or(String::new(), |(_, case)| case.name.clone()),
         pointer: pointer.into(),
         logarithmic,
@@ -89,7 +89,7 @@ pub fn along(
             None => vec![],
         },
     };
-    let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut before: Option<(PeriodicScene, Vec<f64>)> = None;
     let mut open: Vec<(f64, String)> = vec![];
     for (k, (value, case)) in cases.iter().enumerate() {
         if stop.raised() {
@@ -97,7 +97,7 @@ pub fn along(
             continue;
         }
         let begin = Instant::now();
-        let scene = Scene::new(case, None)?.heeding(stop);
+        let scene = PeriodicScene::new(case, None)?.heeding(stop);
         scene.held(&case.name)?;
         if k == 0 {
             found.warnings.extend(scene.trapped.clone());
@@ -127,7 +127,7 @@ pub fn along(
     Ok(found)
 }
 
-fn step((value, case): (f64, &Case), scene: Scene, from: Option<&[f64]>, begin: Instant) -> Result<Step> {
+fn step((value, case): (f64, &Case), scene: PeriodicScene, from: Option<&[f64]>, begin: Instant) -> Result<Step> {
     let cycle = match shoot(&scene, from) {
         Ok(cycle) => cycle,
         Err(impasse) => {
@@ -159,7 +159,7 @@ fn step((value, case): (f64, &Case), scene: Scene, from: Option<&[f64]>, begin: 
             .into_iter()
             .find(|warning| finished && warning.starts_with(mark)),
         found: match finished {
-            true => Ok(Member {
+            true => Ok(CycleMember {
                 value,
                 unknowns: scene.system.layout.len,
                 search: cycle.search,

@@ -8,5 +8,5 @@
 pub mod cycles;
 pub mod tongue;
 
-pub use cycles::{Along, Member, along};
+pub use cycles::{CycleMember, CyclePath, along};
 pub use tongue::{Map, Sheet, map};

@@ -10,12 +10,12 @@ use crate::error::{Error, Result};
 use crate::functions::Signal;
 use crate::model::Model;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
-use crate::run::drive::{Drive, settled, settled_opening};
-use crate::run::floquet::{self, Stability};
+use crate::run::drive::{PeriodicDrive, settled, settled_opening};
+use crate::run::floquet::{self, CycleStability};
 use crate::run::known;
 use crate::run::periodic::scene::whole;
-use crate::run::periodic::{Scene, shoot};
-use crate::run::stop::{INTERRUPTED, Stop};
+use crate::run::periodic::{PeriodicScene, shoot};
+use crate::run::stop::{INTERRUPTED, StopFlag};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::pool;
 
@@ -24,7 +24,7 @@ const COUNT: usize = 2;
 
 /// Range of a map.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
+pub struct MapRange {
     /// Frequencies of the shaking [Hz], ascending.
     pub frequencies_hz: Vec<f64>,
     /// Its amplitudes [m], ascending.
@@ -35,7 +35,7 @@ pub struct Plan {
 
 /// One point of a sheet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct MapPoint {
     /// Growth rate of the largest multiplier [1/s]; `None` without a cycle.
     pub growth_per_s: Option<f64>,
     /// Largest multiplier, real and imaginary part.
@@ -44,13 +44,13 @@ pub struct Point {
     pub words: String,
     /// Stability of the cycle; `None` without a cycle, and in maps of earlier versions.
     #[serde(default)]
-    pub stability: Option<Stability>,
+    pub stability: Option<CycleStability>,
 }
 
-impl Point {
+impl MapPoint {
     /// True if bending oscillations grow by themselves. Maps of earlier versions are decided by the rate alone.
     pub fn grows(&self) -> bool {
-        self.growth_per_s.is_some_and(|rate| rate > 0.0) && self.stability != Some(Stability::Neutral)
+        self.growth_per_s.is_some_and(|rate| rate > 0.0) && self.stability != Some(CycleStability::Neutral)
     }
 }
 
@@ -60,12 +60,12 @@ pub struct Sheet {
     /// Factor of the case's permeabilities; `None` for a dry beam.
     pub permeability_factor: Option<f64>,
     /// Points by frequency, then by amplitude.
-    pub points: Vec<Vec<Point>>,
+    pub points: Vec<Vec<MapPoint>>,
 }
 
 /// Mathieu's equation of the first mode of the dry beam.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Mathieu {
+pub struct MathieuEquation {
     /// First bending frequency [Hz].
     pub frequency_hz: f64,
     /// Amplitude above which the principal tongue contains each frequency of the map [m].
@@ -86,7 +86,7 @@ pub struct Map {
     /// Sheets.
     pub sheets: Vec<Sheet>,
     /// Prediction without fluid and stretch; cantilevers only.
-    pub mathieu: Option<Mathieu>,
+    pub mathieu: Option<MathieuEquation>,
     /// Warnings about the case.
     pub warnings: Vec<String>,
 }
@@ -119,9 +119,9 @@ fn axial(ends: &[ResolvedEnd; 2]) -> &Signal {
 /// A case without a shaken root, or with an additional period.
 pub fn map(
     case: &Case,
-    plan: &Plan,
+    plan: &MapRange,
     evaluations: &Evaluations,
-    stop: &Stop,
+    stop: &StopFlag,
     report: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Map> {
     let own = shaking(case)?;
@@ -174,26 +174,26 @@ fn column(
     frequency_hz: f64,
     amplitudes: &[f64],
     evaluations: &Evaluations,
-    stop: &Stop,
-) -> Result<Vec<Point>> {
+    stop: &StopFlag,
+) -> Result<Vec<MapPoint>> {
     let mut case = case.clone();
     if let (Some(factor), Some(network)) = (factor, &mut case.network) {
         network.permeability_factor *= factor;
     }
-    let mut before: Option<(Scene, Vec<f64>)> = None;
+    let mut before: Option<(PeriodicScene, Vec<f64>)> = None;
     amplitudes
         .iter()
         .map(|&amplitude| {
             if stop.raised() {
-                return Ok(Point {
+                return Ok(MapPoint {
                     words: INTERRUPTED.into(),
-                    ..Point::default()
+                    ..MapPoint::default()
                 });
             }
-            let scene = Scene::of(
+            let scene = PeriodicScene::of(
                 &case,
                 shaken(&case, frequency_hz, amplitude)?,
-                Drive {
+                PeriodicDrive {
                     period: 1.0 / frequency_hz,
                     driven: true,
                 },
@@ -211,11 +211,11 @@ fn column(
 }
 
 /// Returns a point, and the state of its cycle if there is one.
-fn point(scene: &Scene, from: Option<&[f64]>) -> (Point, Option<Vec<f64>>) {
+fn point(scene: &PeriodicScene, from: Option<&[f64]>) -> (MapPoint, Option<Vec<f64>>) {
     match shoot(scene, from) {
         Ok(mut cycle) => {
             let found = floquet::multipliers(scene, &mut cycle, COUNT);
-            let point = Point {
+            let point = MapPoint {
                 growth_per_s: Some(found.verdict.growth_per_s),
                 multiplier: found.multipliers.first().map(|m| (m.re, m.im)),
                 words: found.verdict.words,
@@ -225,9 +225,9 @@ fn point(scene: &Scene, from: Option<&[f64]>) -> (Point, Option<Vec<f64>>) {
         }
         Err(impasse) => {
             let words = impasse.what;
-            let point = Point {
+            let point = MapPoint {
                 words,
-                ..Point::default()
+                ..MapPoint::default()
             };
             (point, None)
         }
@@ -249,7 +249,7 @@ fn shaken(case: &Case, frequency_hz: f64, amplitude: f64) -> Result<Model> {
 /// ```text
 /// |Ω/(2 ω1) - 1| < ε/4     ε = κ_1 U Ω²/(l_s ω1²)     U the amplitude of the root
 /// ```
-fn prediction(case: &Case, frequencies: &[f64]) -> Result<Option<Mathieu>> {
+fn prediction(case: &Case, frequencies: &[f64]) -> Result<Option<MathieuEquation>> {
     let model = Model::whole(case, true)?;
     let Some(sine) = mathieu(&model) else { return Ok(None) };
     let first = (MATHIEU_COUPLING * sine.acceleration / (model.length * sine.modulation)).sqrt();
@@ -258,7 +258,7 @@ fn prediction(case: &Case, frequencies: &[f64]) -> Result<Option<Mathieu>> {
         let epsilon = 4.0 * (omega / (2.0 * first) - 1.0).abs();
         epsilon * model.length * first * first / (MATHIEU_COUPLING * omega * omega)
     };
-    Ok(Some(Mathieu {
+    Ok(Some(MathieuEquation {
         frequency_hz: first / TAU,
         onset_m: frequencies.iter().map(onset).collect(),
     }))

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::table::Table;
+use super::table::DesignTable;
 use super::vary;
 use super::vary::{Draw, Values, Vary};
 use crate::case::is_below;
@@ -74,7 +74,7 @@ impl Designs {
     ///
     /// # Errors
     /// [`Error::Usage`] for two columns of the same number, and for too many designs.
-    pub fn listed(cases: usize, table: Table) -> Result<Self> {
+    pub fn listed(cases: usize, table: DesignTable) -> Result<Self> {
         apart("--designs", &table.pointers)?;
         Ok(Self {
             count: bounded(cases, [table.rows.len()])?,

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use serde_json::Value;
 
-use super::{Plan, Row};
+use super::{SweepPlan, SweepRow};
 use crate::run::summary::Status;
 use crate::study::analysis::modes::MODES;
 
@@ -36,7 +36,7 @@ pub struct Swinging {
 
 impl Swinging {
     /// Reads the modes of a row; `None` if it has none, as for other commands.
-    pub fn of(row: &Row) -> Option<Self> {
+    pub fn of(row: &SweepRow) -> Option<Self> {
         let mode = |k: usize| {
             let figure = |name: &str| row.found.figure(&format!("mode_{k}.{name}"));
             let frequency = figure("frequency_hz")?;
@@ -68,7 +68,7 @@ pub struct Exchange {
 }
 
 /// Finds exchanges between neighboring designs along each listed axis.
-pub fn exchanges(plan: &Plan, designs: &[Swinging]) -> Vec<Exchange> {
+pub fn exchanges(plan: &SweepPlan, designs: &[Swinging]) -> Vec<Exchange> {
     let mut all = vec![];
     for (axis, varied) in plan.axes.iter().enumerate().filter(|(k, _)| plan.listed(*k)) {
         let mut lines: BTreeMap<(usize, String), Vec<(f64, &Swinging)>> = BTreeMap::new();

@@ -24,6 +24,6 @@ pub mod unit;
 pub mod vary;
 
 pub use designs::{Design, Designs};
-pub use plan::{Plan, Shard};
-pub use row::Row;
+pub use plan::{Shard, SweepPlan};
+pub use row::SweepRow;
 pub use vary::{Draw, Vary};

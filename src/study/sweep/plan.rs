@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::designs::Designs;
-use super::row::Row;
+use super::row::SweepRow;
 use super::vary::Draw;
 use crate::study::analysis::AnalysisKind;
 
@@ -52,7 +52,7 @@ pub struct Listed {
 
 /// Varied number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Axis {
+pub struct SweepAxis {
     /// JSON pointer.
     pub pointer: String,
     /// Specification of its values; `None` if a table contains them.
@@ -61,7 +61,7 @@ pub struct Axis {
 
 /// Requested sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Plan {
+pub struct SweepPlan {
     /// Name of the first case.
     pub case: String,
     /// Analysis of each design.
@@ -71,7 +71,7 @@ pub struct Plan {
     /// Changes to all cases.
     pub sets: Vec<String>,
     /// Varied numbers.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// File that lists designs, and its checksum.
     pub table: Option<(String, u32)>,
     /// Sampling of the designs.
@@ -88,7 +88,7 @@ pub struct Plan {
     pub shard: Option<Shard>,
 }
 
-impl Plan {
+impl SweepPlan {
     /// Name of the varied case; of two cases both names, of more cases the first name and the number of the others.
     pub fn title(&self) -> String {
         match &self.cases[..] {
@@ -140,7 +140,7 @@ impl Plan {
                 .join(", ")
         };
         let axes = |plan: &Self| {
-            let spec = |axis: &Axis| format!("{}={}", axis.pointer, axis.spec.as_deref().unwrap_or(".."));
+            let spec = |axis: &SweepAxis| format!("{}={}", axis.pointer, axis.spec.as_deref().unwrap_or(".."));
             optional_list(&plan.axes.iter().map(spec).collect::<Vec<_>>())
         };
         let optional = |text: Option<String>| text.unwrap_or_else(|| "none".into());
@@ -222,7 +222,7 @@ impl Plan {
     }
 
     /// Returns the command line that computes one design alone, quoted for a shell.
-    pub fn design_line(&self, row: &Row) -> String {
+    pub fn design_line(&self, row: &SweepRow) -> String {
         let mut words = vec!["slcbeam".to_owned(), self.command.word().to_owned()];
         words.extend(self.cases.get(row.case).map(|case| case.file.clone()));
         let varied = self.axes.iter().zip(&row.values);
@@ -254,11 +254,11 @@ impl Plan {
     }
 
     /// Creates the axes of designs.
-    pub fn axes_of(designs: &Designs, specs: &[Option<String>]) -> Vec<Axis> {
+    pub fn axes_of(designs: &Designs, specs: &[Option<String>]) -> Vec<SweepAxis> {
         let pointers = designs.pointers().iter().cloned();
         pointers
             .zip(specs)
-            .map(|(pointer, spec)| Axis {
+            .map(|(pointer, spec)| SweepAxis {
                 pointer,
                 spec: spec.clone(),
             })

@@ -4,11 +4,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::designs::Design;
-use crate::study::analysis::Found;
+use crate::study::analysis::AnalysisOutcome;
 
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct SweepRow {
     /// Number of the design, from 0.
     pub number: usize,
     /// Index of its case in the list of cases, from 0.
@@ -17,14 +17,14 @@ pub struct Row {
     pub values: Vec<Value>,
     /// Results.
     #[serde(flatten)]
-    pub found: Found,
+    pub found: AnalysisOutcome,
     /// Wall time [s].
     pub wall_s: f64,
 }
 
-impl Row {
+impl SweepRow {
     /// Creates the row of a design.
-    pub fn of(design: Design, found: Found, wall_s: f64) -> Self {
+    pub fn of(design: Design, found: AnalysisOutcome, wall_s: f64) -> Self {
         Self {
             number: design.number,
             case: design.case,

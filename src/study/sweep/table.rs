@@ -10,7 +10,7 @@ use crate::error::{Error, Result};
 
 /// Table of designs.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
+pub struct DesignTable {
     /// JSON pointers of the columns.
     pub pointers: Vec<String>,
     /// Values, one row per design.
@@ -19,7 +19,7 @@ pub struct Table {
     pub crc32: u32,
 }
 
-impl Table {
+impl DesignTable {
     /// Reads a file.
     ///
     /// # Errors

@@ -13,7 +13,7 @@ use crate::run::record::Recorder;
 use crate::run::summary::{EarlierRun, Status, Summary};
 use crate::study::companion;
 use crate::study::companion::error::{figures, relative_by_cause};
-use crate::study::companion::variant::Cause;
+use crate::study::companion::variant::ErrorCause;
 use crate::study::effects::choices::with;
 use crate::study::effects::full::full;
 
@@ -77,14 +77,14 @@ pub fn settle(
 /// As [`System::new`].
 pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Needed>> {
     let mut causes = summary.companion.iter().flat_map(|companion| companion.causes.keys());
-    if !causes.any(|pointer| Cause::is_effect(pointer)) {
+    if !causes.any(|pointer| ErrorCause::is_effect(pointer)) {
         return Ok(None);
     }
     let errors = relative_by_cause(summary, &Floors::of(case)?);
     let Some(full) = full(case)? else {
         return Ok(None);
     };
-    let most = |cause: Cause| {
+    let most = |cause: ErrorCause| {
         let errors = errors.get(cause.pointer().as_str())?.iter();
         let worst = errors
             .max_by(|a, b| a.1.total_cmp(b.1))
@@ -92,14 +92,14 @@ pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Neede
         Some((worst.0.clone(), *worst.1))
     };
     let all = |worst: &(String, f64)| full.left_out.iter().map(|effect| (*effect, worst.clone())).collect();
-    if let Some(worst) = most(Cause::Effects) {
+    if let Some(worst) = most(ErrorCause::Effects) {
         let added = all(&worst);
         return Ok(Some(Needed { case: full.case, added }));
     }
     let each = full
         .left_out
         .iter()
-        .filter_map(|effect| Some((*effect, most(Cause::Effect(*effect))?)));
+        .filter_map(|effect| Some((*effect, most(ErrorCause::Effect(*effect))?)));
     let added: BTreeMap<Effect, (String, f64)> = each.collect();
     let Some(worst) = added.values().max_by(|a, b| a.1.total_cmp(&b.1)) else {
         return Ok(None);

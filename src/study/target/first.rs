@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::case::schema::Companion;
-use crate::discrete::{Mesh, System, resolution};
+use crate::discrete::{BeamMesh, System, resolution};
 use crate::error::Result;
 use crate::study::accuracy::plan;
 use crate::study::effects::full::full;
@@ -24,7 +24,7 @@ pub fn least_cells(case: &Case) -> Result<usize> {
     let system = System::new(&coarse)?;
     let [along, in_bladders] = resolution::cells_that_resolve(&coarse, &system);
     let both = (1..=MOST).find(|cells| *cells >= along && plan::fluid_cells(*cells) >= in_bladders);
-    let of_order = 4 * Mesh::fewest(case.mesh.order());
+    let of_order = 4 * BeamMesh::fewest(case.mesh.order());
     let least = LEAST.max(LEAST_IN_ALL.max(of_order).div_ceil(system.mesh.segments));
     let cells = both.unwrap_or(MOST).next_power_of_two();
     Ok(cells.clamp(least.next_power_of_two(), MOST))

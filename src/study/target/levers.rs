@@ -10,7 +10,7 @@ use crate::error::numbers::rounded;
 use crate::run::floors::Floors;
 use crate::run::summary::Summary;
 use crate::study::companion::error::{relative, relative_by_cause};
-use crate::study::companion::variant::Cause;
+use crate::study::companion::variant::ErrorCause;
 
 /// Part of the accuracy that a refinement aims at.
 const FILL: f64 = 0.7;
@@ -125,7 +125,8 @@ impl Levers {
 
     /// Doublings of the beam's cells, of a bladder's cells, and decades: the cheapest that should do, or those that come nearest.
     fn refinement(&self, case: &Case, wanted: &[[f64; 3]], budget: f64, decade: f64) -> [i32; 3] {
-        let ratios = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps].map(|cause| cause.falls(case));
+        let ratios =
+            [ErrorCause::BeamMesh, ErrorCause::FluidMesh, ErrorCause::TimeSteps].map(|cause| cause.falls(case));
         let left = |finer: [i32; 3]| {
             let of = |parts: &[f64; 3]| (0..3).map(|k| parts[k] * ratios[k].powi(finer[k])).sum::<f64>();
             most(wanted.iter().map(of).collect::<Vec<_>>().iter()) / (FILL * self.asked)
@@ -165,7 +166,7 @@ fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> 
         let part = |errors: &BTreeMap<String, f64>| errors.get(name).copied().unwrap_or(0.0);
         let all: f64 = causes.values().map(part).sum();
         let scale = if all > 0.0 { error.min(SATURATED) / all } else { 0.0 };
-        let settings = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps];
+        let settings = [ErrorCause::BeamMesh, ErrorCause::FluidMesh, ErrorCause::TimeSteps];
         settings.map(|cause| scale * causes.get(cause.pointer().as_str()).map_or(0.0, part))
     };
     errors.iter().map(of).collect()

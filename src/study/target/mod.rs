@@ -43,7 +43,7 @@ pub type Record<'a> = &'a mut dyn FnMut(&Case, &Accurate) -> Result<Outcome>;
 ///
 /// # Errors
 /// Those of `record`.
-pub fn reach(case: &Case, asked: f64, from: Option<&Setting>, record: Record) -> Result<Outcome> {
+pub fn reach(case: &Case, asked: f64, from: Option<&ReachedSetting>, record: Record) -> Result<Outcome> {
     let mut case = case.clone();
     case.effects_tolerance.get_or_insert(EFFECTS * asked);
     let mut case = first::setting(&case, asked)?;
@@ -90,14 +90,14 @@ pub fn reach(case: &Case, asked: f64, from: Option<&Setting>, record: Record) ->
 
 /// Mesh and tolerance that an accuracy led to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
+pub struct ReachedSetting {
     cells_per_segment: usize,
     cells_per_bladder: usize,
     order: u8,
     rtol: f64,
 }
 
-impl Setting {
+impl ReachedSetting {
     /// That of a search.
     pub fn found(accuracy: &Accuracy) -> Self {
         Self {

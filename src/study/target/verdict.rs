@@ -6,9 +6,9 @@ use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::error::Code;
 use crate::run::floors::Floors;
-use crate::run::summary::{Accuracy, Estimate, Pilot, Summary};
+use crate::run::summary::{Accuracy, ErrorEstimate, Pilot, Summary};
 use crate::study::companion::error::{relative, relative_by_cause};
-use crate::study::companion::variant::Cause;
+use crate::study::companion::variant::ErrorCause;
 use crate::study::effects::full::full;
 use crate::study::refine;
 
@@ -25,15 +25,16 @@ pub fn conclude(
     let errors = relative(summary, &summary.errors, floors);
     let known = !summary.errors.is_empty();
     let causes = relative_by_cause(summary, floors);
-    let part = |cause: Cause, name: &str| causes.get(cause.pointer().as_str())?.get(name).copied();
+    let part = |cause: ErrorCause, name: &str| causes.get(cause.pointer().as_str())?.get(name).copied();
     let estimate = |(name, total): (&String, &f64)| {
-        let [beam, fluid, time] = [Cause::BeamMesh, Cause::FluidMesh, Cause::TimeSteps].map(|cause| part(cause, name));
-        let effects = causes.iter().filter(|(pointer, _)| Cause::is_effect(pointer));
+        let [beam, fluid, time] =
+            [ErrorCause::BeamMesh, ErrorCause::FluidMesh, ErrorCause::TimeSteps].map(|cause| part(cause, name));
+        let effects = causes.iter().filter(|(pointer, _)| ErrorCause::is_effect(pointer));
         let effects = effects
             .filter_map(|(_, errors)| errors.get(name))
             .copied()
             .reduce(|a, b| a + b);
-        let estimate = Estimate {
+        let estimate = ErrorEstimate {
             time,
             space: beam.zip(fluid).map(|(a, b)| a + b).or(beam),
             effects,
@@ -41,7 +42,7 @@ pub fn conclude(
         };
         (name.clone(), estimate)
     };
-    let quantities: BTreeMap<String, Estimate> = errors.iter().map(estimate).collect();
+    let quantities: BTreeMap<String, ErrorEstimate> = errors.iter().map(estimate).collect();
     let reached = known && errors.values().all(|error| *error <= asked);
     let accuracy = Accuracy {
         asked,

@@ -9,7 +9,7 @@ use crate::study::analysis::AnalysisKind;
 use crate::study::analysis::derivatives::{self, Gathered};
 
 /// Derivatives of each figure with respect to the numbers, in their order; or the reason why there are none.
-pub type Slopes = Result<derivatives::Slopes, String>;
+pub type FirstOrderSlopes = Result<derivatives::FigureSlopes, String>;
 
 /// Derivatives of the figures of a case with respect to each of its numbers. They are exact, except for numbers that
 /// change the period of cycles, and for multipliers: these use differences. `difference` returns the difference
@@ -20,7 +20,7 @@ pub fn slopes(
     pointers: &[String],
     stop: &dyn Fn() -> bool,
     difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>,
-) -> Slopes {
+) -> FirstOrderSlopes {
     let exact = || {
         let parameters = Parameter::all(case, pointers)?;
         if what.analysis().allows(case, &parameters).is_err() {
@@ -36,7 +36,7 @@ pub fn slopes(
     exact().unwrap_or_else(|error: crate::error::Error| Err(error.to_string().replace("--sensitivity ", "")))
 }
 
-fn by_differences(count: usize, difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>) -> Slopes {
+fn by_differences(count: usize, difference: &dyn Fn(usize) -> Option<BTreeMap<String, f64>>) -> FirstOrderSlopes {
     let mut all = Gathered::new(count);
     for k in 0..count {
         let Some(found) = difference(k) else {

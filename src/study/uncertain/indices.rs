@@ -93,14 +93,14 @@ fn estimate(rows: &[Vec<f64>], which: &[usize], inputs: usize) -> Option<Vec<[f6
 mod tests {
     use super::*;
     use crate::study::sweep::vary::Vary;
-    use crate::study::uncertain::Plan;
+    use crate::study::uncertain::SamplePlan;
     use std::f64::consts::PI;
 
     /// Source: the function of Ishigami & Homma (1990) with 7 and 0.1: S = 0.3139, 0.4424, 0, ST = 0.5576, 0.4424, 0.2437, exact.
     #[test]
     fn indices_of_ishigami_are_exact_within_their_errors() {
         let inputs = (1..=3).map(|k| Vary::parse(&format!("/x{k}=uniform:{}:{PI}", -PI)).expect("values"));
-        let plan = Plan::new(inputs.collect(), 4096, 3, true).expect("a plan");
+        let plan = SamplePlan::new(inputs.collect(), 4096, 3, true).expect("a plan");
         let q = |n: usize| {
             let x = plan.values(n);
             x[0].sin() + 7.0 * x[1].sin().powi(2) + 0.1 * x[2].powi(4) * x[0].sin()

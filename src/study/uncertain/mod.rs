@@ -21,9 +21,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use first::{Slopes, slopes};
+pub use first::{FirstOrderSlopes, slopes};
 pub use indices::Index;
-pub use samples::Plan;
+pub use samples::SamplePlan;
 pub use spread::judge;
 
 use crate::run::band::{Band, Bands};
@@ -36,7 +36,7 @@ pub struct Uncertainty {
     /// Command that computes the figures, as typed.
     pub command: String,
     /// Uncertain numbers.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<UncertainInput>,
     /// Number of samples drawn.
     pub samples: usize,
     /// Number of finished samples; only these enter the figures.
@@ -73,7 +73,7 @@ impl Uncertainty {
 
 /// An uncertain number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Input {
+pub struct UncertainInput {
     /// JSON pointer into the case.
     pub pointer: String,
     /// Distribution, as typed.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::{FirstOrder, Spread};
-use crate::study::analysis::Found;
+use crate::study::analysis::AnalysisOutcome;
 use crate::study::sweep::unit::unit;
 
 /// Share of the size of its kind below which a figure is a rounding error.
@@ -23,7 +23,7 @@ fn kind(name: &str) -> &str {
 /// are compared with the work that they would do over that length.
 pub(super) fn without_round_off(
     mut figures: BTreeMap<String, Spread>,
-    own: &Found,
+    own: &AnalysisOutcome,
     length: f64,
 ) -> BTreeMap<String, Spread> {
     let size = |one: &Spread| {
@@ -115,7 +115,7 @@ mod tests {
             ("reaction_root_couple_N m", 4e-51),
         ];
         let figures = all.map(|(name, x)| (name.to_owned(), of(x))).into();
-        let own = Found::finished();
+        let own = AnalysisOutcome::finished();
         let left = without_round_off(figures, &own, 0.1);
         let names: Vec<&str> = left
             .iter()

@@ -19,7 +19,7 @@ const MOST: usize = 100_000;
 
 /// Samples to be drawn.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct SamplePlan {
     inputs: Vec<Vary>,
     samples: usize,
     seed: u64,
@@ -28,7 +28,7 @@ pub struct Plan {
     directions: Vec<(Sobol, u32)>,
 }
 
-impl Plan {
+impl SamplePlan {
     /// Plans `samples` samples of some numbers.
     ///
     /// # Errors
@@ -141,8 +141,8 @@ impl Plan {
 mod tests {
     use super::*;
 
-    fn plan(all: &[&str], samples: usize, indices: bool) -> Result<Plan> {
-        Plan::new(
+    fn plan(all: &[&str], samples: usize, indices: bool) -> Result<SamplePlan> {
+        SamplePlan::new(
             all.iter().map(|text| Vary::parse(text).expect("values")).collect(),
             samples,
             1,

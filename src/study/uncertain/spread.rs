@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use super::indices::indices;
 use super::nothing::without_round_off;
-use super::{FirstOrder, Input, Plan, Slopes, Spread, Uncertainty};
+use super::{FirstOrder, FirstOrderSlopes, SamplePlan, Spread, UncertainInput, Uncertainty};
 use crate::error::Code;
 use crate::error::numbers::counted;
 use crate::run::summary::Status;
-use crate::study::analysis::{Found, word};
+use crate::study::analysis::{AnalysisOutcome, word};
 
 /// Suffixes of results that are not figures, such as errors.
 const NO_FIGURES: [&str; 7] = [
@@ -45,19 +45,19 @@ pub fn is_figure(name: &str) -> bool {
 pub fn judge(
     (case, length): (&str, f64),
     what: &str,
-    plan: &Plan,
-    own: &Found,
+    plan: &SamplePlan,
+    own: &AnalysisOutcome,
     own_values: &[Option<f64>],
-    found: &[Found],
-    slopes: Slopes,
+    found: &[AnalysisOutcome],
+    slopes: FirstOrderSlopes,
 ) -> Uncertainty {
-    let inputs: Vec<Input> = plan
+    let inputs: Vec<UncertainInput> = plan
         .inputs()
         .iter()
         .filter_map(|one| {
             let [mean, sd] = one.values.moments()?;
             let (pointer, distribution) = (one.pointer.clone(), one.spec.clone());
-            Some(Input {
+            Some(UncertainInput {
                 pointer,
                 distribution,
                 mean,
@@ -108,12 +108,12 @@ pub fn judge(
 }
 
 /// Returns a figure of a finished sample.
-fn of(found: &Found, name: &str) -> Option<f64> {
+fn of(found: &AnalysisOutcome, name: &str) -> Option<f64> {
     found.figure(name).filter(|_| found.status == Status::Finished)
 }
 
 /// Estimated absolute error of a figure: its own, or that of its quantity, which is relative to the largest figure of the quantity.
-fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
+fn numerical_error(own: &AnalysisOutcome, name: &str, value: f64) -> Option<f64> {
     let largest = |quantity: &str| {
         let of_it = own.figures.iter().filter(|(other, _)| {
             is_figure(other) && other.rsplit_once('.').is_some_and(|(other, _)| other == quantity)
@@ -134,7 +134,7 @@ fn numerical_error(own: &Found, name: &str, value: f64) -> Option<f64> {
     Some(error * largest(quantity?))
 }
 
-fn first_order(slopes: &[f64], inputs: &[Input]) -> FirstOrder {
+fn first_order(slopes: &[f64], inputs: &[UncertainInput]) -> FirstOrder {
     let parts: Vec<f64> = slopes
         .iter()
         .zip(inputs)
@@ -191,9 +191,9 @@ fn spread(value: f64, mut all: Vec<f64>) -> Option<Spread> {
 
 fn warnings(
     figures: &BTreeMap<String, Spread>,
-    inputs: &[Input],
+    inputs: &[UncertainInput],
     own_values: &[Option<f64>],
-    samples: &[Found],
+    samples: &[AnalysisOutcome],
 ) -> Vec<String> {
     let mut all = vec![];
     let lost = samples.iter().filter(|one| one.status != Status::Finished).count();
@@ -287,16 +287,16 @@ mod tests {
     use super::*;
     use crate::study::sweep::vary::Vary;
 
-    fn found(q: f64) -> Found {
-        Found {
+    fn found(q: f64) -> AnalysisOutcome {
+        AnalysisOutcome {
             figures: vec![("q.final".into(), q), ("q.error".into(), 1e-3)],
-            ..Found::finished()
+            ..AnalysisOutcome::finished()
         }
     }
 
-    fn plan() -> Plan {
+    fn plan() -> SamplePlan {
         let inputs = ["/a=normal:2:0.1", "/b=uniform:0:6"].map(|text| Vary::parse(text).expect("values"));
-        Plan::new(inputs.into(), 256, 1, true).expect("a plan")
+        SamplePlan::new(inputs.into(), 256, 1, true).expect("a plan")
     }
 
     /// Goal: for a straight line, first order and samples agree with the exact spread, 3 sd(a), sd(b) = 6/√12.
@@ -304,7 +304,7 @@ mod tests {
     fn a_straight_line_spreads_as_its_derivatives_say() {
         let plan = plan();
         let q = |x: &[f64]| 3.0 * x[0] + 0.1 * x[1];
-        let all: Vec<Found> = (0..plan.count()).map(|k| found(q(&plan.values(k)))).collect();
+        let all: Vec<AnalysisOutcome> = (0..plan.count()).map(|k| found(q(&plan.values(k)))).collect();
         let slopes = Ok(BTreeMap::from([("q.final".to_owned(), vec![3.0, 0.1])]));
         let own = found(q(&[2.0, 3.0]));
         let result = judge(("case", 0.1), "run", &plan, &own, &[Some(2.0), None], &all, slopes);
@@ -327,7 +327,7 @@ mod tests {
     /// Goal: an error relative to the largest figure of a quantity, as for cycles, is not smaller for a smaller figure of that quantity.
     #[test]
     fn errors_are_of_what_they_are_relative_to() {
-        let own = Found {
+        let own = AnalysisOutcome {
             figures: [
                 ("q_m.window_max_abs", 2.0),
                 ("q_m.window_rms", 1.0),
@@ -348,10 +348,10 @@ mod tests {
     #[test]
     fn what_is_no_line_what_is_lost_and_what_is_elsewhere_is_told() {
         let plan = plan();
-        let mut all: Vec<Found> = (0..plan.count())
+        let mut all: Vec<AnalysisOutcome> = (0..plan.count())
             .map(|k| found((plan.values(k)[1] - 3.0).powi(2)))
             .collect();
-        all[3] = Found {
+        all[3] = AnalysisOutcome {
             status: Status::Failed,
             reason: Some("E041 no".into()),
             ..found(1e9)

@@ -2,10 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
+use super::figure::ExactFigure;
 use super::fit::growth_of_spans;
 use super::frequencies::free_shape;
-use super::row::Row;
+use super::row::SolvedProblem;
 use super::scene::{SMALL, motion, unit_beam};
 use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;
@@ -18,7 +18,7 @@ const FREQUENCY: f64 = 11.0155576;
 const START: f64 = 1e-9;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     vec![flutter(), below()]
 }
 
@@ -76,8 +76,8 @@ fn onset(cells: usize) -> Result<[f64; 2]> {
     Ok([b, fb.1.sqrt()])
 }
 
-fn flutter() -> Row {
-    Row::new(
+fn flutter() -> SolvedProblem {
+    SolvedProblem::new(
         "beck-flutter",
         [
             "Beck 1952; Bolotin: P L^2/EI = 20.0509536, w L^2 sqrt(m/EI) = 11.0155576, undamped",
@@ -87,15 +87,15 @@ fn flutter() -> Row {
         || {
             let [load, frequency] = on_three_meshes(20, onset)?;
             Ok(vec![
-                Figure::relative("P L^2/EI", load[2], LOAD, 1.5e-3).on_meshes(load, 4e-5),
-                Figure::relative("w L^2 sqrt(m/EI)", frequency[2], FREQUENCY, 1.5e-3).on_meshes(frequency, 4e-5),
+                ExactFigure::relative("P L^2/EI", load[2], LOAD, 1.5e-3).on_meshes(load, 4e-5),
+                ExactFigure::relative("w L^2 sqrt(m/EI)", frequency[2], FREQUENCY, 1.5e-3).on_meshes(frequency, 4e-5),
             ])
         },
     )
 }
 
-fn below() -> Row {
-    Row::new(
+fn below() -> SolvedProblem {
+    SolvedProblem::new(
         "beck-below",
         [
             "Beck 1952: undamped and below the flutter load every motion stays bounded",
@@ -104,7 +104,7 @@ fn below() -> Row {
         ],
         || {
             let (tip, interval) = tip(40, 19.5, 12.0)?;
-            Ok(vec![Figure::absolute(
+            Ok(vec![ExactFigure::absolute(
                 "growth rate L^2 sqrt(m/EI)",
                 growth_of_spans(&tip, 150, interval, 0),
                 0.0,

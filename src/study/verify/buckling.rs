@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde_json::json;
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::scene::{growing, load_path, unit_beam};
 use super::solve::{balance, on_three_meshes};
 
@@ -13,7 +13,7 @@ use super::solve::{balance, on_three_meshes};
 const EULER: f64 = PI * PI / 4.0;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     vec![
         euler(),
         self_weight(),
@@ -22,8 +22,8 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-fn euler() -> Row {
-    Row::new(
+fn euler() -> SolvedProblem {
+    SolvedProblem::new(
         "euler-load",
         [
             "Euler 1744: P L^2/EI = pi^2/4, clamped-free",
@@ -37,15 +37,15 @@ fn euler() -> Row {
                 Ok([EULER * balance(&case, 1.01)?.bifurcation()])
             })?;
             Ok(vec![
-                Figure::relative("P L^2/EI", load[2], EULER, 5e-5).on_meshes(load, 1e-6),
+                ExactFigure::relative("P L^2/EI", load[2], EULER, 5e-5).on_meshes(load, 1e-6),
             ])
         },
     )
 }
 
-fn self_weight() -> Row {
+fn self_weight() -> SolvedProblem {
     const EXACT: f64 = 7.83734743894;
-    Row::new(
+    SolvedProblem::new(
         "self-weight",
         [
             "Greenhill 1881: q L^3/EI = 7.83734743894",
@@ -60,15 +60,15 @@ fn self_weight() -> Row {
                 Ok([EXACT * balance(&case, 1.01)?.bifurcation()])
             })?;
             Ok(vec![
-                Figure::relative("q L^3/EI", load[2], EXACT, 1.6e-4).on_meshes(load, 1e-6),
+                ExactFigure::relative("q L^3/EI", load[2], EXACT, 1.6e-4).on_meshes(load, 1e-6),
             ])
         },
     )
 }
 
 /// The buckled branch, entered where it crosses the straight one.
-fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> Row {
-    Row::new(
+fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> SolvedProblem {
+    SolvedProblem::new(
         format!("elastica-{degrees}-degrees"),
         [
             "Timoshenko & Gere, Theory of Elastic Stability, 2.7 (elastica by elliptic integrals)",
@@ -85,12 +85,12 @@ fn elastica(degrees: u32, ratio: f64, place: Option<[f64; 2]>) -> Row {
             })?;
             let magnified = 4.0 / f64::from(degrees).to_radians().powi(2);
             let mut figures = vec![
-                Figure::relative("tip angle [degrees]", angle[2], f64::from(degrees), 4e-6 * magnified)
+                ExactFigure::relative("tip angle [degrees]", angle[2], f64::from(degrees), 4e-6 * magnified)
                     .on_meshes(angle, 3e-8 * magnified),
             ];
             if let Some([along, across]) = place {
-                figures.push(Figure::relative("x/L", z[2], along, 2e-5).on_meshes(z, 2e-7));
-                figures.push(Figure::relative("y/L", x[2], across, 2e-5).on_meshes(x, 2e-7));
+                figures.push(ExactFigure::relative("x/L", z[2], along, 2e-5).on_meshes(z, 2e-7));
+                figures.push(ExactFigure::relative("y/L", x[2], across, 2e-5).on_meshes(x, 2e-7));
             }
             Ok(figures)
         },

@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::solve::{Solved, modes, solve};
 use super::wet::{BLADDER, COMPLIANCE, TUBE, TUBE_LENGTH, case, pressures};
 use crate::error::Result;
-use crate::run::modes::Kind;
+use crate::run::modes::TimeBehavior;
 
 /// Number of bladders in a chain.
 const N: usize = 6;
@@ -24,9 +24,9 @@ const IN_TIME: &str =
     "one volume a bladder makes the lumped network exact: what is left is the integrator's error, rtol 1e-9";
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     let n = N as f64;
-    let chain = Row::new(
+    let chain = SolvedProblem::new(
         "network-closed-chain",
         [
             "eigenvalues of a path (discrete cosines): (4/RC) sin^2(k pi/2N)",
@@ -35,7 +35,7 @@ pub fn rows() -> Vec<Row> {
         ],
         move || rates(chain_of(json!(["sealed", "sealed"])), (1..N).map(|k| k as f64 * PI / n)),
     );
-    let open = Row::new(
+    let open = SolvedProblem::new(
         "network-open-chain",
         [
             "path with one end at pressure zero behind R: (4/RC) sin^2((2k - 1) pi/(2 (2N + 1)))",
@@ -44,7 +44,7 @@ pub fn rows() -> Vec<Row> {
         ],
         move || rates(open_chain(), (1..=N).map(|k| (2 * k - 1) as f64 * PI / (2.0 * n + 1.0))),
     );
-    let ring = Row::new(
+    let ring = SolvedProblem::new(
         "network-ring",
         [
             "eigenvalues of a ring, (4/RC) sin^2(k pi/N), all but the last twice",
@@ -86,23 +86,23 @@ fn ring() -> Value {
 const ALL: usize = 100;
 
 /// Compares decay rates with `(4/RC) sin²(angle/2)`, the slowest first.
-fn rates(network: Value, angles: impl Iterator<Item = f64>) -> Result<Vec<Figure>> {
+fn rates(network: Value, angles: impl Iterator<Item = f64>) -> Result<Vec<ExactFigure>> {
     let found = modes(&case(N, network, 1.0, 1.0), ALL)?;
     let mut rates: Vec<f64> = found
         .modes
         .iter()
-        .filter(|m| m.kind == Kind::Decay)
+        .filter(|m| m.kind == TimeBehavior::Decay)
         .map(|m| -m.s.re)
         .collect();
     rates.sort_by(f64::total_cmp);
     let figures = (1..).zip(angles).map(|(k, angle)| {
         let exact = 4.0 / (R * COMPLIANCE) * (0.5 * angle).sin().powi(2);
         let rate = rates.get(k - 1).copied().unwrap_or(f64::NAN);
-        Figure::relative(format!("rate of mode {k} [1/s]"), rate, exact, 1e-10)
+        ExactFigure::relative(format!("rate of mode {k} [1/s]"), rate, exact, 1e-10)
     });
-    let mut all: Vec<Figure> = figures.collect();
+    let mut all: Vec<ExactFigure> = figures.collect();
     let count = all.len() as f64;
-    all.push(Figure::absolute("number of rates", rates.len() as f64, count, 0.0));
+    all.push(ExactFigure::absolute("number of rates", rates.len() as f64, count, 0.0));
     Ok(all)
 }
 
@@ -117,8 +117,8 @@ fn upper_pressures(solved: &Solved, count: usize) -> impl Iterator<Item = f64> {
         .take(count)
 }
 
-fn two_bladders() -> Row {
-    Row::new(
+fn two_bladders() -> SolvedProblem {
+    SolvedProblem::new(
         "network-two-bladders",
         [
             "two capacitors: the difference of pressure decays with the time R C/2",
@@ -136,7 +136,7 @@ fn two_bladders() -> Row {
             run["start"] = json!({"pressures": pressures([START, 0.0].into_iter())});
             let left: Vec<f64> = upper_pressures(&solve(&run)?, 2).collect();
             let [a, b] = left[..] else { return Ok(vec![]) };
-            Ok(vec![Figure::relative(
+            Ok(vec![ExactFigure::relative(
                 "decay time [s]",
                 tau / (START / (a - b)).ln(),
                 tau,
@@ -146,8 +146,8 @@ fn two_bladders() -> Row {
     )
 }
 
-fn dissipation() -> Row {
-    Row::new(
+fn dissipation() -> SolvedProblem {
+    SolvedProblem::new(
         "network-dissipation",
         [
             "sum q^2 R = -d/dt sum C p^2/2",
@@ -163,9 +163,9 @@ fn dissipation() -> Row {
             let (tubes, bladders) = (solved.last("dissipated_tubes"), solved.last("dissipated_bladders"));
             let lost = 0.5 * COMPLIANCE * START * START * (1.0 - 1.0 / N as f64);
             Ok(vec![
-                Figure::relative("dissipated in all [J]", tubes + bladders, lost, 1e-6),
-                Figure::relative("share of the tubes", tubes / (tubes + bladders), TUBE / R, 1e-6),
-                Figure::relative(
+                ExactFigure::relative("dissipated in all [J]", tubes + bladders, lost, 1e-6),
+                ExactFigure::relative("share of the tubes", tubes / (tubes + bladders), TUBE / R, 1e-6),
+                ExactFigure::relative(
                     "energy left [J]",
                     solved.last("bladder_energy"),
                     lost / (N - 1) as f64,

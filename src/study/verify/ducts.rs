@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::solve::solve;
 use super::wet::{TUBE_LENGTH, VISCOSITY, case};
 use crate::error::Result;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     let a: f64 = 2e-3;
     vec![
         duct(
@@ -63,8 +63,15 @@ fn slot(a: f64, b: f64) -> f64 {
     a * b.powi(3) / 12.0 * (1.0 - 192.0 * b / (PI.powi(5) * a) * sum)
 }
 
-fn duct(name: &str, source: &'static str, section: Value, exact: f64, reason: &'static str, tolerance: f64) -> Row {
-    Row::new(
+fn duct(
+    name: &str,
+    source: &'static str,
+    section: Value,
+    exact: f64,
+    reason: &'static str,
+    tolerance: f64,
+) -> SolvedProblem {
+    SolvedProblem::new(
         format!("duct-{name}"),
         [
             source,
@@ -72,7 +79,7 @@ fn duct(name: &str, source: &'static str, section: Value, exact: f64, reason: &'
             reason,
         ],
         move || {
-            Ok(vec![Figure::relative(
+            Ok(vec![ExactFigure::relative(
                 "q1 [m^4]",
                 permeability(&section)?,
                 exact,

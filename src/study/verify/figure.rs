@@ -9,7 +9,7 @@ use super::fit::richardson;
 /// Measure of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Measure {
+pub enum ErrorMeasure {
     /// `|computed - exact|/|exact|`.
     Relative,
     /// `|computed - exact|`, in the unit of the quantity.
@@ -18,7 +18,7 @@ pub enum Measure {
 
 /// Number of a row.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Figure {
+pub struct ExactFigure {
     /// Name with unit: `tip angle [rad]`.
     pub quantity: String,
     /// Computed value, on the finest mesh if there are several.
@@ -26,7 +26,7 @@ pub struct Figure {
     /// Exact value.
     pub exact: f64,
     /// Measure of the error that the tolerances limit.
-    pub measure: Measure,
+    pub measure: ErrorMeasure,
     /// Largest accepted error.
     pub tolerance: f64,
     /// Order of convergence in the mesh size, observed between the two finer meshes.
@@ -42,14 +42,14 @@ pub struct Figure {
 /// Accepted orders for second-order convergence.
 const SECOND_ORDER: RangeInclusive<f64> = 1.8..=2.2;
 
-impl Figure {
+impl ExactFigure {
     /// Creates a number with a tolerance relative to its exact value.
     pub fn relative(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
         Self {
             quantity: quantity.into(),
             computed,
             exact,
-            measure: Measure::Relative,
+            measure: ErrorMeasure::Relative,
             tolerance,
             order: None,
             orders: SECOND_ORDER,
@@ -61,7 +61,7 @@ impl Figure {
     /// Creates a number with a tolerance in its own unit.
     pub fn absolute(quantity: impl Into<String>, computed: f64, exact: f64, tolerance: f64) -> Self {
         Self {
-            measure: Measure::Absolute,
+            measure: ErrorMeasure::Absolute,
             ..Self::relative(quantity, computed, exact, tolerance)
         }
     }
@@ -86,8 +86,8 @@ impl Figure {
     pub fn error(&self) -> f64 {
         let difference = (self.computed - self.exact).abs();
         match self.measure {
-            Measure::Relative => difference / self.exact.abs(),
-            Measure::Absolute => difference,
+            ErrorMeasure::Relative => difference / self.exact.abs(),
+            ErrorMeasure::Absolute => difference,
         }
     }
 

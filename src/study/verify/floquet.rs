@@ -5,16 +5,16 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::scene::unit_beam;
 use super::solve::on_three_meshes;
 use crate::case;
 use crate::error::Result;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
-use crate::run::floquet::{self, Multiplier, shape::Part};
+use crate::run::floquet::{self, Multiplier, shape::EnergyPart};
 use crate::run::periodic::scene::fault;
-use crate::run::periodic::{Scene, shoot};
+use crate::run::periodic::{PeriodicScene, shoot};
 
 const BETA: f64 = 1.875104068712;
 /// Number of multipliers computed: without damping, several modes lie on the unit circle besides the first.
@@ -25,11 +25,11 @@ const NARROW: f64 = 0.1;
 const WIDE: (f64, f64) = (0.2, 0.01);
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     let source = "Mathieu: q'' + 2 z w1 q' + [w1^2 - 1.57087818999 a(t)/L] q = 0; edges a1(q), b1(q) = 1 -/+ q - q^2/8 +/- q^3/64, \
                   a = (2 w1/W)^2, q = a eps/2 (Abramowitz & Stegun 20.2.25); growth from its monodromy matrix";
     vec![
-        Row::new(
+        SolvedProblem::new(
             "floquet-tongue-edges",
             [
                 source,
@@ -40,12 +40,14 @@ pub fn rows() -> Vec<Row> {
                 let [lower, upper] = on_three_meshes(6, |cells| Ok([edge(cells, -1.0)?, edge(cells, 1.0)?]))?;
                 let bound = (BETA / 24.0).powi(2) / 3.0;
                 Ok(vec![
-                    Figure::relative("lower edge W/(2 w1)", lower[2], exact_edge(-1.0), bound).on_meshes(lower, 3e-4),
-                    Figure::relative("upper edge W/(2 w1)", upper[2], exact_edge(1.0), bound).on_meshes(upper, 3e-4),
+                    ExactFigure::relative("lower edge W/(2 w1)", lower[2], exact_edge(-1.0), bound)
+                        .on_meshes(lower, 3e-4),
+                    ExactFigure::relative("upper edge W/(2 w1)", upper[2], exact_edge(1.0), bound)
+                        .on_meshes(upper, 3e-4),
                 ])
             },
         ),
-        Row::new(
+        SolvedProblem::new(
             "floquet-damped-growth",
             [
                 source,
@@ -57,7 +59,12 @@ pub fn rows() -> Vec<Row> {
                 let w = BETA * BETA;
                 let exact = mathieu_growth(w * w * (1.0 - zeta * zeta), epsilon * w * w, 2.0 * w) - zeta * w;
                 let [growth] = on_three_meshes(6, |cells| Ok([first(cells, 1.0, WIDE)?[0].growth_per_s]))?;
-                Ok(vec![Figure::relative("growth L^2 sqrt(m/EI)", growth[2], exact, 3e-3)])
+                Ok(vec![ExactFigure::relative(
+                    "growth L^2 sqrt(m/EI)",
+                    growth[2],
+                    exact,
+                    3e-3,
+                )])
             },
         ),
     ]
@@ -87,10 +94,10 @@ fn first(cells: usize, ratio: f64, (epsilon, zeta): (f64, f64)) -> Result<Vec<Mu
 /// Multipliers of the first bending mode of a case, largest first.
 pub fn bending(case: &Value) -> Result<Vec<Multiplier>> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
-    let scene = Scene::new(&case, None)?;
+    let scene = PeriodicScene::new(&case, None)?;
     let mut cycle = shoot(&scene, None).map_err(fault)?;
     let mut found = floquet::multipliers(&scene, &mut cycle, COUNT).multipliers;
-    found.retain(|m| m.part == Part::Bending(1));
+    found.retain(|m| m.part == EnergyPart::Bending(1));
     Ok(found)
 }
 

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
+use super::figure::ExactFigure;
 use super::fit::oscillation;
-use super::row::Row;
+use super::row::SolvedProblem;
 use super::scene::motion;
 use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;
@@ -20,8 +20,8 @@ const PERIODS: usize = 2;
 const FREE: [f64; 4] = [1.875104068712, 4.694091132974, 7.854757438238, 10.995540734875];
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
-    let mut all: Vec<Row> = (1..)
+pub fn rows() -> Vec<SolvedProblem> {
+    let mut all: Vec<SolvedProblem> = (1..)
         .zip(FREE)
         .map(|(mode, beta)| frequency(format!("frequency-clamped-free-{mode}"), mode, beta, json!("free")))
         .collect();
@@ -41,8 +41,8 @@ pub fn rows() -> Vec<Row> {
     all
 }
 
-fn frequency(name: String, mode: usize, beta: f64, tip: Value) -> Row {
-    Row::new(
+fn frequency(name: String, mode: usize, beta: f64, tip: Value) -> SolvedProblem {
+    SolvedProblem::new(
         name,
         [
             "Euler-Bernoulli beam: w L^2 sqrt(m/EI) = (beta L)^2 (Blevins)",
@@ -54,7 +54,7 @@ fn frequency(name: String, mode: usize, beta: f64, tip: Value) -> Row {
             let [w] = on_three_meshes(16, |cells| Ok([transverse(cells, mode, &tip)?]))?;
             let bound = (beta * beta / 10.0 + beta / 2.0) / 64.0_f64.powi(2);
             Ok(vec![
-                Figure::relative("w L^2 sqrt(m/EI)", w[2], exact, bound).on_meshes(w, (beta / 32.0).powi(4)),
+                ExactFigure::relative("w L^2 sqrt(m/EI)", w[2], exact, bound).on_meshes(w, (beta / 32.0).powi(4)),
             ])
         },
     )
@@ -75,8 +75,8 @@ fn transverse(cells: usize, mode: usize, tip: &Value) -> Result<f64> {
 }
 
 /// Compares the linearization with the nonlinear equations.
-fn in_time() -> Row {
-    Row::new(
+fn in_time() -> SolvedProblem {
+    SolvedProblem::new(
         "frequency-in-time",
         [
             "eigenvalue of the linearised beam on the same mesh",
@@ -86,7 +86,7 @@ fn in_time() -> Row {
         || {
             let beta = FREE[1];
             let expected = transverse(40, 2, &json!("free"))?;
-            Ok(vec![Figure::relative(
+            Ok(vec![ExactFigure::relative(
                 "w L^2 sqrt(m/EI)",
                 measured(40, beta)?,
                 expected,

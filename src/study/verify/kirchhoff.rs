@@ -3,15 +3,15 @@
 use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::solve::solve;
 use super::wet::{BLADDER, TUBE, case};
 use crate::error::Result;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
-    vec![Row::new(
+pub fn rows() -> Vec<SolvedProblem> {
+    vec![SolvedProblem::new(
         "network-kirchhoff",
         [
             "Kirchhoff 1847: conductances times pressures, a dense solve",
@@ -50,7 +50,7 @@ fn network() -> Value {
     })
 }
 
-fn compare() -> Result<Vec<Figure>> {
+fn compare() -> Result<Vec<ExactFigure>> {
     let end = 0.05;
     let solved = solve(&case(4, network(), end, end / 10.0))?;
     let (exact, power) = resistors();
@@ -60,20 +60,20 @@ fn compare() -> Result<Vec<Figure>> {
         [.., before, now] => (now - before) / (end / 10.0),
         _ => f64::NAN,
     };
-    let mut figures: Vec<Figure> = (0..4)
+    let mut figures: Vec<ExactFigure> = (0..4)
         .map(|b| {
             let p = last.get(b).copied().unwrap_or(f64::NAN);
-            Figure::relative(format!("pressure of bladder {} [Pa]", b + 1), p, exact[b], 1e-6)
+            ExactFigure::relative(format!("pressure of bladder {} [Pa]", b + 1), p, exact[b], 1e-6)
         })
         .collect();
     let turbine = TURBINE * (exact[4] - exact[5]).powi(2);
-    figures.push(Figure::relative(
+    figures.push(ExactFigure::relative(
         "power of the turbine [W]",
         solved.last("turbine_power"),
         turbine,
         1e-6,
     ));
-    figures.push(Figure::relative("power put in [W]", computed, power, 1e-6));
+    figures.push(ExactFigure::relative("power put in [W]", computed, power, 1e-6));
     Ok(figures)
 }
 

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use serde_json::json;
 
-use super::figure::Figure;
+use super::figure::ExactFigure;
 use super::fit::growth_of_spans;
 use super::frequencies::free_shape;
-use super::row::Row;
+use super::row::SolvedProblem;
 use super::scene::motion;
 use super::solve::solve;
 use crate::error::Result;
@@ -20,10 +20,10 @@ const MODULATION: f64 = 0.2;
 const SAMPLES: usize = 20;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     let source = "single mode: q'' + [w1^2 - 1.57087818999 a(t)/L] q = 0, growth from its monodromy matrix; unstable where |W/(2 w1) - 1| < eps/4";
     vec![
-        Row::new(
+        SolvedProblem::new(
             "mathieu-inside",
             [
                 source,
@@ -32,7 +32,7 @@ pub fn rows() -> Vec<Row> {
             ],
             || {
                 let exact = mathieu_growth(BETA.powi(4), MODULATION * BETA.powi(4), 2.0 * BETA * BETA);
-                Ok(vec![Figure::relative(
+                Ok(vec![ExactFigure::relative(
                     "growth rate L^2 sqrt(m/EI)",
                     growth(1.0)?,
                     exact,
@@ -40,7 +40,7 @@ pub fn rows() -> Vec<Row> {
                 )])
             },
         ),
-        Row::new(
+        SolvedProblem::new(
             "mathieu-outside",
             [
                 source,
@@ -48,7 +48,7 @@ pub fn rows() -> Vec<Row> {
                 "bounded motion beats: spans differ, but without a trend; inside the tongue the growth is 0.18 1/s",
             ],
             || {
-                Ok(vec![Figure::absolute(
+                Ok(vec![ExactFigure::absolute(
                     "growth rate L^2 sqrt(m/EI)",
                     growth(1.1)?,
                     0.0,

@@ -40,11 +40,11 @@ mod spin_up;
 mod statics;
 mod wet;
 
-pub use figure::{Figure, Measure};
-pub use row::{Row, choose};
+pub use figure::{ErrorMeasure, ExactFigure};
+pub use row::{SolvedProblem, choose};
 
 /// Every row, in the order of the report.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     let mut all = statics::rows();
     all.extend(buckling::rows());
     all.extend(beck::rows());

@@ -1,13 +1,13 @@
 //! Problems with a known solution.
 
-use super::figure::Figure;
+use super::figure::ExactFigure;
 use crate::error::{Error, Result};
 
 /// Function that computes the figures of a row.
-type Work = Box<dyn Fn() -> Result<Vec<Figure>> + Send + Sync>;
+type Work = Box<dyn Fn() -> Result<Vec<ExactFigure>> + Send + Sync>;
 
 /// Problem with a known solution.
-pub struct Row {
+pub struct SolvedProblem {
     /// Name, lower case with dashes: `tip-load-5`.
     pub name: String,
     /// Source of the solution.
@@ -19,12 +19,12 @@ pub struct Row {
     work: Work,
 }
 
-impl Row {
+impl SolvedProblem {
     /// Creates a row from its name, its source, goal and reason for the tolerance, and the function that computes it.
     pub fn new(
         name: impl Into<String>,
         [source, goal, reason]: [&'static str; 3],
-        work: impl Fn() -> Result<Vec<Figure>> + Send + Sync + 'static,
+        work: impl Fn() -> Result<Vec<ExactFigure>> + Send + Sync + 'static,
     ) -> Self {
         Self {
             name: name.into(),
@@ -39,7 +39,7 @@ impl Row {
     ///
     /// # Errors
     /// One of its runs fails.
-    pub fn figures(&self) -> Result<Vec<Figure>> {
+    pub fn figures(&self) -> Result<Vec<ExactFigure>> {
         (self.work)()
     }
 }
@@ -48,9 +48,9 @@ impl Row {
 ///
 /// # Errors
 /// [`Error::Usage`] with the nearest name if there is none.
-pub fn choose(rows: Vec<Row>, part: &str) -> Result<Vec<Row>> {
+pub fn choose(rows: Vec<SolvedProblem>, part: &str) -> Result<Vec<SolvedProblem>> {
     let names: Vec<String> = rows.iter().map(|row| row.name.clone()).collect();
-    let chosen: Vec<Row> = rows.into_iter().filter(|row| row.name.contains(part)).collect();
+    let chosen: Vec<SolvedProblem> = rows.into_iter().filter(|row| row.name.contains(part)).collect();
     if !chosen.is_empty() {
         return Ok(chosen);
     }

@@ -2,15 +2,15 @@
 
 use slcbeam_section::verify::{self, Compare, Comparison, LEAST_ORDER, ROUND_OFF};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use crate::error::Error;
 
 const APPROACHED: &str = "a thousandth on the third of three coarse meshes, the goal of every coefficient; quadratic elements \
     converge with an order above 3.3 (4 on fine meshes), and what the meshes show covers the error";
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
+pub fn rows() -> Vec<SolvedProblem> {
     vec![
         row(
             "section-layers",
@@ -78,24 +78,24 @@ pub fn rows() -> Vec<Row> {
     ]
 }
 
-fn row(name: &str, words: [&'static str; 3], compare: Compare) -> Row {
-    Row::new(name, words, move || {
+fn row(name: &str, words: [&'static str; 3], compare: Compare) -> SolvedProblem {
+    SolvedProblem::new(name, words, move || {
         let found = compare().map_err(|error| Error::Usage(error.to_string()))?;
         Ok(found.iter().map(figure).collect())
     })
 }
 
-fn figure(found: &Comparison) -> Figure {
+fn figure(found: &Comparison) -> ExactFigure {
     let of = if found.exact == 0.0 {
-        Figure::absolute
+        ExactFigure::absolute
     } else {
-        Figure::relative
+        ExactFigure::relative
     };
     let finest = found.computed.last().copied().unwrap_or(f64::NAN);
     let figure = of(&found.name, finest, found.exact, found.tolerance);
     match found.estimate() {
         None => figure,
-        Some(shown) => Figure {
+        Some(shown) => ExactFigure {
             order: found.order,
             orders: LEAST_ORDER..=f64::INFINITY,
             estimate: Some((shown, ROUND_OFF)),

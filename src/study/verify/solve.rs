@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use crate::case;
 use crate::error::{Error, Result};
-use crate::run::modes::{self, Modes, Plan};
-use crate::run::record::{Column, Control, Memory};
+use crate::run::modes::{self, ModeOptions, Modes};
+use crate::run::record::{Control, HistoryColumn, Memory};
 use crate::run::{dynamics, equilibrium};
 
 /// Recorded data of a run.
@@ -35,7 +35,7 @@ pub fn solve(case: &Value) -> Result<Solved> {
 /// A case that is not valid, eigenvalues that do not converge.
 pub fn modes(case: &Value, count: usize) -> Result<Modes> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
-    let plan = Plan {
+    let plan = ModeOptions {
         count,
         near_hz: 0.0,
         limits: false,
@@ -62,7 +62,7 @@ impl Solved {
 
 /// A load path of equilibria.
 pub struct Balanced {
-    columns: Vec<Column>,
+    columns: Vec<HistoryColumn>,
     path: equilibrium::Path,
 }
 
@@ -73,9 +73,9 @@ pub struct Balanced {
 pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let at_s = case.time.end_s;
-    let options = equilibrium::Options {
+    let options = equilibrium::EquilibriumOptions {
         share,
-        ..equilibrium::Options::at(at_s)
+        ..equilibrium::EquilibriumOptions::at(at_s)
     };
     let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue)?;
     match path.fault {
@@ -98,7 +98,7 @@ impl Balanced {
     pub fn bifurcation(&self) -> f64 {
         let mut events = self.path.events.iter();
         events
-            .find(|e| e.kind == equilibrium::Kind::Bifurcation)
+            .find(|e| e.kind == equilibrium::EventKind::Bifurcation)
             .map_or(f64::NAN, |e| e.share)
     }
 }

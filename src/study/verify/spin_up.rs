@@ -4,9 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
+use super::figure::ExactFigure;
 use super::fit::{minimum, smooth_mean};
-use super::row::Row;
+use super::row::SolvedProblem;
 use super::solve::{on_three_meshes, solve};
 use crate::error::Result;
 use crate::functions::{Clock, Signal};
@@ -20,8 +20,8 @@ const SPEED: f64 = 6.0;
 const RISE: f64 = 15.0;
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
-    vec![Row::new(
+pub fn rows() -> Vec<SolvedProblem> {
+    vec![SolvedProblem::new(
         "spin-up",
         [
             "Simo & Vu-Quoc 1986; rotating bar: tan(k L)/k - L = 5.14317455e-4 m; transverse minimum of the unshearable arm about -0.57379 m",
@@ -33,8 +33,8 @@ pub fn rows() -> Vec<Row> {
             let k = SPEED * (MASS / EA).sqrt();
             let steady = (k * LENGTH).tan() / k - LENGTH;
             Ok(vec![
-                Figure::relative("steady extension [m]", extension[2], steady, 6e-4).on_meshes(extension, 2e-4),
-                Figure::relative("largest lag [m]", lag[2], -0.57379, 1.8e-3).on_meshes(lag, 2e-4),
+                ExactFigure::relative("steady extension [m]", extension[2], steady, 6e-4).on_meshes(extension, 2e-4),
+                ExactFigure::relative("largest lag [m]", lag[2], -0.57379, 1.8e-3).on_meshes(lag, 2e-4),
             ])
         },
     )]

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 
-use super::figure::Figure;
-use super::row::Row;
+use super::figure::ExactFigure;
+use super::row::SolvedProblem;
 use super::scene::{growing, load_path, unit_beam};
 use super::solve::{balance, on_three_meshes};
 use crate::error::Result;
@@ -20,8 +20,8 @@ fn tip(case: &Value) -> Result<[f64; 3]> {
 }
 
 /// All rows.
-pub fn rows() -> Vec<Row> {
-    let mut all: Vec<Row> = [
+pub fn rows() -> Vec<SolvedProblem> {
+    let mut all: Vec<SolvedProblem> = [
         ("quarter", 0.5 * PI),
         ("half", PI),
         ("ring", 2.0 * PI),
@@ -51,8 +51,8 @@ pub fn rows() -> Vec<Row> {
 
 /// Curvature is constant, `φ' = -M/EI`; the mesh replaces the arc by chords of its midpoint tangents, which shortens
 /// `sin k/k` by the factor `1 + (k h)²/24`.
-fn end_moment((name, k): (&'static str, f64)) -> Row {
-    Row::new(
+fn end_moment((name, k): (&'static str, f64)) -> SolvedProblem {
+    SolvedProblem::new(
         format!("end-moment-{name}"),
         [
             "constant curvature: tip at (sin k/k, (1 - cos k)/k) L, k = M L/EI",
@@ -69,7 +69,7 @@ fn end_moment((name, k): (&'static str, f64)) -> Row {
             let bound = (k / (4 * CELLS) as f64).powi(2) / 12.0;
             let full_turns = (0.5 * k / PI).fract() == 0.0;
             let place = |quantity, values: [f64; 3], exact| {
-                let figure = Figure::absolute(quantity, values[2], exact, if full_turns { 1e-7 } else { bound });
+                let figure = ExactFigure::absolute(quantity, values[2], exact, if full_turns { 1e-7 } else { bound });
                 if full_turns {
                     figure
                 } else {
@@ -77,9 +77,9 @@ fn end_moment((name, k): (&'static str, f64)) -> Row {
                 }
             };
             let mut figures = vec![
-                Figure::absolute("shortening u/L", u[2], exact[0], 1e-7),
+                ExactFigure::absolute("shortening u/L", u[2], exact[0], 1e-7),
                 place("deflection w/L", w, exact[1]),
-                Figure::relative("tip angle [rad]", angle[2], k, 1e-7),
+                ExactFigure::relative("tip angle [rad]", angle[2], k, 1e-7),
             ];
             if !full_turns && k.sin().abs() > 0.5 {
                 figures[0] = place("shortening u/L", u, exact[0]);
@@ -90,17 +90,19 @@ fn end_moment((name, k): (&'static str, f64)) -> Row {
 }
 
 /// Shortening, deflection and angle on three meshes.
-fn cantilever(values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64, limit: f64) -> Vec<Figure> {
+fn cantilever(values: [[f64; 3]; 3], exact: [f64; 3], tolerance: f64, limit: f64) -> Vec<ExactFigure> {
     ["shortening u/L", "deflection w/L", "tip angle [rad]"]
         .into_iter()
         .zip(values)
         .zip(exact)
-        .map(|((name, values), exact)| Figure::relative(name, values[2], exact, tolerance).on_meshes(values, limit))
+        .map(|((name, values), exact)| {
+            ExactFigure::relative(name, values[2], exact, tolerance).on_meshes(values, limit)
+        })
         .collect()
 }
 
-fn tip_load((load, exact): (u32, [f64; 3])) -> Row {
-    Row::new(
+fn tip_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
+    SolvedProblem::new(
         format!("tip-load-{load}"),
         [
             "Bisshopp & Drucker 1945: P L^2/EI, elastica without stretch",
@@ -118,8 +120,8 @@ fn tip_load((load, exact): (u32, [f64; 3])) -> Row {
     )
 }
 
-fn tip_load_stretch() -> Row {
-    Row::new(
+fn tip_load_stretch() -> SolvedProblem {
+    SolvedProblem::new(
         "tip-load-stretch",
         [
             "closed form of the extensible elastica; Exudyn's ANCFCable2D tends to it",
@@ -146,14 +148,14 @@ fn tip_load_stretch() -> Row {
             .into_iter()
             .zip(values)
             .zip(exact)
-            .map(|((name, values), exact)| Figure::relative(name, values[2], exact, 8e-5).on_meshes(values, 1e-6))
+            .map(|((name, values), exact)| ExactFigure::relative(name, values[2], exact, 8e-5).on_meshes(values, 1e-6))
             .collect())
         },
     )
 }
 
-fn uniform_load((load, exact): (u32, [f64; 3])) -> Row {
-    Row::new(
+fn uniform_load((load, exact): (u32, [f64; 3])) -> SolvedProblem {
+    SolvedProblem::new(
         format!("uniform-load-{load}"),
         [
             "Rohde 1953: q L^3/EI, elastica without stretch",

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use slcbeam::output::sweep::Survey;
-use slcbeam::results::{self, sweep::Plan};
+use slcbeam::results::{self, sweep::SweepPlan};
 use tempfile::TempDir;
 
 use crate::chance::Random;
@@ -234,7 +234,7 @@ fn changed_rows_are_not_used() {
     let journal = Path::new(&out).join("designs.jsonl");
     let sound = fs::read(&journal).expect("rows");
     let text = fs::read_to_string(Path::new(&out).join("plan.json")).expect("a plan");
-    let plan = results::read::<Plan>(&text).expect("a plan").result;
+    let plan = results::read::<SweepPlan>(&text).expect("a plan").result;
     let mut random = Random(52);
     for trial in 0..60 {
         let (bytes, same, at) = changed(&sound, &mut random);

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde_json::Value;
 use slcbeam::output::npz::Npz;
-use slcbeam::results::sweep::{Plan, Sweep};
-use slcbeam::results::{self, Kept};
+use slcbeam::results::sweep::{Sweep, SweepPlan};
+use slcbeam::results::{self, ResultFile};
 use tempfile::TempDir;
 
 use super::common::{AREA, CASE, SHORT, json, path, rows, say, swept, well};
@@ -44,11 +44,11 @@ fn a_row_is_what_the_run_tells() {
     assert_eq!(rows[1]["steps"], summary["solver"]["steps"].to_string());
     // plan and table are told apart by their formats, and read back
     let read = |name: &str| fs::read_to_string(Path::new(&out).join(name)).expect("a file");
-    let plan = results::read::<Plan>(&read("plan.json")).expect("a plan");
+    let plan = results::read::<SweepPlan>(&read("plan.json")).expect("a plan");
     let found = results::read::<Sweep>(&read("sweep.json")).expect("a table");
     assert_eq!(
         (plan.head.format, found.head.format),
-        (Some(Plan::FORMAT), Some(Sweep::FORMAT))
+        (Some(SweepPlan::FORMAT), Some(Sweep::FORMAT))
     );
     assert_eq!(found.result.plan, plan.result);
     // the arrays are the table's

@@ -6,7 +6,7 @@
 use serde_json::{Value, json};
 use slcbeam::dae::{BeamDae, Dae as _};
 use slcbeam::discrete::System;
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::modes::{self, ModeOptions};
 
 use super::{parse, slender};
 use crate::chance::Random;
@@ -22,7 +22,7 @@ fn column(at: f64, force: f64, cells: usize, effects: &Value) -> Value {
 
 /// Squares of the two lowest frequencies, which may be complex: their mean and the square of half their difference.
 fn slowest(case: &Value) -> [f64; 2] {
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 3,
         near_hz: 0.0,
         limits: false,

@@ -15,8 +15,8 @@ use slcbeam::case::{self, Case};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
-use slcbeam::run::modes::{self, Plan};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
+use slcbeam::run::modes::{self, ModeOptions};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Status;
 
@@ -44,7 +44,7 @@ fn slender(root: Value, tip: Value, attachments: Value, cells: usize) -> Value {
 
 /// β of the slowest mode, `ω = β²`, with an error of fourth order in the mesh.
 fn wave_number(case: &Value) -> f64 {
-    let plan = Plan {
+    let plan = ModeOptions {
         count: 2,
         near_hz: 0.0,
         limits: false,
@@ -125,7 +125,7 @@ fn a_stiff_spring_is_a_pin() {
 /// Deflection of the tip at rest.
 fn tip(case: &Value) -> f64 {
     let case = parse(case);
-    let path = follow(&case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);
     let names = columns(&system(&case, 1.0).unwrap());
     path.last().row[names.iter().position(|c| c.name == "tip_u1").unwrap()]

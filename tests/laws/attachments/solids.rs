@@ -5,7 +5,7 @@
 
 use serde_json::{Value, json};
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Status;
 
@@ -158,7 +158,7 @@ fn a_weight_beside_the_tip_bends_the_beam() {
             case["effects"] = json!({});
             case["loads"] = json!([{"gravity": {"x_m_s2": g}}]);
             let case = parse(&case);
-            let path = follow(&case, &Options::at(1.0), &mut |_| Control::Continue).unwrap();
+            let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
             assert!(path.fault.is_none(), "{:?}", path.fault);
             let names = columns(&system(&case, 1.0).unwrap());
             ["tip_u1", "tip_u3"].map(|name| path.last().row[names.iter().position(|c| c.name == name).unwrap()])

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use slcbeam::discrete::System;
 use slcbeam::run::dynamics;
-use slcbeam::run::equilibrium::{Options, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::run::summary::Status;
 
@@ -103,7 +103,7 @@ fn a_spring_at_the_tip_is_bent_beyond_half_a_turn() {
     let mut case = rod(ends, spring, json!({"end_s": 1}), false);
     case["beam"]["height_m"] = 0.002.into();
     let case = parse(&case);
-    let path = follow(&case, &Options::at(0.0), &mut |_| Control::Continue).unwrap();
+    let path = follow(&case, &EquilibriumOptions::at(0.0), &mut |_| Control::Continue).unwrap();
     let found = path.last();
     assert!((found.load_factor() - 1.0).abs() < 1e-12, "{}", found.load_factor());
     let place = columns(&system(&case, 0.0).unwrap())

@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 
 use serde_json::json;
-use slcbeam::discrete::quantities::{Observable, Row};
+use slcbeam::discrete::quantities::{Observable, ObservableRow};
 use slcbeam::run::dynamics;
-use slcbeam::run::energies::Energies;
+use slcbeam::run::energies::EnergyAccumulator;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Absence, Quantity};
 
@@ -20,12 +20,12 @@ const COLUMNS: [Observable; 8] = [
     Observable::EnergyResidual,
 ];
 
-fn followed(rows: &[[f64; 8]]) -> (Energies, BTreeMap<String, Quantity>) {
-    let mut energies = serde_json::to_value(Energies::default()).unwrap();
+fn followed(rows: &[[f64; 8]]) -> (EnergyAccumulator, BTreeMap<String, Quantity>) {
+    let mut energies = serde_json::to_value(EnergyAccumulator::default()).unwrap();
     energies["window_start"] = 1.0.into();
     energies["turbines"] = true.into();
-    let mut energies: Energies = serde_json::from_value(energies).unwrap();
-    let mut row = Row::new(COLUMNS.to_vec(), [0, 0]);
+    let mut energies: EnergyAccumulator = serde_json::from_value(energies).unwrap();
+    let mut row = ObservableRow::new(COLUMNS.to_vec(), [0, 0]);
     for values in rows {
         for (column, value) in COLUMNS.into_iter().zip(values) {
             row.set(column, *value);

@@ -2,12 +2,12 @@
 
 use slcbeam::dae::Dae;
 use slcbeam::integrate::Absolute;
-use slcbeam::onestep::{Method, OneStep, OneStepOptions};
+use slcbeam::onestep::{OneStep, OneStepOptions, TableauMethod};
 
 use crate::problems::{Plain, TRANSISTOR, beam, robertson, transistor, transistor_start, transistor_voltages};
 
 /// Options of fixed steps: every error is accepted, and Newton converges to 1e-13 of the weights.
-pub fn fixed(method: Method, step: f64) -> OneStepOptions {
+pub fn fixed(method: TableauMethod, step: f64) -> OneStepOptions {
     OneStepOptions {
         method,
         relative: 1.0,
@@ -19,7 +19,7 @@ pub fn fixed(method: Method, step: f64) -> OneStepOptions {
     }
 }
 
-fn adaptive(method: Method, relative: f64, absolute: Absolute) -> OneStepOptions {
+fn adaptive(method: TableauMethod, relative: f64, absolute: Absolute) -> OneStepOptions {
     OneStepOptions {
         method,
         relative,
@@ -48,7 +48,7 @@ pub fn circle() -> Plain {
 /// Tolerance on the order: 0.35, since steps small enough to be asymptotic would show rounding errors.
 #[test]
 fn orders_are_those_of_the_methods() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let error = |steps: f64| {
             let mut one = OneStep::new(
                 circle(),
@@ -88,7 +88,7 @@ fn orders_are_those_of_the_methods() {
 /// Tolerance: some 1/(λ h) of the start, and some h²/λ of the smooth solution.
 #[test]
 fn stiff_transients_are_forgotten() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let problem = Plain::new(&[true], |t, y, yp, f| {
             f[0] = 1e-6 * (yp[0] + t.sin()) + y[0] - t.cos();
             Ok(())
@@ -105,7 +105,7 @@ fn stiff_transients_are_forgotten() {
 /// thousand), while concentrations fall by seven decades.
 #[test]
 fn robertson_reaches_published_values() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let options = adaptive(method, 1e-7, Absolute::Each(vec![1e-12, 1e-16, 1e-10]));
         let mut one = OneStep::new(robertson(), 0.0, &[1.0, 0.0, 0.0], &[-0.04, 0.04, 0.0], &options).unwrap();
         run(&mut one, 1e11);
@@ -129,7 +129,7 @@ fn transistor_amplifier_reaches_published_values() {
         let errors = voltages.iter().zip(TRANSISTOR).map(|(a, b)| (a - b).abs());
         errors.fold(0.0, f64::max)
     };
-    for method in [Method::Esdirk34, Method::Esdirk46] {
+    for method in [TableauMethod::Esdirk34, TableauMethod::Esdirk46] {
         let (loose, tight) = (error(method, 1e-5), error(method, 1e-7));
         assert!(tight < 1e-4 && tight < 0.2 * loose, "{method}: {loose:e} {tight:e}");
     }
@@ -140,7 +140,7 @@ fn transistor_amplifier_reaches_published_values() {
 #[test]
 fn beam_is_not_held_down_by_its_waves() {
     let angles = [-0.5792366591285007e-2, -0.1483595472463012, -0.1767201761075488];
-    for method in [Method::Esdirk34, Method::Esdirk46] {
+    for method in [TableauMethod::Esdirk34, TableauMethod::Esdirk46] {
         let options = adaptive(method, 1e-5, Absolute::Same(1e-5));
         let mut one = OneStep::new(beam(), 0.0, &[0.0; 80], &[0.0; 80], &options).unwrap();
         run(&mut one, std::f64::consts::PI);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use slcbeam::case::{self, Case};
 use slcbeam::error::Error;
-use slcbeam::run::dynamics::simulator::{Input, Simulator, Snapshot};
+use slcbeam::run::dynamics::simulator::{Simulator, SimulatorInput, Snapshot};
 use slcbeam::run::record::Control;
 
 const INLET: &str = "/network/chains/0/ends/0/pressure_pa";
@@ -17,7 +17,7 @@ fn load(name: &str, sets: &[&str]) -> Case {
 
 fn simulator(case: &Case, pointer: &str, range: [f64; 2]) -> Simulator {
     let pointer = pointer.to_string();
-    Simulator::new(case, &[Input { pointer, range }]).unwrap()
+    Simulator::new(case, &[SimulatorInput { pointer, range }]).unwrap()
 }
 
 fn step(sim: &mut Simulator, until: f64, value: f64) {
@@ -188,7 +188,7 @@ fn ranges_are_refused_in_their_own_words() {
         (CHAIN, [0.0, 2.0], "its range, 0 to 2, is not allowed"),
     ] {
         let pointer = pointer.to_string();
-        let error = Simulator::new(&case, &[Input { pointer, range }])
+        let error = Simulator::new(&case, &[SimulatorInput { pointer, range }])
             .err()
             .unwrap()
             .to_string();

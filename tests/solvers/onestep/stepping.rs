@@ -2,7 +2,7 @@
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
 use slcbeam::integrate::Absolute;
-use slcbeam::onestep::{Method, OneStep, OneStepOptions};
+use slcbeam::onestep::{OneStep, OneStepOptions, TableauMethod};
 use slcbeam::sparse::Pattern;
 
 use super::orders::{circle, fixed, run};
@@ -12,7 +12,7 @@ fn at_start(options: &OneStepOptions) -> OneStep<Plain> {
     OneStep::new(circle(), 0.0, &[0.0, 1.0, 0.0], &[1.0, 0.0, 0.0], options).unwrap()
 }
 
-fn tight(method: Method) -> OneStepOptions {
+fn tight(method: TableauMethod) -> OneStepOptions {
     OneStepOptions {
         method,
         relative: 1e-8,
@@ -26,7 +26,7 @@ fn tight(method: Method) -> OneStepOptions {
 /// Tolerance: time is compared by equality; the solution by local errors of 1e-8 over up to a thousand steps.
 #[test]
 fn stop_times_are_hit_exactly() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let mut one = at_start(&tight(method));
         for stop in [1e-3, 0.1, 0.1 + 1e-9, 1.0 / 3.0, 2.0, 2.0 + 4e-16] {
             loop {
@@ -51,7 +51,11 @@ fn stop_times_are_hit_exactly() {
 /// Tolerance: halving the steps improves the error by a factor 2^order, less a quarter.
 #[test]
 fn dense_output_is_of_third_order() {
-    for method in [Method::Esdirk34, Method::Esdirk46, Method::Esdirk57] {
+    for method in [
+        TableauMethod::Esdirk34,
+        TableauMethod::Esdirk46,
+        TableauMethod::Esdirk57,
+    ] {
         let largest = |steps: f64| {
             let mut one = at_start(&fixed(method, 2.0 / steps));
             let (mut out, mut worst) = ([0.0; 3], [0.0_f64; 3]);
@@ -141,7 +145,7 @@ impl Dae for Swing {
 #[test]
 fn integrals_are_carried_along() {
     let pattern = || Pattern::from_columns(&[vec![0, 1], vec![0, 1]]);
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let error = |steps: f64| {
             let h = 2.0 / steps;
             let mut one = OneStep::new(Swing(pattern()), 0.0, &[0.0, 1.0], &[1.0, 0.0], &fixed(method, h)).unwrap();
@@ -171,7 +175,7 @@ fn integrals_are_carried_along() {
 /// Goal: a restarted integrator continues as a new one would, bit for bit; counters continue.
 #[test]
 fn restarts_forget_the_past() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let mut one = at_start(&tight(method));
         run(&mut one, 1.0);
         let (steps, y, yp) = (one.steps(), one.y().to_vec(), one.yp().to_vec());
@@ -260,7 +264,7 @@ impl Dae for Instantly {
 /// shortest representable step is used, and L-stability damps the error. Found by random case 44. Tolerance: that of the method.
 #[test]
 fn what_relaxes_faster_than_time_can_tell_is_no_obstacle() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let dae = Instantly(Pattern::from_columns(&[vec![0]]));
         let mut one = OneStep::new(dae, 1.0, &[1.0 - 1e-9], &[1e10], &tight(method)).unwrap();
         while !one.step(2.0).unwrap().stopped {}

@@ -1,6 +1,6 @@
 //! Coefficients of the methods: order conditions, form, stability.
 
-use slcbeam::onestep::tableau::{Method, STAGES, Tableau};
+use slcbeam::onestep::tableau::{STAGES, Tableau, TableauMethod};
 
 /// Rooted trees up to order five, each a list of its branches.
 #[derive(Clone)]
@@ -57,12 +57,12 @@ fn defect(t: &Tableau, b: &[f64; STAGES], order: usize) -> f64 {
 /// of products of at most five sums of seven coefficients, the largest 2.5.
 #[test]
 fn order_conditions_hold() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let t = method.tableau();
         let order = usize::from(method.order());
         assert!(defect(&t, &t.b(), order) < 1e-14, "{method}");
         assert!(defect(&t, &t.b(), order + 1) > 1e-5, "{method}");
-        let embedded = if method == Method::TrBdf2 { 3 } else { order - 1 };
+        let embedded = if method == TableauMethod::TrBdf2 { 3 } else { order - 1 };
         assert!(defect(&t, &t.embedded, embedded) < 1e-14, "{method}, embedded");
         assert_eq!(usize::from(t.power), order.min(embedded) + 1);
     }
@@ -71,7 +71,7 @@ fn order_conditions_hold() {
 /// Goal: rows sum to their times, the form is as the solver requires, and the second stage is of second order.
 #[test]
 fn form_is_singly_diagonal_and_stiffly_accurate() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let t = method.tableau();
         for i in 0..t.stages {
             let sum: f64 = t.a[i].iter().sum();
@@ -94,7 +94,7 @@ fn form_is_singly_diagonal_and_stiffly_accurate() {
 /// less by `100^(damping/power - 1)`.
 #[test]
 fn damping_goes_with_its_power() {
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let t = method.tableau();
         let loss = |omega: f64| {
             let (re, im) = t.stability((0.0, omega));
@@ -118,7 +118,7 @@ fn methods_are_l_stable() {
         let (re, im) = t.stability(z);
         re.hypot(im)
     };
-    for method in Method::ALL {
+    for method in TableauMethod::ALL {
         let t = method.tableau();
         for k in 0..4000 {
             let omega = 10_f64.powf(-3.0 + 0.002 * f64::from(k));

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use slcbeam::case;
-use slcbeam::onestep::tableau::Method;
+use slcbeam::onestep::tableau::TableauMethod;
 use slcbeam::run::record::Memory;
 use slcbeam::run::{dynamics, summary::Status};
 
@@ -82,7 +82,7 @@ fn undamped_motion_gains_no_energy() {
 /// Tolerance: 20 %, since the loss is proportional to the sixth power of the step and of the frequency, which is known to 0.5 %.
 #[test]
 fn one_mode_loses_the_energy_that_the_method_takes() {
-    let tableau = Method::Esdirk46.tableau();
+    let tableau = TableauMethod::Esdirk46.tableau();
     let mut before: Option<f64> = None;
     for rtol in [1e-4, 1e-5, 1e-6] {
         let end = 25.0;

@@ -1,10 +1,10 @@
 //! Storage by compression of the fluid relative to storage by walls.
 
-use super::Scene;
+use super::EffectScene;
 use super::tubes::FASTEST;
 use crate::model::{Compression, Wet};
 
-impl Scene<'_> {
+impl EffectScene<'_> {
     /// Largest share of compression in storage, of bladders and at tube ends.
     pub fn compression_of_fluid(&self) -> f64 {
         self.wet.map_or(0.0, |wet| {

@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::Scene;
+use super::EffectScene;
 use crate::case::{Rotation, Translation};
 use crate::functions::Signal;
 use crate::model::loads::LoadKind;
@@ -48,7 +48,7 @@ struct Unit<'a> {
 
 impl Least {
     /// Lower bounds for a scene.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &EffectScene) -> Self {
         let (across, along) = (Self::across(scene), Self::along(scene));
         let (h, w) = (scene.bending_inertia(), scene.axial_waves());
         let follows = |departure: f64| if departure < 0.5 { 1.0 - departure } else { 0.0 };
@@ -66,7 +66,7 @@ impl Least {
     }
 
     /// Shortening by bending, and moment.
-    fn across(scene: &Scene) -> [f64; 2] {
+    fn across(scene: &EffectScene) -> [f64; 2] {
         let still = scene.ends.iter().all(|e| {
             let across = matches!(&e.transverse, Translation::Displacement(s) if !s.is_zero());
             let turned = matches!(&e.rotation, Rotation::Slope(s) if !s.is_zero());
@@ -106,7 +106,7 @@ impl Least {
     }
 
     /// Stretch and normal force.
-    fn along(scene: &Scene) -> [f64; 2] {
+    fn along(scene: &EffectScene) -> [f64; 2] {
         let held: Vec<bool> = scene
             .ends
             .iter()
@@ -134,7 +134,7 @@ impl Least {
 }
 
 /// Largest values of two measures over the instants at which a signal has its maximum.
-fn most(scene: &Scene, units: &[Unit], measure: impl Fn(&[f64], usize) -> f64) -> [f64; 2] {
+fn most(scene: &EffectScene, units: &[Unit], measure: impl Fn(&[f64], usize) -> f64) -> [f64; 2] {
     let end = scene.case.time.end_s;
     let mut found = [0.0_f64; 2];
     for at in units.iter().take(INSTANTS).map(|unit| unit.signal.peak(end)) {
@@ -177,7 +177,7 @@ fn forces(profile: &crate::functions::Profile, length: f64) -> Option<Vec<[f64; 
 }
 
 /// Unit responses of the bending beam.
-fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
+fn bent<'a>(scene: &'a EffectScene) -> Option<Vec<Unit<'a>>> {
     let n = 2 * ELEMENTS + 2;
     let h = scene.case.beam.length_m / ELEMENTS as f64;
     let k = scene.section.bending_stiffness / h.powi(3);
@@ -253,7 +253,7 @@ fn bent<'a>(scene: &'a Scene) -> Option<Vec<Unit<'a>>> {
 }
 
 /// Unit responses of the stretching beam, held at its root or its tip.
-fn stretched<'a>(scene: &'a Scene, root: bool) -> Option<Vec<Unit<'a>>> {
+fn stretched<'a>(scene: &'a EffectScene, root: bool) -> Option<Vec<Unit<'a>>> {
     let mut units = vec![];
     let mut add = |signal: &'a Signal, parts: [f64; ELEMENTS]| {
         // sum of the forces between the element and the free end

@@ -15,9 +15,9 @@ use crate::case::schema::{BladderEnd, Case};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
-use crate::model::network::{Link, Node};
-use crate::model::scales::Drive;
-use crate::model::{Attachment, Load, Network, Scales, Section, Surroundings, Wet, each_signal};
+use crate::model::network::{Link, NetworkNode};
+use crate::model::scales::DriveScales;
+use crate::model::{AmbientFluid, AttachedBody, DistributedLoad, ResolvedNetwork, Scales, Section, Wet, each_signal};
 
 use least::Least;
 use pace::Pace;
@@ -25,16 +25,16 @@ use stability::SAFE_COMPRESSION;
 use tubes::Tubes;
 
 /// The scene of a case, with all effects.
-pub struct Scene<'a> {
+pub struct EffectScene<'a> {
     case: &'a Case,
     section: &'a Section,
     wet: Option<&'a Wet>,
     ends: [ResolvedEnd; 2],
-    loads: Vec<Load>,
-    attachments: Vec<Attachment>,
-    around: Option<Surroundings>,
+    loads: Vec<DistributedLoad>,
+    attachments: Vec<AttachedBody>,
+    around: Option<AmbientFluid>,
     scales: Scales,
-    drive: Drive,
+    drive: DriveScales,
     /// First bending frequency of the drained beam [1/s]; with shear, a lower bound (Dunkerley).
     bending: f64,
     /// Square of the ratio of the bending frequency without shear to that with shear.
@@ -52,13 +52,13 @@ pub struct Scene<'a> {
     tubes: OnceCell<Tubes>,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> EffectScene<'a> {
     /// Scene of a case; `wet` contains every effect.
     pub fn new(case: &'a Case, section: &'a Section, wet: Option<&'a Wet>) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mass = section.mass_per_length;
         let length = case.beam.length_m;
-        let drive = Drive::of(case, section, &ends);
+        let drive = DriveScales::of(case, section, &ends);
         let held = |e: &ResolvedEnd| matches!(e.axial, Translation::Displacement(_));
         let quarter = if held(&ends[0]) == held(&ends[1]) {
             PI
@@ -66,10 +66,10 @@ impl<'a> Scene<'a> {
             FRAC_PI_2
         };
         let beta = first_wave_number(&ends).unwrap_or(FRAC_PI_2) / length;
-        let loads: Vec<Load> = case
+        let loads: Vec<DistributedLoad> = case
             .loads
             .iter()
-            .flat_map(|load| Load::resolve(load, section))
+            .flat_map(|load| DistributedLoad::resolve(load, section))
             .collect();
         let mut undriven = ends.clone();
         let mut driven_along = vec![];
@@ -80,8 +80,8 @@ impl<'a> Scene<'a> {
             }
         }
         let mut others = vec![];
-        let attachments = Attachment::all(case);
-        let around = Surroundings::of(case);
+        let attachments = AttachedBody::all(case);
+        let around = AmbientFluid::of(case);
         each_signal(
             &undriven,
             &loads,
@@ -119,7 +119,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    fn network(&self) -> Option<&Network> {
+    fn network(&self) -> Option<&ResolvedNetwork> {
         self.wet.map(|wet| &wet.network)
     }
 
@@ -257,13 +257,13 @@ impl<'a> Scene<'a> {
         let other = |bladder: usize| (bladder + wet.per_row) % (2 * wet.per_row);
         // key of a link that ignores the order of its two nodes
         let seen = |link: &Link, mirror: bool| {
-            let end = |node: Node| match node {
-                Node::Cell { bladder, end } => {
+            let end = |node: NetworkNode| match node {
+                NetworkNode::Cell { bladder, end } => {
                     let bladder = if mirror { other(bladder) } else { bladder };
                     (0, bladder, usize::from(end == BladderEnd::Outlet), 0)
                 }
-                Node::Junction(j) => (1, j, 0, 0),
-                Node::Port(p) => {
+                NetworkNode::Junction(j) => (1, j, 0, 0),
+                NetworkNode::Port(p) => {
                     let signal = &network.ports[p].pressure;
                     let constant = if signal.is_constant() {
                         signal.value(0.0).to_bits()
@@ -309,7 +309,7 @@ impl<'a> Scene<'a> {
         let mut most = vec![0.0; 2 * wet.per_row];
         for link in &wet.network.links {
             for node in [link.from, link.to] {
-                if let Node::Cell { bladder, .. } = node {
+                if let NetworkNode::Cell { bladder, .. } = node {
                     most[bladder] += 1.0 / link.resistance.max(0.5 * self.bladder_resistance(wet));
                 }
             }

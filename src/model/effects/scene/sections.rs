@@ -1,8 +1,8 @@
 //! Rotation of sections: rotary inertia and shear, estimated with the second bending mode.
 
-use super::Scene;
+use super::EffectScene;
 
-impl Scene<'_> {
+impl EffectScene<'_> {
     /// Second bending frequency [1/s] and wavenumber [1/m].
     fn second_mode(&self) -> (f64, f64) {
         let k = 4.694_091_132_974 / self.case.beam.length_m;

@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use super::Scene;
+use super::EffectScene;
 use super::pace::Pace;
 use crate::case::Translation;
 use crate::error::numbers::significant;
 use crate::functions::Signal;
-use crate::model::Attachment;
+use crate::model::AttachedBody;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu_growth};
 use crate::model::loads::LoadKind;
 
@@ -18,7 +18,7 @@ pub const SAFE_COMPRESSION: f64 = 0.3;
 /// The frequency margins of the search exceed the frequency step of this ratio.
 const FINER: f64 = 1.2;
 
-impl Scene<'_> {
+impl EffectScene<'_> {
     /// Largest compression over the buckling load. It includes loads and end forces with their signs, base motion,
     /// waves from a sudden start, the reaction between two held ends, and the swing of the bent beam.
     pub fn compression(&self) -> f64 {
@@ -81,7 +81,7 @@ impl Scene<'_> {
                 significant(compression, 2)
             ));
         }
-        if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(Attachment::follows) {
+        if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(AttachedBody::follows) {
             return Some("follower loads may cause flutter".into());
         }
         let shaken = self.ends.iter().find_map(|e| match &e.axial {

@@ -1,8 +1,8 @@
 //! Free flow: stored pressure released at the start, and flow through a network.
 
-use super::Scene;
-use crate::model::network::{AccumulatorLaw, Node, PressurePort};
-use crate::model::{Network, Wet};
+use super::EffectScene;
+use crate::model::network::{AccumulatorLaw, NetworkNode, PressurePort};
+use crate::model::{ResolvedNetwork, Wet};
 
 /// Storage of a network component, and its through flow.
 #[derive(Clone, Copy, Debug)]
@@ -24,15 +24,16 @@ impl Circuit {
     };
 }
 
-impl Scene<'_> {
+impl EffectScene<'_> {
     /// True if the run begins with unbalanced pressure in bladders or accumulators. If `bladders` is true, only
     /// accumulators joined to bladders count.
     pub(super) fn begins_pressed(&self, bladders: bool) -> bool {
         if self.case.start.equilibrium.is_some() {
             return false;
         }
-        let joined = |n: &Network, junction: usize| n.component_of_bladder.contains(&n.component_of_junction[junction]);
-        let charged = |n: &Network| {
+        let joined =
+            |n: &ResolvedNetwork, junction: usize| n.component_of_bladder.contains(&n.component_of_junction[junction]);
+        let charged = |n: &ResolvedNetwork| {
             let mut vessels = n.accumulators.iter().filter(|one| one.start_pressure != 0.0);
             vessels.any(|one| !bladders || joined(n, one.junction))
         };
@@ -86,7 +87,7 @@ impl Scene<'_> {
                     continue;
                 };
                 all[component].through |= link.pump.is_some();
-                if let Node::Port(port) = other {
+                if let NetworkNode::Port(port) = other {
                     let port = &network.ports[port];
                     let before = reached[component].get_or_insert(port);
                     all[component].through |= before.pressure != port.pressure;

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use super::Scene;
+use super::EffectScene;
 use super::stored::Circuit;
 use crate::case::schema::BladderEnd;
 use crate::model::Wet;
-use crate::model::network::{Link, LinkKind, Node};
+use crate::model::network::{Link, LinkKind, NetworkNode};
 
 /// Largest values over all tubes; zero without tubes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,7 +25,7 @@ pub(super) const FASTEST: f64 = 1e100;
 /// Safety factor for flows: resonance and sudden changes enlarge them.
 const MARGIN: f64 = 3.0;
 
-impl Scene<'_> {
+impl EffectScene<'_> {
     /// `τ ω`, with a bladder's time constant `τ = a_p l_b² μ/(π² q1b)` and the highest frequency ω of the drive. A
     /// vibration with the amplitude share i and the fluid's stiffness share χ gives `τ ω (1 + χ i ω T)`: flow along
     /// bladders damps it over the whole run T.
@@ -90,7 +90,7 @@ impl Scene<'_> {
         let mut joined = vec![[false; 2]; network.component_of_bladder.len()];
         let links = network.links.iter().flat_map(|link| [link.from, link.to]);
         for node in links.chain(network.sources.iter().map(|source| source.into)) {
-            if let Node::Cell { bladder, end } = node {
+            if let NetworkNode::Cell { bladder, end } = node {
                 joined[bladder][usize::from(end == BladderEnd::Outlet)] = true;
             }
         }

@@ -22,7 +22,7 @@ mod tubes;
 use std::fs;
 use std::path::Path;
 
-use super::Written;
+use super::ExportedFiles;
 use super::staged::Staged;
 use crate::case::Case;
 use crate::discrete::System;
@@ -45,13 +45,13 @@ const JOINED: &str = "scene";
 const SAME: f64 = 1e-9;
 
 /// Writes `dir/vtk` in place of older files of the same kind. Returns the files written, with the path of the `.pvd`.
-pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<Written> {
+pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<ExportedFiles> {
     fits(case, from)?;
     let staged = Staged::new(dir, VTK)?;
     let scene = Scene::new(case, from)?;
     let digits = from.field_times.len().to_string().len();
     let collection = format!("{}.pvd", case.name);
-    let mut written = Written::new(staged.target().join(&collection));
+    let mut written = ExportedFiles::new(staged.target().join(&collection));
     let mut sets = String::new();
     for &k in instants {
         let t = from.field_times[k];

@@ -10,7 +10,7 @@ use crate::case::Case;
 use crate::case::schema::BladderEnd;
 use crate::case::wiring::bladder_index;
 use crate::model::Wet;
-use crate::model::network::{LinkKind, Node};
+use crate::model::network::{LinkKind, NetworkNode};
 
 /// Number of points of a line.
 const POINTS: usize = 13;
@@ -37,10 +37,10 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
         .bridges
         .iter()
         .map(|b| (b.from, b.to, LinkKind::Turbine(b.turbine)));
-    let joints: Vec<(Node, Node, LinkKind)> = links.chain(bridges).collect();
+    let joints: Vec<(NetworkNode, NetworkNode, LinkKind)> = links.chain(bridges).collect();
     let length = case.tubes.as_ref().map_or(0.0, |t| t.length_m);
-    let mouth = |node: Node| mouth(node, wet, cutout, layout);
-    let place = |node: Node| {
+    let mouth = |node: NetworkNode| mouth(node, wet, cutout, layout);
+    let place = |node: NetworkNode| {
         mouth(node).map(|m| m.0).or_else(|| {
             // A junction or port lies outside the mouths to which it is joined.
             let others = joints
@@ -52,7 +52,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
             (!mouths.is_empty()).then(|| [mean(0), mean(1), outside(mean(2))])
         })
     };
-    let tube = |(from, to, kind): &(Node, Node, LinkKind)| {
+    let tube = |(from, to, kind): &(NetworkNode, NetworkNode, LinkKind)| {
         let ends = [*from, *to];
         Some(Tube {
             line: arc(place(*from)?, place(*to)?, length),
@@ -65,8 +65,10 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
 }
 
 /// Place at which a bladder's end meets the beam's side, and the outermost fluid cell there.
-fn mouth(node: Node, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Place, usize)> {
-    let Node::Cell { bladder, end } = node else { return None };
+fn mouth(node: NetworkNode, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Place, usize)> {
+    let NetworkNode::Cell { bladder, end } = node else {
+        return None;
+    };
     let owner = layout
         .bladders
         .iter()

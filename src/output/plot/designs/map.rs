@@ -2,7 +2,7 @@
 
 use std::slice;
 
-use super::{Drawn, Numbers};
+use super::{DesignNumbers, Drawn};
 use crate::output::plot::colour::{of_value, scale};
 use crate::output::plot::extent;
 use crate::output::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -13,7 +13,7 @@ pub fn over_two(data: &Drawn) -> Option<String> {
     let (columns, lines) = (x.places(), y.places());
     // cells touch if the designs form a grid; otherwise they are small
     let grid = (columns.len() * lines.len()) as f64 <= 1.5 * data.designs.len() as f64;
-    let axis = |one: &Numbers, places: &[f64]| {
+    let axis = |one: &DesignNumbers, places: &[f64]| {
         let (lo, hi) = (*places.first()?, *places.last()?);
         let margin = 0.04 * if hi > lo { hi - lo } else { 1.0 };
         let (lo, hi) = match &edges(places)[..] {
@@ -24,7 +24,7 @@ pub fn over_two(data: &Drawn) -> Option<String> {
         Some(axis.between(one.raised(lo), one.raised(hi)))
     };
     let (across, up) = (axis(x, &columns)?, axis(y, &lines)?);
-    let panel = |figure: &Numbers| {
+    let panel = |figure: &DesignNumbers| {
         let (low, high) = extent(figure.values.iter().copied())?;
         let mut series = vec![];
         for (n, value) in figure.values.iter().enumerate() {

@@ -15,7 +15,7 @@ pub use map::over_two;
 
 /// One number of every design.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Numbers {
+pub struct DesignNumbers {
     /// Name in files: a JSON pointer or a figure.
     pub name: String,
     /// Name beside an axis, without unit.
@@ -36,9 +36,9 @@ pub struct Drawn {
     /// Numbers of the drawn designs.
     pub designs: Vec<usize>,
     /// Varied numbers.
-    pub varied: Vec<Numbers>,
+    pub varied: Vec<DesignNumbers>,
     /// Figures.
-    pub figures: Vec<Numbers>,
+    pub figures: Vec<DesignNumbers>,
     /// Index of the curve of each design.
     pub curve: Vec<usize>,
     /// Names of the curves.
@@ -62,8 +62,8 @@ impl Drawn {
     }
 
     /// Links the series of a design to its row, and shows its numbers under the pointer, if there are few designs.
-    fn linked(&self, n: usize, figures: &[Numbers], series: PictureSeries) -> PictureSeries {
-        let said = |one: &Numbers| {
+    fn linked(&self, n: usize, figures: &[DesignNumbers], series: PictureSeries) -> PictureSeries {
+        let said = |one: &DesignNumbers| {
             let unit = if one.unit.is_empty() { "1" } else { &one.unit };
             format!("{} {}", one.label, quantity(one.values[n], unit, 4))
         };
@@ -96,7 +96,7 @@ const SAID: usize = 1000;
 /// Largest number of curves named in the legend.
 const LISTED: usize = 8;
 
-impl Numbers {
+impl DesignNumbers {
     fn shown(&self, x: f64) -> f64 {
         if self.logarithmic { x.log10() } else { x }
     }
@@ -150,7 +150,7 @@ pub fn along(data: &Drawn) -> Option<String> {
 }
 
 /// Lines through the designs of each curve, interrupted where modes are not joined. Several curves have names.
-fn curves(data: &Drawn, along: &Numbers, figure: &Numbers) -> Vec<PictureSeries> {
+fn curves(data: &Drawn, along: &DesignNumbers, figure: &DesignNumbers) -> Vec<PictureSeries> {
     let mut series = vec![];
     for (curve, name) in data.curves.iter().enumerate() {
         let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.2);
@@ -185,7 +185,7 @@ mod tests {
     /// Goal: a picture states how many designs it omits; without a figure there is no picture.
     #[test]
     fn pictures_say_what_they_leave_out() {
-        let numbers = |name: &str, values: [f64; 2]| Numbers {
+        let numbers = |name: &str, values: [f64; 2]| DesignNumbers {
             name: name.into(),
             label: name.into(),
             unit: "m".into(),
@@ -222,7 +222,7 @@ mod tests {
             varied: data
                 .varied
                 .iter()
-                .map(|one| Numbers {
+                .map(|one| DesignNumbers {
                     values: vec![1.0; SAID + 1],
                     ..one.clone()
                 })
@@ -230,7 +230,7 @@ mod tests {
             figures: data
                 .figures
                 .iter()
-                .map(|one| Numbers {
+                .map(|one| DesignNumbers {
                     values: vec![0.5; SAID + 1],
                     ..one.clone()
                 })

@@ -9,11 +9,11 @@ use crate::discrete::System;
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
 use crate::onestep::OneStepOptions;
-use crate::run::method::{self, Options};
+use crate::run::method::{self, IntegratorOptions};
 
 /// A signal of the case that is set from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Input {
+pub struct SimulatorInput {
     /// JSON pointer of the signal.
     pub pointer: String,
     /// Smallest and largest value, in the unit of the signal's key. The effects that the model includes, and the scales of unknowns,
@@ -25,7 +25,7 @@ pub struct Input {
 #[derive(Clone, Debug)]
 pub(super) struct Held {
     /// The input.
-    pub input: Input,
+    pub input: SimulatorInput,
     /// Value of the input.
     pub value: f64,
     /// Indices of the system's signals that it sets, in the order in which they are visited.
@@ -37,7 +37,7 @@ pub(super) struct Held {
 }
 
 /// Hash that identifies a case and its inputs.
-pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
+pub(super) fn mark(case: &Case, inputs: &[SimulatorInput]) -> String {
     let mut hasher = DefaultHasher::new();
     serde_json::to_string(&case.resolved())
         .unwrap_or_default()
@@ -51,7 +51,7 @@ pub(super) fn mark(case: &Case, inputs: &[Input]) -> String {
 
 /// Returns the case with signals that span the whole ranges of its inputs in their place, by which the model is chosen. Also returns
 /// its system, and the inputs with the places at which they act.
-pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<Held>)> {
+pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, System, Vec<Held>)> {
     let all = case::controls(case);
     let mut held: Vec<Held> = vec![];
     let mut sets = vec![];
@@ -96,7 +96,7 @@ pub(super) fn taken(case: &Case, inputs: &[Input]) -> Result<(Case, System, Vec<
             [value, low, high, value]
         ));
         held.push(Held {
-            input: Input {
+            input: SimulatorInput {
                 pointer: pointer.clone(),
                 range: input.range,
             },
@@ -152,9 +152,9 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
     if case.solver.method == Method::Auto && method::choose(&case, system).one_step.is_none() {
         case.solver.method = Method::Esdirk46;
     }
-    match Options::new(&case, system, &method::choose(&case, system), max_step) {
-        Options::OneStep(options) => Ok(options),
-        Options::Ida(_) => Err(Error::Usage(
+    match IntegratorOptions::new(&case, system, &method::choose(&case, system), max_step) {
+        IntegratorOptions::OneStep(options) => Ok(options),
+        IntegratorOptions::Ida(_) => Err(Error::Usage(
             "a simulator restarts its integrator at every change of its inputs, for which IDA is slow: set \
              /solver/method to esdirk46 or auto"
                 .into(),

@@ -9,9 +9,9 @@ mod watch;
 use std::time::Instant;
 
 use inputs::Held;
-pub use inputs::Input;
+pub use inputs::SimulatorInput;
 pub use snapshot::Snapshot;
-pub use spent::Spent;
+pub use spent::SimulatorWallTimes;
 
 use super::faults::{beyond, fault, inconsistent, stalled, too_many_steps};
 use super::follow::narrow;
@@ -27,8 +27,8 @@ use crate::onestep::OneStep;
 use crate::run::equilibrium;
 use crate::run::known;
 use crate::run::observe::Observer;
-use crate::run::record::{Column, Control, Unrecorded};
-use crate::run::schedule::{self, Stop};
+use crate::run::record::{Control, HistoryColumn, Unrecorded};
+use crate::run::schedule::{self, ScheduledStop};
 use crate::run::strides::Strides;
 
 /// Tolerance of consistent values after a jump of inputs, over the relative tolerance; rates count times the length of a step.
@@ -46,8 +46,8 @@ pub struct Simulator {
     starter: Starter,
     consistent: StartOptions,
     observer: Observer,
-    columns: Vec<Column>,
-    stops: Vec<Stop>,
+    columns: Vec<HistoryColumn>,
+    stops: Vec<ScheduledStop>,
     next: usize,
     strides: Strides,
     end: f64,
@@ -57,7 +57,7 @@ pub struct Simulator {
     integrals: Vec<f64>,
     /// Integrals up to the last restart.
     carried: Vec<f64>,
-    spent: Spent,
+    spent: SimulatorWallTimes,
 }
 
 impl Simulator {
@@ -66,7 +66,7 @@ impl Simulator {
     /// # Errors
     /// [`Error::Usage`] for an input that is not a signal of the case, or that must not jump; those of
     /// [`System::new`](crate::discrete::System::new); a start that cannot be found.
-    pub fn new(case: &Case, inputs: &[Input]) -> Result<Self> {
+    pub fn new(case: &Case, inputs: &[SimulatorInput]) -> Result<Self> {
         let of = inputs::mark(case, inputs);
         let (case, mut system, held) = inputs::taken(case, inputs)?;
         let known = known::on_any_mesh(&case, &system);
@@ -83,7 +83,7 @@ impl Simulator {
         let (system, now) = dae.instant(0.0);
         let mut state = start::state(system, &case, now);
         if let Some(start) = &case.start.equilibrium {
-            let options = equilibrium::Options::of_start(start);
+            let options = equilibrium::EquilibriumOptions::of_start(start);
             state = equilibrium::at_start(&case, &options, &mut dae, &state).map_err(solver)?;
         }
         let mut rates = vec![0.0; state.len()];
@@ -114,7 +114,7 @@ impl Simulator {
             case: Box::new(case),
             integrals: zeros.clone(),
             carried: zeros,
-            spent: Spent::default(),
+            spent: SimulatorWallTimes::default(),
         };
         this.enter()?;
         this.sample()?;
@@ -132,7 +132,7 @@ impl Simulator {
     }
 
     /// Columns of [`Simulator::row`].
-    pub fn columns(&self) -> &[Column] {
+    pub fn columns(&self) -> &[HistoryColumn] {
         &self.columns
     }
 
@@ -152,7 +152,7 @@ impl Simulator {
     }
 
     /// Wall time of [`Simulator::step`] so far.
-    pub fn spent(&self) -> Spent {
+    pub fn spent(&self) -> SimulatorWallTimes {
         self.spent
     }
 
@@ -188,17 +188,17 @@ impl Simulator {
         if self.held.iter().zip(values).any(|(one, value)| one.value != *value) {
             self.set(values)?;
         }
-        Spent::add(&mut self.spent.jumps, &mut clock);
+        SimulatorWallTimes::add(&mut self.spent.jumps, &mut clock);
         let done = self.advance(until, ask);
         let mut clock = Instant::now();
         self.sample()?;
-        Spent::add(&mut self.spent.watching, &mut clock);
+        SimulatorWallTimes::add(&mut self.spent.watching, &mut clock);
         done
     }
 
     /// Returns the time [s], or that of a stop of the case if they differ by round-off alone.
     fn at_stop(&self, until: f64) -> f64 {
-        let near = |stop: &&Stop| (stop.t - until).abs() <= 1e-12 * until && stop.t > self.time();
+        let near = |stop: &&ScheduledStop| (stop.t - until).abs() <= 1e-12 * until && stop.t > self.time();
         let ahead = self.stops[self.next..].iter();
         let mut ahead = ahead.take_while(|stop| stop.t <= until * (1.0 + 1e-12));
         ahead.find(near).map_or(until, |stop| stop.t)
@@ -271,7 +271,7 @@ impl Simulator {
 
     /// Passes the stop that the simulation has reached.
     fn pass(&mut self) -> Result<()> {
-        let Stop { t, switches, .. } = self.stops[self.next];
+        let ScheduledStop { t, switches, .. } = self.stops[self.next];
         self.leave_stretch()?;
         self.next += 1;
         if switches {
@@ -292,16 +292,16 @@ impl Simulator {
         while self.time() < until {
             if self.stands_at_stop() {
                 self.pass()?;
-                Spent::add(&mut self.spent.jumps, &mut clock);
+                SimulatorWallTimes::add(&mut self.spent.jumps, &mut clock);
             }
             let (stop, from) = (self.stops[self.next], self.time());
             let stride = self.strides.at(from);
             self.solver.limit(stride.largest);
             let target = until.min(stop.t).min(stride.to);
             let step = self.solver.step(target).map_err(|failure| solver(fault(&failure)))?;
-            Spent::add(&mut self.spent.integration, &mut clock);
+            SimulatorWallTimes::add(&mut self.spent.integration, &mut clock);
             self.watch(from, step.time)?;
-            Spent::add(&mut self.spent.watching, &mut clock);
+            SimulatorWallTimes::add(&mut self.spent.watching, &mut clock);
             steps += 1;
             if steps >= self.max_steps {
                 return Err(solver(too_many_steps(step.time, step.size)));

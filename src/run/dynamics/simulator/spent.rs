@@ -4,7 +4,7 @@ use std::time::Instant;
 
 /// Wall time of a simulator [s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spent {
+pub struct SimulatorWallTimes {
     /// Steps of the integrator: equations, their derivatives, linear systems.
     pub integration: f64,
     /// Jumps of inputs: consistent values after them, and works of the jumps.
@@ -13,7 +13,7 @@ pub struct Spent {
     pub watching: f64,
 }
 
-impl Spent {
+impl SimulatorWallTimes {
     /// Adds the time since an instant to a part, and restarts the clock.
     pub(super) fn add(part: &mut f64, since: &mut Instant) {
         let now = Instant::now();
