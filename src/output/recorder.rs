@@ -129,7 +129,7 @@ impl FolderRecorder {
     ///
     /// A file cannot be written. If it is a table or an array, the summary has the status `failed` and the reason.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
-        let (mut laps, mut spent) = (Laps::since(Instant::now()), FolderWallTimes::default());
+        let (mut laps, mut spent) = (Laps::since(Instant::now()), WriteTimes::default());
         let aside = match self.open {
             Some(_) => None,
             None => self.folder.set_aside()?,
@@ -178,13 +178,7 @@ impl FolderRecorder {
     }
 
     /// Syncs tables, arrays and summary to the disk, and draws the pictures meanwhile.
-    fn complete(
-        &self,
-        open: Behind,
-        summary: &Summary,
-        laps: &mut Laps,
-        spent: &mut FolderWallTimes,
-    ) -> Result<Completed> {
+    fn complete(&self, open: Behind, summary: &Summary, laps: &mut Laps, spent: &mut WriteTimes) -> Result<Completed> {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
@@ -260,7 +254,7 @@ fn put(
 
 /// Wall time of completing a folder [s].
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FolderWallTimes {
+pub struct WriteTimes {
     /// Pictures.
     pub pictures: f64,
     /// Files.
@@ -276,7 +270,7 @@ pub struct Finished {
     resumable: bool,
     lean: bool,
     /// Wall time of the completion.
-    pub spent: FolderWallTimes,
+    pub spent: WriteTimes,
     /// Folder to which an older result was moved.
     pub aside: Option<PathBuf>,
     /// CRC-32 of the tables, for rewriting the summary.
@@ -291,7 +285,7 @@ impl Finished {
             lean: false,
             folder,
             history: None,
-            spent: FolderWallTimes::default(),
+            spent: WriteTimes::default(),
             aside: None,
             tables_crc32: BTreeMap::new(),
         }

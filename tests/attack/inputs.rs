@@ -103,7 +103,7 @@ fn deep_brackets_are_refused() {
         fs::write(&path, open.repeat(200_000)).expect("the case");
         let answer = check(&path, &[]);
         assert_eq!(answer.status.code(), Some(3), "{open}");
-        assert!(stderr(&answer).contains("more than 100 brackets"), "{open}");
+        assert!(stderr(&answer).contains("brackets nested more than 100 deep"), "{open}");
     }
     let good = put(dir.path(), &beam());
     let deep = format!("/loads={}", "[".repeat(60_000));

@@ -163,7 +163,7 @@ fn sections_that_cannot_be_are_refused_at_their_place() {
             "/section/bladders/upper/shape/circle/radius_m=0.0061",
             "reaches 0.0113 m",
         ),
-        ("/beam/length_m=0.0843", "0.088 m of a beam of 0.0843 m"),
+        ("/beam/length_m=0.0843", "need 0.088 m, but the beam is 0.0843 m long"),
     ] {
         let Err(Error::Case(fault)) = read(&[set]) else {
             panic!("{set}")

@@ -228,7 +228,7 @@ fn what_makes_no_sense_is_refused() {
         (
             vec!["run", CASE, "--uncertain", MODULUS, "--samples", "4"],
             2,
-            "--samples 4: from 16",
+            "--samples 4: expected from 16",
         ),
         (
             vec!["run", CASE, "--uncertain", MODULUS, "--jobs", "0"],

@@ -155,7 +155,7 @@ fn data_and_options_that_do_not_go_together() {
             good,
             with(&["--command", "equilibrium"]),
             2,
-            "--drive COLUMN=POINTER says",
+            "needs --drive COLUMN=POINTER",
         ),
         (
             good,

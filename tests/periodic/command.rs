@@ -271,7 +271,7 @@ fn what_makes_no_sense_is_a_usage_error() {
                 "--map",
                 "frequency,amplitude",
             ],
-            "shaken",
+            "does not oscillate along the beam",
         ),
         (
             vec!["periodic", valves, "--sweep", "/network/permeability_factor=0:1:5:log"],

@@ -105,7 +105,7 @@ fn modes_tell_what_cells_along_bladders_do_to_rates() {
         &["--count", "2", "--kind", "decay", "--set", "/mesh/cells_per_bladder=16"],
     );
     assert!(
-        warned(&said, "W021").is_some_and(|w| w.contains("the rate of mode 2")),
+        warned(&said, "W021").is_some_and(|w| w.contains("rate of mode 2 about")),
         "{}",
         said.out
     );
@@ -365,7 +365,7 @@ fn what_is_seldom_meant_is_told() {
     for (sets, said) in [
         (
             pump(json!({"ramp": {"to": 5000, "start_s": 0.5, "duration_s": 1}})),
-            "/network/chains/0/ends/0/pressure_pa/ramp: it begins at 0.5 s, and the run ends at 0.5 s",
+            "/network/chains/0/ends/0/pressure_pa/ramp: it begins at 0.5 s, but the run ends at 0.5 s",
         ),
         (
             pump(json!({"sum": [1, {"table": {"times_s": [0, 500, 1000], "values": [0, 0, 5000]}}]})),

@@ -327,7 +327,7 @@ fn a_profile_shows_where_a_load_is() {
     assert!(number(&found["smoothing"]["load_deviation_n_m"]) > 0.0);
     assert_eq!(found["rows"][0]["t_s"], 0.5);
     let said = sense(&dir, &[&path, "--load", "profile:7", "--noise", "1"]);
-    assert!(said.out.contains("inertia and flow are not in it"), "{}", said.out);
+    assert!(said.out.contains("without inertia and flow"), "{}", said.out);
 }
 
 /// Goal: loads of the case that act besides are told: what is found comes on top of them.

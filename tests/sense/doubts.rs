@@ -147,7 +147,7 @@ fn discrepancy_leaves_the_noise() {
     assert!(number(&noise["roughness"]) > 0.0 && (number(&noise["chi_square"]) / sum - 1.0).abs() < 1e-9);
     let said = sense(&dir, &asked).out;
     assert!(
-        said.contains("what is left of 16 pressures has χ² = ") && said.contains("the roughness of the loads adds "),
+        said.contains("the residuals of 16 pressures have χ² = ") && said.contains("the roughness of the loads adds "),
         "{said}"
     );
 }

@@ -268,6 +268,6 @@ fn it_is_chosen_and_refused() {
     let refused = System::new(&parse(&rigid)).map(|_| ()).map_err(told).unwrap_err();
     assert_eq!(
         refused,
-        ["/effects/shear: shear is on, and no shear_stiffness_n is given"]
+        ["/effects/shear: shear is on, but no shear_stiffness_n is given"]
     );
 }

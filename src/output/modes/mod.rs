@@ -98,9 +98,9 @@ impl Report<'_> {
                 let swings = self.found.modes.iter().any(|mode| mode.kind.swings());
                 match self.sort {
                     None if !swings => format!(
-                        "none of the {count} shown grows, and none oscillates; --kind oscillation shows oscillating modes, if any"
+                        "no growth and no oscillation in the {count} shown. Use --kind oscillation to find oscillating modes"
                     ),
-                    _ => format!("none of the {count} shown grows"),
+                    _ => format!("no growth in the {count} shown"),
                 }
             }
             all => format!("unstable: {}", all.join("; ")),

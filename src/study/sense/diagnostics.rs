@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use super::basis::Amplitude;
-use super::estimate::{EstimatedAmplitudes, LoadEstimates, SenseProblem};
+use super::estimate::{Amplitudes, LoadEstimates, SenseProblem};
 use super::find::SenseOptions;
 use super::pressures::PressureTable;
 use super::sensed::{Banded, Noise, NoiseFrom, Sensed};
@@ -25,7 +25,7 @@ pub(super) fn alone(amplitudes: &[Amplitude], which: usize) -> Vec<f64> {
 }
 
 /// Value and band of a sum of amplitudes over their sizes; none if the data do not determine it.
-pub(super) fn banded(estimate: &LoadEstimates, found: &EstimatedAmplitudes, factors: &[f64]) -> Option<Banded> {
+pub(super) fn banded(estimate: &LoadEstimates, found: &Amplitudes, factors: &[f64]) -> Option<Banded> {
     found.seen.observes(factors).then(|| {
         let factors = DVector::from_column_slice(factors);
         let value = factors.dot(&found.mean);
@@ -77,7 +77,7 @@ pub(super) struct Left {
 /// Residuals of the measured values of a problem; value `k` belongs to bladder `bladders[k % bladders.len()]`.
 pub(super) fn left<'a>(
     problem: &'a SenseProblem,
-    found: &'a EstimatedAmplitudes,
+    found: &'a Amplitudes,
     bladders: &'a [usize],
 ) -> impl Iterator<Item = Left> + 'a {
     let data = problem.data.iter().zip(&problem.deviation).enumerate();

@@ -82,7 +82,7 @@ pub struct EstimateOptions<'a> {
 
 /// Estimated amplitudes of one problem.
 #[derive(Clone, Debug)]
-pub struct EstimatedAmplitudes {
+pub struct Amplitudes {
     /// Mean of the amplitudes.
     pub mean: DVector<f64>,
     /// Covariance of the amplitudes.
@@ -103,7 +103,7 @@ pub struct EstimatedAmplitudes {
 #[derive(Clone, Debug)]
 pub struct LoadEstimates {
     /// One per problem.
-    pub found: Vec<EstimatedAmplitudes>,
+    pub found: Vec<Amplitudes>,
     /// Deviation of the noise over the given one; 1 if it is known.
     pub noise: f64,
     /// Residuals of all values.
@@ -219,18 +219,15 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
         freedom: sums.freedom,
         by_discrepancy: rank > 0 && ask.smoothing == Smoothing::Discrepancy,
     };
-    let found = states
-        .into_iter()
-        .zip(posteriors)
-        .map(|(state, posterior)| EstimatedAmplitudes {
-            seen: Observability::of(&stacked(&state.weighted(), &before(own))),
-            mean: state.at,
-            covariance: posterior.spread * (noise * noise),
-            predicted: state.values,
-            jacobian: state.jacobian,
-            runs: state.runs,
-            settled: state.settled,
-        });
+    let found = states.into_iter().zip(posteriors).map(|(state, posterior)| Amplitudes {
+        seen: Observability::of(&stacked(&state.weighted(), &before(own))),
+        mean: state.at,
+        covariance: posterior.spread * (noise * noise),
+        predicted: state.values,
+        jacobian: state.jacobian,
+        runs: state.runs,
+        settled: state.settled,
+    });
     Ok(LoadEstimates {
         found: found.collect(),
         noise,

@@ -6,7 +6,7 @@ use super::basis::{self, Amplitude, Basis};
 use super::choose::{self, Criterion};
 use super::diagnostics::{self, Left, alone, banded, doubts, left};
 use super::estimate::{
-    EstimateOptions, EstimatedAmplitudes, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
+    Amplitudes, EstimateOptions, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
 };
 use super::local_mean::{FineFound, FineLoad, local_band, local_means};
 use super::over_time;
@@ -181,9 +181,8 @@ pub fn find(
             }
         };
         // local means do not add up like amplitudes of a piecewise linear load, so sums have no bands here
-        let sum = |one: &EstimatedAmplitudes, factors: &Vec<f64>| {
-            means.is_empty().then(|| banded(&all_found, one, factors)).flatten()
-        };
+        let sum =
+            |one: &Amplitudes, factors: &Vec<f64>| means.is_empty().then(|| banded(&all_found, one, factors)).flatten();
         found.rows = measured
             .rows
             .iter()
@@ -265,7 +264,7 @@ pub(super) fn differences(amplitudes: &[Amplitude], loads: &[Basis]) -> DMatrix<
 }
 
 /// Row with the largest loads, and its estimate.
-fn largest(estimate: &LoadEstimates) -> Option<(usize, &EstimatedAmplitudes)> {
+fn largest(estimate: &LoadEstimates) -> Option<(usize, &Amplitudes)> {
     let rows = estimate.found.iter().enumerate();
     rows.max_by(|(_, a), (_, b)| a.mean.norm().total_cmp(&b.mean.norm()))
 }

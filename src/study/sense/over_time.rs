@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector};
 use super::basis::{self, Amplitude};
 use super::diagnostics::{self, Left, alone, banded, doubts, left};
 use super::estimate::{
-    EstimateOptions, EstimatedAmplitudes, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
+    Amplitudes, EstimateOptions, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
 };
 use super::find::{SenseOptions, differences as along_the_beam, unobservable};
 use super::in_time::{InTime, Knots};
@@ -243,7 +243,7 @@ fn rows(
 }
 
 /// Number of knot values of each load that the data determine: its share of the trace of `cov a J^T J/σ^2`.
-fn resolved(one: &EstimatedAmplitudes, problem: &SenseProblem, estimate: &LoadEstimates, loads: usize) -> Vec<f64> {
+fn resolved(one: &Amplitudes, problem: &SenseProblem, estimate: &LoadEstimates, loads: usize) -> Vec<f64> {
     let measured: Vec<usize> = (0..problem.data.len()).filter(|k| problem.data[*k].is_some()).collect();
     let weighted = DMatrix::from_fn(measured.len(), one.jacobian.ncols(), |i, j| {
         one.jacobian[(measured[i], j)] / (problem.deviation[measured[i]] * estimate.noise)

@@ -191,7 +191,7 @@ fn mistakes_on_the_command_line_are_told_with_a_remedy() {
             "longer than the period of the first bending mode",
         ),
         ("/loads=[{\"gravity\": {\"x_m_s2\": 150}}]", "is this in mm/s^2?"),
-        ("/ends/root=\"free\"", "nothing holds the beam along"),
+        ("/ends/root=\"free\"", "no support holds the beam along"),
     ] {
         let said = say(&["check", &case, "--set", set]);
         assert!(

@@ -64,7 +64,7 @@ fn a_page_of_modes_lists_what_moves() {
     let folder = tempfile::tempdir().expect("a folder");
     let page = made(folder.path(), &["modes", "cases/wiring-2.json", "--count", "4"]);
     let text = std::fs::read_to_string(page).expect("a page");
-    assert!(text.contains("none of the 4 modes shown grows"));
+    assert!(text.contains("no growth in the 4 modes shown"));
     assert!(!text.contains("\"kept volume\""));
 }
 

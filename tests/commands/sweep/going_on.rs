@@ -80,7 +80,7 @@ fn shards_and_threads_make_the_same_table() {
     let said = merge(&[&path(&dir, "nowhere")]);
     assert_eq!(said.code, 5, "{}", said.err);
     assert!(
-        said.err.contains("there is no such folder") && said.err.contains("a result of `slcbeam sweep` is wanted"),
+        said.err.contains("there is no such folder") && said.err.contains("a result of `slcbeam sweep` is needed"),
         "{}",
         said.err
     );
