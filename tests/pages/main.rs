@@ -1,7 +1,6 @@
 //! The pages: every command on them runs, every link leads somewhere.
 //!
-//! Source: README.md, CHANGELOG.md, CONTRIBUTING.md, docs, cases/README.md. Commands run in the order of their page, in an empty folder
-//! with the cases beside it. Long measurements get seconds, maps four points, sweeps three.
+//! Commands run in the order of their page, in an empty folder with the cases. Long ones are shortened: sweeps have three points.
 
 mod writing;
 
