@@ -26,7 +26,7 @@ fn a_folder_is_filled_and_a_table_printed() {
         "oscillation",
         "Hz",
         "undrained",
-        "none of the",
+        "no growth in the",
         "coupling is passive: no cycle",
         out.to_str().unwrap(),
     ] {
