@@ -2,8 +2,13 @@
 //!
 //! Each test reads the source as text and reports all offences at once, as `file:line: what`.
 
+#[path = "common/files.rs"]
+mod files;
+
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use files::files;
 
 /// Rooms from top to bottom: a file imports from its own room and from rooms above it.
 const ROOMS: [&str; 18] = [
@@ -46,32 +51,6 @@ const LONG: [(&str, &str); 4] = [
         "one invented run serves all tests of a result folder",
     ),
 ];
-
-/// All files under a folder with one of the endings, sorted; paths relative to the repository.
-fn files(dir: &str, endings: &[&str]) -> Vec<PathBuf> {
-    let mut all = Vec::new();
-    let mut todo = vec![PathBuf::from(dir)];
-    while let Some(dir) = todo.pop() {
-        for entry in fs::read_dir(&dir).unwrap() {
-            let path = entry.unwrap().path();
-            let hidden = path.file_name().unwrap().to_string_lossy().starts_with('.');
-            if path.is_dir() {
-                // what is built lies in a `target` here and in benches/peers
-                if !hidden && !path.ends_with("target") && path != Path::new("./out") {
-                    todo.push(path);
-                }
-            } else if endings.is_empty()
-                || path
-                    .extension()
-                    .is_some_and(|e| endings.contains(&&*e.to_string_lossy()))
-            {
-                all.push(path);
-            }
-        }
-    }
-    all.sort();
-    all
-}
 
 /// A line of source.
 struct Line {

@@ -2,9 +2,13 @@
 //!
 //! Goal: the lines of code that carry a tag say what `docs/model.md` says under the same tag.
 
+#[path = "common/files.rs"]
+mod files;
+
 use std::fs;
 use std::path::Path;
 
+use files::files;
 use slcbeam::case::{self, Case};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::residual::{self, fluid::bridge_drops};
@@ -252,18 +256,10 @@ const INDEX: [(&str, &str, &str); 82] = [
 
 #[test]
 fn every_equation_has_a_test() {
-    let mut source = String::new();
-    let mut todo = vec![Path::new("src").to_path_buf()];
-    while let Some(dir) = todo.pop() {
-        for entry in fs::read_dir(dir).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                todo.push(path);
-            } else {
-                source += &fs::read_to_string(path).unwrap();
-            }
-        }
-    }
+    let source: String = files("src", &[])
+        .iter()
+        .map(|path| fs::read_to_string(path).unwrap())
+        .collect();
     for (tag, file, test) in INDEX {
         assert!(source.contains(&format!("`{tag}` ")), "{tag} is defined nowhere");
         let tests = fs::read_to_string(file).unwrap();

@@ -2,6 +2,8 @@
 //!
 //! Commands run in the order of their page, in an empty folder with the cases. Long ones are shortened: sweeps have three points.
 
+#[path = "../common/files.rs"]
+mod files;
 mod writing;
 
 use std::collections::BTreeSet;
@@ -12,19 +14,8 @@ use std::process::Command;
 use slcbeam::discrete::quantities::{BeamField, Interest, Observable};
 
 fn pages() -> Vec<PathBuf> {
-    let markdown = |folder: &str| {
-        fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().path())
-            .filter(|path| path.extension().is_some_and(|e| e == "md"))
-            .collect::<Vec<_>>()
-    };
-    let mut all = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "cases/README.md"]
-        .map(PathBuf::from)
-        .to_vec();
-    for folder in ["docs", "docs/figures"] {
-        all.extend(markdown(folder));
-    }
+    let mut all = files::files("docs", &["md"]);
+    all.extend(["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "cases/README.md"].map(PathBuf::from));
     all.sort();
     all
 }

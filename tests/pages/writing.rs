@@ -1,8 +1,8 @@
 //! Plain English: pages, comments and messages avoid habits that make readers stumble.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
+use crate::files::files;
 use crate::pages;
 
 /// Longest line of prose on a page [characters], and longest sentence [words].
@@ -82,17 +82,6 @@ fn habit(text: &str) -> Option<&str> {
     words.find(|word| HABITS.contains(word))
 }
 
-fn sources(folder: &Path, all: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() && !path.ends_with("target") {
-            sources(&path, all);
-        } else if path.extension().is_some_and(|e| e == "rs") {
-            all.push(path);
-        }
-    }
-}
-
 /// Goal: pages have short lines and sentences, and plain verbs.
 #[test]
 fn pages_are_plain() {
@@ -117,12 +106,8 @@ fn pages_are_plain() {
 /// Goal: comments name their subject; comments and messages have plain verbs.
 #[test]
 fn the_source_is_plain() {
-    let mut files = vec![];
-    sources(Path::new("src"), &mut files);
-    sources(Path::new("crates"), &mut files);
-    files.sort();
     let mut found = vec![];
-    for path in files {
+    for path in ["src", "crates"].iter().flat_map(|folder| files(folder, &["rs"])) {
         let name = path.display().to_string();
         for (k, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
             let comment = ["/// ", "//! ", "// "]

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::changes::{ChangesStatus, changes};
 use super::variant::{ErrorCause, has_few_cells};
-use super::{Accurate, error, work};
+use super::{Accurate, companion_steps, error, work};
 use crate::case::Case;
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
@@ -165,8 +165,7 @@ fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap
 
 /// True if a looser tolerance makes the companion take larger steps, so that its figures show the effect of the steps of the run.
 fn tolerance_binds(summary: &Summary) -> bool {
-    let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
-    steps as f64 <= BINDING * summary.solver.steps as f64
+    companion_steps(summary) <= BINDING * summary.solver.steps as f64
 }
 
 /// Quantities whose error is above a limit, the largest first.

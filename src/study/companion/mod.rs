@@ -259,8 +259,13 @@ fn progress(summary: &Summary) -> Progress {
 }
 
 /// Steps times unknowns of a run.
-fn work(summary: &Summary) -> u64 {
+pub fn work(summary: &Summary) -> u64 {
     summary.solver.steps * summary.unknowns as u64
+}
+
+/// Steps of the companion of a run; 0 without one.
+pub fn companion_steps(summary: &Summary) -> f64 {
+    summary.companion.as_ref().map_or(0, |companion| companion.steps) as f64
 }
 
 /// Makes a companion of a case, where that applies.

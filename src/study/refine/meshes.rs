@@ -159,16 +159,7 @@ impl Meshes {
     /// Warns of a large or unknown error.
     pub fn warning(&self) -> Option<String> {
         let large = self.worst().filter(|(_, share)| share.total() > LARGE);
-        let remedy = large.map(|(_, share)| {
-            let by_meshes = share.beam.unwrap_or(0.0).max(share.bladders.unwrap_or(0.0));
-            if share.effects.unwrap_or(0.0) > by_meshes {
-                "\"effects\": \"full\", or "
-            } else if share.bladders > share.beam {
-                "more /mesh/cells_per_bladder, or "
-            } else {
-                "more /mesh/cells_per_segment, or "
-            }
-        });
+        let remedy = large.map_or("", |(_, share)| share.remedy());
         let large = large.map(|(name, share)| {
             let many = self.quantities.values().filter(|share| share.total() > LARGE).count();
             let others = match many {
@@ -191,13 +182,25 @@ impl Meshes {
             Code::ErrorEstimate.warning(format!(
                 "estimate: {}. Use {}--accuracy, which refines the meshes",
                 all.join("; "),
-                remedy.unwrap_or_default()
+                remedy
             ))
         })
     }
 }
 
 impl ErrorShare {
+    /// Beginning of the advice: the setting that reduces the largest part of the error.
+    fn remedy(&self) -> &'static str {
+        let by_meshes = self.beam.unwrap_or(0.0).max(self.bladders.unwrap_or(0.0));
+        if self.effects.unwrap_or(0.0) > by_meshes {
+            "\"effects\": \"full\", or "
+        } else if self.bladders > self.beam {
+            "more /mesh/cells_per_bladder, or "
+        } else {
+            "more /mesh/cells_per_segment, or "
+        }
+    }
+
     fn parts(&self) -> String {
         let parts = [
             (self.beam, "the cells of the beam"),

@@ -11,6 +11,7 @@ use crate::run::floors::Floors;
 use crate::run::summary::Summary;
 use crate::study::companion::error::{relative, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
+use crate::study::companion::{companion_steps, work};
 
 /// Part of the accuracy that a refinement aims at.
 const FILL: f64 = 0.7;
@@ -80,7 +81,7 @@ impl Levers {
     /// # Errors
     /// As [`System::new`](crate::discrete::System::new).
     pub fn next(&mut self, case: &Case, summary: &Summary, floors: &Floors) -> Result<Option<Finer>> {
-        let work = (summary.solver.steps * summary.unknowns as u64) as f64;
+        let work = work(summary) as f64;
         let first = *self.first.get_or_insert(work);
         let mut large = relative(summary, &summary.errors, floors);
         large.retain(|_, error| *error > self.asked);
@@ -106,7 +107,8 @@ impl Levers {
         };
         finer.mesh.cells_per_segment <<= beam;
         finer.mesh.cells_per_bladder <<= fluid;
-        let idle = if decades > 0 && is_steady(summary) { IDLE } else { 0 };
+        let steady = companion_steps(summary) >= STEADY * summary.solver.steps as f64;
+        let idle = if decades > 0 && steady { IDLE } else { 0 };
         let tighter = case.solver.rtol * 10_f64.powi(-decades - idle);
         finer.solver.rtol = rounded(tighter, 4).max(10_f64.powi(-TIGHTEST));
         Ok(Some(Finer { case: finer, added }))
@@ -170,12 +172,6 @@ fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> 
         settings.map(|cause| scale * causes.get(cause.pointer().as_str()).map_or(0.0, part))
     };
     errors.iter().map(of).collect()
-}
-
-/// True if a looser tolerance takes as many steps.
-fn is_steady(summary: &Summary) -> bool {
-    let steps = summary.companion.as_ref().map_or(0, |companion| companion.steps);
-    steps as f64 >= STEADY * summary.solver.steps as f64
 }
 
 fn most<'a>(errors: impl Iterator<Item = &'a f64>) -> f64 {
