@@ -15,7 +15,7 @@ use slcbeam::discrete::residual::{self, fluid::bridge_drops};
 use slcbeam::discrete::{System, TimeData, Workspace};
 use slcbeam::functions;
 use slcbeam::model::network::CheckValveLaw;
-use slcbeam::model::{AreaLaw, CouplingLaw, Model, audit, bladder, duct, slowest};
+use slcbeam::model::{AreaLaw, CouplingLaw, Model, audit, bladder, duct, relaxation_times};
 use slcbeam::run::dynamics;
 use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
@@ -303,7 +303,7 @@ fn close(value: f64, exact: f64, tolerance: f64) {
 /// Evaluates a system at a state in SI units whose rates are zero.
 fn evaluated(system: &System, y: &[f64]) -> Workspace<f64> {
     let mut now = TimeData::new(system);
-    now.update(system, functions::Clock { t: 0.0, within: 0.0 });
+    now.update(system, functions::SmoothTime { t: 0.0, within: 0.0 });
     let mut w = Workspace::new(system);
     residual::evaluate(system, &now, y, &vec![0.0; y.len()], &mut w);
     w
@@ -445,7 +445,7 @@ fn body_forces_act_on_the_mass() {
     let system = System::new(&load("bend-dry", &loads)).unwrap();
     let m = system.model.section.mass_per_length;
     let mut now = TimeData::new(&system);
-    now.update(&system, functions::Clock { t: 0.0, within: 0.0 });
+    now.update(&system, functions::SmoothTime { t: 0.0, within: 0.0 });
     assert!(now.force.iter().all(|f| (f.x - (2.0 * m + 7.0)).abs() < 1e-14));
     assert!(now.force.iter().all(|f| (f.z + 9.81 * m).abs() < 1e-14));
 }
@@ -460,7 +460,7 @@ fn a_valve_is_in_series_with_its_half_cells() {
         let set = format!("/network/tubes/0/opening={opening:?}");
         let system = System::new(&load("two-bladders", &[&set])).unwrap();
         let mut now = TimeData::new(&system);
-        now.update(&system, functions::Clock { t: 0.0, within: 0.0 });
+        now.update(&system, functions::SmoothTime { t: 0.0, within: 0.0 });
         let exact = if opening > 0.0 {
             1.0 / (2.0 * half + tube / opening)
         } else {
@@ -677,7 +677,7 @@ fn means_weigh_as_their_transpose() {
 #[test]
 fn two_bladders_relax_in_half_their_time() {
     let wet = Model::new(&load("two-bladders", &[])).unwrap().wet.unwrap();
-    let times: Vec<f64> = slowest::times(&wet).into_iter().flatten().collect();
+    let times: Vec<f64> = relaxation_times::times(&wet).into_iter().flatten().collect();
     let resistance = 8.68e-4 * (0.046 / 1.55e-12 + 0.02 / 6.72e-13);
     assert_eq!(times.len(), 1);
     close(times[0], 0.5 * resistance * 1.75e-10 * 0.046, 1e-10);
@@ -786,7 +786,7 @@ fn a_rigid_motion_leaves_the_unknowns_alone() {
     let at = |sets: &[&str]| {
         let system = System::new(&load("wiring-2", sets)).unwrap();
         let mut now = TimeData::new(&system);
-        now.update(&system, functions::Clock { t: 0.0123, within: 0.0 });
+        now.update(&system, functions::SmoothTime { t: 0.0123, within: 0.0 });
         let mut w = Workspace::new(&system);
         let zero = vec![0.0; system.layout.len];
         residual::evaluate(&system, &now, &zero, &zero, &mut w);

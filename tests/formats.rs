@@ -138,7 +138,7 @@ fn what_is_missing_is_told_with_its_place() {
     };
     let why = |text: String| results::read::<VerifiedRow>(&text).expect_err("a fault").to_string();
     let found = results::read::<VerifiedRow>(&row("", figure)).expect("read");
-    assert!(found.head.format.is_none() && found.head.words().contains("no format number"));
+    assert!(found.head.format.is_none() && found.head.describe().contains("no format number"));
     assert!(found.result.figures.expect("figures")[0].exact.is_nan());
     let missing = why(row(r#""format": 1,"#, &figure.replace(r#""exact": null, "#, "")));
     assert!(missing.starts_with("/figures/0: missing field `exact`"), "{missing}");
@@ -158,6 +158,10 @@ fn what_is_written_says_what_made_it() {
     let row = VerifiedRow::default();
     let found = results::read::<VerifiedRow>(&results::text(&row)).expect("read");
     assert_eq!((found.result, found.head.format), (row, Some(VerifiedRow::FORMAT)));
-    assert_eq!(found.head.provenance, Some(Provenance::of(None)));
-    assert!(found.head.words().contains("SUNDIALS 6."), "{}", found.head.words());
+    assert_eq!(found.head.provenance, Some(Provenance::new(None)));
+    assert!(
+        found.head.describe().contains("SUNDIALS 6."),
+        "{}",
+        found.head.describe()
+    );
 }

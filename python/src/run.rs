@@ -325,7 +325,7 @@ impl Recorded {
             Err(error) => return Ok(Err(error)),
         };
         let hook = Box::new(|_: &Progress| Control::Continue);
-        let mut recorder = FolderRecorder::new(folder, Labels::of(&self.case), hook);
+        let mut recorder = FolderRecorder::new(folder, Labels::from_case(&self.case), hook);
         let replayed = self.replay(arrays, &mut recorder)?;
         let complete = || -> Result<()> {
             replayed?;

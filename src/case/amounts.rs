@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::parse::misread::loose;
-use super::slips::number_of;
-use super::units::{self, Suffix, Unit};
+use super::parse::common_mistakes::loose;
+use super::unit_mistakes::number_of;
+use super::units::{self, Unit, UnitSuffix};
 use super::wording::short;
 
 /// Longest text [bytes] that is read as a number with a unit.
@@ -137,7 +137,7 @@ fn size(written: &str, si: &str) -> Result<f64, Option<&'static str>> {
 
 /// Meaning of a number with a unit at a pointer.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Here {
+pub enum UnitContext {
     /// The number, converted to the unit of the key, and that unit.
     Number(String, String),
     /// No valid number, for this reason.
@@ -145,51 +145,51 @@ pub enum Here {
 }
 
 /// Interprets a text at a pointer; none if the text is not a number with a unit.
-pub fn at(pointer: &str, text: &str) -> Option<Here> {
+pub fn at(pointer: &str, text: &str) -> Option<UnitContext> {
     let (readings, unit) = split(text)?;
     let &[number] = &readings[..] else {
         let all: Vec<String> = readings
             .iter()
             .map(|one| format!("{} {unit}", number_of(*one)))
             .collect();
-        return Some(Here::Not(format!(
+        return Some(UnitContext::Not(format!(
             "{} is ambiguous: {}. Write the intended number",
             short(text.trim()),
             all.join(" or ")
         )));
     };
-    let same = |of: String| Here::Number(number_of(number), of);
+    let same = |of: String| UnitContext::Number(number_of(number), of);
     if pointer.ends_with("/temperature_c") && ["°C", "degC", "C"].contains(&unit) {
         return Some(same("°C".into()));
     }
     Some(match units::suffix_of_pointer(pointer) {
-        Suffix::Known(_, of) => match size(unit, of.si) {
-            Ok(scale) => Here::Number(number_of(number * scale / of.scale), of.name.into()),
-            Err(Some(_)) => Here::Not(format!(
+        UnitSuffix::Known(_, of) => match size(unit, of.si) {
+            Ok(scale) => UnitContext::Number(number_of(number * scale / of.scale), of.name.into()),
+            Err(Some(_)) => UnitContext::Not(format!(
                 "{} is a unit of another quantity; the number here is in {}",
                 short(unit),
                 of.name
             )),
-            Err(None) => Here::Not(format!(
+            Err(None) => UnitContext::Not(format!(
                 "the unit {} is not known; the number here is in {}",
                 short(unit),
                 of.name
             )),
         },
-        Suffix::Unknown(_, end)
+        UnitSuffix::Unknown(_, end)
             if squeezed(unit)
                 .replace('/', "")
                 .eq_ignore_ascii_case(&end.replace('_', "")) =>
         {
             same(unit.into())
         }
-        Suffix::Unknown(_, end) => Here::Not(format!(
+        UnitSuffix::Unknown(_, end) => UnitContext::Not(format!(
             "the number here is in {end}, the unit at the end of the key, not in {}",
             short(unit)
         )),
-        Suffix::None => match size(unit, "1") {
-            Ok(scale) => Here::Number(number_of(number * scale), "1".into()),
-            Err(_) => Here::Not(format!("the number here has no unit, but {} is given", short(unit))),
+        UnitSuffix::None => match size(unit, "1") {
+            Ok(scale) => UnitContext::Number(number_of(number * scale), "1".into()),
+            Err(_) => UnitContext::Not(format!("the number here has no unit, but {} is given", short(unit))),
         },
     })
 }
@@ -197,11 +197,11 @@ pub fn at(pointer: &str, text: &str) -> Option<Here> {
 /// Advice about a text at a pointer, if it is a number with a unit.
 pub fn remedy(pointer: &str, text: &str) -> Option<String> {
     Some(match at(pointer, text)? {
-        Here::Number(number, _) => format!(
+        UnitContext::Number(number, _) => format!(
             "{} is {number} here: write the number alone, the key has the unit",
             short(text.trim())
         ),
-        Here::Not(why) => why,
+        UnitContext::Not(why) => why,
     })
 }
 
@@ -226,8 +226,8 @@ pub fn rewritten(option: &str, pointer: &str, spec: &str) -> Option<String> {
         before = part;
         match at(pointer, own) {
             None => new += part,
-            Some(Here::Not(why)) => return Some(why),
-            Some(Here::Number(number, _)) => {
+            Some(UnitContext::Not(why)) => return Some(why),
+            Some(UnitContext::Number(number, _)) => {
                 readings.push(format!("{} is {number} here", own.trim()));
                 new += &number;
                 new += &part[own.len()..];
@@ -248,19 +248,19 @@ fn thousands(before: &str, part: &str) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Here, at, rewritten};
+    use super::{UnitContext, at, rewritten};
 
     /// Goal: an ambiguous thousands comma is reported instead of read as a decimal comma.
     #[test]
     fn commas_between_thousands_are_reported() {
         let pointer = "/network/chains/0/ends/0/pressure_pa";
-        let Some(Here::Not(what)) = at(pointer, "60,000 Pa") else {
+        let Some(UnitContext::Not(what)) = at(pointer, "60,000 Pa") else {
             panic!("no number")
         };
         assert!(what.contains("60 Pa or 60000 Pa"), "{what}");
         assert_eq!(
             at(pointer, "1,234,567 Pa"),
-            Some(Here::Number("1.234567e6".into(), "Pa".into()))
+            Some(UnitContext::Number("1.234567e6".into(), "Pa".into()))
         );
         assert_eq!(at("/beam/young_modulus_pa", "1,5e6"), None);
         let text = rewritten("--vary", pointer, "60,000 Pa").expect("a remedy");
@@ -290,7 +290,7 @@ mod tests {
             // millipascals, not megapascals
             ("/beam/young_modulus_pa", "2 mPa", "0.002"),
         ] {
-            let Some(Here::Number(found, _)) = at(pointer, text) else {
+            let Some(UnitContext::Number(found, _)) = at(pointer, text) else {
                 panic!("{pointer}: {text}")
             };
             assert_eq!(found, number, "{pointer}: {text}");
@@ -301,7 +301,7 @@ mod tests {
             ("/beam/length_m", "3 Mm"),
             ("/solver/rtol", "1 mm"),
         ] {
-            assert!(matches!(at(pointer, text), Some(Here::Not(_))), "{text}");
+            assert!(matches!(at(pointer, text), Some(UnitContext::Not(_))), "{text}");
         }
         for text in ["60", "sealed", "1e3", "5e5", "1E-6", "1e400", "", "1:2", "-", "2/3"] {
             assert_eq!(at("/beam/length_m", text), None, "{text}");

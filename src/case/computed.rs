@@ -14,13 +14,13 @@ use super::schema::StrainEnergy as Written;
 const KEPT: usize = 16;
 
 /// Cached values, each with its section.
-type Kept<T> = Mutex<Vec<(Section, T)>>;
+type CachedValue<T> = Mutex<Vec<(Section, T)>>;
 
-static COEFFICIENTS: Kept<Coefficients> = Mutex::new(vec![]);
-static ENERGIES: Kept<Option<StrainEnergy>> = Mutex::new(vec![]);
+static COEFFICIENTS: CachedValue<Coefficients> = Mutex::new(vec![]);
+static ENERGIES: CachedValue<Option<StrainEnergy>> = Mutex::new(vec![]);
 
 /// Returns the cached value of a section, or computes and caches it.
-fn once<T: Clone>(kept: &Kept<T>, section: &Section, compute: impl FnOnce() -> Computed<T>) -> Computed<T> {
+fn once<T: Clone>(kept: &CachedValue<T>, section: &Section, compute: impl FnOnce() -> Computed<T>) -> Computed<T> {
     let known = || kept.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, found)) = known().iter().find(|(of, _)| of == section) {
         return Ok(found.clone());

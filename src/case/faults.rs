@@ -220,7 +220,7 @@ impl PartialEq for CaseSource {
 
 impl CaseSource {
     /// Creates a source from an unparsed text.
-    pub fn of(path: &Path, text: &str) -> Self {
+    pub fn new(path: &Path, text: &str) -> Self {
         Self {
             path: path.to_owned(),
             text: text.to_owned(),

@@ -182,7 +182,7 @@ pub const ROOM_C: f64 = 20.0;
 
 /// Values that the name of a fluid adds to its case.
 #[derive(Debug)]
-pub(super) struct Brought {
+pub(super) struct FluidValues {
     /// The fluid, if its name is known.
     pub fluid: Option<NamedFluid>,
     /// Density, viscosity and kind as in a case file; those of water if the formulas give none, so that the rest of the case can be
@@ -192,7 +192,7 @@ pub(super) struct Brought {
 }
 
 /// Returns the values of the fluid of a case, if a preset names it.
-pub(super) fn of(case: &Value) -> Option<Brought> {
+pub(super) fn preset_values(case: &Value) -> Option<FluidValues> {
     let fluid = case.get(KEY)?;
     let named: Option<NamedFluid> = serde_json::from_value(fluid.get("preset")?.clone()).ok();
     let temperature_c = fluid
@@ -212,7 +212,7 @@ pub(super) fn of(case: &Value) -> Option<Brought> {
     if named.is_some_and(|fluid| fluid.kind() == FluidKind::Gas) {
         values["kind"] = json!(FluidKind::Gas);
     }
-    Some(Brought {
+    Some(FluidValues {
         fluid: named,
         values: json!({KEY: values}),
         temperature_c,
@@ -228,7 +228,7 @@ pub(super) fn report_unnamed(own: &Value, faults: &mut Violations) {
     }
 }
 
-impl Brought {
+impl FluidValues {
     /// Reports a temperature outside the range of the formulas.
     pub(super) fn report(&self, faults: &mut Violations) {
         let Some(fluid) = self.fluid.filter(|_| !faults.any_below("/fluid")) else {

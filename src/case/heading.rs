@@ -1,7 +1,7 @@
 //! Headings of tables: `angle_deg`, `pressure [kPa]`, `volume (ml)`.
 
 use super::separated;
-use super::units::{self, Suffix, Unit};
+use super::units::{self, Unit, UnitSuffix};
 use crate::error::visible;
 
 /// Name and unit of a column.
@@ -21,7 +21,7 @@ pub struct Heading {
 
 impl Heading {
     /// Parses a heading.
-    pub fn of(heading: &str) -> Self {
+    pub fn parse(heading: &str) -> Self {
         Self::sought(heading, None)
     }
 
@@ -41,9 +41,9 @@ impl Heading {
                 None => column(name, None, Some(unit)),
             },
             None => match separated::suffix(heading, si) {
-                Suffix::Known(name, unit) => column(name, Some(unit), None),
-                Suffix::Unknown(name, unit) => column(name, None, Some(unit)),
-                Suffix::None => column(heading, None, None),
+                UnitSuffix::Known(name, unit) => column(name, Some(unit), None),
+                UnitSuffix::Unknown(name, unit) => column(name, None, Some(unit)),
+                UnitSuffix::None => column(heading, None, None),
             },
         }
     }
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn brackets_and_ends_of_names_follow_one_rule() {
-        let scale = |heading: &str, si| Heading::of(heading).scale(si, "it");
+        let scale = |heading: &str, si| Heading::parse(heading).scale(si, "it");
         for (heading, si, factor) in [
             ("p_kpa", "Pa", 1e3),
             ("p [kPa]", "Pa", 1e3),

@@ -45,7 +45,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
 /// Warning about varied or differentiated numbers that change the shape of the section on their own.
 pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) -> Option<String> {
     let resolved = serde_json::to_value(case).unwrap_or_default();
-    let now = Sizes::of(&resolved)?;
+    let now = Sizes::from_case(&resolved)?;
     let (mut shaping, mut names) = (vec![], vec![]);
     for pointer in pointers.clone() {
         let mut other = resolved.clone();
@@ -54,7 +54,9 @@ pub fn varied<'a>(case: &Case, pointers: impl Iterator<Item = &'a str> + Clone) 
             continue;
         };
         *place = (ASIDE * number).into();
-        let Some(aside) = Sizes::of(&other) else { continue };
+        let Some(aside) = Sizes::from_case(&other) else {
+            continue;
+        };
         let moved = |law: &&Law| !law.is_exact(&aside, &now) && !pointers.clone().any(|p| p == law.pointer);
         let moved = LAWS.iter().filter(moved).filter(|law| belongs(&resolved, law));
         let before = names.len();
@@ -146,7 +148,7 @@ fn warning(case: &Case, resolved: &Value, laws: &[&Law]) -> Option<String> {
     let all: Vec<Coefficient> = laws.iter().map(value).collect();
     let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
     let verb = if names.len() == 1 { "belongs" } else { "belong" };
-    let (words, advice): (fn(&Sizes) -> String, _) = match first.pointer == DUCT {
+    let (describe, advice): (fn(&Sizes) -> String, _) = match first.pointer == DUCT {
         true => (
             bladder,
             "Give your own, or null to have it computed from the cross-section",
@@ -166,8 +168,8 @@ fn warning(case: &Case, resolved: &Value, laws: &[&Law]) -> Option<String> {
     Some(Code::Inherited.warning(format!(
         "coefficients of another shape of section: {}{by} {verb} to {}, here it is {}. {EXACT} {advice}{own}.",
         names.join(", "),
-        words(theirs),
-        words(mine),
+        describe(theirs),
+        describe(mine),
     )))
 }
 
@@ -178,7 +180,7 @@ fn bladder(sizes: &Sizes) -> String {
 
 /// Coefficients that a cell of the case's own dimensions would give instead of the inherited ones; none for a beam without bladders.
 fn of_cell(case: &Case, inherited: &[Coefficient]) -> Option<String> {
-    let cell = OwnCell::of(case)?;
+    let cell = OwnCell::from_case(case)?;
     let beside = |&(pointer, value): &Coefficient| {
         let own = cell.coefficient(pointer)?;
         Ok(own.zip(value).map(|(own, value)| instead(pointer, own, value)))

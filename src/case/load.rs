@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::faults::{CaseSource, SetValue, Violations, sort};
 use super::origins::Origins;
 use super::presets::Preset;
-use super::scaling::{Given, LAWS, Sizes, may_change_sizes};
+use super::scaling::{CoefficientSizes, LAWS, Sizes, may_change_sizes};
 use super::schema::Case;
 use super::wording::nearest;
 use super::{check, counts, fluids, parse as json, presets, reading, schema_json, section, sets, tables, validate};
@@ -64,7 +64,7 @@ pub fn text(path: &Path) -> Result<String> {
     let Some(bytes) = bytes else {
         let what = "the case is larger than 64 MB";
         let fault = Violation::new(Code::Text, "", what).allowed("case files of up to 64 MB");
-        return Err(CaseSource::of(path, "").error(vec![fault]));
+        return Err(CaseSource::new(path, "").error(vec![fault]));
     };
     String::from_utf8(bytes).map_err(|e| not_utf8(path, e.as_bytes(), e.utf8_error().valid_up_to()))
 }
@@ -99,7 +99,7 @@ pub fn parse(text: &str, path: &Path, base: &Path, sets: &[String]) -> Result<Ca
 /// # Errors
 /// As [`load`].
 pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varied: &[String]) -> Result<Case> {
-    let source = CaseSource::of(path, text);
+    let source = CaseSource::new(path, text);
     let (file, mut violations) = json::parse(text);
     let Some(file) = file else {
         let table = path
@@ -159,7 +159,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
         .collect();
     faults.drop_below(&cleared);
     cleared.iter().for_each(|pointer| sets::remove(&mut value, pointer));
-    if section.as_ref().is_some_and(section::Brought::stands_in) {
+    if section.as_ref().is_some_and(section::SectionValues::stands_in) {
         section::remove(&mut value);
     }
     let case = match value.is_object() {
@@ -172,7 +172,7 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
         None => fluids::report_unnamed(&own, &mut faults),
     }
     let case = case.map(|case| Case {
-        origins: Origins::of(&own, &value, &source.sets, case.preset, section.as_ref(), given),
+        origins: Origins::new(&own, &value, &source.sets, case.preset, section.as_ref(), given),
         ..case
     });
     violations.extend(faults.placed(&source));
@@ -191,13 +191,13 @@ pub fn parse_varied(text: &str, path: &Path, base: &Path, sets: &[String], varie
 /// A case with the values of its section, its fluid and its preset.
 struct Filled {
     whole: Value,
-    section: Option<section::Brought>,
-    fluid: Option<fluids::Brought>,
+    section: Option<section::SectionValues>,
+    fluid: Option<fluids::FluidValues>,
 }
 
 impl Filled {
     fn new(own: Value, sets: &[SetValue]) -> Self {
-        let (section, fluid) = (section::of(&own), fluids::of(&own));
+        let (section, fluid) = (section::computed_values(&own), fluids::preset_values(&own));
         let brought = [section.as_ref().map(|s| &s.values), fluid.as_ref().map(|f| &f.values)];
         let mut whole = own;
         presets::apply(&mut whole, sets, brought.into_iter().flatten().cloned());
@@ -222,7 +222,7 @@ fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec
         if let Some(before) = steps.last_mut()
             && group.iter().any(|set| may_change_sizes(set))
         {
-            before.sizes = Some(Sizes::of(&Filled::new(value.clone(), &all).whole));
+            before.sizes = Some(Sizes::from_case(&Filled::new(value.clone(), &all).whole));
         }
         let sets = sets::apply(value, group)?;
         if section::changes(&sets) {
@@ -248,9 +248,9 @@ fn steps(value: &mut Value, file: &Value, groups: [&[String]; 2]) -> Result<(Vec
 }
 
 /// Dimensions to which the coefficients of a case `own` belong; `whole` includes the values of its section and its preset.
-fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: &[Step]) -> Given {
-    let mut given = Given::default();
-    let now = Sizes::of(whole);
+fn given(own: &Value, whole: &Value, section: Option<&section::SectionValues>, steps: &[Step]) -> CoefficientSizes {
+    let mut given = CoefficientSizes::default();
+    let now = Sizes::from_case(whole);
     let all = LAWS.iter().map(|law| law.pointer);
     for (k, step) in steps.iter().enumerate() {
         let sizes = step.sizes.unwrap_or(now);
@@ -265,7 +265,7 @@ fn given(own: &Value, whole: &Value, section: Option<&section::Brought>, steps: 
     };
     let preset = own
         .get("preset")
-        .and_then(|_| Sizes::of(&Preset::MatiaGatBeam.values()));
+        .and_then(|_| Sizes::from_case(&Preset::MatiaGatBeam.values()));
     for pointer in all {
         match whole.pointer(pointer) {
             None => given.note([pointer].into_iter(), None),
@@ -361,5 +361,5 @@ fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> Error {
         span: Some(valid..end),
         ..Violation::new(Code::Text, "", what).hint(hint)
     };
-    CaseSource::of(path, &text).error(vec![violation])
+    CaseSource::new(path, &text).error(vec![violation])
 }

@@ -6,7 +6,7 @@ use super::schema_json;
 
 /// One key of a case, or one word that is a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Meaning {
+pub struct KeyDescription {
     /// The key.
     pub name: String,
     /// Object and key, such as `Bladders/length_m`; `/name` for keys of the case itself.
@@ -18,7 +18,7 @@ pub struct Meaning {
 }
 
 /// All keys, in the order of the schema.
-pub fn meanings() -> Vec<Meaning> {
+pub fn meanings() -> Vec<KeyDescription> {
     let schema = &*schema_json::CASE;
     let mut all = vec![];
     walk(schema, "", &mut all);
@@ -28,7 +28,7 @@ pub fn meanings() -> Vec<Meaning> {
     all
 }
 
-fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
+fn walk(part: &Value, place: &str, all: &mut Vec<KeyDescription>) {
     let text = |value: &Value| value["description"].as_str().unwrap_or_default().to_owned();
     for (name, inner) in part["properties"].as_object().into_iter().flatten() {
         let place = format!("{place}/{name}");
@@ -40,7 +40,7 @@ fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
         if let Some(default) = inner.get("default").filter(|d| d.is_number() || d.is_string()) {
             meaning += &format!(" Default: {default}.");
         }
-        all.push(Meaning {
+        all.push(KeyDescription {
             name: name.clone(),
             place: place.clone(),
             meaning,
@@ -50,7 +50,7 @@ fn walk(part: &Value, place: &str, all: &mut Vec<Meaning>) {
     }
     for branch in ["oneOf", "anyOf"].iter().filter_map(|k| part[k].as_array()).flatten() {
         if let Some(word) = branch["const"].as_str() {
-            all.push(Meaning {
+            all.push(KeyDescription {
                 name: word.to_owned(),
                 place: format!("{place} \"{word}\""),
                 meaning: text(branch),

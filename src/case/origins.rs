@@ -11,8 +11,8 @@ use super::faults::{SetValue, is_below};
 use super::fluids;
 use super::numbers::digits;
 use super::presets::Preset;
-use super::scaling::Given;
-use super::section::Brought;
+use super::scaling::CoefficientSizes;
+use super::section::SectionValues;
 
 /// Origin of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl fmt::Display for Origin {
 pub struct Origins {
     known: BTreeMap<String, Origin>,
     /// Dimensions to which the coefficients belong.
-    pub(super) given: Given,
+    pub(super) given: CoefficientSizes,
 }
 
 impl PartialEq for Origins {
@@ -89,13 +89,13 @@ const COEFFICIENTS: [&str; 13] = [
 impl Origins {
     /// Origins in a case read from `own`, which includes the arguments `sets`; `whole` also includes the values of its section and its
     /// preset.
-    pub(super) fn of(
+    pub(super) fn new(
         own: &Value,
         whole: &Value,
         sets: &[SetValue],
         preset: Option<Preset>,
-        of_section: Option<&Brought>,
-        given: Given,
+        of_section: Option<&SectionValues>,
+        given: CoefficientSizes,
     ) -> Self {
         let single = whole.pointer("/network/tubes").and_then(Value::as_array);
         let single = (0..single.map_or(0, Vec::len)).map(|i| format!("/network/tubes/{i}/permeability_m4"));
@@ -133,7 +133,7 @@ impl Origins {
     }
 
     /// Texts of all origins, by pointer.
-    pub fn words(&self) -> BTreeMap<String, String> {
+    pub fn describe(&self) -> BTreeMap<String, String> {
         let words = |(pointer, origin): (&String, &Origin)| {
             let factor = self.given.factor(pointer);
             let scaled = match (factor - 1.0).abs() > 1e-9 {
@@ -149,7 +149,7 @@ impl Origins {
 /// Origins of the numbers of named fluids and elastomers.
 fn named(own: &Value) -> Vec<(String, Origin)> {
     let mut found = vec![];
-    if let Some(fluid) = fluids::of(own).and_then(|brought| brought.fluid) {
+    if let Some(fluid) = fluids::preset_values(own).and_then(|brought| brought.fluid) {
         let keys = ["/fluid/density_kg_m3", "/fluid/viscosity_pa_s"]
             .into_iter()
             .zip(fluid.sources());

@@ -32,7 +32,7 @@ pub(super) struct OwnCell {
 
 impl OwnCell {
     /// Solves the cell; none for a beam without bladders, which may be solid or have empty ones.
-    pub(super) fn of(case: &Case) -> Option<Self> {
+    pub(super) fn from_case(case: &Case) -> Option<Self> {
         let (section, assumed) = section(case, SOLVED)?;
         let numbers = computed::coefficients(&section).map(|found| found.numbers);
         Some(Self {
@@ -109,7 +109,7 @@ mod tests {
             ];
             case::load("cases/wiring-2.json".as_ref(), &set).expect("a case")
         };
-        let of = |modulus: &str| OwnCell::of(&load(modulus)).expect("a cell");
+        let of = |modulus: &str| OwnCell::from_case(&load(modulus)).expect("a cell");
         let (soft, stiff) = (of("1e6"), of("8e6"));
         for (pointer, ratio) in [
             ("/bladders/area_per_pressure_m2_per_pa", 8.0),

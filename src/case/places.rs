@@ -26,7 +26,7 @@ impl<'t> LineColumns<'t> {
     }
 
     /// Line and column of a byte, from 1.
-    pub fn of(&mut self, at: usize) -> (usize, usize) {
+    pub fn line_and_column(&mut self, at: usize) -> (usize, usize) {
         let at = floor(self.text, at);
         if at < self.at {
             *self = Self::new(self.text);

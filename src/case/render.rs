@@ -168,7 +168,7 @@ impl Excerpt {
     fn cut(places: &mut LineColumns, span: Range<usize>, width: usize) -> Self {
         let text = places.text();
         let start = floor(text, span.start);
-        let (line, column) = places.of(start);
+        let (line, column) = places.line_and_column(start);
         let line_start = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let room = width.saturating_sub(line.to_string().len() + 3);
         // Only the surroundings of the fault are read: a line may have megabytes.

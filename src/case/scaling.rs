@@ -39,7 +39,7 @@ pub(super) struct InBeam {
 
 impl Sizes {
     /// Dimensions of a case in JSON that has all its numbers; none if a number is missing or not positive.
-    pub fn of(case: &Value) -> Option<Self> {
+    pub fn from_case(case: &Value) -> Option<Self> {
         let number = |pointer: &str| case.pointer(pointer).and_then(Value::as_f64).filter(|x| *x > 0.0);
         let bladders = match case.get("bladders") {
             Some(Value::Object(_)) => Some(InBeam {
@@ -237,12 +237,12 @@ pub(super) fn may_change_sizes(argument: &str) -> bool {
 
 /// Dimensions to which coefficients belong, by pointer, and those of the case.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Given {
+pub(super) struct CoefficientSizes {
     then: BTreeMap<&'static str, Sizes>,
     now: Option<Sizes>,
 }
 
-impl Given {
+impl CoefficientSizes {
     /// Records that the coefficients at, above or below the pointers belong to these dimensions.
     pub fn note<'a>(&mut self, pointers: impl Iterator<Item = &'a str> + Clone, sizes: Option<Sizes>) {
         let touches = |law: &&Law| {
@@ -271,7 +271,7 @@ impl Given {
 
     /// Scales the coefficients of a case in JSON from the dimensions to which they belong to those of the case.
     pub fn scale(&mut self, case: &mut Value) {
-        self.now = Sizes::of(case);
+        self.now = Sizes::from_case(case);
         for pointer in self.then.keys() {
             if let Some(value) = case.pointer_mut(pointer) {
                 multiply(value, self.factor(pointer));
@@ -282,7 +282,7 @@ impl Given {
     /// Sets numbers at pointers of a case in JSON that has the dimensions of `self`, and scales its other coefficients.
     pub fn change(&mut self, case: &mut Value, numbers: &[(&str, f64)]) {
         let mut step = Self::default();
-        step.note(LAWS.iter().map(|law| law.pointer), Sizes::of(case));
+        step.note(LAWS.iter().map(|law| law.pointer), Sizes::from_case(case));
         for (pointer, number) in numbers {
             if let Some(place) = case.pointer_mut(pointer) {
                 *place = (*number).into();

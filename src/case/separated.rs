@@ -1,18 +1,18 @@
 //! Units at the end of headings, after a space or another sign: `t in ms`, `p / kPa`, `flow, ml/min`.
 
-use super::units::{self, Suffix};
+use super::units::{self, UnitSuffix};
 
 /// Placeholder for the name before a unit.
 const ANY: &str = "x_";
 
 /// Unit at the end of a heading, after an underscore, a space or another sign. An end with two possible dimensions has that of the
 /// quantity, if its SI unit `si` determines it.
-pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
+pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> UnitSuffix<'h> {
     let whole = heading.trim();
     match units::suffix(whole, si) {
-        Suffix::None => {}
-        Suffix::Known(name, unit) => return Suffix::Known(bare(name), unit),
-        unknown @ Suffix::Unknown(..) => return unknown,
+        UnitSuffix::None => {}
+        UnitSuffix::Known(name, unit) => return UnitSuffix::Known(bare(name), unit),
+        unknown @ UnitSuffix::Unknown(..) => return unknown,
     }
     let mut signs = whole
         .char_indices()
@@ -23,9 +23,9 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
             continue;
         }
         match of_end(end, si) {
-            Suffix::Known(_, unit) => return Suffix::Known(name, unit),
-            Suffix::Unknown(_, unit) => return Suffix::Unknown(name, unit),
-            Suffix::None => {}
+            UnitSuffix::Known(_, unit) => return UnitSuffix::Known(name, unit),
+            UnitSuffix::Unknown(_, unit) => return UnitSuffix::Unknown(name, unit),
+            UnitSuffix::None => {}
         }
     }
     // the word `in` marks a unit before further words
@@ -34,39 +34,39 @@ pub fn suffix<'h>(heading: &'h str, si: Option<&str>) -> Suffix<'h> {
             continue;
         };
         let word = rest.split([' ', '_', ',']).next().unwrap_or_default();
-        if let (Suffix::Known(_, unit), true) = (of_end(word, si), word.len() > 1) {
-            return Suffix::Known(bare(name), unit);
+        if let (UnitSuffix::Known(_, unit), true) = (of_end(word, si), word.len() > 1) {
+            return UnitSuffix::Known(bare(name), unit);
         }
     }
     // a heading that is only a unit; SI units of two letters may also be names
     if let Some(unit) =
         units::bracketed(whole).filter(|unit| whole.len() > 1 && unit.scale != 1.0 && unit.name != "min")
     {
-        return Suffix::Known(whole, unit);
+        return UnitSuffix::Known(whole, unit);
     }
     // powers belong to a unit that is unknown
     let power = |sign: char| "^²³⁻".contains(sign);
     let last = signs.rfind(|(at, _)| whole[*at..].contains(power));
     match last {
-        Some((at, sign)) if sign.is_whitespace() => Suffix::Unknown(bare(&whole[..at]), whole[at..].trim()),
-        _ => Suffix::None,
+        Some((at, sign)) if sign.is_whitespace() => UnitSuffix::Unknown(bare(&whole[..at]), whole[at..].trim()),
+        _ => UnitSuffix::None,
     }
 }
 
 /// Unit that the whole end of a heading names.
-fn of_end<'e>(end: &'e str, si: Option<&str>) -> Suffix<'e> {
+fn of_end<'e>(end: &'e str, si: Option<&str>) -> UnitSuffix<'e> {
     if let Some(unit) = units::bracketed(&end.replace(['·', '⋅', '*'], " ")) {
         return match unit.name {
-            "1" => Suffix::None,
-            _ => Suffix::Known("", unit),
+            "1" => UnitSuffix::None,
+            _ => UnitSuffix::Known("", unit),
         };
     }
     let key: String = end.chars().filter(|sign| *sign != '^').map(plain).collect();
     let name = format!("{ANY}{}", key.trim_matches('_').replace('%', "percent"));
     match units::suffix(&name, si) {
-        Suffix::Known("x", unit) if is_cased_as(end, unit.name) => Suffix::Known("", unit),
-        Suffix::Known("x", _) | Suffix::Unknown("x", _) => Suffix::Unknown("", end),
-        _ => Suffix::None,
+        UnitSuffix::Known("x", unit) if is_cased_as(end, unit.name) => UnitSuffix::Known("", unit),
+        UnitSuffix::Known("x", _) | UnitSuffix::Unknown("x", _) => UnitSuffix::Unknown("", end),
+        _ => UnitSuffix::None,
     }
 }
 
@@ -98,7 +98,7 @@ fn bare(name: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::{Suffix, suffix};
+    use super::{UnitSuffix, suffix};
 
     #[test]
     fn units_stand_behind_blanks_and_other_signs() {
@@ -135,7 +135,7 @@ mod tests {
             ("kPa", "kPa", "kPa"),
         ] {
             match suffix(heading, None) {
-                Suffix::Known(left, found) => assert_eq!((left, found.name), (name, unit), "{heading}"),
+                UnitSuffix::Known(left, found) => assert_eq!((left, found.name), (name, unit), "{heading}"),
                 other => panic!("{heading}: {other:?}"),
             }
         }
@@ -154,7 +154,7 @@ mod tests {
             ("speed mm s^-1", "speed", "s^-1"),
             ("speed mm s⁻¹", "speed", "s⁻¹"),
         ] {
-            let Suffix::Unknown(left, found) = suffix(heading, Some("s")) else {
+            let UnitSuffix::Unknown(left, found) = suffix(heading, Some("s")) else {
                 panic!("{heading}: {:?}", suffix(heading, Some("s")));
             };
             assert!(left.starts_with(name) && found == unit, "{heading}: {left}, {found}");
@@ -171,7 +171,7 @@ mod tests {
             "s",
             "",
         ] {
-            assert_eq!(suffix(heading, Some("Pa")), Suffix::None, "{heading}");
+            assert_eq!(suffix(heading, Some("Pa")), UnitSuffix::None, "{heading}");
         }
     }
 }

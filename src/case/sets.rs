@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use super::amounts;
 use super::faults::SetValue;
 use super::locate::{child, tokens};
-use super::parse::{DEEPEST, misread, parse_below};
+use super::parse::{DEEPEST, common_mistakes, parse_below};
 use super::unknown;
 use super::wording::short;
 use crate::error::{Error, Result, Violation};
@@ -57,16 +57,16 @@ fn apply_one(value: &mut Value, argument: &str) -> Result<SetValue> {
 fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
     let why = fault.map_or("not JSON", |f| f.what.as_str());
     match amounts::at(pointer, json) {
-        Some(amounts::Here::Number(number, _)) => {
+        Some(amounts::UnitContext::Number(number, _)) => {
             return format!(
                 "{why}; {} is {number} here: --set '{pointer}={number}'",
                 short(json.trim())
             );
         }
-        Some(amounts::Here::Not(what)) => return format!("{why}; {what}"),
+        Some(amounts::UnitContext::Not(what)) => return format!("{why}; {what}"),
         None => {}
     }
-    match &misread::loose(json.trim())[..] {
+    match &common_mistakes::loose(json.trim())[..] {
         [one] => {
             let rule = match *one == json.trim().replacen(',', ".", 1) {
                 true => "write decimals with a point",
@@ -80,7 +80,7 @@ fn unreadable(pointer: &str, json: &str, fault: Option<&Violation>) -> String {
         }
         _ => {}
     }
-    if let Some((_, joined)) = misread::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
+    if let Some((_, joined)) = common_mistakes::grouped(json).filter(|(bytes, _)| *bytes == json.len()) {
         return format!("{why}; write digits without separators: --set '{pointer}={joined}'");
     }
     // a word without quotes is a text; other faults have their own remedy

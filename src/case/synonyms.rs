@@ -278,7 +278,7 @@ pub fn of_symbol(symbol: &str) -> Vec<&'static str> {
 }
 
 /// Keys that a text means; if it means none as a whole, those of each of its words.
-pub fn of(word: &str) -> Vec<&'static str> {
+pub fn keys_meant_by(word: &str) -> Vec<&'static str> {
     let own = of_whole(word);
     if !own.is_empty() {
         return own;

@@ -134,7 +134,7 @@ fn read(table: &mut Map<String, Value>, base: &Path, pointer: &str) -> Read<()> 
     let columns = [column("time_column", 0)?, column("value_column", 1)?];
     let scale = |column: usize, key: &str, dimensions: &[&str], what: &str| -> Read<f64> {
         let key = if table.contains_key(key) { key } else { "csv" };
-        let heading = Heading::of(headings.get(column).unwrap_or_default());
+        let heading = Heading::parse(headings.get(column).unwrap_or_default());
         let read = dimensions.iter().map(|si| heading.scale(si, what));
         let (known, faults): (Vec<_>, Vec<_>) = read.partition(Result::is_ok);
         let first = known.into_iter().chain(faults).next().unwrap_or(Ok(1.0));

@@ -191,7 +191,7 @@ static ENDS: LazyLock<Vec<(Unit, String)>> = LazyLock::new(|| {
 
 /// Unit at the end of a name.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Suffix<'n> {
+pub enum UnitSuffix<'n> {
     /// The name without the unit, and the unit.
     Known(&'n str, Unit),
     /// The name without its end, and the end, which seems to be a unit but is not in the table.
@@ -202,7 +202,7 @@ pub enum Suffix<'n> {
 
 /// Unit at the end of a name, in the form of keys: `angle`, degrees of `angle_deg`. An end with two possible dimensions (`_n_m`, `_in`) has
 /// that of the quantity, if its SI unit `si` determines it.
-pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
+pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> UnitSuffix<'n> {
     let lower = name.to_ascii_lowercase();
     let cut = |end: &str| {
         let rest = lower.strip_suffix(end)?.strip_suffix('_')?;
@@ -230,8 +230,8 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
         let known = FOREIGN.into_iter().find_map(cut);
         let known = known.or_else(|| prefixed.then(|| cut(last)).flatten());
         return match named.or(known) {
-            Some(at) => Suffix::Unknown(&name[..at], &name[at + 1..]),
-            None => Suffix::None,
+            Some(at) => UnitSuffix::Unknown(&name[..at], &name[at + 1..]),
+            None => UnitSuffix::None,
         };
     };
     let before = |at: usize| {
@@ -245,40 +245,40 @@ pub fn suffix<'n>(name: &'n str, si: Option<&str>) -> Suffix<'n> {
         begun = at;
     }
     match begun == at {
-        true => Suffix::Known(&name[..at], unit),
-        false => Suffix::Unknown(&name[..begun], &name[begun + 1..]),
+        true => UnitSuffix::Known(&name[..at], unit),
+        false => UnitSuffix::Unknown(&name[..begun], &name[begun + 1..]),
     }
 }
 
 /// Name without the unit at its end, and that unit, in the form of keys.
 pub fn suffixed(name: &str) -> Option<(&str, Unit)> {
     match suffix(name, None) {
-        Suffix::Known(rest, unit) => Some((rest, unit)),
-        Suffix::Unknown(..) | Suffix::None => None,
+        UnitSuffix::Known(rest, unit) => Some((rest, unit)),
+        UnitSuffix::Unknown(..) | UnitSuffix::None => None,
     }
 }
 
 /// Unit of the numbers below a JSON pointer, from its keys.
-pub fn suffix_of_pointer(pointer: &str) -> Suffix<'_> {
+pub fn suffix_of_pointer(pointer: &str) -> UnitSuffix<'_> {
     let per_length = |key: &str| pointer.starts_with("/loads/") || key.starts_with("stiffness_");
     let mut ends = pointer.rsplit('/').map(|key| {
         let si = per_length(key).then_some("N/m");
         suffix(key, si)
     });
-    ends.find(|end| *end != Suffix::None).unwrap_or(Suffix::None)
+    ends.find(|end| *end != UnitSuffix::None).unwrap_or(UnitSuffix::None)
 }
 
 /// Unit of the numbers below a JSON pointer, if its keys give a known one.
 pub fn of_pointer(pointer: &str) -> Option<Unit> {
     match suffix_of_pointer(pointer) {
-        Suffix::Known(_, unit) => Some(unit),
-        Suffix::Unknown(..) | Suffix::None => None,
+        UnitSuffix::Known(_, unit) => Some(unit),
+        UnitSuffix::Unknown(..) | UnitSuffix::None => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Suffix, bracketed, of_pointer, suffix, suffixed};
+    use super::{UnitSuffix, bracketed, of_pointer, suffix, suffixed};
 
     #[test]
     fn headings_have_units_at_their_ends() {
@@ -342,7 +342,7 @@ mod tests {
             ("rate_kpa_s", "rate", "kpa_s"),
             ("damping_n_s_m", "damping", "n_s_m"),
         ] {
-            assert_eq!(suffix(name, Some("m")), Suffix::Unknown(rest, unit), "{name}");
+            assert_eq!(suffix(name, Some("m")), UnitSuffix::Unknown(rest, unit), "{name}");
         }
         // an inlet, a place, a word
         for name in [
@@ -354,11 +354,11 @@ mod tests {
             "degrees",
             "origin",
         ] {
-            assert_eq!(suffix(name, Some("Pa")), Suffix::None, "{name}");
+            assert_eq!(suffix(name, Some("Pa")), UnitSuffix::None, "{name}");
         }
         // a force per length, if that is expected
         let of = |name, si| match suffix(name, si) {
-            Suffix::Known(_, unit) => (unit.name, unit.scale),
+            UnitSuffix::Known(_, unit) => (unit.name, unit.scale),
             other => panic!("{name}: {other:?}"),
         };
         assert_eq!(of("q_n_mm", Some("N/m")), ("N/mm", 1e3));

@@ -6,9 +6,9 @@ use std::sync::LazyLock;
 use serde_json::{Map, Value};
 
 use super::locate::child;
-use super::units::{self, Suffix};
+use super::units::{self, UnitSuffix};
 use super::wording::all_nearest;
-use super::{schema_json, slips, synonyms};
+use super::{schema_json, synonyms, unit_mistakes};
 
 /// Largest number of places of a key in a message.
 const MOST: usize = 3;
@@ -31,7 +31,7 @@ pub struct KnownKeys<'a> {
 
 /// Meaning of an unknown key.
 #[derive(Default)]
-pub struct Meant {
+pub struct KeyMeaning {
     /// Candidates among the keys of the same object.
     pub keys: Vec<String>,
     /// The candidate, if there is only one.
@@ -40,7 +40,7 @@ pub struct Meant {
     pub hint: Option<String>,
 }
 
-impl Meant {
+impl KeyMeaning {
     fn one(key: String, hint: Option<String>) -> Self {
         Self {
             keys: vec![key.clone()],
@@ -59,25 +59,25 @@ impl Meant {
 
 impl<'a> KnownKeys<'a> {
     /// Finds the meaning of an unknown key: a key with another unit, a misspelling, a key of another object, or a synonym.
-    pub fn meant(&self, key: &str, value: &Value) -> Meant {
+    pub fn meant(&self, key: &str, value: &Value) -> KeyMeaning {
         let absent = self.absent();
         // a further argument may also mean a key that is already present
         if let Some((meant, hint)) =
-            slips::unit(key, value, absent.clone()).or_else(|| slips::unit(key, value, self.names()))
+            unit_mistakes::unit(key, value, absent.clone()).or_else(|| unit_mistakes::unit(key, value, self.names()))
         {
-            return Meant::one(meant, Some(hint));
+            return KeyMeaning::one(meant, Some(hint));
         }
-        let whole = |name: &&str| matches!(units::suffix(name, None), Suffix::Known(stem, _) if stem == key);
+        let whole = |name: &&str| matches!(units::suffix(name, None), UnitSuffix::Known(stem, _) if stem == key);
         if let Some(one) = absent.clone().find(whole) {
-            return Meant::one(one.to_owned(), None);
+            return KeyMeaning::one(one.to_owned(), None);
         }
         let lower = key.to_lowercase();
         let stem = match units::suffix(&lower, None) {
-            Suffix::Known(stem, _) | Suffix::Unknown(stem, _) => stem,
-            Suffix::None => &lower,
+            UnitSuffix::Known(stem, _) | UnitSuffix::Unknown(stem, _) => stem,
+            UnitSuffix::None => &lower,
         };
         if let Some(said) = [lower.as_str(), stem].into_iter().find_map(synonyms::instead) {
-            return Meant::elsewhere(said.to_owned());
+            return KeyMeaning::elsewhere(said.to_owned());
         }
         let fits = |name: &&str| self.takes(name, value);
         let mut near = all_nearest(key, absent.clone().filter(fits));
@@ -94,7 +94,7 @@ impl<'a> KnownKeys<'a> {
             return meant;
         }
         if !homes.is_empty() {
-            return Meant::elsewhere(belongs(&homes));
+            return KeyMeaning::elsewhere(belongs(&homes));
         }
         let called = |word: &str| match synonyms::of_whole(word) {
             none if none.is_empty() => synonyms::of_symbol(word),
@@ -119,8 +119,8 @@ impl<'a> KnownKeys<'a> {
             .filter_map(|key| self.homes(key).first().copied())
             .collect();
         match places.is_empty() {
-            true => Meant::default(),
-            false => Meant::elsewhere(format!("related keys: {}", places[..places.len().min(MOST)].join(", "))),
+            true => KeyMeaning::default(),
+            false => KeyMeaning::elsewhere(format!("related keys: {}", places[..places.len().min(MOST)].join(", "))),
         }
     }
 
@@ -144,10 +144,10 @@ impl<'a> KnownKeys<'a> {
     }
 
     /// The nearest key; of several, all with their descriptions.
-    fn of_near(&self, near: &[(f64, &str)]) -> Meant {
+    fn of_near(&self, near: &[(f64, &str)]) -> KeyMeaning {
         let keys: Vec<String> = near.iter().map(|(_, key)| (*key).to_owned()).collect();
         if let [key] = &keys[..] {
-            return Meant::one(key.clone(), None);
+            return KeyMeaning::one(key.clone(), None);
         }
         let descriptions = keys.iter().map(|key| {
             if let Some(direction) = direction(key) {
@@ -160,7 +160,7 @@ impl<'a> KnownKeys<'a> {
             format!("\"{key}\" ({meaning})")
         });
         let hint = format!("either {}", descriptions.collect::<Vec<_>>().join(" or "));
-        Meant {
+        KeyMeaning {
             keys,
             nearest: None,
             hint: Some(hint),

@@ -10,12 +10,12 @@ use super::amounts;
 use super::counts;
 use super::faults::Violations;
 use super::locate::child;
-use super::mistyped;
 use super::numbers;
-use super::slips;
 use super::synonyms;
-use super::unknown::{self, Meant};
+use super::unit_mistakes;
+use super::unknown::{self, KeyMeaning};
 use super::wording::{found, found_text, nearest, quoted, short};
+use super::wrong_kind;
 use crate::error::{Code, Violation};
 
 /// Compares a value with a schema. `own` is the part that the user wrote: a wrong key may mean one that only a preset supplies.
@@ -76,7 +76,7 @@ impl<'a> Walk<'a> {
         let fitting: Vec<&'a Value> = branches.iter().copied().filter(|b| type_fits(value, b)).collect();
         match value {
             Value::String(text) => {
-                let other = || mistyped::hint(pointer, value, schema, branches);
+                let other = || wrong_kind::hint(pointer, value, schema, branches);
                 self.choose_word(text, &fitting, branches, pointer, other)
             }
             // without alternatives, an object is not named by its form, however few keys it has
@@ -88,7 +88,7 @@ impl<'a> Walk<'a> {
                 None => {
                     let fault = Violation::new(Code::Kind, pointer, format!("found {}", found(value)));
                     let fault = fault.allowed(kinds(branches));
-                    let hint = mistyped::hint(pointer, value, schema, branches);
+                    let hint = wrong_kind::hint(pointer, value, schema, branches);
                     self.faults.push(Violation { hint, ..fault });
                     None
                 }
@@ -104,10 +104,10 @@ impl<'a> Walk<'a> {
         pointer: &str,
         other: impl FnOnce() -> Option<String>,
     ) -> Option<&'a Value> {
-        let words: Vec<&str> = fitting.iter().flat_map(|b| words(b)).collect();
+        let words: Vec<&str> = fitting.iter().flat_map(|b| allowed_words(b)).collect();
         if let Some(branch) = fitting
             .iter()
-            .find(|b| words_free(b) || self::words(b).any(|w| w == text))
+            .find(|b| words_free(b) || allowed_words(b).any(|w| w == text))
         {
             return Some(branch);
         }
@@ -166,9 +166,11 @@ impl<'a> Walk<'a> {
         };
         let what = format!("unknown name \"{}\"", short(key));
         let fault = Violation::new(Code::Name, child(pointer, key), what).allowed(allowed);
-        let word = all.iter().flat_map(|b| words(b)).any(|word| word == key);
+        let word = all.iter().flat_map(|b| allowed_words(b)).any(|word| word == key);
         let tags = fitting.iter().filter_map(|b| tag(b));
-        let slip = members.get(key).and_then(|value| slips::unit(key, value, tags.clone()));
+        let slip = members
+            .get(key)
+            .and_then(|value| unit_mistakes::unit(key, value, tags.clone()));
         let (nearest, hint) = match slip {
             _ if word => (None, Some(format!("write \"{key}\" without braces"))),
             Some((meant, hint)) => (Some(meant), Some(hint)),
@@ -221,7 +223,7 @@ impl<'a> Walk<'a> {
             pointer,
         };
         let meant = if full {
-            Meant::default()
+            KeyMeaning::default()
         } else {
             known.meant(key, value)
         };
@@ -302,7 +304,7 @@ fn tag(branch: &Value) -> Option<&str> {
 }
 
 /// The words a branch for texts allows.
-fn words(branch: &Value) -> impl Iterator<Item = &str> {
+fn allowed_words(branch: &Value) -> impl Iterator<Item = &str> {
     let several = branch.get("enum").and_then(Value::as_array).into_iter().flatten();
     several.chain(branch.get("const")).filter_map(Value::as_str)
 }
@@ -331,7 +333,7 @@ fn type_fits(value: &Value, branch: &Value) -> bool {
 
 /// Description of the allowed values.
 fn kinds(branches: &[&Value]) -> String {
-    let words: Vec<&str> = branches.iter().flat_map(|b| self::words(b)).collect();
+    let words: Vec<&str> = branches.iter().flat_map(|b| allowed_words(b)).collect();
     let form = |branch| if branches.len() > 1 { tag(branch) } else { None };
     let tags: Vec<&str> = branches.iter().filter_map(|b| form(b)).collect();
     let mut kinds = vec![];

@@ -23,7 +23,7 @@ pub struct WiringTube<'a> {
     /// Length `l_c` [m].
     pub length_m: f64,
     /// Source of its permeability.
-    pub bore: Bore<'a>,
+    pub bore: PermeabilitySource<'a>,
     /// Radius of its circle, if given [m].
     pub radius_m: Option<f64>,
     /// Losses at its ends and along it, in dynamic pressures of its mean velocity.
@@ -40,7 +40,7 @@ pub struct WiringTube<'a> {
 
 /// Source of the permeability of a tube.
 #[derive(Clone, Copy, Debug)]
-pub enum Bore<'a> {
+pub enum PermeabilitySource<'a> {
     /// The permeability itself, `q1c` [m^4].
     Permeability(f64),
     /// A cross-section.
@@ -49,7 +49,7 @@ pub enum Bore<'a> {
     Radius(f64),
 }
 
-impl Bore<'_> {
+impl PermeabilitySource<'_> {
     /// Bore of a tube without values of its own.
     pub(super) fn usual(tubes: &TubeDefaults) -> Self {
         tubes
@@ -60,7 +60,7 @@ impl Bore<'_> {
 
 /// Quantity that a port prescribes.
 #[derive(Clone, Copy, Debug)]
-pub enum Given<'a> {
+pub enum PortQuantity<'a> {
     /// A pressure [Pa].
     Pressure(&'a Signal),
     /// A flow into the network [m^3/s].
@@ -77,7 +77,7 @@ pub struct WiringPort<'a> {
     /// Name, if given.
     pub name: Option<&'a str>,
     /// Prescribed quantity.
-    pub given: Given<'a>,
+    pub given: PortQuantity<'a>,
 }
 
 /// A resolved network; empty for a case without one, whose bladders are sealed singly.
@@ -108,7 +108,7 @@ impl<'a> Wiring<'a> {
     ///
     /// # Errors
     /// [`Error::Case`](crate::error::Error::Case) with every invalid reference, in the words of the check of the case.
-    pub fn of(case: &'a Case) -> Result<Self> {
+    pub fn from_case(case: &'a Case) -> Result<Self> {
         let mut faults = Violations::default();
         let wiring = check::network::resolve(case, &mut faults).0;
         match faults.is_empty() {

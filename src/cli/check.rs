@@ -9,7 +9,7 @@ use serde_json::json;
 use textwrap::Options;
 
 use super::arguments::CheckArguments;
-use super::size;
+use super::resources;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::model::effects::{Decision, DecisionCause};
@@ -19,8 +19,8 @@ use crate::output::machine;
 use crate::output::numbers::{duration, pretty_unit, significant};
 use crate::output::report::facts;
 use crate::run::drive::comes_to_rest;
-use crate::run::needs::Needs;
-use crate::run::{known, method, slow};
+use crate::run::resource_estimate::ResourceEstimate;
+use crate::run::{early_warnings, method, slow_fluid};
 
 /// Characteristic numbers that only `--verbose` prints: scales from which others are formed.
 const DETAILS: [&str; 21] = [
@@ -52,19 +52,19 @@ const NETWORKS: usize = 3;
 
 /// Prints characteristic numbers, coupling audit, chosen effects and warnings.
 pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
-    let case = &size::load(&asked.case)?;
+    let case = &resources::load(&asked.case)?;
     let system = System::new(case)?;
     let numbers = characteristic::numbers(case, &system.model);
     let findings = audit::coupling(case, &system.model);
-    let mut warnings = known::warnings(case, &system);
+    let mut warnings = early_warnings::warnings(case, &system);
     // a motion that never ends has no state of rest that the fluid could lag behind
     if comes_to_rest(&system.model) {
-        warnings.extend(slow::warning(case, &system, case.time.end_s));
+        warnings.extend(slow_fluid::warning(case, &system, case.time.end_s));
     }
     let chosen = method::choose(case, &system);
     let (order, why) = (chosen.order.order, &chosen.order.reason);
-    let needs = Needs::of(case, 0);
-    let disk = size::disk(case, &system, 0).all();
+    let needs = ResourceEstimate::estimate(case, 0);
+    let disk = resources::disk(case, &system, 0).all();
     let free = machine::free(Path::new("."));
     if asked.json {
         let audit: Vec<_> = findings
@@ -90,7 +90,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
                 "memory_bytes": needs.memory, "memory_available_bytes": machine::memory(),
                 "disk_bytes": disk, "disk_free_bytes": free, "set_up_s": needs.set_up_s,
             },
-            "max_order": {"value": order, "reason": why}, "origins": case.origins.words(), "warnings": warnings,
+            "max_order": {"value": order, "reason": why}, "origins": case.origins.describe(), "warnings": warnings,
         });
         super::print(&format!("{all:#}\n"))?;
         return Ok(ExitCode::SUCCESS);
@@ -124,7 +124,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         }
     }
     text += "\ncoefficients\n";
-    let mut origins: Vec<[String; 2]> = case.origins.words().into_iter().map(<[String; 2]>::from).collect();
+    let mut origins: Vec<[String; 2]> = case.origins.describe().into_iter().map(<[String; 2]>::from).collect();
     if !asked.verbose {
         let mut by_origin: BTreeMap<String, usize> = BTreeMap::new();
         for [_, origin] in origins {
@@ -163,13 +163,13 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
     let _ = writeln!(
         text,
         "a run needs about {} of memory, {} to set up, {} of disk{}",
-        size::bytes(needs.memory),
+        resources::bytes(needs.memory),
         duration(needs.set_up_s),
-        size::bytes(disk),
+        resources::bytes(disk),
         free.filter(|free| disk > *free)
             .map_or_else(String::new, |free| format!(
                 ", more than the {} of free space here",
-                size::bytes(free)
+                resources::bytes(free)
             ))
     );
     if !warnings.is_empty() {

@@ -14,13 +14,13 @@ use crate::output::columns::{self, aligned};
 use crate::output::folder::{CASE, replace_alike};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::{percent, quantity, significant};
-use crate::output::{comparison, fit, reading, report};
+use crate::output::{comparison as recordings, fit, reading, report};
 use crate::results;
 use crate::study::compare::changes::Change;
 use crate::study::compare::difference::Difference;
 use crate::study::compare::{Comparison, ManyComparison, Recording};
 use crate::study::data::{DataTable, Match};
-use crate::study::fit::beside;
+use crate::study::fit::comparison;
 
 /// Largest number of changes shown of each kind; the rest is counted.
 const CHANGES: usize = 8;
@@ -71,7 +71,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
         .iter()
         .map(|dir| recording(dir))
         .collect::<Result<Vec<_>>>()?;
-    let found = ManyComparison::of(&all, reference);
+    let found = ManyComparison::new(&all, reference);
     let written = asked.out.as_ref().map_or(Ok(()), |path| {
         if picture(path) {
             let [one] = found.comparisons.as_slice() else {
@@ -81,7 +81,7 @@ pub fn compare(asked: &CompareArguments) -> Result<ExitCode> {
                 )));
             };
             let other = usize::from(reference == 0);
-            let text = comparison::picture(&all[reference], &all[other], one)
+            let text = recordings::picture(&all[reference], &all[other], one)
                 .ok_or_else(|| Error::Usage("nothing to draw: the two have no quantity in common".into()))?;
             replace_alike(path, &text, &["<svg", "<?xml"])
         } else {
@@ -199,7 +199,7 @@ fn with_data(asked: &CompareArguments) -> Result<ExitCode> {
     let run = recording(folder)?;
     let case = case::load(&folder.join(CASE), &[]).ok();
     let name = data.display().to_string();
-    let found = beside::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;
+    let found = comparison::compare(&run, case.as_ref(), &table, &name, &matches, asked.time.as_deref())?;
     let written = asked.out.as_ref().map_or(Ok(()), |path| {
         let curve = |name: &str| {
             let column = run.column(name).into_iter();

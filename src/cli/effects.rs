@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use super::arguments::EffectsArguments;
-use super::line::ProgressLine;
-use super::{interrupt, journal, line, size, terminal};
+use super::progress_line::ProgressLine;
+use super::{interrupt, journal, progress_line, resources, terminal};
 use crate::case::schema::Effects;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -20,7 +20,7 @@ use crate::study::evaluations::Evaluations;
 
 /// Runs the models, writes the folder, prints the table and the recommendation, and writes it into the case on request.
 pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
-    let case = size::load(&asked.case)?;
+    let case = resources::load(&asked.case)?;
     System::new(&case)?;
     System::new(&with(&case, Effects::Full))?;
     let plan = TrialPlan {
@@ -31,7 +31,7 @@ pub fn effects(asked: &EffectsArguments) -> Result<ExitCode> {
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("effects", &case, &format!("{plan:?}")))?;
     let flag = asked.result.wall.flag();
-    let progress = ProgressLine::new(asked.result.quiet, line::PLAIN);
+    let progress = ProgressLine::new(asked.result.quiet, progress_line::PLAIN);
     let found = ablate(&case, plan, asked.measure.as_deref(), &evaluations, &|event| {
         show(&progress, event);
     });

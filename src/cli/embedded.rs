@@ -11,7 +11,7 @@ use clap::Parser as _;
 use super::act;
 use super::arguments::{Arguments, uncertain};
 use crate::error::{Error, Result, SolverError};
-use crate::integrate::halt::{self, Halt};
+use crate::integrate::halt::{self, StopRequest};
 
 thread_local! {
     /// The command that this thread executes for another program.
@@ -52,7 +52,7 @@ pub fn answer<I: IntoIterator<Item = OsString>>(words: I, stop: &Arc<AtomicBool>
         answer: EmbeddedAnswer::default(),
     };
     ASKED.replace(Some(asked));
-    let request = Halt::by(stop);
+    let request = StopRequest::by(stop);
     request.listen();
     let done = act(&arguments.command, Instant::now());
     halt::deaf();

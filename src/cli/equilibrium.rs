@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::arguments::EquilibriumArguments;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, line, size, terminal};
+use super::{interrupt, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::error::{Error, Result};
@@ -16,13 +16,13 @@ use crate::output::uncertainty as spread;
 use crate::results::run::Bands;
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::record::Control;
-use crate::run::{known, slow};
+use crate::run::{early_warnings, slow_fluid};
 use crate::study::analysis::AnalysisKind;
 use crate::study::refine::{self, meshes::Meshes};
 
 /// Follows the path, writes the folder, prints the table.
 pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
-    let case = &size::load(&asked.case)?;
+    let case = &resources::load(&asked.case)?;
     let at_s = asked.at.unwrap_or(case.time.end_s);
     let options = options(asked, case, at_s)?;
     let system = equilibrium::system(case, at_s)?;
@@ -49,14 +49,14 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     let mut folder = asked.result.place.claim(case, FolderKind::Equilibrium)?;
     let stop = asked.result.wall.flag();
     let begin = Instant::now();
-    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_equilibrium(case, &options);
     let found = accuracy
         .map(|accuracy| refine::refine(case, accuracy, false, &mut of))
         .transpose()?;
     let case = found.as_ref().map_or(case, |(chosen, _)| chosen);
     let accuracy = found.as_ref().map(|(_, accuracy)| accuracy);
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     let path = equilibrium::follow(case, &options, &mut |state| {
         bar.set_message(options.place(state.stage, &format!("{:.4}", state.share)));
         bar.tick();
@@ -74,10 +74,10 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     } else {
         None
     };
-    let mut warnings = known::at_rest(case, &system);
-    warnings.extend(known::instant(case, asked.at));
+    let mut warnings = early_warnings::at_rest(case, &system);
+    warnings.extend(early_warnings::instant(case, asked.at));
     warnings.extend(inherited::varied(case, asked.sensitivity.iter().map(String::as_str)));
-    warnings.extend(slow::warning(case, &system, at_s));
+    warnings.extend(slow_fluid::warning(case, &system, at_s));
     warnings.extend(path.warnings());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.and_then(refine::warning));
@@ -111,7 +111,7 @@ pub fn equilibrium(asked: &EquilibriumArguments) -> Result<ExitCode> {
     }
     let (text, words) = (
         || files::json(&found),
-        || files::words(&found) + &uncertainty.as_ref().map_or(String::new(), spread::words),
+        || files::describe(&found) + &uncertainty.as_ref().map_or(String::new(), spread::describe),
     );
     if asked.json || !path.states.is_empty() {
         super::print_result(asked.json, folder.dir(), written, text, words)?;

@@ -27,7 +27,7 @@ pub struct ExportArguments {
     /// Result folder of a run; a case with --state-space
     pub dir: PathBuf,
     /// Write the state-space model of small motions of a case, matrices A, B, C and D, to this file: .npz or .json
-    #[arg(long, value_name = "FILE", requires = "input", requires = "output", conflicts_with_all = ["format", "times", "every", "out"], value_parser = super::line::output_path())]
+    #[arg(long, value_name = "FILE", requires = "input", requires = "output", conflicts_with_all = ["format", "times", "every", "out"], value_parser = super::progress_line::output_path())]
     pub state_space: Option<PathBuf>,
     /// Change a value of the case first; repeatable
     #[arg(long = "set", value_name = "POINTER=JSON", requires = "state_space")]
@@ -42,7 +42,7 @@ pub struct ExportArguments {
     #[arg(long, value_name = "NAME", requires = "state_space", value_delimiter = ',')]
     pub output: Vec<String>,
     /// The state about which, as that of `response`
-    #[arg(long, value_name = "SECONDS", requires = "state_space", allow_negative_numbers = true, value_parser = super::line::instant)]
+    #[arg(long, value_name = "SECONDS", requires = "state_space", allow_negative_numbers = true, value_parser = super::progress_line::instant)]
     pub at: Option<f64>,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
     #[arg(
@@ -60,7 +60,7 @@ pub struct ExportArguments {
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub every: u32,
     /// Folder in which csv and vtk are made [default: the result folder]
-    #[arg(short, long, value_name = "DIR", value_parser = super::line::output_path())]
+    #[arg(short, long, value_name = "DIR", value_parser = super::progress_line::output_path())]
     pub out: Option<PathBuf>,
     /// Print what was written as JSON
     #[arg(long)]

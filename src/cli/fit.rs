@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::{FitArguments, FittedThrough};
-use super::{interrupt, journal, line, size, sweep};
+use super::{interrupt, journal, progress_line, resources, sweep};
 use crate::error::{Error, Result};
 use crate::output::fit as files;
 use crate::output::kind::FolderKind;
@@ -12,12 +12,12 @@ use crate::output::report;
 use crate::results;
 use crate::study::data::{DataTable, Match};
 use crate::study::fit::problem::{DrivenNumber, FitProblem, FitRequest};
-use crate::study::fit::{self as study, robust::Loss};
-use crate::study::span::ParameterBounds;
+use crate::study::fit::{self as study, robust::LossFunction};
+use crate::study::search_bounds::ParameterBounds;
 
 /// Reads, fits, writes the folder, prints.
 pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
-    let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
+    let case = resources::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let table = DataTable::read(&asked.data)?;
     let wanted = wanted(asked)?;
     let driven: Vec<String> = wanted.drives.iter().map(|drive| drive.pointer.clone()).collect();
@@ -35,7 +35,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
         }
     );
     journal::begin(&problem.evaluations, &folder, ("fit", &case, &settings))?;
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     let show = |count: usize, squares: f64| {
         bar.set_message(format!(
             "{}, sum of squares {}",
@@ -52,7 +52,7 @@ pub fn fit(asked: &FitArguments) -> Result<ExitCode> {
     let written = files::write(&mut folder, &problem, &found);
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let written = journal::end(&problem.evaluations, &folder, found.fit.interrupted, written);
-    let (text, words) = (|| results::text(&found.fit), || files::words(&found.fit));
+    let (text, words) = (|| results::text(&found.fit), || files::describe(&found.fit));
     super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -88,7 +88,7 @@ fn wanted(asked: &FitArguments) -> Result<FitRequest> {
         time: asked.time.clone(),
         drives,
         noise: asked.noise.iter().map(|text| noise(text)).collect::<Result<_>>()?,
-        loss: asked.robust.map_or(Loss::Squares, Loss::from),
+        loss: asked.robust.map_or(LossFunction::Squares, LossFunction::from),
         starts: asked.starts as usize,
         jobs: sweep::jobs(asked.jobs)?,
     })

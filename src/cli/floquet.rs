@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::FloquetArguments;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, journal, line, size};
+use super::{interrupt, journal, progress_line, resources};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::columns::warnings;
@@ -15,8 +15,8 @@ use crate::output::report;
 use crate::results;
 use crate::results::cycles::CycleResult;
 use crate::results::run::Bands;
+use crate::run::early_warnings;
 use crate::run::floquet;
-use crate::run::known;
 use crate::run::periodic::scene::{self, fault};
 use crate::run::periodic::{PeriodicScene, shoot};
 use crate::study::analysis::AnalysisKind;
@@ -29,7 +29,7 @@ const MOST_POINTS: usize = 100_000;
 
 /// Finds cycle and multipliers, or the map; writes the folder, prints the text.
 pub fn floquet(asked: &FloquetArguments) -> Result<ExitCode> {
-    let case = &size::load(&asked.case)?;
+    let case = &resources::load(&asked.case)?;
     scene::system(case)?;
     match &asked.map.map {
         Some(_) if !asked.uncertain.uncertain.is_empty() => Err(Error::Usage(
@@ -46,7 +46,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     if asked.count == 0 {
         return Err(Error::Usage("--count 0: expected at least 1".into()));
     }
-    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     if (accuracy.is_some() || asked.period.is_some()) && !asked.uncertain.uncertain.is_empty() {
         let what = "--uncertain cannot be combined with --accuracy or --period. After a run with --accuracy, \
                     floquet.json contains its mesh and tolerance";
@@ -69,7 +69,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     let case = refined.as_ref().map_or(case, |(chosen, _)| chosen);
     let scene = PeriodicScene::new(case, asked.period)?.heeding(&stop);
     scene.held(&case.name)?;
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     bar.set_message("searching for the cycle");
     let mut cycle = interrupt::before_a_cycle(shoot(&scene, None).map_err(fault), &stop)?;
     bar.set_message("integrating disturbances over one period");
@@ -82,7 +82,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
     };
     let meshes = accuracy.is_none().then(judge).transpose()?;
     bar.finish_and_clear();
-    let mut warnings = known::without_outputs(case, &scene::system(case)?);
+    let mut warnings = early_warnings::without_outputs(case, &scene::system(case)?);
     warnings.extend(scene.trapped.clone());
     warnings.extend(meshes.as_ref().and_then(Meshes::warning));
     warnings.extend(accuracy.as_ref().and_then(refine::warning));
@@ -108,7 +108,7 @@ fn one(asked: &FloquetArguments, case: &Case) -> Result<ExitCode> {
             &[(FolderKind::Floquet.sign(), &text)],
         ))
         .and(report::complete(&folder, case));
-    let words = || files::words(&found) + &uncertain::below(uncertainty.as_ref());
+    let words = || files::describe(&found) + &uncertain::below(uncertainty.as_ref());
     super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -124,7 +124,7 @@ fn map(asked: &FloquetArguments, case: &Case, parameters: &str) -> Result<ExitCo
     let evaluations = Evaluations::default();
     journal::begin(&evaluations, &folder, ("map", case, &format!("{plan:?}")))?;
     let stop = asked.result.wall.stop();
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     let found = tongue::map(case, &plan, &evaluations, &stop, &|done, count| {
         bar.set_message(format!("{done} of {}", counted(count as u64, "column")));
         bar.tick();
@@ -156,7 +156,7 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
     let (frequency, amplitude) = match &asked.map.range {
         None => ((0.6 * own.0, 1.6 * own.0), (1.5 * own.1 / rows as f64, 1.5 * own.1)),
         Some(text) => both(text)
-            .and_then(|(a, b)| Some((line::range(&a)?, line::range(&b)?)))
+            .and_then(|(a, b)| Some((progress_line::range(&a)?, progress_line::range(&b)?)))
             .filter(|((f, _), (a, _))| *f > 0.0 && *a >= 0.0)
             .ok_or_else(|| {
                 let what = "two ranges, Hz and m, such as 14:24,0:0.05, frequencies > 0, amplitudes >= 0";
@@ -167,8 +167,8 @@ fn plan(asked: &FloquetArguments, own: (f64, f64)) -> Result<MapRange> {
         return Err(Error::Usage(format!("--permeability {wrong}: factors > 0")));
     }
     Ok(MapRange {
-        frequencies_hz: line::spread(frequency.0, frequency.1, columns, false),
-        amplitudes_m: line::spread(amplitude.0, amplitude.1, rows, false),
+        frequencies_hz: progress_line::spread(frequency.0, frequency.1, columns, false),
+        amplitudes_m: progress_line::spread(amplitude.0, amplitude.1, rows, false),
         permeability_factors: asked.map.permeability.clone(),
     })
 }

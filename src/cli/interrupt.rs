@@ -14,7 +14,7 @@ use signal_hook::{flag as raise, low_level};
 
 use super::{embedded, terminal};
 use crate::error::{Error, Result};
-use crate::integrate::halt::Halt;
+use crate::integrate::halt::StopRequest;
 pub use crate::integrate::halt::raised;
 use crate::run::stop::{INTERRUPTED, StopFlag};
 
@@ -43,7 +43,7 @@ const OFTEN: Duration = Duration::from_millis(20);
 struct Asked {
     raised: Arc<AtomicBool>,
     signal: Arc<AtomicUsize>,
-    halt: Halt,
+    halt: StopRequest,
 }
 
 static ASKED: OnceLock<Asked> = OnceLock::new();
@@ -55,7 +55,7 @@ static LATE: AtomicBool = AtomicBool::new(false);
 #[derive(Clone, Debug, Default, Args)]
 pub struct WallArguments {
     /// Stop after so many seconds of wall time as after Ctrl-C, with everything so far written
-    #[arg(long, value_name = "SECONDS", value_parser = super::line::duration)]
+    #[arg(long, value_name = "SECONDS", value_parser = super::progress_line::duration)]
     pub max_wall: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ pub fn flag() -> Arc<AtomicBool> {
     let asked = ASKED.get_or_init(|| {
         let raised = Arc::new(AtomicBool::new(false));
         let asked = Asked {
-            halt: Halt::by(&raised),
+            halt: StopRequest::by(&raised),
             raised,
             ..Asked::default()
         };
@@ -146,7 +146,7 @@ pub fn flag() -> Arc<AtomicBool> {
     Arc::clone(&asked.raised)
 }
 
-fn end_in_time(mut signals: Signals, halt: &Halt) {
+fn end_in_time(mut signals: Signals, halt: &StopRequest) {
     let Some(first) = signals.forever().next() else { return };
     let begin = Instant::now();
     // kernel and shell may both report the closed terminal, at different times
@@ -156,7 +156,7 @@ fn end_in_time(mut signals: Signals, halt: &Halt) {
 }
 
 /// Ends the program with a code if no code answers a request within [`PATIENCE`], or if the request is repeated (`again`).
-fn end_unless_answered(halt: &Halt, mut again: impl FnMut() -> Option<i32>, (why, code): (&str, i32)) {
+fn end_unless_answered(halt: &StopRequest, mut again: impl FnMut() -> Option<i32>, (why, code): (&str, i32)) {
     let mut spent = cpu_time();
     loop {
         thread::sleep(OFTEN);

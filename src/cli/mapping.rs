@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use serde_json::{Value, json};
 
 use super::arguments::{MapTable, MappingArguments};
-use super::size;
+use super::resources;
 use crate::error::numbers::rounded;
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -13,7 +13,7 @@ use crate::model::mapping::network_coordinate;
 
 /// Prints one or both tables as CSV, six significant digits.
 pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
-    let case = size::load(&asked.case)?;
+    let case = resources::load(&asked.case)?;
     let model = Model::new(&case)?;
     let Some(wet) = &model.wet else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));

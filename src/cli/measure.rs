@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::output::columns::table;
 use crate::output::folder::replace_alike;
 use crate::output::numbers::{counted, pretty_unit, significant};
-use crate::output::plot::canvas::Stroke;
+use crate::output::plot::canvas::LineStyle;
 use crate::output::plot::colour::{Colour, PALETTE};
 use crate::output::plot::extent;
 use crate::output::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -46,7 +46,7 @@ pub struct MeasureArguments {
     #[arg(long)]
     pub cubic: bool,
     /// Draw data, fit with its band of 95 % and residuals (SVG)
-    #[arg(long, value_name = "FILE", value_parser = super::line::output_path())]
+    #[arg(long, value_name = "FILE", value_parser = super::progress_line::output_path())]
     pub plot: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]
@@ -232,7 +232,7 @@ fn picture(found: &Measurement) -> Option<String> {
     let mut data = panel(280.0, y.name(), 7, 1.0, ys);
     let line = fit.iter().map(|(x, y, _)| (*x, *y));
     data.series
-        .insert(1, PictureSeries::line(line, Stroke::solid(PALETTE[0], 1.6)));
+        .insert(1, PictureSeries::line(line, LineStyle::solid(PALETTE[0], 1.6)));
     let residuals = panel(130.0, "residual", 4, 0.0, &found.fit.residuals);
     Picture::stacked(found.experiment.name().to_owned(), about, [data, residuals]).svg()
 }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::output::folder::{CASE, ResultFolder, text_of};
 use crate::output::kind::FolderKind;
 use crate::output::report;
-use crate::output::sweep::{self as files, parts, words};
+use crate::output::sweep::{self as files, shards, text};
 use crate::results;
 use crate::results::sweep::SweepPlan;
 
@@ -20,7 +20,7 @@ const INCOMPLETE: u8 = 5;
 
 /// Joins shards, writes the table of the designs found, and names the missing ones.
 pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
-    let all = parts::read(&asked.parts)?;
+    let all = shards::read(&asked.parts)?;
     let Some(first) = all.first() else {
         return Err(Error::Usage("no folders".into()));
     };
@@ -46,7 +46,7 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         }
         None => start(&mut folder, asked, &plan)?,
     }
-    let (survey, damage) = parts::join(&all, &folder, &plan)?;
+    let (survey, damage) = shards::join(&all, &folder, &plan)?;
     for one in damage {
         terminal::print_line(&format!("slcbeam: {one}."));
     }
@@ -61,18 +61,18 @@ pub fn merge(asked: &MergeArguments) -> Result<ExitCode> {
         &dir,
         written,
         || results::text(&summary),
-        || words::words(&summary, &survey).unwrap_or_default(),
+        || text::describe(&summary, &survey).unwrap_or_default(),
     )?;
-    let lost = parts::lost(&all, &plan, &survey, &dir);
+    let lost = shards::lost(&all, &plan, &survey, &dir);
     for one in &lost {
         let what = match (one.shard, &one.dir) {
             (None, _) => "the sweep".into(),
-            (Some(shard), None) => format!("shard {} (no folder given)", shard.words()),
-            (Some(shard), Some(dir)) => format!("shard {} in {}", shard.words(), dir.display()),
+            (Some(shard), None) => format!("shard {} (no folder given)", shard.describe()),
+            (Some(shard), Some(dir)) => format!("shard {} in {}", shard.describe(), dir.display()),
         };
         terminal::print_line(&format!(
             "slcbeam: {what} lacks {}, the first of them {}; to compute them:\n  {}",
-            words::several(one.designs),
+            text::several(one.designs),
             one.first,
             one.command
         ));

@@ -14,7 +14,6 @@ mod fit;
 mod floquet;
 mod interrupt;
 mod journal;
-mod line;
 mod mapping;
 mod measure;
 mod merge;
@@ -23,14 +22,15 @@ mod new;
 mod optimize;
 mod paper;
 mod periodic;
-mod place;
 pub mod progress;
+mod progress_line;
 mod report;
+mod resources;
 mod response;
+mod result_folder;
 mod run;
 mod schema;
 mod sense;
-mod size;
 mod study;
 pub mod summary_box;
 mod sweep;
@@ -195,12 +195,12 @@ fn print_result(
     dir: &Path,
     written: Result<()>,
     text: impl FnOnce() -> String,
-    words: impl FnOnce() -> String,
+    describe: impl FnOnce() -> String,
 ) -> Result<()> {
     let printed = match json {
         true => print(&text()),
-        false if written.is_ok() => print(&format!("{}\nfiles in {}\n", words(), dir.display())),
-        false => print(&format!("{}\n", words())),
+        false if written.is_ok() => print(&format!("{}\nfiles in {}\n", describe(), dir.display())),
+        false => print(&format!("{}\n", describe())),
     };
     written.and(printed)
 }

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::{FloquetArguments, ModesArguments};
 use super::uncertain::{self, Uncertain};
-use super::{line, size, terminal};
+use super::{progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, inherited};
 use crate::discrete::System;
@@ -12,11 +12,11 @@ use crate::error::{Error, Result};
 use crate::output::kind::FolderKind;
 use crate::output::modes::{self as files, Report};
 use crate::output::report;
-use crate::results::modes::About;
+use crate::results::modes::LinearisedState;
 use crate::results::run::Bands;
+use crate::run::early_warnings;
 use crate::run::equilibrium;
-use crate::run::known;
-use crate::run::modes::{self, ModeOptions, Sort, sort};
+use crate::run::modes::{self, ModeFilter, ModeOptions, sort};
 use crate::study::analysis::AnalysisKind;
 use crate::study::refine;
 
@@ -42,8 +42,8 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         });
     }
     let plan = plan(asked)?;
-    let kind = asked.kind.map(Sort::from);
-    let case = size::load(&asked.case)?;
+    let kind = asked.kind.map(ModeFilter::from);
+    let case = resources::load(&asked.case)?;
     let system = System::new(&case)?;
     let own = (asked.at, asked.near, asked.accuracy) == (None, None, None);
     if !(own || asked.uncertain.uncertain.is_empty()) {
@@ -63,7 +63,7 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
     if !asked.result.quiet {
         terminal::print_line(&format!("modes of {}", case.name));
     }
-    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let mut of = |case: &Case| refine::numbers::of_modes(case, asked.at, &plan);
     let refined = accuracy
         .map(|accuracy| refine::refine(&case, accuracy, false, &mut of))
@@ -73,11 +73,11 @@ pub fn modes(asked: &ModesArguments) -> Result<ExitCode> {
         None => (&case, system),
     };
     let (about, state) = match asked.at {
-        Some(at) => (modes::at_equilibrium(case, at)?, About::Equilibrium),
-        None => (modes::linearise(case, 0.0, None)?, About::Start),
+        Some(at) => (modes::at_equilibrium(case, at)?, LinearisedState::Equilibrium),
+        None => (modes::linearise(case, 0.0, None)?, LinearisedState::Start),
     };
-    let mut known = known::at_rest(case, &system);
-    known.extend(known::instant(case, asked.at));
+    let mut known = early_warnings::at_rest(case, &system);
+    known.extend(early_warnings::instant(case, asked.at));
     known.extend(inherited::varied(case, asked.sensitivity.iter().map(String::as_str)));
     if let Some(at) = asked.at {
         known.extend(equilibrium::trapped(case, &equilibrium::EquilibriumOptions::at(at))?);

@@ -19,7 +19,7 @@ pub struct NewArguments {
     /// Kind of the starting case
     pub kind: StarterCase,
     /// The file; the case is named like it [default: <kind>.json]
-    #[arg(value_parser = super::line::output_path())]
+    #[arg(value_parser = super::progress_line::output_path())]
     pub file: Option<PathBuf>,
     /// Which section, of `new section` [default: honeycomb]; the others have one row, which `coefficients` takes and a case does not
     #[arg(long, value_name = "NAME")]

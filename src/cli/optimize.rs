@@ -3,28 +3,28 @@
 use std::process::ExitCode;
 
 use super::arguments::OptimizeArguments;
-use super::{interrupt, journal, line, size, sweep};
+use super::{interrupt, journal, progress_line, resources, sweep};
 use crate::case::Case;
 use crate::error::{Error, Result};
 use crate::output::kind::FolderKind;
 use crate::output::numbers::significant;
 use crate::output::optimum as files;
 use crate::output::report;
-use crate::output::sweep::words::several;
+use crate::output::sweep::text::several;
 use crate::results;
 use crate::study::evaluations::Evaluations;
 use crate::study::optimize as study;
 use crate::study::optimize::Candidate;
 use crate::study::optimize::problem::{FigureLimit, Goal, OptimizationProblem, OptimizationRequest};
 use crate::study::optimize::wiring::{Alternative, choices, combinations, crossings};
-use crate::study::span::ParameterBounds;
+use crate::study::search_bounds::ParameterBounds;
 
 /// Exit code if no design satisfies the limits: that of a computation without the requested result.
 const NOTHING_HOLDS: u8 = 4;
 
 /// Searches, writes the folder, prints.
 pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
-    let case = size::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
+    let case = resources::load_with(&asked.case.case, &asked.case.sets, asked.vary.len())?;
     let wanted = wanted(asked)?;
     let evaluations = Evaluations::default();
     let candidate = |alternative: Alternative| {
@@ -48,7 +48,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     );
     journal::begin(&evaluations, &folder, ("optimize", &case, &settings))?;
     let flag = asked.result.wall.flag();
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     let show = |count: usize, best: Option<f64>| {
         let best = best.map_or("none within the limits yet".into(), |best| {
             format!("best {figure} {}", significant(best, 5))
@@ -65,7 +65,7 @@ pub fn optimize(asked: &OptimizeArguments) -> Result<ExitCode> {
     let written = written.and_then(|()| report::write(folder.dir(), None).map(|_| ()));
     let written = journal::end(&evaluations, &folder, stopped, written);
     let optimum = &found.optimum;
-    let (text, words) = (|| results::text(optimum), || files::words(optimum));
+    let (text, words) = (|| results::text(optimum), || files::describe(optimum));
     super::print_result(asked.json, folder.dir(), written, text, words)?;
     Ok(match optimum.beyond_limits() {
         true => ExitCode::from(NOTHING_HOLDS),
@@ -101,7 +101,7 @@ fn problem(
     if alternative.sets.is_empty() {
         return OptimizationProblem::new(case, wanted);
     }
-    let with = size::load_varied(
+    let with = resources::load_varied(
         &asked.case.case,
         [&asked.case.sets, &alternative.sets],
         asked.vary.len(),

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use super::arguments::PeriodicArguments;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, journal, line, size, terminal};
+use super::{interrupt, journal, progress_line, resources, terminal};
 use crate::case::parameter::Parameter;
 use crate::case::{Case, amounts};
 use crate::error::{Error, Result};
@@ -49,7 +49,7 @@ pub fn periodic(asked: &PeriodicArguments) -> Result<ExitCode> {
 }
 
 fn load(asked: &PeriodicArguments, more: Option<String>) -> Result<Case> {
-    let case = size::load_varied(&asked.case.case, [&asked.case.sets, more.as_slice()], 0)?;
+    let case = resources::load_varied(&asked.case.case, [&asked.case.sets, more.as_slice()], 0)?;
     scene::system(&case)?;
     Ok(case)
 }
@@ -74,9 +74,9 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
     let result = asked.result.place.claim(&case, FolderKind::Cycle)?;
     let out = result.dir().to_path_buf();
     let stop = asked.result.wall.stop();
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     bar.set_message("searching for the cycle");
-    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let asked_for = accuracy
         .map(|accuracy| {
             refine::refine(&case, accuracy, true, &mut |case| {
@@ -158,7 +158,7 @@ fn one(asked: &PeriodicArguments) -> Result<ExitCode> {
         let figures = files::figures(&outcome.summary, document.floquet.period_s, &|name| {
             document.error(name)
         });
-        let (search, words) = (files::search(&document.cycle), stability::words(&document));
+        let (search, words) = (files::search(&document.cycle), stability::describe(&document));
         let slopes = files::slopes(&outcome.summary);
         let spread = uncertain::below(uncertainty.as_ref());
         format!("{words}\n{figures}{slopes}{search}{spread}")
@@ -182,7 +182,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let settings = format!("{:?} {text}", asked.case.sets);
     journal::begin(&evaluations, &folder, ("periodic --sweep", &first, &settings))?;
     let stop = asked.result.wall.stop();
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     let found = along((&pointer, logarithmic), &cases, &evaluations, &stop, &|done| {
         bar.set_message(format!("{done} of {}", counted(cases.len() as u64, "cycle")));
         bar.tick();
@@ -193,7 +193,7 @@ fn sweep(asked: &PeriodicArguments, text: &str) -> Result<ExitCode> {
     let written = files::write(&mut folder, &found).map(|_| ());
     let written = written.and(report::complete(&folder, &first));
     let written = journal::end(&evaluations, &folder, stopped, written);
-    let words = || files::words(&found) + &warnings(&found.warnings);
+    let words = || files::describe(&found) + &warnings(&found.warnings);
     super::print_result(asked.json, folder.dir(), written, || results::text(&found), words)?;
     Ok(ExitCode::from(if found.members.is_empty() { 4 } else { 0 }))
 }
@@ -212,10 +212,14 @@ fn parse(text: &str) -> Result<(String, Vec<f64>, bool)> {
     }
     let (rest, logarithmic) = rest.strip_suffix(":log").map_or((rest, false), |rest| (rest, true));
     let (range, count) = rest.rsplit_once(':').ok_or_else(wrong)?;
-    let (from, to) = line::either_way(range).ok_or_else(wrong)?;
+    let (from, to) = progress_line::either_way(range).ok_or_else(wrong)?;
     let count: usize = count.trim().parse().map_err(|_| wrong())?;
     if !(2..=MOST_VALUES).contains(&count) || (logarithmic && from.min(to) <= 0.0) {
         return Err(wrong());
     }
-    Ok((pointer.into(), line::spread(from, to, count, logarithmic), logarithmic))
+    Ok((
+        pointer.into(),
+        progress_line::spread(from, to, count, logarithmic),
+        logarithmic,
+    ))
 }

@@ -20,7 +20,7 @@ const FULL: u64 = 1000;
 
 /// Shows the progress of a run. Cleared when dropped.
 #[derive(Debug)]
-pub struct Watcher {
+pub struct ProgressDisplay {
     place: Place,
     every: Duration,
     /// Steps until the next reading of the clock.
@@ -39,7 +39,7 @@ enum Place {
     Lines,
 }
 
-impl Watcher {
+impl ProgressDisplay {
     /// Creates a display on stderr, or a silent one if `quiet` is set.
     pub fn new(quiet: bool) -> Self {
         let place = match (quiet, std::io::stderr().is_terminal()) {
@@ -116,7 +116,7 @@ impl Watcher {
     }
 }
 
-impl Drop for Watcher {
+impl Drop for ProgressDisplay {
     fn drop(&mut self) {
         if let Place::Terminal(bar) = &self.place {
             bar.finish_and_clear();
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_step_that_is_not_due_costs_next_to_nothing() {
-        let mut watcher = Watcher::new(false);
+        let mut watcher = ProgressDisplay::new(false);
         watcher.place = Place::Lines;
         watcher.every = Duration::from_secs(3600);
         let start = Instant::now();

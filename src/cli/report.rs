@@ -16,7 +16,7 @@ pub struct ReportArguments {
     #[arg(value_name = "DIR")]
     pub dir: PathBuf,
     /// Write the page here [default: report.html in the folder]
-    #[arg(short, long, value_name = "FILE", value_parser = super::line::output_path())]
+    #[arg(short, long, value_name = "FILE", value_parser = super::progress_line::output_path())]
     pub out: Option<PathBuf>,
     /// Print the page's path and size as JSON
     #[arg(long)]

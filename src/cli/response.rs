@@ -5,14 +5,14 @@ use std::process::ExitCode;
 use clap::Args;
 
 use super::arguments::{CaseArguments, ResultArguments};
-use super::{size, terminal};
+use super::{resources, terminal};
 use crate::error::numbers::{counted, error_percent};
 use crate::error::{Code, Error, Result};
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::response as files;
 use crate::results;
-use crate::results::response::{About, ResponseCurve, ResponsePeak, ResponsePole, ResponseRecord};
+use crate::results::response::{LinearisedState, ResponseCurve, ResponsePeak, ResponsePole, ResponseRecord};
 use crate::study::response::{self, BandResponse, Request, respond};
 
 /// `response`.
@@ -28,16 +28,16 @@ pub struct ResponseArguments {
     #[arg(long, value_name = "NAME", required = true, value_delimiter = ',')]
     pub output: Vec<String>,
     /// First frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = 1.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub from: f64,
     /// Last frequency [Hz]
-    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::line::frequency)]
+    #[arg(long, value_name = "HZ", default_value_t = 200.0, allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub to: f64,
     /// Frequencies at least; more are added beside poles and where the response changes
-    #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 200, value_parser = crate::cli::progress_line::count)]
     pub points: usize,
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Folder, time limit and output.
     #[command(flatten)]
@@ -55,9 +55,9 @@ const MOST: usize = 100_000;
 /// Computes the response, writes the folder, prints the peaks.
 pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
     let request = request(asked)?;
-    let case = size::load(&asked.case)?;
+    let case = resources::load(&asked.case)?;
     // an input or output that does not exist is reported before a folder is created
-    let linear = request.of(&case)?;
+    let linear = request.compute(&case)?;
     let mut folder = asked.result.place.claim(&case, FolderKind::Response)?;
     asked.result.wall.flag();
     if !asked.result.quiet {
@@ -72,7 +72,7 @@ pub fn response(asked: &ResponseArguments) -> Result<ExitCode> {
         folder.dir(),
         written,
         || results::text(&answer),
-        || files::words(&answer),
+        || files::describe(&answer),
     )?;
     Ok(ExitCode::SUCCESS)
 }
@@ -120,8 +120,8 @@ fn answer(case: &str, request: &Request, found: &BandResponse) -> Result<Respons
         case: case.into(),
         input: found.response.input.clone(),
         state: match request.at {
-            Some(_) => About::Equilibrium,
-            None => About::Start,
+            Some(_) => LinearisedState::Equilibrium,
+            None => LinearisedState::Start,
         },
         at_s: about.at,
         unknowns: about.y.len(),

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use super::arguments::SenseArguments;
-use super::{interrupt, line, size};
+use super::{interrupt, progress_line, resources};
 use crate::error::{Error, Result};
 use crate::output::folder::CASE;
 use crate::output::kind::FolderKind;
@@ -12,14 +12,14 @@ use crate::results;
 use crate::study::sense::basis::{Basis, amplitudes};
 use crate::study::sense::choose::Criterion;
 use crate::study::sense::estimate::Smoothing;
-use crate::study::sense::find::{Dynamic, SenseOptions, find};
+use crate::study::sense::estimate_at_rest::{SenseOptions, TimeDependentOptions, find};
 use crate::study::sense::pressures::PressureTable;
-use crate::study::sense::rest::probed;
+use crate::study::sense::pressures_at_rest::probed;
 use crate::study::sweep::plan::quoted;
 
 /// Reads the measurements, estimates the loads, writes the folder, prints the table.
 pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
-    let case = &size::load(&asked.case)?;
+    let case = &resources::load(&asked.case)?;
     let question = question(asked, case.time.end_s)?;
     probed(case)?;
     amplitudes(case, &question.loads)?;
@@ -31,7 +31,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
         return Err(Error::Usage(what.into()));
     }
     let mut folder = asked.result.place.claim(case, FolderKind::Sense)?;
-    let bar = line::line(asked.result.quiet);
+    let bar = progress_line::line(asked.result.quiet);
     bar.set_message("searching for the loads");
     bar.tick();
     let flag = asked.result.wall.flag();
@@ -50,7 +50,7 @@ pub fn sense(asked: &SenseArguments) -> Result<ExitCode> {
         folder.dir(),
         written,
         || results::text(&found),
-        || files::words(&found),
+        || files::describe(&found),
     )?;
     Ok(ExitCode::SUCCESS)
 }
@@ -129,7 +129,7 @@ fn question(asked: &SenseArguments, end_s: f64) -> Result<SenseOptions> {
         noise_pa: asked.noise,
         smoothing,
         at_s,
-        dynamic: asked.dynamic.then(|| Dynamic {
+        dynamic: asked.dynamic.then(|| TimeDependentOptions {
             knots: asked.knots.map(usize::from),
         }),
         choose: by.map(|by| match by {

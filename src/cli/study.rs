@@ -5,8 +5,8 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use super::arguments::StudyArguments;
-use super::line::ProgressLine;
-use super::{interrupt, journal, size, terminal};
+use super::progress_line::ProgressLine;
+use super::{interrupt, journal, resources, terminal};
 use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::integrate::halt;
@@ -21,7 +21,7 @@ use crate::study::evaluations::Evaluations;
 
 /// Runs the settings, writes the folder, prints the table and the sentence.
 pub fn study(asked: &StudyArguments) -> Result<ExitCode> {
-    let case = &size::load(&asked.case)?;
+    let case = &resources::load(&asked.case)?;
     System::new(case)?;
     let plan = StudyPlan {
         rtols: asked.rtol.clone(),

@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::arguments::{CaseArguments, UncertainArguments};
 use super::sweep::progress::Counter;
-use super::{interrupt, journal, size, sweep, terminal};
+use super::{interrupt, journal, resources, sweep, terminal};
 use crate::case::{self, Case, inherited};
 use crate::error::{Error, Result};
 use crate::output::ResultFolder;
@@ -21,7 +21,7 @@ use crate::study::analysis::AnalysisOutcome;
 use crate::study::analysis::{self, AnalysisKind, AnalysisRequest};
 use crate::study::evaluations::Evaluations;
 use crate::study::sweep::designs::pairs;
-use crate::study::sweep::{Vary, pool};
+use crate::study::sweep::{VariedNumber, pool};
 use crate::study::uncertain::{self, FirstOrderSlopes, SamplePlan};
 
 /// Step of a difference, relative to the standard deviation.
@@ -61,7 +61,7 @@ impl Uncertain {
             let what = "--uncertain: the case is read again for every sample; name its file in place of -";
             return Err(Error::Usage(what.into()));
         }
-        let read = |text: &String| Vary::parse_as("--uncertain", text);
+        let read = |text: &String| VariedNumber::parse_as("--uncertain", text);
         let inputs = asked.uncertain.iter().map(read).collect::<Result<Vec<_>>>()?;
         let one = Self {
             plan: SamplePlan::new(inputs, asked.samples, asked.seed, asked.indices)?,
@@ -96,7 +96,7 @@ impl Uncertain {
         let all: Vec<usize> = (0..self.plan.count()).collect();
         let look = |number: usize| {
             let case = self.case(self.plan.sets(number))?;
-            size::fits(&case, 0, self.jobs)?;
+            resources::fits(&case, 0, self.jobs)?;
             self.what.analysis().check(&case)
         };
         let faults = sweep::faults(&all, self.jobs, &self.flag, &look, &mut |_| ())?;
@@ -254,5 +254,5 @@ pub fn bands(found: Option<&Uncertainty>) -> Bands {
 
 /// Text about the uncertainty, below that of a command.
 pub fn below(found: Option<&Uncertainty>) -> String {
-    found.map_or(String::new(), |found| format!("\n{}", files::words(found)))
+    found.map_or(String::new(), |found| format!("\n{}", files::describe(found)))
 }

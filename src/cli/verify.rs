@@ -7,7 +7,7 @@ use std::time::Duration;
 use serde_json::Value;
 
 use super::arguments::VerifyArguments;
-use super::{interrupt, line, terminal};
+use super::{interrupt, progress_line, terminal};
 use crate::error::Result;
 use crate::numerics::threads;
 use crate::output::columns;
@@ -26,7 +26,7 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         Some(name) => verify::choose(verify::rows(), name)?,
         None => verify::rows(),
     };
-    let bar = line::styled("{pos}/{len} {wide_bar} {msg}");
+    let bar = progress_line::styled("{pos}/{len} {wide_bar} {msg}");
     bar.set_length(rows.len() as u64);
     if threads::granted() {
         bar.enable_steady_tick(Duration::from_millis(200));
@@ -36,7 +36,7 @@ pub fn verify(asked: &VerifyArguments) -> Result<ExitCode> {
         .iter()
         .map_while(|row| {
             bar.set_message(row.name.clone());
-            let found = VerifiedRow::of(row, &row.figures());
+            let found = VerifiedRow::new(row, &row.figures());
             bar.inc(1);
             // an interrupted row has no answer
             (!interrupt::raised(&flag)).then_some(found)
@@ -121,7 +121,7 @@ mod tests {
 
     fn row(figures: Result<Vec<ExactFigure>>) -> VerifiedRow {
         let row = verify::SolvedProblem::new("row", ["source", "goal", "reason"], || Ok(vec![]));
-        VerifiedRow::of(&row, &figures)
+        VerifiedRow::new(&row, &figures)
     }
 
     /// Goal: rows that miss their tolerance, fail to run or compute nothing end the command with 4, and the table names them.

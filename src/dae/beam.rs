@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use super::chain::{self, Chain, LANES};
-use super::trace::Dependence;
-use super::{Dae, EvaluationError, Pattern, PerturbedSystems, Seeds, Vectors};
+use super::jacobian::{self, ChainRule, LANES};
+use super::sparsity_tracer::Dependence;
+use super::{Dae, EvaluationError, Pattern, PerturbedSystems, RotatedVectors, Seeds};
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::residual::around::mean_direction;
+use crate::discrete::residual::ambient_fluid::mean_direction;
 use crate::discrete::{CompleteState, System, TimeData, Workspace, ledger, residual};
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::{Signal, SmoothTime};
 use crate::model::Kinematics;
 use crate::numerics::{Dual, Planar, kernels, wide};
 
@@ -21,7 +21,7 @@ pub struct BeamDae {
     /// Time data from before the last switch.
     pub(super) before: TimeData,
     pattern: Pattern,
-    chain: Chain,
+    chain: ChainRule,
     /// Inverse of the characteristic size of each equation.
     per_row: Vec<f64>,
     pub(super) plain: Buffers<f64>,
@@ -79,10 +79,13 @@ impl BeamDae {
     /// Creates the DAE of a system; determines the Jacobian's pattern and its coloring.
     pub fn new(system: System) -> Self {
         let (mut now, before) = (TimeData::new(&system), TimeData::new(&system));
-        now.update(&system, Clock { t: 0.0, within: 0.0 });
+        now.update(&system, SmoothTime { t: 0.0, within: 0.0 });
         let per_row: Vec<f64> = system.layout.row_scales.iter().map(|row| 1.0 / row).collect();
-        let (pattern, chain) = Chain::new(&system, &Dependence::new(&system, &now), &per_row);
-        let (plain, dual) = (Buffers::new(&system, 0), Buffers::new(&system, chain::width(&system)));
+        let (pattern, chain) = ChainRule::new(&system, &Dependence::new(&system, &now), &per_row);
+        let (plain, dual) = (
+            Buffers::new(&system, 0),
+            Buffers::new(&system, jacobian::width(&system)),
+        );
         Self {
             per_row,
             system,
@@ -99,7 +102,7 @@ impl BeamDae {
     }
 
     /// Equations of another system with the same unknowns.
-    pub(super) fn of(&self, system: System) -> Self {
+    pub(super) fn with_system(&self, system: System) -> Self {
         Self {
             plain: Buffers::new(&system, 0),
             now: TimeData::new(&system),
@@ -152,7 +155,7 @@ impl BeamDae {
     /// The system, and its time data at an instant.
     pub fn instant(&mut self, t: f64) -> (&System, &TimeData) {
         self.held = None;
-        self.now.update(&self.system, Clock { t, within: self.within });
+        self.now.update(&self.system, SmoothTime { t, within: self.within });
         (&self.system, &self.now)
     }
 
@@ -161,7 +164,7 @@ impl BeamDae {
         if self.held != Some(t) {
             self.held = None;
         }
-        self.now.update(&self.system, Clock { t, within: self.within });
+        self.now.update(&self.system, SmoothTime { t, within: self.within });
         ledger::ports::settle(&self.system, &self.now, integrals);
     }
 
@@ -200,7 +203,7 @@ impl BeamDae {
 
     fn unscale(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.held = None;
-        self.now.update(&self.system, Clock { t, within: self.within });
+        self.now.update(&self.system, SmoothTime { t, within: self.within });
         let scales = &self.system.layout.scales;
         for (own, given) in [(&mut self.plain.y, y), (&mut self.plain.yp, yp)] {
             kernels::products(given, scales, own);
@@ -234,7 +237,7 @@ impl Dae for BeamDae {
     }
 
     /// Vectors of displacements and, if both are unknowns, of velocities.
-    fn vectors(&self) -> Vec<Vectors> {
+    fn vectors(&self) -> Vec<RotatedVectors> {
         let l = &self.system.layout;
         if self.system.model.kinematics != Kinematics::FiniteRotation {
             return vec![];
@@ -257,7 +260,7 @@ impl Dae for BeamDae {
         }
         let vectors = blocks.into_iter().map(|[x, z]| {
             let (x, z) = (x + both.start - across.start, z + both.start - along.start);
-            Vectors {
+            RotatedVectors {
                 across: x..x + both.len(),
                 along: z..z + both.len(),
                 node: both.start,

@@ -10,7 +10,7 @@ const LITTLE: f64 = 1e-2;
 
 /// Unknowns that are vectors in the plane, one per node; their equations are vectors as well.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Vectors {
+pub struct RotatedVectors {
     /// Indices of their transverse components, in the order of the nodes.
     pub across: Range<usize>,
     /// Indices of their axial components: equally many, higher than those of `across`.
@@ -39,7 +39,7 @@ pub struct Vectors {
 /// stretch frequencies.
 #[derive(Clone, Debug)]
 pub struct Corotation {
-    vectors: Vec<Vectors>,
+    vectors: Vec<RotatedVectors>,
     /// Directions of nodes at which the matrix was computed.
     made: Vec<Planar<f64>>,
     /// Present directions of nodes.
@@ -108,7 +108,7 @@ impl Corotation {
         self.apply(x, |vectors| vectors.size, 1.0);
     }
 
-    fn apply(&self, v: &mut [f64], size: fn(&Vectors) -> f64, sense: f64) {
+    fn apply(&self, v: &mut [f64], size: fn(&RotatedVectors) -> f64, sense: f64) {
         if !self.turned {
             return;
         }

@@ -1,8 +1,8 @@
 //! Switches: the state after a switch, and the work done in zero time.
 
 use super::BeamDae;
-use crate::discrete::{kick, ledger, residual, start};
-use crate::functions::signals::Clock;
+use crate::discrete::{ledger, residual, start, velocity_jump};
+use crate::functions::signals::SmoothTime;
 
 impl BeamDae {
     /// Switches at time `t` [s] to signals in the smooth interval around `within`, and converts the scaled unknowns: position and
@@ -19,7 +19,7 @@ impl BeamDae {
         }
         start::change_frame(system, before, after, y);
         b.take_up(system, after, y);
-        if let Some(jumps) = kick::spread(system, [before, after], &b.workspace) {
+        if let Some(jumps) = velocity_jump::spread(system, [before, after], &b.workspace) {
             start::speed_up(system, &jumps, y);
         }
     }
@@ -27,7 +27,7 @@ impl BeamDae {
     /// Stores the time data at an instant, as given by the smooth interval around another instant [s].
     fn look_back(&mut self, t: f64, within: f64) {
         self.held = None;
-        self.before.update(&self.system, Clock { t, within });
+        self.before.update(&self.system, SmoothTime { t, within });
         self.before.cj = self.now.cj;
     }
 
@@ -69,7 +69,7 @@ impl BeamDae {
         }
         let velocities = [(before, from), (after, to)].map(|(state, side)| {
             b.take_up(system, side, state);
-            kick::velocities(&b.workspace)
+            velocity_jump::velocities(&b.workspace)
         });
         ledger::strokes(system, [from, to], &velocities, &b.workspace, integrals);
     }

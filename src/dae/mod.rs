@@ -1,17 +1,17 @@
 //! Differential-algebraic systems `F(t, y, y') = 0`, and the beam as one of them. Independent of solvers.
 
+mod angle_unwrapping;
 pub mod beam;
-mod between;
-mod chain;
 mod corotation;
+mod jacobian;
 mod jumps;
 pub mod perturbed;
+mod projection;
+pub mod sparsity_tracer;
 pub mod statics;
-pub mod trace;
-mod turns;
 
 pub use beam::BeamDae;
-pub use corotation::{Corotation, Vectors};
+pub use corotation::{Corotation, RotatedVectors};
 pub use perturbed::PerturbedSystems;
 pub use statics::StaticBeam;
 
@@ -84,7 +84,7 @@ pub trait Dae {
     fn approach(&mut self, _cj: f64) {}
 
     /// Unknowns that rotate with the beam; none if there is no rotation, or if forces would not rotate with it.
-    fn vectors(&self) -> Vec<Vectors> {
+    fn vectors(&self) -> Vec<RotatedVectors> {
         vec![]
     }
 

@@ -19,7 +19,7 @@ impl PerturbedSystems {
     /// Creates the perturbed equations of `of`. The systems have a changed parameter, but the same unknowns and scales.
     pub fn new(of: &BeamDae, systems: [System; 4]) -> Self {
         Self {
-            beams: Box::new(systems.map(|system| of.of(system))),
+            beams: Box::new(systems.map(|system| of.with_system(system))),
             out: vec![],
         }
     }

@@ -83,15 +83,15 @@ impl StaticBeam {
     /// of that state. Ports of prescribed volume add the volume injected from there on, ports of prescribed flow add `pumped` [m^3], for
     /// every source at t = 0 and at t = 1.
     pub fn from_state(system: System, state: &[f64], pumped: &[[f64; 2]]) -> Self {
-        Self::of(system, state, pumped, true)
+        Self::from_system(system, state, pumped, true)
     }
 
     /// Equilibria of loads applied from zero: volumes grow with t to those of `start`; the pumped volume is complete at t = 1.
     pub fn from_nothing(system: System, start: &[f64], pumped: &[[f64; 2]]) -> Self {
-        Self::of(system, start, pumped, false)
+        Self::from_system(system, start, pumped, false)
     }
 
-    fn of(system: System, start: &[f64], pumped: &[[f64; 2]], kept: bool) -> Self {
+    fn from_system(system: System, start: &[f64], pumped: &[[f64; 2]], kept: bool) -> Self {
         let mut beam = BeamDae::new(system);
         beam.find_turns(0.0, start, &vec![0.0; start.len()]);
         let mut closed = closed(&mut beam, start);

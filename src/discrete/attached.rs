@@ -1,7 +1,7 @@
 //! Attachments of the beam, on a mesh.
 
+use super::angle_unwrapping::nearest;
 use super::residual::momentum;
-use super::turns::nearest;
 use super::{BeamMesh, System, TimeData, Workspace};
 use crate::model::{AttachedBody, Kinematics, Section};
 use crate::numerics::{Planar, Scalar};
@@ -31,7 +31,7 @@ use crate::numerics::{Planar, Scalar};
 /// 1/K = 1/k + h s (1 - s)/EI      at the ends   φ̄ = φ_c,  1/K = 1/k + (h/2 - d)/EI, d the distance to the end
 /// ```
 #[derive(Clone, Debug)]
-pub struct Attached {
+pub struct MeshedAttachment {
     /// Number of the attachment in the model.
     pub number: usize,
     /// Node before the attachment.
@@ -50,7 +50,7 @@ pub struct Attached {
     turning_stiffness: f64,
 }
 
-impl Attached {
+impl MeshedAttachment {
     /// Attachments of a model, ordered by place, and the masses of the nodes [kg], from the beam lengths [m] of the nodes and from the
     /// attachments.
     pub fn all(
@@ -175,7 +175,7 @@ pub(super) fn share(place: f64, cells: usize) -> (usize, [f64; 2]) {
 
 /// Attachments next to a node, with the node's weight.
 #[inline]
-pub fn at_node(attached: &[Attached], node: usize) -> impl Iterator<Item = (&Attached, f64)> {
+pub fn at_node(attached: &[MeshedAttachment], node: usize) -> impl Iterator<Item = (&MeshedAttachment, f64)> {
     let first = attached.partition_point(|a| a.node + 1 < node);
     let near = attached[first..].iter().take_while(move |a| a.node <= node);
     near.map(move |a| (a, a.weights[node - a.node]))

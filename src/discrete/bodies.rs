@@ -34,7 +34,7 @@ use crate::numerics::{Planar, Scalar};
 ///
 /// These are Lagrange's equations of the energies for any q: the energy balance is exact in all kinematics.
 #[derive(Clone, Debug)]
-pub struct Body {
+pub struct MeshedBody {
     /// Number of the attachment in the model.
     pub number: usize,
     /// Node before the body.
@@ -68,7 +68,7 @@ struct Motion {
     turning: f64,
 }
 
-impl Body {
+impl MeshedBody {
     /// Rotating bodies of a model.
     pub fn all(
         attachments: &[AttachedBody],

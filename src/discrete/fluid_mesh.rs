@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::let_in::{self, InjectedShare};
+use super::injected_volume::{self, InjectedShare};
 use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
 use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, Link, LinkKind, NetworkNode};
@@ -302,7 +302,7 @@ impl FluidMesh {
             area_at_start: vec![0.0; bladders * cells_per_bladder],
             shares: vec![],
         };
-        mesh.shares = let_in::shares(&mesh, wet);
+        mesh.shares = injected_volume::shares(&mesh, wet);
         mesh
     }
 

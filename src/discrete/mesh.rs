@@ -15,7 +15,7 @@ pub struct BeamMesh {
     pub h: f64,
     /// Length of a segment `l_seg` [m].
     pub segment_length: f64,
-    /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth`].
+    /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth_order`].
     pub fourth: bool,
 }
 

@@ -1,15 +1,18 @@
 //! Discretization in space: the mesh, the unknowns, the semi-discrete equations in the paper's order, and their exact
 //! balances.
 
+pub mod angle_unwrapping;
 pub mod attached;
 pub mod bodies;
+pub mod contact_points;
 pub mod crossing;
+pub mod euler_bernoulli_modes;
+pub mod extrema;
 pub mod fluid_mesh;
-pub mod glance;
-pub mod kick;
+pub mod initial_angles;
+pub mod injected_volume;
 pub mod layout;
 pub mod ledger;
-pub mod let_in;
 pub mod mesh;
 pub mod quantities;
 pub mod readings;
@@ -19,12 +22,9 @@ pub mod shapes;
 pub mod sorted_links;
 pub mod start;
 pub mod statics;
-pub mod straight;
 pub mod time_data;
-pub mod touching;
-pub mod turning;
-pub mod turns;
 pub mod valve_tangents;
+pub mod velocity_jump;
 pub mod waves;
 pub mod workspace;
 
@@ -34,15 +34,15 @@ use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
 
-pub use attached::Attached;
-pub use bodies::Body;
+pub use attached::MeshedAttachment;
+pub use bodies::MeshedBody;
+pub use contact_points::ContactPoint;
 pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::BeamMesh;
 pub use quantities::MeshProbe;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
-pub use touching::Touching;
 pub use valve_tangents::ValveTangents;
 pub use workspace::{CompleteState, Workspace};
 
@@ -60,11 +60,11 @@ pub struct System {
     /// Distributed loads, sampled.
     pub loads: Vec<SampledLoad>,
     /// Attachments of the beam, ordered by place.
-    pub attached: Vec<Attached>,
+    pub attached: Vec<MeshedAttachment>,
     /// Attached bodies with rotary inertia.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<MeshedBody>,
     /// Contact points of the beam, ordered by place.
-    pub touching: Vec<Touching>,
+    pub touching: Vec<ContactPoint>,
     /// Recorded places.
     pub probes: Vec<MeshProbe>,
     /// Masses of the nodes [kg].
@@ -169,7 +169,7 @@ impl System {
         faults.extend(self.model.effects.refusals.iter().cloned());
         faults.extend(self.fed_junction());
         faults.extend(self.unheld_start(case));
-        faults.extend(residual::fourth::refusal(&self.model, &self.mesh));
+        faults.extend(residual::fourth_order::refusal(&self.model, &self.mesh));
         match faults.is_empty() {
             true => Ok(self),
             false => Err(case.source.fault(faults)),
@@ -209,7 +209,7 @@ impl System {
 
     /// `start` returns the model at the start of the case; it is called only if part of the start is kept.
     fn starting(case: &Case, model: Model, start: impl FnOnce(&Model) -> Result<Model>) -> Result<Self> {
-        let mut system = Self::of(case, model);
+        let mut system = Self::from_model(case, model);
         if let (Some(wet), Some(fluid)) = (&system.model.wet, &mut system.fluid)
             && wet.storage.iter().any(|s| *s != Storage::Flowing)
         {
@@ -225,10 +225,10 @@ impl System {
             wet.storage.fill(Storage::Flowing);
             wet.lumped.clear();
         }
-        start::areas(&Self::of(case, model), case)
+        start::areas(&Self::from_model(case, model), case)
     }
 
-    fn of(case: &Case, model: Model) -> Self {
+    fn from_model(case: &Case, model: Model) -> Self {
         let mesh =
             BeamMesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order());
         let fluid = model
@@ -242,9 +242,9 @@ impl System {
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
         let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
         mesh.lump(&mut lengths);
-        let (attached, masses) = Attached::all(&model.attachments, &model.section, &mesh, &lengths);
-        let bodies = Body::all(&model.attachments, &model.ends, model.kinematics, &mesh);
-        let touching = Touching::all(&model.contacts, &mesh);
+        let (attached, masses) = MeshedAttachment::all(&model.attachments, &model.section, &mesh, &lengths);
+        let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
+        let touching = ContactPoint::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         let nothing_attached = attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::residual::bending::pressure_curvature;
-use super::residual::fourth;
+use super::residual::fourth_order;
 use super::residual::solid::node_stretch;
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
@@ -129,7 +129,7 @@ fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
     let last = normal.len() - 1;
     if system.model.effects.has(Effect::AxialStretch) {
         for (c, normal) in normal.iter_mut().enumerate() {
-            *normal = system.model.section.axial_stiffness * fourth::elastic_stretch(system, w, c);
+            *normal = system.model.section.axial_stiffness * fourth_order::elastic_stretch(system, w, c);
         }
         if system.model.kinematics == Kinematics::FiniteRotation && w.shape.sections.angle.is_empty() {
             let (n, tangent) = (&w.forces.section, &w.shape.tangent);

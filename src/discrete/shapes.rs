@@ -17,7 +17,7 @@ pub fn at_nodes(profile: &Profile, cells: usize) -> Vec<f64> {
 
 /// Mean of every cell.
 pub fn in_cells(profile: &Profile, cells: usize) -> Vec<f64> {
-    let integrals = Integrals::of(profile);
+    let integrals = Integrals::new(profile);
     (0..cells)
         .map(|c| within(c, cells))
         .map(|(a, b)| integrals.mean(a, b))
@@ -109,7 +109,7 @@ fn nearest_lines(means: &[f64]) -> Vec<f64> {
 
 /// Smallest and largest value in the cells beside each node, at the sampled places.
 fn ranges(profile: &Profile, cells: usize) -> Vec<(f64, f64)> {
-    let integrals = Integrals::of(profile);
+    let integrals = Integrals::new(profile);
     let of_cells: Vec<(f64, f64)> = (0..cells)
         .map(|c| {
             let (a, b) = within(c, cells);
@@ -144,7 +144,7 @@ pub fn within(cell: usize, cells: usize) -> (f64, f64) {
 
 /// `∫ f hat_i dx` over [0, 1].
 fn against_hats(profile: &Profile, cells: usize) -> Vec<f64> {
-    let integrals = Integrals::of(profile);
+    let integrals = Integrals::new(profile);
     let mut values = vec![0.0; cells + 1];
     for c in 0..cells {
         let (a, b) = within(c, cells);

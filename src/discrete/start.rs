@@ -1,10 +1,10 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
-use super::{System, TimeData, Workspace, residual, shapes, turning};
+use super::{System, TimeData, Workspace, initial_angles, residual, shapes};
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_index;
 use crate::functions::profile::Profile;
-use crate::functions::signals::Clock;
+use crate::functions::signals::SmoothTime;
 use crate::model::ROWS;
 use crate::numerics::Planar;
 
@@ -36,14 +36,14 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
         }
     }
     let mut w = Workspace::new(system);
-    turning::across(system, now, &mut y, &mut w);
+    initial_angles::across(system, now, &mut y, &mut w);
     if !system.model.relaxation.is_empty() {
         residual::evaluate(system, now, &y, &vec![0.0; l.len], &mut w);
         residual::relaxation::settle(system, now, &w, &mut y);
     }
     fill_bladders(system, case, now, &mut y, &mut w);
     if !l.turning.angle.is_empty() {
-        turning::balance(system, now, &mut y, &mut w);
+        initial_angles::balance(system, now, &mut y, &mut w);
         residual::relaxation::settle(system, now, &w, &mut y);
         fill_bladders(system, case, now, &mut y, &mut w);
     }
@@ -78,7 +78,7 @@ const SMOOTH: f64 = 0.1;
 /// Area change of every cell at the start [m^2], for a system in which all of them are unknowns.
 pub fn areas(system: &System, case: &Case) -> Vec<f64> {
     let mut now = TimeData::new(system);
-    now.update(system, Clock { t: 0.0, within: 0.0 });
+    now.update(system, SmoothTime { t: 0.0, within: 0.0 });
     let (l, y) = (&system.layout, state(system, case, &now));
     l.network.area.clone().map(|k| y[k] * l.scales[k]).collect()
 }

@@ -4,7 +4,7 @@ use super::System;
 use super::time_data::Frame;
 use crate::case::Translation;
 use crate::case::schema::Effect;
-use crate::functions::signals::{Clock, Jet};
+use crate::functions::signals::{Jet, SmoothTime};
 use crate::model::loads::LoadKind;
 
 /// `[E28]` Without axial stretch (EA → ∞) a beam with one held and one free end has the axial motion
@@ -54,7 +54,7 @@ impl Statics {
     }
 
     /// Evaluates the forces at `clock`, with the motion of the held end.
-    pub fn update(&mut self, system: &System, frame: Option<Frame>, clock: Clock) {
+    pub fn update(&mut self, system: &System, frame: Option<Frame>, clock: SmoothTime) {
         if system.model.effects.has(Effect::AxialStretch) {
             return;
         }
@@ -82,7 +82,7 @@ impl Statics {
     }
 
     /// Computes the forces on nodes: loads, drag, ends, and inertia of the prescribed motion.
-    fn load(&mut self, system: &System, held: Jet, clock: Clock) {
+    fn load(&mut self, system: &System, held: Jet, clock: SmoothTime) {
         let (section, mesh) = (&system.model.section, &system.mesh);
         for (i, node) in self.nodes.iter_mut().enumerate() {
             let mass = if system.layout.inertia { system.masses[i] } else { 0.0 };

@@ -1,12 +1,12 @@
 //! Data that depend only on time, evaluated once per instant.
 
-use super::turns::Turns;
+use super::angle_unwrapping::AngleUnwrapping;
 use super::{Statics, System, ValveTangents, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Profile;
-use crate::functions::signals::{Clock, Jet, Signal};
+use crate::functions::signals::{Jet, Signal, SmoothTime};
 use crate::model::DistributedLoad;
-use crate::model::attachments::Acting;
+use crate::model::attachments::ForceDirection;
 use crate::model::loads::LoadKind;
 use crate::model::network::Feed;
 use crate::numerics::Planar;
@@ -144,11 +144,11 @@ impl Frame {
 /// Values at one instant.
 #[derive(Clone, Debug)]
 pub struct TimeData {
-    clock: Option<Clock>,
+    clock: Option<SmoothTime>,
     /// `c_j` of the attempted implicit step, [`crate::dae::Dae::approach`]; 0 before the first [1/s].
     pub cj: f64,
     /// Unwrapped angles of the last state.
-    pub turns: Turns,
+    pub turns: AngleUnwrapping,
     /// Tangents of valves, for derivatives.
     pub tangents: ValveTangents,
     /// Root and tip.
@@ -195,7 +195,7 @@ impl TimeData {
         Self {
             clock: None,
             cj: 0.0,
-            turns: Turns::default(),
+            turns: AngleUnwrapping::default(),
             tangents: ValveTangents::default(),
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
@@ -275,7 +275,7 @@ impl TimeData {
     }
 
     /// Evaluates every signal at `clock`, unless the data already belong to it.
-    pub fn update(&mut self, system: &System, clock: Clock) {
+    pub fn update(&mut self, system: &System, clock: SmoothTime) {
         if self.clock == Some(clock) {
             return;
         }
@@ -309,7 +309,7 @@ impl TimeData {
         self.network(system, clock, first);
     }
 
-    fn loads(&mut self, system: &System, clock: Clock) {
+    fn loads(&mut self, system: &System, clock: SmoothTime) {
         if system.loads.is_empty() {
             return;
         }
@@ -338,24 +338,24 @@ impl TimeData {
         }
     }
 
-    fn point_forces(&mut self, system: &System, clock: Clock) {
+    fn point_forces(&mut self, system: &System, clock: SmoothTime) {
         self.point_force.fill(PointForces::default());
         for (total, attachment) in self.point_force.iter_mut().zip(&system.model.attachments) {
             for given in &attachment.forces {
                 let size = given.factor * given.signal.jet(clock).value;
                 match given.acting {
-                    Acting::Dead => total.dead[given.axis] += size,
-                    Acting::Weight => {
+                    ForceDirection::Dead => total.dead[given.axis] += size,
+                    ForceDirection::Weight => {
                         total.dead[given.axis] += size;
                         total.weight[given.axis] += size;
                     }
-                    Acting::Follower => total.follower[given.axis] += size,
+                    ForceDirection::Follower => total.follower[given.axis] += size,
                 }
             }
         }
     }
 
-    fn network(&mut self, system: &System, clock: Clock, first: bool) {
+    fn network(&mut self, system: &System, clock: SmoothTime, first: bool) {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return;
         };

@@ -2,7 +2,7 @@
 
 use super::System;
 use super::readings::FourthOrderReadings;
-use super::residual::fourth;
+use super::residual::fourth_order;
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar};
 
@@ -280,7 +280,7 @@ impl<T: Scalar> Workspace<T> {
         let s = system.fluid.as_ref().map_or(0, |_| system.mesh.segments);
         let relaxation = &system.layout.relaxation;
         let sheared = system.layout.turning.angle.len();
-        let bent = fourth::bends_its_cells(system);
+        let bent = fourth_order::bends_its_cells(system);
         let finite = system.model.kinematics == Kinematics::FiniteRotation;
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));

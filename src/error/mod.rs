@@ -92,14 +92,14 @@ pub struct CaseError {
 
 /// Point at which a computation stopped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum At {
+pub enum StopPoint {
     /// A simulated time [s].
     Time(f64),
     /// A load factor: the share of the loads of an equilibrium.
     LoadFactor(f64),
 }
 
-impl At {
+impl StopPoint {
     /// Simulated time [s]; `None` for a load factor.
     pub fn time_s(self) -> Option<f64> {
         match self {
@@ -115,7 +115,7 @@ pub struct SolverError {
     /// Code of the error.
     pub code: Code,
     /// Last point with results.
-    pub at: At,
+    pub at: StopPoint,
     /// Description of the failure.
     pub what: String,
     /// Name and place of the worst unknown, if known.

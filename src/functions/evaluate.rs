@@ -3,14 +3,14 @@
 use std::f64::consts::TAU;
 
 use super::curve::Interpolation;
-use super::signals::{Clock, Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
+use super::signals::{Jet, Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, SmoothTime, Table};
 
 /// Largest number of switching times of a repeated table; case checks reject more.
 pub const MOST_KNOTS: usize = 1_000_000;
 
 impl Signal {
     /// Value with its first three derivatives; does not allocate.
-    pub fn jet(&self, clock: Clock) -> Jet {
+    pub fn jet(&self, clock: SmoothTime) -> Jet {
         match self {
             Self::Constant(value) => Jet::constant(*value),
             Self::Sine(sine) => sine.jet(clock.t),
@@ -27,7 +27,7 @@ impl Signal {
 
     /// Value at an instant that is not a switching time.
     pub fn value(&self, t: f64) -> f64 {
-        self.jet(Clock { t, within: t }).value
+        self.jet(SmoothTime { t, within: t }).value
     }
 
     /// Appends the times [s] at which the signal or one of its first three derivatives jumps; those of repeated tables
@@ -77,7 +77,7 @@ impl Signal {
         self.smooth_intervals(end).into_iter().filter_map(move |(start, stop)| {
             let at = |t: f64| {
                 let within = 0.5 * (start + stop);
-                self.jet(Clock { t, within }).value
+                self.jet(SmoothTime { t, within }).value
             };
             let first = at(start);
             let before = last.replace(at(stop))?;
@@ -187,7 +187,7 @@ impl Sigmoid {
 }
 
 impl Ramp {
-    pub(super) fn jet(&self, clock: Clock) -> Jet {
+    pub(super) fn jet(&self, clock: SmoothTime) -> Jet {
         if clock.within <= self.start_s && (self.duration_s > 0.0 || clock.within < self.start_s) {
             return Jet::constant(self.from);
         }
@@ -209,7 +209,7 @@ impl Ramp {
 
 impl Table {
     /// Value and derivatives in the period that contains the clock's time.
-    fn jet(&self, clock: Clock) -> Jet {
+    fn jet(&self, clock: SmoothTime) -> Jet {
         let (Some(period), Some([first, last])) = (self.period_s(), self.curve.ends()) else {
             return self.curve.jet(clock.t, clock.within, self.interpolation);
         };

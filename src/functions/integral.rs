@@ -1,6 +1,6 @@
 //! Integral of a function of time.
 
-use super::signals::{Clock, Signal};
+use super::signals::{Signal, SmoothTime};
 use crate::numerics::gauss::Gauss;
 
 /// Gauss points per piece.
@@ -25,7 +25,7 @@ impl Signal {
             let begins = (0..count as usize).map(|k| from + width * k as f64);
             let values = begins.flat_map(|begin| {
                 let points = rule.on(begin, begin + width);
-                points.map(|(t, weight)| weight * self.jet(Clock { t, within }).value)
+                points.map(|(t, weight)| weight * self.jet(SmoothTime { t, within }).value)
             });
             values.sum()
         };

@@ -79,7 +79,7 @@ impl std::ops::Mul for Jet {
 /// Signals with kinks or jumps choose their branch by `within`, an instant between two switching times, and evaluate
 /// this branch at `t`. In one interval, including both ends, the model is thus smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clock {
+pub struct SmoothTime {
     /// Time [s].
     pub t: f64,
     /// An instant strictly inside the current smooth interval [s].

@@ -22,4 +22,4 @@ pub mod signals;
 pub use curve::{Interpolation, PiecewiseCurve};
 pub use evaluate::MOST_KNOTS;
 pub use profile::Profile;
-pub use signals::{Clock, Jet, Ramp, RampShape, Signal};
+pub use signals::{Jet, Ramp, RampShape, Signal, SmoothTime};

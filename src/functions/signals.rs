@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::curve::{Interpolation, PiecewiseCurve};
-pub use super::jet::{Clock, Jet};
+pub use super::jet::{Jet, SmoothTime};
 use super::number_or_object::number_or_object;
 
 /// A function of time: a number for a constant, else one named form.

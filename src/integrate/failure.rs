@@ -6,7 +6,7 @@ use crate::dae::Dae;
 
 /// Unknown with the largest error relative to its tolerance.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Worst {
+pub struct WorstUnknown {
     /// Index of the unknown.
     pub unknown: usize,
     /// Name of the unknown, for messages.
@@ -33,7 +33,7 @@ pub struct IntegrationError {
     /// Order of that step.
     pub order: u8,
     /// Unknown with the largest error, if a step has been attempted.
-    pub worst: Option<Worst>,
+    pub worst: Option<WorstUnknown>,
     /// Last recoverable error of the equations since the last accepted step, if any.
     pub recoverable: Option<String>,
     /// Name of the unknown whose column had no pivot, if the last matrix was singular.

@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 pub const INTERRUPTED: &str = "interrupted";
 
 thread_local! {
-    static HEARD: RefCell<Heard> = const { RefCell::new(Heard(None)) };
+    static HEARD: RefCell<ObservedStop> = const { RefCell::new(ObservedStop(None)) };
 }
 
 /// A stop request: its source, and whether it has stopped any work.
 #[derive(Clone, Debug, Default)]
-pub struct Halt {
+pub struct StopRequest {
     raised: Arc<AtomicBool>,
     seen: Arc<AtomicBool>,
     answered: Arc<AtomicBool>,
@@ -26,9 +26,9 @@ pub struct Halt {
 
 /// Stop request that a thread observes, to be passed to the threads it starts.
 #[derive(Clone, Debug, Default)]
-pub struct Heard(Option<Halt>);
+pub struct ObservedStop(Option<StopRequest>);
 
-impl Halt {
+impl StopRequest {
     /// Creates a request that is raised by this flag.
     pub fn by(raised: &Arc<AtomicBool>) -> Self {
         Self {
@@ -56,11 +56,11 @@ impl Halt {
 
     /// Makes this thread observe the request from now on.
     pub fn listen(&self) {
-        HEARD.replace(Heard(Some(self.clone())));
+        HEARD.replace(ObservedStop(Some(self.clone())));
     }
 }
 
-impl Heard {
+impl ObservedStop {
     /// Runs `work` as part of the work of the observing thread; it observes the same request.
     pub fn during<T>(&self, work: impl FnOnce() -> T) -> T {
         let mut heard = self.clone();
@@ -75,8 +75,8 @@ impl Heard {
 }
 
 /// Returns the request that this thread observes.
-pub fn heard() -> Heard {
-    HEARD.with_borrow(Heard::clone)
+pub fn heard() -> ObservedStop {
+    HEARD.with_borrow(ObservedStop::clone)
 }
 
 /// Stops observing requests in this thread.

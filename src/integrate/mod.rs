@@ -19,7 +19,7 @@ pub mod tolerances;
 
 pub use counters::{Counters, SolverWallTimes};
 pub(crate) use failure::not_finite;
-pub use failure::{IntegrationError, Worst};
+pub use failure::{IntegrationError, WorstUnknown};
 pub use sensitivity_start::consistent_sensitivities;
 pub use start::{ConsistentStart, StartError, StartOptions, Starter, consistent_start};
-pub use tolerances::Absolute;
+pub use tolerances::AbsoluteTolerances;

@@ -2,14 +2,14 @@
 
 /// Absolute tolerances, in the unit of the unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Absolute {
+pub enum AbsoluteTolerances {
     /// One value for all unknowns.
     Same(f64),
     /// One value for each unknown.
     Each(Vec<f64>),
 }
 
-impl Absolute {
+impl AbsoluteTolerances {
     /// Checks the tolerances for `n` unknowns; the error names the first invalid one.
     pub fn check(&self, relative: f64, n: usize) -> Result<(), String> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
@@ -17,16 +17,16 @@ impl Absolute {
             return Err(format!("the relative tolerance must be positive, it is {}", relative));
         }
         match self {
-            Absolute::Same(value) if !positive(*value) => {
+            AbsoluteTolerances::Same(value) if !positive(*value) => {
                 return Err(format!("the absolute tolerance must be positive, it is {value}"));
             }
-            Absolute::Each(values) if values.len() != n => {
+            AbsoluteTolerances::Each(values) if values.len() != n => {
                 return Err(format!(
                     "{} absolute tolerances were given for {n} unknowns",
                     values.len()
                 ));
             }
-            Absolute::Each(values) => {
+            AbsoluteTolerances::Each(values) => {
                 if let Some(i) = values.iter().position(|&value| !positive(value)) {
                     return Err(format!(
                         "the absolute tolerance of unknown {i} must be positive, it is {}",
@@ -34,7 +34,7 @@ impl Absolute {
                     ));
                 }
             }
-            Absolute::Same(_) => {}
+            AbsoluteTolerances::Same(_) => {}
         }
         Ok(())
     }

@@ -29,7 +29,7 @@ pub struct AttachedBody {
 
 /// Direction of a point force relative to the beam.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Acting {
+pub enum ForceDirection {
     /// Constant, along x (0) or z (1).
     Dead,
     /// Constant, along x (0) or z (1), applied at the mass center.
@@ -44,7 +44,7 @@ pub struct PointForce {
     /// 0 across, 1 along.
     pub axis: usize,
     /// Direction and point of application.
-    pub acting: Acting,
+    pub acting: ForceDirection,
     /// 1 for a given force, `M b` for a body force on the point mass [kg].
     pub factor: f64,
     /// Time function.
@@ -59,7 +59,7 @@ impl AttachedBody {
 
     /// True if a force turns with the beam.
     pub fn follows(&self) -> bool {
-        self.forces.iter().any(|force| force.acting == Acting::Follower)
+        self.forces.iter().any(|force| force.acting == ForceDirection::Follower)
     }
 
     /// Returns all attachments of a case.
@@ -72,10 +72,10 @@ impl AttachedBody {
 
     fn new(case: &Case, written: &Written) -> Self {
         let given = [
-            (Acting::Dead, 0, &written.force_x_n),
-            (Acting::Dead, 1, &written.force_z_n),
-            (Acting::Follower, 0, &written.force_normal_n),
-            (Acting::Follower, 1, &written.force_tangential_n),
+            (ForceDirection::Dead, 0, &written.force_x_n),
+            (ForceDirection::Dead, 1, &written.force_z_n),
+            (ForceDirection::Follower, 0, &written.force_normal_n),
+            (ForceDirection::Follower, 1, &written.force_tangential_n),
         ];
         let given = given.into_iter().filter_map(|(acting, axis, signal)| {
             Some(PointForce {
@@ -92,7 +92,7 @@ impl AttachedBody {
             .flat_map(|load| DistributedLoad::on(load, [written.mass_kg; 2]))
             .map(|load| PointForce {
                 axis: usize::from(load.kind == LoadKind::ForceZ),
-                acting: Acting::Weight,
+                acting: ForceDirection::Weight,
                 factor: load.factor * load.profile.value(written.at),
                 signal: load.signal,
             });

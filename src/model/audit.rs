@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{CouplingLaw, Model, Wet, hammer};
+use super::{CouplingLaw, Model, Wet, water_hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
@@ -330,7 +330,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         ));
     }
     all.extend(stream(model));
-    all.extend(hammer::warnings(case, model));
+    all.extend(water_hammer::warnings(case, model));
     if let Some(&f) = numbers.get("forcing_frequency_hz") {
         let outputs = 1.0 / (f * case.time.output_interval());
         if outputs < OUTPUTS_A_PERIOD {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nalgebra::Matrix2;
 
 use super::network::LinkKind;
-use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, each_signal, slowest, tongue};
+use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, each_signal, parametric_growth, relaxation_times};
 use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
@@ -166,7 +166,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
                 2.0 * fluid.density_kg_m3 * flow / (PI * fluid.viscosity_pa_s * narrow),
             );
         }
-        for (k, time) in slowest::times(wet).into_iter().enumerate() {
+        for (k, time) in relaxation_times::times(wet).into_iter().enumerate() {
             if let Some(time) = time {
                 put(&format!("slowest_time_of_network_{}_s", k + 1), time);
             }
@@ -247,7 +247,7 @@ pub fn forcing_frequency(case: &Case) -> Option<f64> {
         .iter()
         .flat_map(|load| DistributedLoad::on(load, [1.0; 2]))
         .collect();
-    let around = AmbientFluid::of(case);
+    let around = AmbientFluid::from_case(case);
     each_signal(
         &ends,
         &loads,
@@ -300,7 +300,13 @@ pub fn mathieu(model: &Model) -> Option<MathieuTongue> {
         frequency: sine.frequency_hz,
         modulation: MATHIEU_COUPLING * acceleration / (model.length * first * first),
         growth_rate: mathieu_growth(first * first, MATHIEU_COUPLING * acceleration / model.length, omega),
-        growth_bound: tongue::growth_bound(s, model.length, sine.amplitude, omega, model.effects.has(Effect::Shear)),
+        growth_bound: parametric_growth::growth_bound(
+            s,
+            model.length,
+            sine.amplitude,
+            omega,
+            model.effects.has(Effect::Shear),
+        ),
     })
 }
 

@@ -40,7 +40,7 @@ pub struct ContactWall {
 
 /// Contact forces per unit weight: elastic, damping and friction.
 #[derive(Clone, Copy, Debug)]
-pub struct Pressed<T> {
+pub struct ContactForces<T> {
     /// Elastic force along the normal.
     pub elastic: Planar<T>,
     /// Damping force along the normal.
@@ -92,10 +92,10 @@ impl ContactWall {
 
     /// Contact forces on a moving point.
     #[inline]
-    pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> Pressed<T> {
+    pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> ContactForces<T> {
         let normal = Planar::constant(self.normal);
         let elastic = self.depth(at).lift(|g| ramp(g, self.smoothing)) * self.stiffness;
-        let mut pressed = Pressed {
+        let mut pressed = ContactForces {
             elastic: normal.times(elastic),
             damping: Planar::zero(),
             friction: Planar::zero(),

@@ -18,7 +18,7 @@ pub enum Kinematics {
 
 impl Kinematics {
     /// The simplest kinematics that contain the effects.
-    pub fn of(effects: &EffectSet) -> Self {
+    pub fn from_effects(effects: &EffectSet) -> Self {
         match effects {
             e if !e.has(Effect::TransverseMotion) => Self::Bar,
             e if e.has(Effect::FiniteRotation) => Self::FiniteRotation,

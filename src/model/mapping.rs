@@ -33,12 +33,12 @@ pub fn tube_length(case: &Case) -> f64 {
 
 /// Network coordinate of a case in the convention of the paper's tables.
 pub fn network_coordinate(case: &Case, wet: &Wet) -> NetworkCoordinate {
-    NetworkCoordinate::of(wet, tube_length(case))
+    NetworkCoordinate::with_table_ratio(wet, tube_length(case))
 }
 
 impl NetworkCoordinate {
     /// Network coordinate in the convention of the paper's tables, for a tube length in SI [m].
-    pub fn of(wet: &Wet, tube_length: f64) -> Self {
+    pub fn with_table_ratio(wet: &Wet, tube_length: f64) -> Self {
         let tube = TABLE_TUBE_RATIO * tube_length;
         Self::new(&wet.network, wet.per_row, wet.bladder_length, tube)
     }

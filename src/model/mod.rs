@@ -7,28 +7,28 @@ pub mod attachments;
 pub mod audit;
 pub mod beam;
 pub mod bladder;
+pub mod bladder_wall_contact;
 pub mod characteristic;
-pub mod closing;
 pub mod compression;
 pub mod contact;
 pub mod coupling;
 pub mod duct;
 pub mod effects;
-pub mod hammer;
-mod held;
 pub mod kinematics;
 pub mod loads;
 pub mod mapping;
 pub mod network;
+pub mod parametric_growth;
 pub mod passivity;
+pub mod relaxation_times;
 pub mod scales;
 mod signals;
-pub mod slowest;
 pub mod storage;
 pub mod strain_energy;
+mod supports;
 pub mod surroundings;
-pub mod tongue;
 mod vessels;
+pub mod water_hammer;
 
 use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;
@@ -39,7 +39,7 @@ use crate::numerics::Scalar;
 pub use attachments::AttachedBody;
 pub use beam::Section;
 pub use bladder::AreaLaw;
-pub use closing::WallClosing;
+pub use bladder_wall_contact::WallClosing;
 pub use compression::Compression;
 pub use contact::ContactWall;
 pub use coupling::CouplingLaw;
@@ -254,7 +254,7 @@ impl Model {
     /// Returns the errors of [`Network::of`]: a name in the network that does not exist.
     pub fn new(case: &Case) -> Result<Self> {
         let section = Section::new(case);
-        let network = ResolvedNetwork::of(case)?;
+        let network = ResolvedNetwork::from_case(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full {
             let whole = case.bladders.as_ref().zip(network.clone());
@@ -266,47 +266,57 @@ impl Model {
             );
         }
         let network = network.map(|network| ResolvedNetwork { paced: true, ..network });
-        Ok(Self::of(case, section, network, effects))
+        Ok(Self::from_parts(case, section, network, effects))
     }
 
     /// Model with all effects that a checked case does not switch off by name; `inertia` includes inertia of the solid.
     pub fn whole(case: &Case, inertia: bool) -> Result<Self> {
-        let network = ResolvedNetwork::of(case)?;
+        let network = ResolvedNetwork::from_case(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
         let effects = if inertia { effects } else { effects.at_rest() };
-        Ok(Self::of(case, Section::new(case), network, effects))
+        Ok(Self::from_parts(case, Section::new(case), network, effects))
     }
 
     /// Model for a modal analysis: all effects, with inertia. Unsteady friction is omitted unless switched on by name,
     /// or unless fluid oscillates against a vessel too fast for Poiseuille's profile. The ten decay modes of unsteady
     /// friction per tube would crowd the spectrum.
     pub fn of_modes(case: &Case) -> Result<Self> {
-        let network = ResolvedNetwork::of(case)?;
+        let network = ResolvedNetwork::from_case(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
-        let whole = Self::of(case, Section::new(case), network.clone(), effects);
+        let whole = Self::from_parts(case, Section::new(case), network.clone(), effects);
         if whole.wet.as_ref().is_some_and(Wet::swings_fast) {
             return Ok(whole);
         }
-        Ok(Self::of(case, whole.section, network, whole.effects.forgetting()))
+        Ok(Self::from_parts(
+            case,
+            whole.section,
+            network,
+            whole.effects.forgetting(),
+        ))
     }
 
     /// Model of a changed case with the effects and scales of this model.
     pub fn like(&self, case: &Case) -> Result<Self> {
         let paced = self.wet.as_ref().is_some_and(|wet| wet.network.paced);
-        let network = ResolvedNetwork::of(case)?.map(|network| ResolvedNetwork { paced, ..network });
+        let network = ResolvedNetwork::from_case(case)?.map(|network| ResolvedNetwork { paced, ..network });
         Ok(Self {
             scales: self.scales,
-            ..Self::of(case, Section::new(case), network, self.effects.clone())
+            ..Self::from_parts(case, Section::new(case), network, self.effects.clone())
         })
     }
 
     /// Model of a case with the effects of this model, without inertia of the solid.
     pub fn at_rest(&self, case: &Case) -> Result<Self> {
         let effects = self.effects.clone().at_rest();
-        Ok(Self::of(case, self.section, ResolvedNetwork::of(case)?, effects))
+        Ok(Self::from_parts(
+            case,
+            self.section,
+            ResolvedNetwork::from_case(case)?,
+            effects,
+        ))
     }
 
-    fn of(case: &Case, section: Section, network: Option<ResolvedNetwork>, effects: EffectSet) -> Self {
+    fn from_parts(case: &Case, section: Section, network: Option<ResolvedNetwork>, effects: EffectSet) -> Self {
         let mut wet = case
             .bladders
             .as_ref()
@@ -323,7 +333,7 @@ impl Model {
         if let Some(wet) = &mut wet {
             wet.reduce(&effects);
         }
-        let kinematics = Kinematics::of(&effects);
+        let kinematics = Kinematics::from_effects(&effects);
         Self {
             section,
             length: case.beam.length_m,
@@ -337,7 +347,7 @@ impl Model {
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),
-            surroundings: AmbientFluid::of(case),
+            surroundings: AmbientFluid::from_case(case),
             wet,
             scales,
             still: false,

@@ -30,7 +30,7 @@ const FAR: f64 = 1e6;
 /// ```
 ///
 /// Evaluates both sides of each kink and returns the worst. None without bladders.
-pub fn of(model: &Model) -> Option<Passivity> {
+pub fn assess(model: &Model) -> Option<Passivity> {
     let wet = model.wet.as_ref()?;
     let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     let all = signs.map(|(m, n)| at(model, wet, m, n));
@@ -93,7 +93,7 @@ impl Passivity {
     }
 
     /// Describes the result in words.
-    pub fn words(&self, coupling: &CouplingLaw) -> String {
+    pub fn describe(&self, coupling: &CouplingLaw) -> String {
         let name = match coupling {
             CouplingLaw::Published { .. } => "published",
             CouplingLaw::Reciprocal { .. } => "reciprocal",

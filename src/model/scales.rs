@@ -2,12 +2,12 @@
 
 use std::f64::consts::PI;
 
-use super::attachments::Acting;
+use super::attachments::ForceDirection;
 use super::{AttachedBody, Section, Wet};
 use crate::case::schema::{Case, Distributed, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::profile::Profile;
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::{Signal, SmoothTime};
 use crate::model::network::Feed;
 
 /// Smallest strain that sets the scales of axial motion.
@@ -71,7 +71,7 @@ pub struct DriveScales {
 
 impl DriveScales {
     /// Drive of a case with the given ends.
-    pub fn of(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
+    pub fn from_case(case: &Case, section: &Section, ends: &[ResolvedEnd; 2]) -> Self {
         let end = case.time.end_s;
         let length = case.beam.length_m;
         let mut d = Self::default();
@@ -104,7 +104,7 @@ impl DriveScales {
         }
         for attachment in AttachedBody::all(case) {
             for force in &attachment.forces {
-                if force.acting == Acting::Weight {
+                if force.acting == ForceDirection::Weight {
                     let arm = attachment.offset.x.hypot(attachment.offset.z);
                     d.moment += arm * force.factor.abs() * size(&force.signal);
                 }
@@ -130,7 +130,7 @@ impl DriveScales {
             match &e.axial {
                 Translation::Displacement(s) => {
                     let most = s.largest(end);
-                    let start = s.jet(Clock { t: 0.0, within: 0.0 });
+                    let start = s.jet(SmoothTime { t: 0.0, within: 0.0 });
                     d.axial_jump = d.axial_jump.max(start.rate.abs());
                     if both {
                         d.axial_pull += most.value;
@@ -172,7 +172,7 @@ impl Scales {
     /// [`Self::estimate`] with an additional pressure by pumping [Pa].
     pub fn pumped(case: &Case, section: &Section, wet: Option<&Wet>, pressure: f64) -> Self {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
-        let mut d = DriveScales::of(case, section, &ends);
+        let mut d = DriveScales::from_case(case, section, &ends);
         let l = case.beam.length_m;
         let (ea, ei, m) = (
             section.axial_stiffness,

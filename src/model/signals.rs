@@ -2,7 +2,7 @@
 
 use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, ResolvedNetwork};
 use crate::case::{ResolvedEnd, Rotation, Translation};
-use crate::functions::{Clock, Jet, Signal};
+use crate::functions::{Jet, Signal, SmoothTime};
 
 impl Model {
     /// Replaces all signals: those of valves by `opening`; those of ends, loads, streams, ports, sources and pumps by
@@ -50,12 +50,12 @@ impl Model {
 
     /// Fixes every signal at its value at an instant [s].
     pub fn freeze(&mut self, t: f64) {
-        let at = |signal: &Signal| Signal::Constant(signal.jet(Clock { t, within: t }).value);
+        let at = |signal: &Signal| Signal::Constant(signal.jet(SmoothTime { t, within: t }).value);
         self.replace_signals(at, at);
     }
 
     /// Value and derivatives of a signal; derivatives are 0 in a still model.
-    pub fn jet(&self, signal: &Signal, clock: Clock) -> Jet {
+    pub fn jet(&self, signal: &Signal, clock: SmoothTime) -> Jet {
         match signal.jet(clock) {
             moving if !self.still => moving,
             Jet { value, .. } => Jet::constant(value),

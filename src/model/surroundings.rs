@@ -20,7 +20,7 @@ pub struct AmbientFluid {
 
 impl AmbientFluid {
     /// Surroundings of a case, if given.
-    pub fn of(case: &Case) -> Option<Self> {
+    pub fn from_case(case: &Case) -> Option<Self> {
         case.surroundings.as_ref().map(|written| Self::new(written, &case.beam))
     }
 

@@ -6,7 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::student;
+use super::student_t;
 
 /// A fit: `m` coefficients through `n` points.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,14 +81,14 @@ impl Regression {
 
     /// Half width of the 95 % confidence interval of the weighted sum, for normal errors.
     pub fn half_width(&self, weights: &[f64]) -> f64 {
-        student::quantile(0.05, self.freedom) * self.error(weights)
+        student_t::quantile(0.05, self.freedom) * self.error(weights)
     }
 
     /// Probability of a coefficient of at least this size if its true value is zero (p-value of coefficient `k`).
     pub fn chance(&self, k: usize) -> f64 {
         let error = self.covariance[(k, k)].max(0.0).sqrt();
         match (error > 0.0, self.coefficients[k] == 0.0) {
-            (true, _) => student::two_sided(self.coefficients[k] / error, self.freedom),
+            (true, _) => student_t::two_sided(self.coefficients[k] / error, self.freedom),
             (false, zero) => f64::from(u8::from(zero)),
         }
     }

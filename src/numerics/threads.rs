@@ -22,30 +22,30 @@ pub fn both<A: Send, B>(one: impl FnOnce() -> A + Send, other: impl FnOnce() -> 
 }
 
 /// A task started by [`begin`].
-pub enum Begun<'scope, T> {
+pub enum StartedTask<'scope, T> {
     /// Runs in a thread.
     Thread(ScopedJoinHandle<'scope, Option<T>>),
-    /// No thread was available: [`Begun::join`] runs the task.
+    /// No thread was available: [`StartedTask::join`] runs the task.
     Left(Box<dyn FnOnce() -> Option<T> + 'scope>),
 }
 
-/// Starts a task in a thread of a scope. Without an available thread, [`Begun::join`] runs it.
+/// Starts a task in a thread of a scope. Without an available thread, [`StartedTask::join`] runs it.
 pub fn begin<'scope, T: Send + 'scope>(
     scope: &'scope Scope<'scope, '_>,
     task: impl FnOnce() -> T + Send + 'scope,
-) -> Begun<'scope, T> {
+) -> StartedTask<'scope, T> {
     let task = Arc::new(Mutex::new(Some(task)));
     let take = move || {
         let task = task.lock().unwrap_or_else(PoisonError::into_inner).take();
         task.map(|task| task())
     };
     match Builder::new().spawn_scoped(scope, take.clone()) {
-        Ok(thread) => Begun::Thread(thread),
-        Err(_) => Begun::Left(Box::new(take)),
+        Ok(thread) => StartedTask::Thread(thread),
+        Err(_) => StartedTask::Left(Box::new(take)),
     }
 }
 
-impl<T> Begun<'_, T> {
+impl<T> StartedTask<'_, T> {
     /// Waits for the result of the task; propagates its panic.
     pub fn join(self) -> T {
         let given = match self {

@@ -65,7 +65,7 @@ impl Wait {
 
 /// Computes step sizes from errors.
 #[derive(Clone, Debug)]
-pub(super) struct Control {
+pub(super) struct StepControl {
     /// Size of the next step [s].
     pub size: f64,
     largest: f64,
@@ -77,7 +77,7 @@ pub(super) struct Control {
     wait: Wait,
 }
 
-impl Control {
+impl StepControl {
     pub fn new(largest: Option<f64>, power: u8) -> Self {
         Self {
             size: 0.0,

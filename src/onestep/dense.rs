@@ -12,7 +12,7 @@ use crate::integrate::IntegrationError;
 
 /// Integrals at both ends of the last step, with their integrands.
 #[derive(Clone, Debug)]
-pub(super) struct Integrals {
+pub(super) struct StepIntegrals {
     total: [Vec<f64>; 2],
     rate: [Vec<f64>; 2],
     /// True if the integrands at the present time have been evaluated.
@@ -21,7 +21,7 @@ pub(super) struct Integrals {
     stage: Vec<f64>,
 }
 
-impl Integrals {
+impl StepIntegrals {
     pub fn new(count: usize) -> Self {
         let zeros = || vec![0.0; count];
         Self {
@@ -78,7 +78,7 @@ impl<D: Dae> OneStep<D> {
     /// Integrals `∫ g dt` since the last restart, at the present time or at a time [s] within the last step. `out` has length
     /// `dae.integrals()`.
     pub fn integrals(&mut self, time: Option<f64>, out: &mut [f64]) -> Result<(), Box<IntegrationError>> {
-        let Integrals { total, rate, .. } = &self.integrals;
+        let StepIntegrals { total, rate, .. } = &self.integrals;
         match time {
             Some(time) if self.last.h > 0.0 => {
                 let x = self.place(time)?;
@@ -167,7 +167,7 @@ impl<D: Dae> OneStep<D> {
         });
         self.work.yp = yp;
         done?;
-        let Integrals {
+        let StepIntegrals {
             total,
             rate,
             sum,

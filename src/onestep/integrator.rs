@@ -1,14 +1,14 @@
 //! The integrator: one accepted step at a time.
 
-use super::control::Control;
-use super::dense::Integrals;
+use super::control::StepControl;
+use super::dense::StepIntegrals;
 use super::equations::{Equations, StageError};
 use super::matrix::Matrix;
 use super::options::OneStepOptions;
 use super::stages::{Stages, Work};
 use super::tableau::{LEFTOVER, Tableau};
 use crate::dae::{Corotation, Dae};
-use crate::integrate::{Counters, IntegrationError, SolverWallTimes, Worst, request};
+use crate::integrate::{Counters, IntegrationError, SolverWallTimes, WorstUnknown, request};
 use crate::numerics::kernels;
 use crate::sparse::Lu;
 use crate::sundials::AcceptedStep;
@@ -35,10 +35,10 @@ pub struct OneStep<D: Dae> {
     /// The last accepted step.
     pub(super) last: Stages,
     pub(super) work: Work,
-    pub(super) integrals: Integrals,
+    pub(super) integrals: StepIntegrals,
     pub(super) time: f64,
     yp: Vec<f64>,
-    control: Control,
+    control: StepControl,
     counters: Counters,
     pub(super) newton_iterations: u64,
     recoverable: Option<String>,
@@ -72,10 +72,10 @@ impl<D: Dae> OneStep<D> {
             now: Stages::new(tableau.stages, n),
             last: Stages::new(tableau.stages, n),
             work: Work::new(n),
-            integrals: Integrals::new(dae.integrals()),
+            integrals: StepIntegrals::new(dae.integrals()),
             time: t0,
             yp: vec![0.0; n],
-            control: Control::new(options.max_step, tableau.power),
+            control: StepControl::new(options.max_step, tableau.power),
             counters: Counters {
                 steps_by_order: vec![0; order.into()],
                 max_order: order,
@@ -240,11 +240,13 @@ impl<D: Dae> OneStep<D> {
             time: self.time,
             step,
             order: self.options.method.order(),
-            worst: worst.filter(|(_, ratio)| *ratio > 0.0).map(|(unknown, ratio)| Worst {
-                unknown,
-                name: self.dae().name(unknown),
-                ratio,
-            }),
+            worst: worst
+                .filter(|(_, ratio)| *ratio > 0.0)
+                .map(|(unknown, ratio)| WorstUnknown {
+                    unknown,
+                    name: self.dae().name(unknown),
+                    ratio,
+                }),
             recoverable: self.recoverable.clone(),
             singular: self.matrix.singular.map(|column| self.dae().name(column)),
         })

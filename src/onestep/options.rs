@@ -2,7 +2,7 @@
 
 use super::tableau::TableauMethod;
 use crate::case::schema;
-use crate::integrate::Absolute;
+use crate::integrate::AbsoluteTolerances;
 
 /// Settings of [`super::OneStep`]. Weights of the error norm are IDA's, `1 / (relative |yᵢ| + absoluteᵢ)`.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct OneStepOptions {
     /// Relative tolerance, > 0.
     pub relative: f64,
     /// Absolute tolerances, > 0.
-    pub absolute: Absolute,
+    pub absolute: AbsoluteTolerances,
     /// Remaining error of Newton's iteration as a fraction of the tolerance; absent:
     /// [`super::Tableau::newton_tolerance`].
     pub newton_tolerance: Option<f64>,
@@ -31,7 +31,7 @@ impl Default for OneStepOptions {
         Self {
             method: TableauMethod::Esdirk34,
             relative: 1e-4,
-            absolute: Absolute::Same(1e-6),
+            absolute: AbsoluteTolerances::Same(1e-6),
             newton_tolerance: None,
             matrix_band: 0.3,
             initial_step: None,

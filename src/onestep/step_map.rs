@@ -77,7 +77,7 @@ impl AddAssign for StepMapWork {
 }
 
 /// The matrix of one stage.
-pub(super) struct Slot {
+pub(super) struct StageMatrix {
     klu: Klu,
     /// True if it contains factors.
     factored: bool,
@@ -94,7 +94,7 @@ pub struct StepMap<D: Dae> {
     pub(super) times: Vec<f64>,
     pub(super) mask: Vec<f64>,
     /// Matrix of the start, then of every implicit stage in order of time.
-    pub(super) slots: Vec<Slot>,
+    pub(super) slots: Vec<StageMatrix>,
     values: Vec<f64>,
     pub(super) work: StepMapWork,
 }
@@ -117,7 +117,7 @@ impl<D: Dae> StepMap<D> {
         let slots = (0..count).map(|_| {
             let klu = Klu::new(dae.pattern())
                 .map_err(|fault| StepError::new(times[0], format!("KLU cannot analyse the matrix: {fault:?}")))?;
-            Ok(Slot {
+            Ok(StageMatrix {
                 of_y: vec![0.0; klu.entries()],
                 klu,
                 factored: false,

@@ -7,7 +7,7 @@ use crate::run::summary::{Accuracy, ErrorEstimate};
 const LISTED: usize = 4;
 
 /// Requested accuracy, largest errors, and mesh and tolerance, as two lines.
-pub fn words(found: &Accuracy) -> String {
+pub fn describe(found: &Accuracy) -> String {
     format!(
         "accuracy {}; largest errors: {}\nwith {}\n",
         reached(found),

@@ -14,7 +14,7 @@ use npyz::{DType, NpyWriter, WriterBuilder as _};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-use super::folder::{Whole, damaged, fault};
+use super::folder::{AtomicFile, damaged, fault};
 use super::history::FLUSH;
 use super::stream::{Stream, StreamMark};
 use crate::error::Result;
@@ -160,12 +160,12 @@ impl ArraysWriter {
     /// Packs axes, times and fields into a file that is to become `target`; requires a flush before. The raw files stay.
     ///
     /// Arrays are stored without compression: doubles of a simulation hardly shrink, and stored arrays load faster.
-    pub(super) fn packed(&self, target: &Path) -> Result<Whole> {
-        Whole::fill(target, |file| self.pack(file))
+    pub(super) fn packed(&self, target: &Path) -> Result<AtomicFile> {
+        AtomicFile::fill(target, |file| self.pack(file))
     }
 
     fn pack(&self, file: &mut File) -> io::Result<()> {
-        let mut npz = ZipWriter::new(BufWriter::new(Patient::new(file)));
+        let mut npz = ZipWriter::new(BufWriter::new(FirstErrorWriter::new(file)));
         for axis in &self.axes {
             let shape = [axis.values.len() as u64];
             write_array(&mut npz, axis.name, &shape, axis.values.iter().copied())?;
@@ -179,12 +179,12 @@ impl ArraysWriter {
 }
 
 /// Writer that reports only its first error; later failures count as success. An abandoned archive then prints no message of its own.
-pub(super) struct Patient<W> {
+pub(super) struct FirstErrorWriter<W> {
     out: W,
     failed: bool,
 }
 
-impl<W> Patient<W> {
+impl<W> FirstErrorWriter<W> {
     pub(super) fn new(out: W) -> Self {
         Self { out, failed: false }
     }
@@ -196,7 +196,7 @@ impl<W> Patient<W> {
     }
 }
 
-impl<W: Write> Write for Patient<W> {
+impl<W: Write> Write for FirstErrorWriter<W> {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
         let done = self.out.write(buffer);
         self.report_once(done, buffer.len())
@@ -208,7 +208,7 @@ impl<W: Write> Write for Patient<W> {
     }
 }
 
-impl<W: Seek> Seek for Patient<W> {
+impl<W: Seek> Seek for FirstErrorWriter<W> {
     fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
         let done = self.out.seek(to);
         self.report_once(done, 0)
@@ -271,14 +271,14 @@ impl RawFile {
     }
 
     fn create(dir: &Path, name: &str) -> Result<Self> {
-        Ok(Self::of(Stream::create(&Self::path(dir, name))?))
+        Ok(Self::new(Stream::create(&Self::path(dir, name))?))
     }
 
     fn reopen(dir: &Path, name: &str, mark: StreamMark) -> Result<Self> {
-        Ok(Self::of(Stream::reopen(&Self::path(dir, name), mark)?))
+        Ok(Self::new(Stream::reopen(&Self::path(dir, name), mark)?))
     }
 
-    fn of(stream: Stream) -> Self {
+    fn new(stream: Stream) -> Self {
         Self {
             path: stream.path().to_path_buf(),
             out: BufWriter::with_capacity(BLOCK, stream),

@@ -12,7 +12,7 @@ const ROUND_OFF: f64 = 1e-9;
 
 /// Finds the band of a displayed value: that of a figure with equal magnitude, preferably with equal sign. Skips an extreme whose band
 /// contains zero: its sign changes between samples, so its magnitude is more informative.
-pub fn of<'a>(bands: &'a Bands, name: &str, figures: &[&str], value: f64) -> Option<&'a Band> {
+pub fn find<'a>(bands: &'a Bands, name: &str, figures: &[&str], value: f64) -> Option<&'a Band> {
     let all = figures.iter().filter_map(|figure| {
         let band = bands.get(&format!("{name}.{figure}"))?;
         let sided = *figure != "extreme" || band.low * band.high >= 0.0;
@@ -146,9 +146,9 @@ mod tests {
         ]
         .map(|(name, band)| (name.to_owned(), band))
         .into();
-        let found = of(&all, "tip_u1_m", &["extreme", "max_abs"], -0.02).expect("a band");
+        let found = find(&all, "tip_u1_m", &["extreme", "max_abs"], -0.02).expect("a band");
         assert!(found.low > 0.0, "{found:?}");
-        assert_eq!(of(&all, "tip_u1_m", &["extreme", "max_abs"], 0.01), None);
-        assert_eq!(of(&all, "tip_u3_m", &["final"], 0.01), None);
+        assert_eq!(find(&all, "tip_u1_m", &["extreme", "max_abs"], 0.01), None);
+        assert_eq!(find(&all, "tip_u3_m", &["final"], 0.01), None);
     }
 }

@@ -21,7 +21,7 @@ const FORMAT: u32 = 14;
 
 /// A checkpoint on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Saved {
+pub struct SavedCheckpoint {
     /// Mark of `history.csv`.
     pub history: StreamMark,
     /// Mark of `envelope.csv`, if it exists.
@@ -48,13 +48,13 @@ struct Heading {
 }
 
 /// Writes a checkpoint completely or not at all; the previous one stays.
-pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
+pub fn write(folder: &ResultFolder, saved: &SavedCheckpoint) -> Result<()> {
     let path = folder.path(CHECKPOINT);
     let body = serde_json::to_vec(saved).map_err(|e| fault("write", &path, e.into()))?;
     let heading = Heading {
         format: FORMAT,
         build: build(),
-        body: StreamMark::of(&body[..]).map_err(|e| fault("write", &path, e))?,
+        body: StreamMark::from_reader(&body[..]).map_err(|e| fault("write", &path, e))?,
     };
     let mut text = serde_json::to_vec(&heading).map_err(|e| fault("write", &path, e.into()))?;
     text.push(b'\n');
@@ -72,7 +72,7 @@ pub fn write(folder: &ResultFolder, saved: &Saved) -> Result<()> {
 /// # Errors
 ///
 /// Checkpoints exist, but none is usable.
-pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
+pub fn read(dir: &Path) -> Result<Option<(SavedCheckpoint, Option<String>)>> {
     let newest = one(&dir.join(CHECKPOINT));
     let before = || one(&dir.join(CHECKPOINT_BEFORE));
     match newest {
@@ -85,7 +85,7 @@ pub fn read(dir: &Path) -> Result<Option<(Saved, Option<String>)>> {
     }
 }
 
-fn one(path: &Path) -> Result<Option<Saved>> {
+fn one(path: &Path) -> Result<Option<SavedCheckpoint>> {
     let mut text = vec![];
     match open(path).and_then(|mut file| file.read_to_end(&mut text)) {
         Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -104,7 +104,7 @@ fn one(path: &Path) -> Result<Option<Saved>> {
     if heading.format != FORMAT {
         return refused(&other(heading.format));
     }
-    if StreamMark::of(body).ok() != Some(heading.body) {
+    if StreamMark::from_reader(body).ok() != Some(heading.body) {
         return refused("it is cut short or changed: its checksum differs");
     }
     if heading.build != build() {
@@ -119,7 +119,9 @@ fn one(path: &Path) -> Result<Option<Saved>> {
 pub fn build() -> String {
     static BUILD: OnceLock<String> = OnceLock::new();
     let name = || {
-        let program = std::env::current_exe().and_then(File::open).and_then(StreamMark::of);
+        let program = std::env::current_exe()
+            .and_then(File::open)
+            .and_then(StreamMark::from_reader);
         let (bytes, sum) = program.map_or((0, 0), |mark| (mark.bytes, mark.crc32));
         format!("{} {bytes} {sum:08x}", env!("CARGO_PKG_VERSION"))
     };

@@ -1,6 +1,6 @@
 //! Picture of a comparison of two recordings.
 
-use super::plot::canvas::Stroke;
+use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use crate::discrete::quantities::{Observable, QuantityRole};
@@ -30,7 +30,10 @@ fn pair(a: &Recording, b: &Recording, name: &str) -> Option<[Panel; 2]> {
     );
     let curve = |points: Vec<(f64, f64)>, colour: usize, width: f64| {
         let every = (points.len() / ROWS).max(1);
-        PictureSeries::line(points.into_iter().step_by(every), Stroke::solid(PALETTE[colour], width))
+        PictureSeries::line(
+            points.into_iter().step_by(every),
+            LineStyle::solid(PALETTE[colour], width),
+        )
     };
     let points = |times: &[f64], values: &[f64]| times.iter().copied().zip(values.iter().copied()).collect();
     let (first, last) = (b.times.first()?, b.times.last()?);

@@ -2,7 +2,7 @@
 
 use crate::case::Case;
 use crate::run::record::Header;
-use crate::run::stretch::Stretches;
+use crate::run::thinned_statistics::ThinningIntervals;
 
 /// Size of a number in a text file, with its comma [byte].
 const WORD: f64 = 20.0;
@@ -24,7 +24,7 @@ pub struct Disk {
 
 impl Disk {
     /// Estimates the sizes for a header, a number of unknowns, and derivatives with respect to a number of parameters.
-    pub fn of(case: &Case, header: &Header, unknowns: usize, parameters: usize) -> Self {
+    pub fn estimate(case: &Case, header: &Header, unknowns: usize, parameters: usize) -> Self {
         let time = &case.time;
         // plus rows at the start, at the end and at the start of the window
         let rows = time.written(time.output_interval()) + 3.0;
@@ -33,7 +33,7 @@ impl Disk {
         let stretches = if time.history.is_none() {
             0.0
         } else {
-            Stretches::new(case).count().min(outputs)
+            ThinningIntervals::new(case).count().min(outputs)
         };
         let columns = header.columns.len() * (1 + parameters);
         let values: usize = header.fields.iter().map(|field| field.len).sum();

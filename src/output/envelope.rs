@@ -16,7 +16,7 @@ struct Extremes {
 }
 
 impl Extremes {
-    fn of(t: f64, y: f64) -> Self {
+    fn new(t: f64, y: f64) -> Self {
         Self {
             least: (t, y),
             largest: (t, y),
@@ -81,7 +81,7 @@ impl Envelope {
     /// Adds a row; the first column is time.
     pub fn push(&mut self, row: &[f64]) {
         let columns = self.names.len();
-        let new = row.iter().map(|&y| Extremes::of(row[0], y));
+        let new = row.iter().map(|&y| Extremes::new(row[0], y));
         if self.rows_in_last == 0 || self.rows_in_last == self.rows_a_stretch {
             if self.stretches.len() == self.most * columns {
                 self.halve();
@@ -185,12 +185,12 @@ const KEPT: usize = 1 << 19;
 
 /// A history short enough to stay in memory while it is written. It need not be read back.
 #[derive(Debug)]
-pub struct Remembered {
+pub struct HistoryInMemory {
     names: Vec<(String, String)>,
     numbers: Vec<f64>,
 }
 
-impl Remembered {
+impl HistoryInMemory {
     /// Creates an empty history with these headings.
     pub fn new(headings: &[String]) -> Self {
         Self {
@@ -214,12 +214,12 @@ pub enum HistorySource<'a> {
     /// Tables in a folder.
     Folder(&'a Path),
     /// Memory, with the complete history.
-    Memory(&'a Remembered),
+    Memory(&'a HistoryInMemory),
 }
 
 impl<'a> HistorySource<'a> {
     /// History of a run that has just ended in a folder.
-    pub fn of(dir: &'a Path, kept: Option<&'a Remembered>) -> Self {
+    pub fn new(dir: &'a Path, kept: Option<&'a HistoryInMemory>) -> Self {
         kept.map_or(Self::Folder(dir), Self::Memory)
     }
 }
@@ -229,7 +229,7 @@ impl<'a> HistorySource<'a> {
 pub fn each_row(history: HistorySource, mut take: impl FnMut(&Names, RowOrigin, &[f64])) -> Result<()> {
     let dir = match history {
         HistorySource::Folder(dir) => dir,
-        HistorySource::Memory(Remembered { names, numbers }) => {
+        HistorySource::Memory(HistoryInMemory { names, numbers }) => {
             let rows = numbers.chunks_exact(names.len().max(1));
             rows.for_each(|row| take(names, RowOrigin::History, row));
             return Ok(());

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::case::LineColumns;
-use crate::error::{At, Code, Error, SolverError, Violation};
+use crate::error::{Code, Error, SolverError, StopPoint, Violation};
 
 /// JSON of an error, as printed by commands with `--json`.
 pub fn json(error: &Error) -> Value {
@@ -17,8 +17,8 @@ pub fn json(error: &Error) -> Value {
         }
         Error::Solver(fault) => {
             match fault.at {
-                At::Time(time) => object["time_s"] = time.into(),
-                At::LoadFactor(factor) => object["load_factor"] = factor.into(),
+                StopPoint::Time(time) => object["time_s"] = time.into(),
+                StopPoint::LoadFactor(factor) => object["load_factor"] = factor.into(),
             }
             object["unknown"] = fault.unknown.clone().into();
             object["cause"] = fault.cause.clone().into();
@@ -31,8 +31,8 @@ pub fn json(error: &Error) -> Value {
 
 fn violation(places: &mut LineColumns, violation: &Violation) -> Value {
     let place = violation.span.as_ref().map(|span| match &violation.set {
-        Some(set) => LineColumns::new(set).of(span.start),
-        None => places.of(span.start),
+        Some(set) => LineColumns::new(set).line_and_column(span.start),
+        None => places.line_and_column(span.start),
     });
     json!({
         "code": violation.code.id(), "what": violation.what, "pointer": violation.pointer, "set": violation.set,
@@ -46,9 +46,9 @@ pub fn diagnosis(fault: &SolverError) -> String {
     // modes and equilibria have no time of a run
     let failed = match (fault.code, fault.at) {
         (Code::NoModes | Code::NoEquilibrium | Code::Interrupted, _) => String::new(),
-        (Code::NoCycle, At::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
-        (_, At::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
-        (_, At::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),
+        (Code::NoCycle, StopPoint::Time(t)) => format!("no cycle, t = {t:.6e} s of its period: "),
+        (_, StopPoint::Time(t)) => format!("the run failed at t = {t:.6e} s: "),
+        (_, StopPoint::LoadFactor(factor)) => format!("failed at {factor:.6} of the loads: "),
     };
     let mut lines = vec![format!(
         "slcbeam: {failed}{} (slcbeam explain {})",
@@ -74,18 +74,18 @@ mod tests {
     /// Goal: only a run reports a time of failure.
     #[test]
     fn only_runs_fail_at_a_time() {
-        let words = |code| {
+        let describe = |code| {
             diagnosis(&SolverError {
                 code,
-                at: At::Time(0.25),
+                at: StopPoint::Time(0.25),
                 what: "no such thing".into(),
                 unknown: None,
                 cause: None,
                 hint: None,
             })
         };
-        assert_eq!(words(Code::NoModes), "slcbeam: no such thing (slcbeam explain E047)");
-        assert!(words(Code::Integrator).contains("the run failed at t = 2.500000e-1 s"));
-        assert!(words(Code::NoCycle).contains("no cycle") && !words(Code::NoCycle).contains("run failed"));
+        assert_eq!(describe(Code::NoModes), "slcbeam: no such thing (slcbeam explain E047)");
+        assert!(describe(Code::Integrator).contains("the run failed at t = 2.500000e-1 s"));
+        assert!(describe(Code::NoCycle).contains("no cycle") && !describe(Code::NoCycle).contains("run failed"));
     }
 }

@@ -21,7 +21,7 @@ fn plan(command: &str, case: &Case, settings: &str) -> u32 {
     let written = case.written();
     let all = (
         FORMAT,
-        (Provenance::of(None), build()),
+        (Provenance::new(None), build()),
         command,
         written.json,
         written.tables,

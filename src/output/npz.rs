@@ -115,14 +115,14 @@ impl Npz {
     /// # Errors
     ///
     /// There is no such array.
-    pub fn rows(&mut self, name: &str) -> io::Result<Rows<'_>> {
+    pub fn rows(&mut self, name: &str) -> io::Result<NpzRows<'_>> {
         let found = self.entries.iter().position(|e| e.name == name);
         let k = found.ok_or_else(|| damaged(format!("{name} is missing")))?;
         let (width, left) = (self.entries[k].width(), self.entries[k].rows());
         let mut entry = self.zip.by_index(k)?;
         let size = entry.size();
         describe(&mut entry, size).map_err(|e| damaged(format!("{name}: {e}")))?;
-        Ok(Rows {
+        Ok(NpzRows {
             entry,
             width,
             left,
@@ -132,14 +132,14 @@ impl Npz {
 }
 
 /// Unread rows of an array.
-pub struct Rows<'a> {
+pub struct NpzRows<'a> {
     entry: ZipFile<'a, BufReader<File>>,
     width: usize,
     left: usize,
     bytes: Vec<u8>,
 }
 
-impl Rows<'_> {
+impl NpzRows<'_> {
     /// Reads the next row. Returns false at the end.
     pub fn next(&mut self, row: &mut Vec<f64>) -> io::Result<bool> {
         if !self.pass()? {

@@ -7,12 +7,12 @@ use std::thread;
 use std::time::Instant;
 
 use super::arrays::ArraysWriter;
-use super::behind::{Behind, GrowingFiles, Secured};
-use super::checkpoint::{self, Saved};
-use super::envelope::{Envelope, HistorySource, Remembered};
+use super::checkpoint::{self, SavedCheckpoint};
+use super::downsampled_history::{BackgroundWriter, GrowingFiles, SyncedPart};
+use super::envelope::{Envelope, HistoryInMemory, HistorySource};
 use super::folder::{
-    CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
-    SENSITIVITIES, SUMMARY, Wait, Whole, at_once,
+    AtomicFile, CHECKPOINT, CHECKPOINT_BEFORE, ENVELOPE, FIELDS, HISTORY, PICTURES, RAW_FIELDS, REPORT, ResultFolder,
+    SENSITIVITIES, SUMMARY, Wait, at_once,
 };
 use super::history::{HistoryWriter, headings};
 use super::pictures::{self, NamedSvg, STRETCHES};
@@ -22,11 +22,11 @@ use crate::case::{Case, CaseText};
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::model::characteristic;
-use crate::numerics::threads::{Begun, begin};
+use crate::numerics::threads::{StartedTask, begin};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
 use crate::run::summary::{Status, Summary};
-use crate::run::wall::Laps;
+use crate::run::wall_time::Stopwatch;
 
 /// Called after every step; decides whether the run continues.
 pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
@@ -44,7 +44,7 @@ pub struct Labels {
 
 impl Labels {
     /// Labels of a case.
-    pub fn of(case: &Case) -> Self {
+    pub fn from_case(case: &Case) -> Self {
         Self {
             case_name: case.name.clone(),
             case: case.written(),
@@ -62,7 +62,7 @@ pub struct FolderRecorder {
     labels: Labels,
     hook: Hook,
     lean: bool,
-    open: Option<Behind>,
+    open: Option<BackgroundWriter>,
 }
 
 impl FolderRecorder {
@@ -90,7 +90,13 @@ impl FolderRecorder {
     /// # Errors
     ///
     /// A file is damaged or missing; then the folder is unchanged.
-    pub fn resume(folder: ResultFolder, labels: Labels, hook: Hook, saved: &Saved, header: &Header) -> Result<Self> {
+    pub fn resume(
+        folder: ResultFolder,
+        labels: Labels,
+        hook: Hook,
+        saved: &SavedCheckpoint,
+        header: &Header,
+    ) -> Result<Self> {
         let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
         Stream::verify(&history, saved.history)?;
         ArraysWriter::verify(&raw, header, &saved.fields)?;
@@ -114,7 +120,7 @@ impl FolderRecorder {
             sensitivities: sensitivities?,
         };
         Ok(Self {
-            open: Some(Behind::new(files)?),
+            open: Some(BackgroundWriter::new(files)?),
             ..Self::new(folder, labels, hook)
         })
     }
@@ -129,7 +135,7 @@ impl FolderRecorder {
     ///
     /// A file cannot be written. If it is a table or an array, the summary has the status `failed` and the reason.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
-        let (mut laps, mut spent) = (Laps::since(Instant::now()), WriteTimes::default());
+        let (mut laps, mut spent) = (Stopwatch::since(Instant::now()), WriteTimes::default());
         let aside = match self.open {
             Some(_) => None,
             None => self.folder.set_aside()?,
@@ -178,7 +184,13 @@ impl FolderRecorder {
     }
 
     /// Syncs tables, arrays and summary to the disk, and draws the pictures meanwhile.
-    fn complete(&self, open: Behind, summary: &Summary, laps: &mut Laps, spent: &mut WriteTimes) -> Result<Completed> {
+    fn complete(
+        &self,
+        open: BackgroundWriter,
+        summary: &Summary,
+        laps: &mut Stopwatch,
+        spent: &mut WriteTimes,
+    ) -> Result<Completed> {
         let mut files = open.close()?;
         files.arrays.flush()?;
         let arrays = &files.arrays;
@@ -198,7 +210,7 @@ impl FolderRecorder {
         let (case, dir) = (&self.labels.case_name, self.folder.dir());
         let frequency = self.labels.frequency_hz;
         let over_time = || {
-            let rows = Envelope::read(HistorySource::of(dir, files.kept.as_ref()), STRETCHES)?;
+            let rows = Envelope::read(HistorySource::new(dir, files.kept.as_ref()), STRETCHES)?;
             Ok(pictures::over_time(case, &rows))
         };
         let drawn = thread::scope(|scope| {
@@ -211,7 +223,7 @@ impl FolderRecorder {
             };
             let put = put(tables, &laid, (arrays, &fields), (&text, &summary));
             spent.files += laps.lap();
-            let drawn = drawing.into_iter().map(Begun::join).collect();
+            let drawn = drawing.into_iter().map(StartedTask::join).collect();
             spent.pictures += laps.lap();
             put.map(|()| drawn)
         })?;
@@ -229,7 +241,7 @@ struct Completed {
     /// Pictures, or errors of drawing.
     drawn: Vec<Result<Vec<NamedSvg>>>,
     /// The history, if it is in memory.
-    history: Option<Remembered>,
+    history: Option<HistoryInMemory>,
     /// CRC-32 of the tables.
     tables_crc32: BTreeMap<String, u32>,
 }
@@ -237,16 +249,16 @@ struct Completed {
 /// Syncs tables, laid files, arrays and summary to the disk at the same time; then renames arrays and summary.
 fn put(
     mut tables: Vec<HistoryWriter>,
-    laid: &[Whole],
+    laid: &[AtomicFile],
     (arrays, fields): (&ArraysWriter, &Path),
     (text, summary): (&str, &Path),
 ) -> Result<()> {
     let fields = arrays.packed(fields)?;
-    let summary = Whole::fill(summary, |file| file.write_all(text.as_bytes()))?;
+    let summary = AtomicFile::fill(summary, |file| file.write_all(text.as_bytes()))?;
     let tables = tables
         .iter_mut()
         .map(|table| Box::new(|| table.secure().map(|_| ())) as Wait);
-    let others = laid.iter().chain([&fields, &summary]).map(Whole::wait);
+    let others = laid.iter().chain([&fields, &summary]).map(AtomicFile::wait);
     at_once(tables.chain(others).collect())?;
     fields.name()?;
     summary.name().map(|_| ())
@@ -266,7 +278,7 @@ pub struct WriteTimes {
 #[must_use = "what the run could go on from is still there"]
 pub struct Finished {
     folder: ResultFolder,
-    history: Option<Remembered>,
+    history: Option<HistoryInMemory>,
     resumable: bool,
     lean: bool,
     /// Wall time of the completion.
@@ -279,7 +291,7 @@ pub struct Finished {
 
 impl Finished {
     /// A folder that has taken over the complete result of another folder.
-    pub fn of(folder: ResultFolder) -> Self {
+    pub fn new(folder: ResultFolder) -> Self {
         Self {
             resumable: true,
             lean: false,
@@ -351,12 +363,12 @@ impl Recorder for FolderRecorder {
         let shown = !self.lean && header.envelope.is_empty();
         let files = GrowingFiles {
             history,
-            kept: shown.then(|| Remembered::new(&headings(&header.columns))),
+            kept: shown.then(|| HistoryInMemory::new(&headings(&header.columns))),
             arrays,
             envelope: table(ENVELOPE, &header.envelope)?,
             sensitivities: table(SENSITIVITIES, &header.sensitivities)?,
         };
-        self.open = Some(Behind::new(files)?);
+        self.open = Some(BackgroundWriter::new(files)?);
         Ok(())
     }
 
@@ -384,8 +396,8 @@ impl Recorder for FolderRecorder {
         let Some(open) = self.open.as_mut() else {
             return Ok(());
         };
-        let Secured { tables, arrays } = open.secure()?;
-        let saved = Saved {
+        let SyncedPart { tables, arrays } = open.secure()?;
+        let saved = SavedCheckpoint {
             history: tables.history,
             envelope: tables.envelope,
             sensitivities: tables.sensitivities,

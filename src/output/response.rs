@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
-use super::plot::canvas::Stroke;
+use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
 use super::plot::extent;
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
@@ -54,7 +54,7 @@ fn csv(found: &ResponseRecord) -> String {
 }
 
 /// Table of the peaks, errors by the mesh, and number of poles.
-pub fn words(found: &ResponseRecord) -> String {
+pub fn describe(found: &ResponseRecord) -> String {
     let mut text = format!(
         "{}: response to {}, {} to {} Hz, {}\n\n",
         found.case,
@@ -131,7 +131,7 @@ fn picture(found: &ResponseRecord) -> Option<Picture> {
     let (mut amplitudes, mut phases) = (vec![], vec![]);
     extent(found.curves().flat_map(decibel))?;
     for (curve, colour) in found.curves().zip(PALETTE.iter().cycle()) {
-        let stroke = Stroke::solid(*colour, 1.6);
+        let stroke = LineStyle::solid(*colour, 1.6);
         let all = decibel(curve);
         let mut sorted: Vec<f64> = all.iter().copied().filter(|amplitude| amplitude.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);

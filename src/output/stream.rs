@@ -32,7 +32,7 @@ pub struct Stream {
 
 impl StreamMark {
     /// Mark of the entire content of a reader.
-    pub fn of(mut from: impl Read) -> io::Result<Self> {
+    pub fn from_reader(mut from: impl Read) -> io::Result<Self> {
         let (mut sum, mut bytes, mut block) = (crc32fast::Hasher::new(), 0, [0; BLOCK]);
         loop {
             match from.read(&mut block)? {
@@ -76,7 +76,7 @@ impl Stream {
                     mark.bytes
                 )));
             }
-            if StreamMark::of(file.take(mark.bytes))? != mark {
+            if StreamMark::from_reader(file.take(mark.bytes))? != mark {
                 return Err(damaged(
                     "its checksum differs from that at the checkpoint; the run cannot be resumed",
                 ));

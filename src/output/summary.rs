@@ -72,7 +72,7 @@ pub fn verify_table(dir: &Path, name: &str, summary: &Summary) -> Result<()> {
     };
     let path = dir.join(name);
     let found = open(&path)
-        .and_then(StreamMark::of)
+        .and_then(StreamMark::from_reader)
         .map_err(|e| fault("read", &path, e))?;
     if found.crc32 != *expected {
         let why = "it was changed or cut short after the run: its checksum is not that in summary.json";

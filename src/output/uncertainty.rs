@@ -8,7 +8,7 @@ use super::folder::ResultFolder;
 use super::numbers::{count, counted, percent, significant};
 use crate::error::Result;
 use crate::results;
-use crate::results::uncertainty::{Spread, UncertainInput, Uncertainty};
+use crate::results::uncertainty::{FigureSpread, UncertainInput, Uncertainty};
 
 /// Name of the file.
 pub const UNCERTAINTY: &str = "uncertainty.json";
@@ -39,7 +39,7 @@ const HEADINGS: [&str; 7] = [
 const PREFERRED: [&str; 5] = ["max_abs", "mean", "frequency_hz", "window", "final"];
 
 /// Table of one figure of each quantity that spreads, and warnings.
-pub fn words(found: &Uncertainty) -> String {
+pub fn describe(found: &Uncertainty) -> String {
     // of a multiplier growth is shown: the drive may fix its frequency
     let foremost: &[&str] = if found.command == "floquet" {
         &["growth_per_s"]
@@ -91,7 +91,7 @@ fn about(found: &Uncertainty) -> String {
 }
 
 /// The cells of a figure.
-fn row(name: &str, one: &Spread, inputs: &[UncertainInput]) -> [String; 7] {
+fn row(name: &str, one: &FigureSpread, inputs: &[UncertainInput]) -> [String; 7] {
     let size = one.value.abs();
     // no relative numbers for a value of 0
     let relative = |x: f64| match size {
@@ -115,7 +115,7 @@ fn row(name: &str, one: &Spread, inputs: &[UncertainInput]) -> [String; 7] {
 }
 
 /// Input with the largest share of the variance: by Sobol's total index, else by derivatives.
-fn mostly(one: &Spread, inputs: &[UncertainInput]) -> Option<String> {
+fn mostly(one: &FigureSpread, inputs: &[UncertainInput]) -> Option<String> {
     if one.sd == 0.0 {
         return None;
     }
@@ -195,7 +195,7 @@ mod tests {
             no_first_order: None,
             warnings: vec![],
         };
-        assert!(words(&found).contains("no figure depends on the uncertain numbers"));
+        assert!(describe(&found).contains("no figure depends on the uncertain numbers"));
     }
 
     #[test]
@@ -206,7 +206,7 @@ mod tests {
             mean: 1.0,
             sd: 0.1,
         };
-        let spread = Spread {
+        let spread = FigureSpread {
             value: -2.0,
             numerical_error: Some(0.002),
             first_order: Some(FirstOrder {

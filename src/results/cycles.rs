@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{IntegratorRecord, ResultFile};
-use crate::run::band::Bands;
 pub use crate::run::floquet::{CycleStability, Floquet};
 pub use crate::run::periodic::ShootingRecord;
+use crate::run::periodic::balanced_cycle::TighterCycle;
 use crate::run::periodic::scene::METHOD;
-use crate::run::periodic::settle::Refined;
 use crate::run::periodic::subharmonic::Periods;
 use crate::run::summary::Accuracy;
+use crate::run::uncertainty_band::Bands;
 use crate::study::refine::meshes::Meshes;
 pub use crate::study::stability::{CyclePath, Map};
 
@@ -32,7 +32,7 @@ pub struct CycleResult {
     pub warnings: Vec<String>,
     /// Tightened tolerance, if it differs from that of the case.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub refined: Option<Refined>,
+    pub refined: Option<TighterCycle>,
     /// Estimated errors, if an accuracy was requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub accuracy: Option<Accuracy>,

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::ResultFile;
 use super::ordered::Ordered;
 use super::run::{Accuracy, Bands, Status};
-use crate::run::null;
+use crate::run::json_null;
 use crate::study::refine::meshes::Meshes;
 
 /// Numbers by name, which contains the unit; null if not finite.
@@ -103,7 +103,7 @@ pub struct PathWork {
     /// Rejected steps along the path.
     pub rejected_steps: u64,
     /// Remaining Newton correction, scaled.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub largest_correction_left: f64,
 }
 

@@ -67,10 +67,10 @@ struct Whole<'a, T: ResultFile> {
 }
 
 impl<'a, T: ResultFile> Whole<'a, T> {
-    fn of(found: &'a T, sentence: Option<&'a str>) -> Self {
+    fn new(found: &'a T, sentence: Option<&'a str>) -> Self {
         Self {
             format: T::FORMAT,
-            provenance: Provenance::of(found.integrator()),
+            provenance: Provenance::new(found.integrator()),
             found,
             sentence,
         }
@@ -85,12 +85,12 @@ pub fn text<T: ResultFile>(found: &T) -> String {
 /// JSON text of a result with a closing sentence about it.
 pub fn text_with<T: ResultFile>(found: &T, sentence: Option<&str>) -> String {
     // Serialization fails only for keys that are not text, and there are none.
-    serde_json::to_string_pretty(&Whole::of(found, sentence)).unwrap_or_default() + "\n"
+    serde_json::to_string_pretty(&Whole::new(found, sentence)).unwrap_or_default() + "\n"
 }
 
 /// JSON value of a result, as a part of something larger.
 pub fn value<T: ResultFile>(found: &T) -> Value {
-    serde_json::to_value(Whole::of(found, None)).unwrap_or_default()
+    serde_json::to_value(Whole::new(found, None)).unwrap_or_default()
 }
 
 /// A result that was read.
@@ -113,8 +113,8 @@ pub struct Head {
 
 impl Head {
     /// Header as a sentence.
-    pub fn words(&self) -> String {
-        let by = self.provenance.as_ref().map(Provenance::words);
+    pub fn describe(&self) -> String {
+        let by = self.provenance.as_ref().map(Provenance::describe);
         match (self.format, by) {
             (Some(format), Some(by)) => format!("The result has format {format} and was computed by {by}."),
             (Some(format), None) => {

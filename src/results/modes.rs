@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::ResultFile;
 use super::ordered::Ordered;
 use super::run::{Accuracy, Bands};
-pub use crate::run::modes::{LimitingMode, Sort, TimeBehavior};
+pub use crate::run::modes::{LimitingMode, ModeFilter, TimeBehavior};
 
 /// State about which a case is linearized.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum About {
+pub enum LinearisedState {
     /// The start of the case.
     Start,
     /// The equilibrium under the loads of an instant.
@@ -26,14 +26,14 @@ pub struct ModesRecord {
     pub about: String,
     /// State of linearization; absent in older results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub state: Option<About>,
+    pub state: Option<LinearisedState>,
     /// Instant of loads and valves [s].
     pub at_s: f64,
     /// Frequency near which modes were searched [Hz].
     pub near_hz: f64,
     /// The only kind of modes requested, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub of_kind: Option<Sort>,
+    pub of_kind: Option<ModeFilter>,
     /// Number of unknowns.
     pub unknowns: usize,
     /// Number of finite eigenvalues.

@@ -38,7 +38,7 @@ pub struct IntegratorRecord {
 
 impl IntegratorRecord {
     /// Integrator recorded in counters.
-    pub fn of(counters: &Counters) -> Option<Self> {
+    pub fn from_counters(counters: &Counters) -> Option<Self> {
         let order = counters.max_order;
         counters.method.map(|name| Self { name, order })
     }
@@ -46,7 +46,7 @@ impl IntegratorRecord {
 
 impl Provenance {
     /// Origin of a result of this program.
-    pub fn of(method: Option<IntegratorRecord>) -> Self {
+    pub fn new(method: Option<IntegratorRecord>) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME").into(),
             version: env!("CARGO_PKG_VERSION").into(),
@@ -58,7 +58,7 @@ impl Provenance {
     }
 
     /// `slcbeam 0.1.0 (0123456789ab) with SUNDIALS 6.4.1 and SuiteSparse 5.12.0`.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let commit = self
             .commit
             .as_ref()

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::ResultFile;
-pub use super::modes::About;
+pub use super::modes::LinearisedState;
 
 /// A frequency response of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -13,7 +13,7 @@ pub struct ResponseRecord {
     /// JSON pointer of the input.
     pub input: String,
     /// State of linearization.
-    pub state: About,
+    pub state: LinearisedState,
     /// Instant of loads and valves [s].
     pub at_s: f64,
     /// Unknowns.

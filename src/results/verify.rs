@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::ResultFile;
 use crate::error;
-use crate::run::null;
+use crate::run::json_null;
 use crate::study::verify::{self, ErrorMeasure};
 
 /// An exact result, and the computed figures.
@@ -32,7 +32,7 @@ impl ResultFile for VerifiedRow {}
 
 impl VerifiedRow {
     /// Combines a row and its figures.
-    pub fn of(row: &verify::SolvedProblem, figures: &error::Result<Vec<verify::ExactFigure>>) -> Self {
+    pub fn new(row: &verify::SolvedProblem, figures: &error::Result<Vec<verify::ExactFigure>>) -> Self {
         Self {
             name: row.name.clone(),
             source: row.source.into(),
@@ -44,7 +44,7 @@ impl VerifiedRow {
             figures: figures
                 .as_ref()
                 .ok()
-                .map(|all| all.iter().map(VerifiedFigure::of).collect()),
+                .map(|all| all.iter().map(VerifiedFigure::new).collect()),
             failure: figures.as_ref().err().map(ToString::to_string),
         }
     }
@@ -56,13 +56,13 @@ pub struct VerifiedFigure {
     /// Quantity with its unit.
     pub quantity: String,
     /// Computed value.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub computed: f64,
     /// Exact value.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub exact: f64,
     /// Error.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub error: f64,
     /// Measure of the error: relative or absolute.
     pub error_is: ErrorMeasure,
@@ -82,7 +82,7 @@ pub struct VerifiedFigure {
 }
 
 impl VerifiedFigure {
-    fn of(figure: &verify::ExactFigure) -> Self {
+    fn new(figure: &verify::ExactFigure) -> Self {
         Self {
             quantity: figure.quantity.clone(),
             computed: figure.computed,

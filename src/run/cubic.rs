@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::discrete::glance::Moving;
+use crate::discrete::extrema::Moving;
 
 /// Cubic over a step, as a function of the relative position from 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::schedule::SAME;
-use super::summary::{Absence, Quantity};
+use super::summary::{MissingRatio, Quantity};
 use crate::case::schema::Case;
 use crate::discrete::quantities::{Group, Interest, ObservableRow};
 use crate::error::Code;
@@ -172,7 +172,7 @@ impl EnergyAccumulator {
             q.window = finite(window.harvested / window.spent());
             let least = self.numerical_error(rtol);
             let absent = |since: &Since, of: f64| {
-                (since.start.is_some() && of.abs() <= least).then_some(Absence::BelowNumericalError)
+                (since.start.is_some() && of.abs() <= least).then_some(MissingRatio::BelowNumericalError)
             };
             q.final_absent = absent(&self.run, run.input);
             q.last = q.last.filter(|_| q.final_absent.is_none());
@@ -197,7 +197,7 @@ impl EnergyAccumulator {
                 {
                     all.push(format!(
                         "the {} {when}, {}, has a balance error of {:.0} %",
-                        of.words(),
+                        of.describe(),
                         quantity(value, "J", 4),
                         100.0 * error
                     ));

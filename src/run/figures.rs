@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use super::cubic::{self, Cubic};
 use super::schedule::SAME;
 use super::summary::Quantity;
-use super::track::Track;
+use super::tracked_value::TrackedValue;
 use crate::case::schema::Case;
 use crate::discrete::System;
-use crate::discrete::glance::{Glance, Watched};
+use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::discrete::quantities::{Interest, InterestSource, ObservableRow};
 
 /// Fraction of the characteristic size below which a value does not count as motion.
@@ -26,7 +26,7 @@ pub struct FigureAccumulator {
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
     /// Tracks of the available quantities, in the order of [`Interest::ALL`].
-    tracks: Vec<Track>,
+    tracks: Vec<TrackedValue>,
     /// True if there is fluid, and if there are turbines.
     has: [bool; 2],
     /// Length of the beam [m] and Young's modulus [Pa]: reference sizes of negligible motion.
@@ -41,18 +41,18 @@ impl FigureAccumulator {
         Self {
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             window_time: 0.0,
-            tracks: Interest::of(has).map(|_| Track::default()).collect(),
+            tracks: Interest::recorded(has).map(|_| TrackedValue::default()).collect(),
             has,
             sizes: [case.beam.length_m, case.beam.young_modulus_pa],
         }
     }
 
-    fn each(&mut self) -> impl Iterator<Item = (Interest, &mut Track)> {
-        Interest::of(self.has).zip(&mut self.tracks)
+    fn each(&mut self) -> impl Iterator<Item = (Interest, &mut TrackedValue)> {
+        Interest::recorded(self.has).zip(&mut self.tracks)
     }
 
     /// Adds one row of the history and the glance at the same state.
-    pub fn take(&mut self, row: &ObservableRow, glance: &Glance) {
+    pub fn take(&mut self, row: &ObservableRow, glance: &MonitoredValues) {
         let in_window = row.t() >= self.window_start;
         for (one, track) in self.each() {
             match one.source() {
@@ -65,7 +65,7 @@ impl FigureAccumulator {
     }
 
     /// Adds a state at any time.
-    pub fn see(&mut self, glance: &Glance) {
+    pub fn see(&mut self, glance: &MonitoredValues) {
         let in_window = glance.t >= self.window_start;
         for (one, track) in self.each() {
             if let InterestSource::Motion(watched) = one.source() {
@@ -75,14 +75,14 @@ impl FigureAccumulator {
     }
 
     /// Integrates squares over the part of a step that lies in the window.
-    pub fn span(&mut self, before: &Glance, now: &Glance) {
+    pub fn span(&mut self, before: &MonitoredValues, now: &MonitoredValues) {
         let h = now.t - before.t;
         if now.t <= self.window_start || h <= 0.0 {
             return;
         }
         let from = ((self.window_start - before.t) / h).max(0.0);
         self.window_time += h * (1.0 - from);
-        let between = |which: &Watched| Cubic::new(sized(before, *which), sized(now, *which), h);
+        let between = |which: &MonitoredQuantity| Cubic::new(sized(before, *which), sized(now, *which), h);
         for (one, track) in self.each() {
             let squares = match one.source() {
                 InterestSource::Motion([which]) => {
@@ -102,7 +102,7 @@ impl FigureAccumulator {
 
     /// Adds an extremum of the cubic between two steps, so that largest values vary continuously with the motion. Returns true
     /// if the state itself must be evaluated: the extremum is much larger than previous values and above round-off.
-    pub fn turn(&mut self, which: Watched, value: f64, t: f64) -> bool {
+    pub fn turn(&mut self, which: MonitoredQuantity, value: f64, t: f64) -> bool {
         let size = value.abs();
         let in_window = t >= self.window_start;
         let [length, modulus] = self.sizes;
@@ -131,8 +131,8 @@ impl FigureAccumulator {
         self.tracks.iter().flat_map(move |track| track.reached(after))
     }
 
-    fn track(&self, of: Interest) -> Option<&Track> {
-        let place = Interest::of(self.has).position(|one| one == of)?;
+    fn track(&self, of: Interest) -> Option<&TrackedValue> {
+        let place = Interest::recorded(self.has).position(|one| one == of)?;
         self.tracks.get(place)
     }
 
@@ -140,12 +140,12 @@ impl FigureAccumulator {
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
         let [input, harvested] = [Interest::InputEnergy, Interest::HarvestedEnergy].map(|of| self.track(of));
         // the window has no figures before the motion reaches it
-        let reached = self.window_time > 0.0 || input.is_some_and(Track::in_window);
-        let ratio = |of: fn(&Track) -> f64| {
+        let reached = self.window_time > 0.0 || input.is_some_and(TrackedValue::in_window);
+        let ratio = |of: fn(&TrackedValue) -> f64| {
             let ratio = of(harvested?) / of(input?);
             ratio.is_finite().then_some(ratio)
         };
-        let quantity = |one: Interest, t: &Track| match one.source() {
+        let quantity = |one: Interest, t: &TrackedValue| match one.source() {
             InterestSource::Motion(watched) => {
                 let swing = t.swing(reached, self.window_time);
                 let of_sign = |extreme: Option<f64>| extreme.filter(|_| has_sign(watched));
@@ -162,39 +162,39 @@ impl FigureAccumulator {
                 ..Quantity::default()
             },
             InterestSource::Efficiency => Quantity {
-                last: ratio(Track::last),
-                window: ratio(Track::increment).filter(|_| reached),
+                last: ratio(TrackedValue::last),
+                window: ratio(TrackedValue::increment).filter(|_| reached),
                 ..Quantity::default()
             },
         };
-        let all = Interest::of(self.has).zip(&self.tracks);
+        let all = Interest::recorded(self.has).zip(&self.tracks);
         all.map(|(one, track)| (one.name().into(), quantity(one, track)))
             .collect()
     }
 }
 
 /// True if the quantity has a sign. A largest value over the beam is a magnitude.
-fn has_sign(watched: &[Watched]) -> bool {
-    let sizes = [Watched::Largest1, Watched::Largest3];
+fn has_sign(watched: &[MonitoredQuantity]) -> bool {
+    let sizes = [MonitoredQuantity::Largest1, MonitoredQuantity::Largest3];
     watched.iter().all(|which| !sizes.contains(which))
 }
 
 /// Value of a quantity: of several watched values the one of largest magnitude.
-fn value(glance: &Glance, watched: &[Watched]) -> f64 {
+fn value(glance: &MonitoredValues, watched: &[MonitoredQuantity]) -> f64 {
     match watched {
         [which] => sized(glance, *which)[0],
         _ => {
-            let all = watched.iter().map(|which| glance.of(*which)[0]);
+            let all = watched.iter().map(|which| glance.value_and_rate(*which)[0]);
             all.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most })
         }
     }
 }
 
 /// Value and its rate; the magnitude if the value is the largest one over the beam.
-pub fn sized(glance: &Glance, which: Watched) -> [f64; 2] {
-    let [value, rate] = glance.of(which);
+pub fn sized(glance: &MonitoredValues, which: MonitoredQuantity) -> [f64; 2] {
+    let [value, rate] = glance.value_and_rate(which);
     match which {
-        Watched::Largest1 | Watched::Largest3 if value < 0.0 => [-value, -rate],
+        MonitoredQuantity::Largest1 | MonitoredQuantity::Largest3 if value < 0.0 => [-value, -rate],
         _ => [value, rate],
     }
 }

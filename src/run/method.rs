@@ -4,7 +4,7 @@ use super::order::{self, OrderChoice};
 use crate::case::schema::{self, Case, MaxOrder};
 use crate::dae::Dae;
 use crate::discrete::System;
-use crate::integrate::{Absolute, Counters, IntegrationError, SolverWallTimes};
+use crate::integrate::{AbsoluteTolerances, Counters, IntegrationError, SolverWallTimes};
 use crate::onestep::{OneStep, OneStepOptions, TableauMethod};
 use crate::sundials::IdaOptions;
 use crate::sundials::{AcceptedStep, Ida};
@@ -107,7 +107,7 @@ impl IntegratorOptions {
     /// Settings for a case and its chosen method.
     pub fn new(case: &Case, system: &System, choice: &MethodChoice, max_step: f64) -> Self {
         let solver = &case.solver;
-        let (relative, absolute) = (solver.rtol, Absolute::Same(solver.rtol));
+        let (relative, absolute) = (solver.rtol, AbsoluteTolerances::Same(solver.rtol));
         let (initial_step, max_step) = (solver.initial_step_s, Some(max_step));
         match choice.one_step {
             None => Self::Ida(IdaOptions {

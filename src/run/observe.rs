@@ -4,10 +4,10 @@ use std::borrow::Cow;
 
 use crate::case::schema::{Case, Thinning};
 use crate::dae::BeamDae;
-use crate::discrete::glance::{Glance, Watched};
+use crate::discrete::angle_unwrapping::AngleUnwrapping;
+use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
-use crate::discrete::quantities::{self, Look, Observable, ObservableRow, probes, stations};
-use crate::discrete::turns::Turns;
+use crate::discrete::quantities::{self, Observable, ObservableRow, StateView, probes, stations};
 use crate::discrete::{CompleteState, System, TimeData};
 use crate::error::Result;
 use crate::model::mapping::tube_length;
@@ -17,34 +17,34 @@ use serde::{Deserialize, Serialize};
 use super::cubic::Cubic;
 use super::energies::EnergyAccumulator;
 use super::figures::{self, FigureAccumulator};
-use super::floors::Floors;
 use super::growth::Growth;
 use super::range::{Limits, Range};
 use super::readings::{self, ProbeFigures, StepReadings};
 use super::record::{Header, HistoryColumn, RecordedAxis, RecordedField, Recorder, Sampled};
 use super::residuals::Residuals;
+use super::rounding_scales::RoundingScales;
 use super::step_response::StepResponses;
-use super::stretch::{self, StretchStatistics, Stretches};
+use super::thinned_statistics::{self, StretchStatistics, ThinningIntervals};
 use super::valves::ValveFlows;
 
 /// Quantities whose extrema between two steps are searched.
-const TURNING: [Watched; Watched::COUNT] = [
-    Watched::Tip1,
-    Watched::Tip3,
-    Watched::Angle,
-    Watched::Middle1,
-    Watched::Largest1,
-    Watched::Largest3,
-    Watched::High,
-    Watched::Low,
-    Watched::Opening,
-    Watched::Swelling,
-    Watched::Strain,
-    Watched::Flow,
-    Watched::Pressed,
-    Watched::Outermost,
-    Watched::Mach,
-    Watched::Depth,
+const TURNING: [MonitoredQuantity; MonitoredQuantity::COUNT] = [
+    MonitoredQuantity::Tip1,
+    MonitoredQuantity::Tip3,
+    MonitoredQuantity::Angle,
+    MonitoredQuantity::Middle1,
+    MonitoredQuantity::Largest1,
+    MonitoredQuantity::Largest3,
+    MonitoredQuantity::High,
+    MonitoredQuantity::Low,
+    MonitoredQuantity::Opening,
+    MonitoredQuantity::Swelling,
+    MonitoredQuantity::Strain,
+    MonitoredQuantity::Flow,
+    MonitoredQuantity::Pressed,
+    MonitoredQuantity::Outermost,
+    MonitoredQuantity::Mach,
+    MonitoredQuantity::Depth,
 ];
 /// Extrema closer together than this fraction of the step are evaluated once.
 const APART: f64 = 0.05;
@@ -72,7 +72,7 @@ pub struct Observed {
     pub waves: super::waves::SeenWaves,
     /// Angle unwrapping at the end of the last step.
     #[serde(default)]
-    pub turns: Turns,
+    pub turns: AngleUnwrapping,
     /// The last sample.
     #[serde(default)]
     pub row: ObservableRow,
@@ -89,10 +89,10 @@ pub struct Observer {
     cell_order: Vec<usize>,
     fields_every: u64,
     thinning: Thinning,
-    stretches: Stretches,
+    stretches: ThinningIntervals,
     limits: Limits,
     /// End of the last step, or start of the first step after a switch.
-    before: Option<Glance>,
+    before: Option<MonitoredValues>,
     turning: Vec<f64>,
     readings: StepReadings,
     valves: ValveFlows,
@@ -104,12 +104,12 @@ impl Observer {
     /// Observer of a case; `interval` is the output interval [s].
     pub fn new(case: &Case, system: &System, interval: f64) -> Self {
         let fields_every = (case.time.fields_interval() / interval).round().max(1.0) as u64;
-        let floors = Floors::of_model(case, &system.model);
+        let floors = RoundingScales::of_model(case, &system.model);
         Self {
             cell_order: quantities::fields::cell_order(system, tube_length(case)),
             fields_every,
             thinning: case.time.history,
-            stretches: Stretches::new(case),
+            stretches: ThinningIntervals::new(case),
             limits: Limits::new(case, system),
             before: None,
             turning: vec![],
@@ -124,7 +124,7 @@ impl Observer {
                     .map(|step| StepResponses::new(readings::names(system), step.at_s)),
                 energies: EnergyAccumulator::new(case, floors.energy),
                 growth: Growth::new(case.time.end_s),
-                row: ObservableRow::of(system),
+                row: ObservableRow::from_system(system),
                 ..Observed::default()
             },
         }
@@ -145,20 +145,20 @@ impl Observer {
             about: field.about(),
             len: field.len(system),
         };
-        let own = Observable::of(system).into_iter().map(HistoryColumn::from);
+        let own = Observable::recorded(system).into_iter().map(HistoryColumn::from);
         let columns: Vec<HistoryColumn> = own
             .chain(stations::columns(system, false))
             .chain(probes::columns(system))
             .collect();
         let envelope = match case.time.history {
             Thinning::All => vec![],
-            _ => stretch::names(&columns),
+            _ => thinned_statistics::names(&columns),
         };
         Header {
             columns,
             envelope,
-            axes: quantities::FieldAxis::of(system).map(axis).collect(),
-            fields: quantities::BeamField::of(system).map(field).collect(),
+            axes: quantities::FieldAxis::recorded(system).map(axis).collect(),
+            fields: quantities::BeamField::recorded(system).map(field).collect(),
             sensitivities: vec![],
         }
     }
@@ -167,7 +167,7 @@ impl Observer {
     pub fn enter(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = Glance::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, half_height, w);
         self.readings.arrive(t, true, system, now, w);
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
@@ -181,7 +181,7 @@ impl Observer {
     pub fn arrive(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.accepted(t, y, yp);
-        let glance = Glance::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, half_height, w);
         self.turning.clear();
         let beyond = self.limits.beyond(&glance);
         if beyond.is_some() {
@@ -209,7 +209,7 @@ impl Observer {
     pub fn look(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = Glance::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, half_height, w);
         let beyond = self.limits.beyond(&glance);
         if beyond.is_none() {
             self.watch(system, now, w, &glance, integrals);
@@ -251,7 +251,7 @@ impl Observer {
     /// Returns the validity limit that a state exceeds, if any; stores nothing.
     pub fn beyond(&self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64]) -> Option<String> {
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = Glance::new(system, now, t, self.limits.half_height, w);
+        let glance = MonitoredValues::new(system, now, t, self.limits.half_height, w);
         self.limits.beyond(&glance)
     }
 
@@ -261,7 +261,7 @@ impl Observer {
         system: &System,
         now: &TimeData,
         w: CompleteState,
-        glance: &Glance,
+        glance: &MonitoredValues,
         integrals: &[f64],
     ) -> EnergyBalance {
         let stored = ledger::energies(system, now, w);
@@ -288,7 +288,7 @@ impl Observer {
     }
 
     /// Notes the extrema of the cubics through the ends of the step that may exceed all previous values.
-    fn look_between(&mut self, before: &Glance, now: &Glance) {
+    fn look_between(&mut self, before: &MonitoredValues, now: &MonitoredValues) {
         let h = now.t - before.t;
         for which in TURNING {
             let cubic = Cubic::new(figures::sized(before, which), figures::sized(now, which), h);
@@ -320,7 +320,7 @@ impl Observer {
     ) -> Result<Sampled> {
         let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = Glance::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, half_height, w);
         if let Some(what) = self.limits.beyond(&glance).filter(|_| !last) {
             return Ok(Sampled::Beyond(what));
         }
@@ -331,7 +331,7 @@ impl Observer {
         if let Some(before) = before {
             self.seen.figures.span(&before, &glance);
         }
-        let look = Look::new(system, now, w, balance.stored);
+        let look = StateView::new(system, now, w, balance.stored);
         self.seen.row.take(t, &look, integrals, balance.residual);
         let seen = &mut self.seen;
         seen.figures.take(&seen.row, &glance);
@@ -341,7 +341,7 @@ impl Observer {
             return Ok(Sampled::Taken);
         };
         if self.thinning != Thinning::All {
-            let stretch = self.stretches.of(t);
+            let stretch = self.stretches.index_at(t);
             if let Some(row) = self.seen.stretch.take(stretch, self.seen.row.values()) {
                 recorder.envelope(&row)?;
             }
@@ -352,7 +352,7 @@ impl Observer {
         recorder.history(self.seen.row.values())?;
         if number.is_multiple_of(self.fields_every) {
             let along = |values: &[f64]| -> Vec<f64> { self.cell_order.iter().map(|&c| values[c]).collect() };
-            let ordered: Vec<Cow<[f64]>> = quantities::BeamField::of(system)
+            let ordered: Vec<Cow<[f64]>> = quantities::BeamField::recorded(system)
                 .map(|field| match field.axis() {
                     quantities::FieldAxis::Network => Cow::Owned(along(&field.values(&w))),
                     _ => field.values(&w),

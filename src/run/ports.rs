@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::summary::Quantity;
-use super::track::Track;
+use super::tracked_value::TrackedValue;
 use crate::discrete::System;
 use crate::discrete::quantities::stations;
 
@@ -15,7 +15,7 @@ pub struct PortFigures {
     names: Vec<String>,
     /// Indices among the columns of ports, accumulators and walls.
     places: Vec<usize>,
-    tracks: Vec<Track>,
+    tracks: Vec<TrackedValue>,
     /// Time [s] and values of the last sample.
     last: Option<(f64, Vec<f64>)>,
     /// Time in the window over which squares have been integrated [s].
@@ -32,7 +32,7 @@ impl PortFigures {
     pub fn new(system: &System) -> Self {
         let (places, names): (Vec<usize>, Vec<String>) = stations::of_fluid(system).unzip();
         Self {
-            tracks: vec![Track::default(); names.len()],
+            tracks: vec![TrackedValue::default(); names.len()],
             names,
             places,
             ..Self::default()
@@ -69,7 +69,8 @@ impl PortFigures {
 
     /// The figures by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
-        let of = |(name, track): (&String, &Track)| (name.clone(), track.swing(track.in_window(), self.window_time));
+        let of =
+            |(name, track): (&String, &TrackedValue)| (name.clone(), track.swing(track.in_window(), self.window_time));
         self.names.iter().zip(&self.tracks).map(of).collect()
     }
 }

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::cubic::Cubic;
-use super::unphysical::{Met, Unphysical};
+use super::unphysical::{Unphysical, UnphysicalRecord};
 use crate::case::schema::{Case, Effect};
 use crate::discrete::System;
-use crate::discrete::glance::{Glance, Watched};
+use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 use crate::model::audit;
@@ -74,21 +74,29 @@ pub struct Range {
     #[serde(default)]
     begun: f64,
     #[serde(default)]
-    unphysical: Met,
+    unphysical: UnphysicalRecord,
 }
 
 impl Passed {
     /// Adds a value over a step from `before`; `factor` converts the watched value to the limited one.
-    fn take(&mut self, which: Watched, factor: f64, limit: f64, before: Option<&Glance>, now: &Glance, place: usize) {
-        let value = factor * now.of(which)[0];
+    fn take(
+        &mut self,
+        which: MonitoredQuantity,
+        factor: f64,
+        limit: f64,
+        before: Option<&MonitoredValues>,
+        now: &MonitoredValues,
+        place: usize,
+    ) {
+        let value = factor * now.value_and_rate(which)[0];
         if value > self.largest {
             (self.largest, self.t, self.place) = (value, now.t, place);
         }
         if value > limit && self.began.is_none() {
-            let within = before.filter(|b| b.t < now.t && factor * b.of(which)[0] <= limit);
+            let within = before.filter(|b| b.t < now.t && factor * b.value_and_rate(which)[0] <= limit);
             self.began = Some(within.map_or(now.t, |before| {
                 let h = now.t - before.t;
-                let cubic = Cubic::new(before.of(which), now.of(which), h);
+                let cubic = Cubic::new(before.value_and_rate(which), now.value_and_rate(which), h);
                 before.t + h * cubic.crosses(limit / factor, 1.0)
             }));
         }
@@ -145,31 +153,33 @@ impl Limits {
     }
 
     /// Reynolds number of the fastest flow through a tube in a state; 0 if the model includes tube losses.
-    pub fn reynolds(&self, g: &Glance) -> f64 {
-        self.reynolds_per_flow * g.of(Watched::Flow)[0]
+    pub fn reynolds(&self, g: &MonitoredValues) -> f64 {
+        self.reynolds_per_flow * g.value_and_rate(MonitoredQuantity::Flow)[0]
     }
 
     /// Mach number of the fastest flow of gas through a tube in a state.
-    pub fn mach(&self, g: &Glance) -> f64 {
-        self.mach_per_flow * g.of(Watched::Mach)[0]
+    pub fn mach(&self, g: &MonitoredValues) -> f64 {
+        self.mach_per_flow * g.value_and_rate(MonitoredQuantity::Mach)[0]
     }
 
     /// True if a state lies within the model's range.
-    fn hold(&self, g: &Glance) -> bool {
-        let value = |which| g.of(which)[0];
-        let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
-        value(Watched::Opening) > 0.0
-            && value(Watched::Low) > self.vacuum
+    fn hold(&self, g: &MonitoredValues) -> bool {
+        let value = |which| g.value_and_rate(which)[0];
+        let pressure = value(MonitoredQuantity::High)
+            .abs()
+            .max(value(MonitoredQuantity::Low).abs());
+        value(MonitoredQuantity::Opening) > 0.0
+            && value(MonitoredQuantity::Low) > self.vacuum
             && g.thinnest > self.vacuum
-            && value(Watched::Swelling) <= self.swelling
-            && value(Watched::Strain) <= STRAIN_ENDS
-            && value(Watched::Outermost) <= 1.0
+            && value(MonitoredQuantity::Swelling) <= self.swelling
+            && value(MonitoredQuantity::Strain) <= STRAIN_ENDS
+            && value(MonitoredQuantity::Outermost) <= 1.0
             && pressure <= PRESSURE_ENDS * self.modulus
             && g.moved <= MOTION_ENDS * self.length
     }
 
     /// Describes the limit that a state exceeds, if any.
-    pub fn beyond(&self, g: &Glance) -> Option<String> {
+    pub fn beyond(&self, g: &MonitoredValues) -> Option<String> {
         if self.hold(g) {
             return None;
         }
@@ -181,17 +191,17 @@ impl Limits {
     }
 
     /// Describes the limit that a state exceeds, if any, with the time or place `at`.
-    pub fn beyond_at(&self, g: &Glance, at: &str) -> Option<String> {
+    pub fn beyond_at(&self, g: &MonitoredValues, at: &str) -> Option<String> {
         if self.hold(g) {
             return None;
         }
-        let value = |which| g.of(which)[0];
-        if value(Watched::Opening) <= 0.0 {
+        let value = |which| g.value_and_rate(which)[0];
+        if value(MonitoredQuantity::Opening) <= 0.0 {
             return Some(format!(
                 "a bladder is closed at {at}: its cross-section h_b w_b + a1 has reached zero, the limit of the model"
             ));
         }
-        if value(Watched::Low) <= self.vacuum {
+        if value(MonitoredQuantity::Low) <= self.vacuum {
             return Some(format!(
                 "a bladder is evacuated at {at}: less than a thousandth of ambient pressure is left in it, the limit \
                  of the model"
@@ -204,7 +214,7 @@ impl Limits {
                  difference drives"
             ));
         }
-        let swelling = value(Watched::Swelling);
+        let swelling = value(MonitoredQuantity::Swelling);
         if swelling > self.swelling {
             return Some(format!(
                 "a bladder has outgrown its segment at {at}: its cross-section h_b w_b + a1 has reached the half \
@@ -212,13 +222,13 @@ impl Limits {
                 quantity(swelling, "m^2", 4)
             ));
         }
-        if value(Watched::Outermost) > 1.0 {
+        if value(MonitoredQuantity::Outermost) > 1.0 {
             return Some(format!(
                 "a section has left the range of its strain energy at {at}: stretch, curvature and pressures, each \
                  relative to its limit in /bladders/strain_energy, have a sum of squares above 1"
             ));
         }
-        let strain = value(Watched::Strain);
+        let strain = value(MonitoredQuantity::Strain);
         if strain > STRAIN_ENDS {
             return Some(format!(
                 "the fibre strain |lambda - 1| + |kappa| h_s/2 has reached {STRAIN_ENDS} at {at}, node {}: a law \
@@ -226,7 +236,9 @@ impl Limits {
                 g.strained
             ));
         }
-        let pressure = value(Watched::High).abs().max(value(Watched::Low).abs());
+        let pressure = value(MonitoredQuantity::High)
+            .abs()
+            .max(value(MonitoredQuantity::Low).abs());
         if pressure > PRESSURE_ENDS * self.modulus {
             return Some(format!(
                 "a pressure has reached {PRESSURE_ENDS} times Young's modulus at {at} ({})",
@@ -241,17 +253,17 @@ impl Limits {
 
     /// True if the state at a value between two steps must be evaluated. The value is then near or above a limit; if `seen` has a
     /// record of it, the value also exceeds this.
-    pub fn matters(&self, which: Watched, value: f64, seen: &Range) -> bool {
+    pub fn matters(&self, which: MonitoredQuantity, value: f64, seen: &Range) -> bool {
         let larger = |largest: f64, value: f64, from: f64| value > 0.9 * from && value > 1.001 * largest;
         match which {
-            Watched::Opening => value < 0.05,
-            Watched::Swelling => value > 0.95 * self.swelling,
-            Watched::Strain => larger(seen.strain.largest, value, STRAIN),
-            Watched::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
-            Watched::Mach => larger(seen.mach.largest, value * self.mach_per_flow, MACH),
-            Watched::Outermost => value > 0.95,
-            Watched::Depth => larger(seen.touched.largest, value, self.half_height),
-            Watched::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
+            MonitoredQuantity::Opening => value < 0.05,
+            MonitoredQuantity::Swelling => value > 0.95 * self.swelling,
+            MonitoredQuantity::Strain => larger(seen.strain.largest, value, STRAIN),
+            MonitoredQuantity::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
+            MonitoredQuantity::Mach => larger(seen.mach.largest, value * self.mach_per_flow, MACH),
+            MonitoredQuantity::Outermost => value > 0.95,
+            MonitoredQuantity::Depth => larger(seen.touched.largest, value, self.half_height),
+            MonitoredQuantity::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
             _ => false,
         }
     }
@@ -259,21 +271,27 @@ impl Limits {
 
 impl Range {
     /// Adds a state at the end of a step that began at `before`.
-    pub fn take(&mut self, limits: &Limits, before: Option<&Glance>, now: &Glance) {
+    pub fn take(&mut self, limits: &Limits, before: Option<&MonitoredValues>, now: &MonitoredValues) {
         self.strain
-            .take(Watched::Strain, 1.0, STRAIN, before, now, now.strained);
+            .take(MonitoredQuantity::Strain, 1.0, STRAIN, before, now, now.strained);
         let factor = limits.reynolds_per_flow;
         self.reynolds
-            .take(Watched::Flow, factor, REYNOLDS, before, now, now.tube);
-        self.mach
-            .take(Watched::Mach, limits.mach_per_flow, MACH, before, now, now.fast);
+            .take(MonitoredQuantity::Flow, factor, REYNOLDS, before, now, now.tube);
+        self.mach.take(
+            MonitoredQuantity::Mach,
+            limits.mach_per_flow,
+            MACH,
+            before,
+            now,
+            now.fast,
+        );
         self.pressed
-            .take(Watched::Pressed, 1.0, limits.convex_up_to, before, now, 0);
+            .take(MonitoredQuantity::Pressed, 1.0, limits.convex_up_to, before, now, 0);
         self.touched
-            .take(Watched::Depth, 1.0, limits.half_height, before, now, 0);
+            .take(MonitoredQuantity::Depth, 1.0, limits.half_height, before, now, 0);
         self.unphysical.take(&limits.unphysical, now, now.t);
         if now.t == 0.0 && !limits.at_rest {
-            self.begun = self.begun.max(now.of(Watched::Depth)[0]);
+            self.begun = self.begun.max(now.value_and_rate(MonitoredQuantity::Depth)[0]);
         }
     }
 

@@ -8,10 +8,10 @@ use super::cubic::{self, Cubic};
 use super::ports::PortFigures;
 use super::schedule::SAME;
 use super::summary::Quantity;
-use super::track::Track;
+use super::tracked_value::TrackedValue;
 use crate::case::schema::Case;
 use crate::discrete::ledger::StoredEnergies;
-use crate::discrete::quantities::{Look, Observable, ObservableRow, Read, probes};
+use crate::discrete::quantities::{Observable, ObservableRow, QuantitySource, StateView, probes};
 use crate::discrete::{CompleteState, System, TimeData};
 
 /// Quantities read at the tip.
@@ -73,10 +73,10 @@ impl StepReadings {
 }
 
 fn read(system: &System, now: &TimeData, w: CompleteState, out: &mut Vec<f64>) {
-    let look = Look::new(system, now, w, StoredEnergies::default());
+    let look = StateView::new(system, now, w, StoredEnergies::default());
     out.clear();
     out.extend(TIP.iter().filter_map(|one| match one.read() {
-        Read::State(read) => Some(read(&look)),
+        QuantitySource::State(read) => Some(read(&look)),
         _ => None,
     }));
     out.extend(probes::values(&look));
@@ -89,7 +89,7 @@ pub struct ProbeFigures {
     window_start: f64,
     /// Time in the window over which squares have been integrated [s].
     window_time: f64,
-    tracks: Vec<Track>,
+    tracks: Vec<TrackedValue>,
     /// Figures of ports and accumulators.
     #[serde(default, skip_serializing_if = "PortFigures::is_empty")]
     pub ports: PortFigures,
@@ -102,7 +102,7 @@ impl ProbeFigures {
             .map(|one| probes::key(&one.name, one.unit))
             .collect();
         Self {
-            tracks: vec![Track::default(); names.len()],
+            tracks: vec![TrackedValue::default(); names.len()],
             names,
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             window_time: 0.0,
@@ -147,7 +147,7 @@ impl ProbeFigures {
 
     /// The figures by name.
     pub fn quantities(&self) -> BTreeMap<String, Quantity> {
-        let of = |(name, track): (&String, &Track)| {
+        let of = |(name, track): (&String, &TrackedValue)| {
             let reached = self.window_time > 0.0 || track.in_window();
             (name.clone(), track.swing(reached, self.window_time))
         };

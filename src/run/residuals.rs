@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::floors::Floors;
+use super::rounding_scales::RoundingScales;
 use crate::discrete::ledger::EnergyBalance;
 use crate::discrete::ledger::{self, EnergyRate, Invariants};
 use crate::discrete::{CompleteState, System, TimeData};
@@ -39,12 +39,12 @@ pub struct Residuals {
     reactions: [f64; 2],
     /// Rounding scales.
     #[serde(default)]
-    floors: Floors,
+    floors: RoundingScales,
 }
 
 impl Residuals {
     /// Creates the residuals of a system in a run with relative tolerance `rtol`. Reference values are limited from below by `floors`.
-    pub fn new(system: &System, rtol: f64, floors: Floors) -> Self {
+    pub fn new(system: &System, rtol: f64, floors: RoundingScales) -> Self {
         let network = system.model.wet.as_ref().map(|wet| &wet.network);
         let closed: Vec<bool> = network.map_or(vec![], |n| (0..n.components).map(|c| n.is_closed(c)).collect());
         Self {

@@ -55,7 +55,7 @@ pub fn changes(model: &Model) -> bool {
 
 /// A time at which the state is sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Due {
+pub struct SampleTime {
     /// Time [s].
     pub t: f64,
     /// Number of the output that is due; `None` at an end of the window between two outputs.
@@ -132,17 +132,17 @@ impl Outputs {
     }
 
     /// Next time at which the state is sampled, if not after `t` [s].
-    pub fn due(&mut self, t: f64) -> Option<Due> {
+    pub fn due(&mut self, t: f64) -> Option<SampleTime> {
         let output = (self.next <= self.last).then(|| self.time(self.next));
         let mark = self.marks.front().copied();
         match (output, mark) {
             (output, Some(mark)) if mark <= t && output.is_none_or(|output| mark < output) => {
                 self.marks.pop_front();
-                Some(Due { t: mark, output: None })
+                Some(SampleTime { t: mark, output: None })
             }
             (Some(output), _) if output <= t => {
                 self.next += 1;
-                Some(Due {
+                Some(SampleTime {
                     t: output,
                     output: Some(self.next - 1),
                 })

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::band::Bands;
 use super::growth::GrowingResponse;
-use super::null;
+use super::json_null;
 use super::sensitivity::figures::FigureSensitivity;
 use super::step_response::StepResponse;
-pub use super::wall::WallTimes;
+use super::uncertainty_band::Bands;
+pub use super::wall_time::WallTimes;
 use super::waves::GrowingWave;
 pub use crate::integrate::Counters;
 
@@ -31,7 +31,7 @@ pub enum Status {
 /// Reason why a ratio has no value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Absence {
+pub enum MissingRatio {
     /// Its denominator is below the numerical error of the run.
     BelowNumericalError,
 }
@@ -74,10 +74,10 @@ pub struct Quantity {
     pub window_error: Option<f64>,
     /// Reason why a ratio has no value over the run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub final_absent: Option<Absence>,
+    pub final_absent: Option<MissingRatio>,
     /// Reason why a ratio has no value over the window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub window_absent: Option<Absence>,
+    pub window_absent: Option<MissingRatio>,
 }
 
 impl Quantity {
@@ -175,27 +175,27 @@ pub struct EarlierRun {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Balances {
     /// Largest residual of the energy balance over the largest energy.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub energy_residual_relative: f64,
     /// Largest residual of any network's volume balance over the largest volume displaced in it or passed through its
     /// ports.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub volume_residual_relative: f64,
     /// Largest relative volume residual of networks without ports, which close to round-off at any tolerance.
-    #[serde(default, deserialize_with = "null::number")]
+    #[serde(default, deserialize_with = "json_null::number")]
     pub closed_volume_residual_relative: f64,
     /// Largest difference between the volumes that left a network by its ports' law and by its storage, over the volume passed.
-    #[serde(default, deserialize_with = "null::number")]
+    #[serde(default, deserialize_with = "json_null::number")]
     pub port_flow_residual_relative: f64,
     /// Error of the mesh: difference between two evaluations of the reactions of driven ends, over the reactions (root mean square).
     /// One is from the momentum of half a cell, the other from the section force at the end.
-    #[serde(default, deserialize_with = "null::number")]
+    #[serde(default, deserialize_with = "json_null::number")]
     pub reaction_difference_relative: f64,
     /// Largest residual of the momentum balance over the largest momentum or impulse.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub momentum_residual_relative: f64,
     /// Largest residual of the angular momentum balance over the largest angular momentum or angular impulse.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub angular_momentum_residual_relative: f64,
     /// Energies and works at the end [J].
     pub energy_j: BTreeMap<String, f64>,
@@ -226,7 +226,7 @@ pub struct ErrorEstimate {
 
 /// A coarser or looser run before a result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pilot {
+pub struct PilotRun {
     /// Beam cells per segment.
     pub cells_per_segment: usize,
     /// Fluid cells per bladder.
@@ -265,7 +265,7 @@ pub struct Accuracy {
     /// Errors by quantity, probe and port.
     pub quantities: BTreeMap<String, ErrorEstimate>,
     /// The runs before the result.
-    pub pilots: Vec<Pilot>,
+    pub pilots: Vec<PilotRun>,
 }
 
 /// Order of the mesh in files without this key.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_label;
 use crate::discrete::System;
-use crate::discrete::glance::{Glance, Watched};
+use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
@@ -24,7 +24,7 @@ pub struct Unphysical {
 
 /// Unphysical states of a run: the instant or load factor of the first, and the lowest pressure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Met {
+pub struct UnphysicalRecord {
     /// First crossing: both positions along the undeformed beam [m], and its instant or load factor.
     crossing: Option<([f64; 2], f64)>,
     /// Instant or load factor at which the liquid first fell below its limit.
@@ -59,7 +59,7 @@ impl Unphysical {
     }
 
     /// Warnings of unphysical states; `at` formats an instant or load factor.
-    pub fn warnings(&self, met: &Met, at: &dyn Fn(f64) -> String) -> Vec<String> {
+    pub fn warnings(&self, met: &UnphysicalRecord, at: &dyn Fn(f64) -> String) -> Vec<String> {
         let crossing = met.crossing.map(|(places, when)| {
             let [first, second] = places.map(|place| quantity(place, "m", 4));
             Code::BeyondRange.warning(format!(
@@ -85,14 +85,14 @@ impl Unphysical {
     }
 }
 
-impl Met {
+impl UnphysicalRecord {
     /// Adds a state at an instant or load factor.
-    pub fn take(&mut self, of: &Unphysical, glance: &Glance, when: f64) {
+    pub fn take(&mut self, of: &Unphysical, glance: &MonitoredValues, when: f64) {
         if self.crossing.is_none() {
             self.crossing = glance.crossing.map(|places| (places, when));
         }
         let Some(limit) = of.boils_below else { return };
-        let in_cells = glance.of(Watched::Low)[0];
+        let in_cells = glance.value_and_rate(MonitoredQuantity::Low)[0];
         let (lowest, place) = match in_cells <= glance.thinnest {
             true => (in_cells, (true, glance.lowest)),
             false => (glance.thinnest, (false, glance.thinnest_at)),

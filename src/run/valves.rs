@@ -2,9 +2,9 @@
 
 use crate::case::schema::Case;
 use crate::discrete::{CompleteState, System};
-use crate::model::hammer;
+use crate::model::water_hammer;
 
-/// Observes the flow through each valve as it closes, in the order of [`hammer::closings`].
+/// Observes the flow through each valve as it closes, in the order of [`water_hammer::closings`].
 pub struct ValveFlows {
     /// Index of the link in the mesh; times at which the valve begins to close and is closed [s].
     closings: Vec<(Option<usize>, [f64; 2])>,
@@ -14,12 +14,15 @@ impl ValveFlows {
     /// Creates the observer for the valves of a case.
     pub fn new(case: &Case, system: &System) -> Self {
         let links = system.fluid.as_ref().map_or(&[][..], |fluid| &fluid.links);
-        let of = |closing: hammer::ValveClosing| {
+        let of = |closing: water_hammer::ValveClosing| {
             let link = links.iter().position(|link| link.number == Some(closing.link));
             (link, closing.times)
         };
         Self {
-            closings: hammer::closings(case, &system.model).into_iter().map(of).collect(),
+            closings: water_hammer::closings(case, &system.model)
+                .into_iter()
+                .map(of)
+                .collect(),
         }
     }
 

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::strides;
+use super::max_step;
 use crate::case::schema::{Case, Formulation};
 use crate::dae::{BeamDae, Dae, Seeds};
 use crate::error::numbers::{quantity, significant};
@@ -103,7 +103,7 @@ impl WaveWatch {
         (published(model) || !reciprocal(model)).then(|| Self {
             end,
             next: 0,
-            stretches: strides::stretches(model, end),
+            stretches: max_step::stretches(model, end),
             first: (section.bending_stiffness / section.mass_per_length).sqrt() * (1.8751 / model.length).powi(2),
         })
     }

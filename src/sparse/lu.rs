@@ -31,17 +31,17 @@ impl Lu {
     pub fn new(pattern: &Pattern) -> Result<Self, KluError> {
         let blocks = BlockTridiagonal::new(pattern, DENSE * pattern.entries()).map(Box::new);
         match blocks {
-            Some(_) => Ok(Self::of(pattern, blocks, None)),
+            Some(_) => Ok(Self::with_method(pattern, blocks, None)),
             None => Self::sparse(pattern),
         }
     }
 
     /// Uses KLU in any case: only KLU's factors provide the sign of the determinant.
     pub fn sparse(pattern: &Pattern) -> Result<Self, KluError> {
-        Ok(Self::of(pattern, None, Some(Klu::new(pattern)?)))
+        Ok(Self::with_method(pattern, None, Some(Klu::new(pattern)?)))
     }
 
-    fn of(pattern: &Pattern, blocks: Option<Box<BlockTridiagonal>>, klu: Option<Klu>) -> Self {
+    fn with_method(pattern: &Pattern, blocks: Option<Box<BlockTridiagonal>>, klu: Option<Klu>) -> Self {
         Self {
             pattern: pattern.clone(),
             blocks,

@@ -4,12 +4,12 @@ use nalgebra::Complex;
 use slcbeam_dense::eigen;
 
 use super::SpectralError;
-use super::krylov::{FINITE, Vectors};
+use super::krylov::{FINITE, RotatedVectors};
 use super::pencil::Shifted;
 use crate::integrate::halt;
 
 /// Eigenvalues and eigenvectors, nearest the shift first.
-pub(super) fn pairs(shifted: &mut Shifted) -> Result<Vectors, SpectralError> {
+pub(super) fn pairs(shifted: &mut Shifted) -> Result<RotatedVectors, SpectralError> {
     let n = shifted.differential.len();
     let mut columns = vec![vec![Complex::default(); n]; n];
     let mut axis = vec![Complex::default(); n];

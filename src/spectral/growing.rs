@@ -5,7 +5,7 @@ use slcbeam_dense::real_eigenvalues;
 
 use super::krylov::{FINITE, unit};
 use super::pencil::Shifted;
-use super::{AT_LAST_DENSE, Pair, Pencil, SpectralError, refine::refine};
+use super::{AT_LAST_DENSE, EigenPair, Pencil, SpectralError, refine::refine};
 
 /// Bounds on the eigenvalues of interest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ const CERTAIN: f64 = 10.0;
 ///
 /// # Errors
 /// [`SpectralError`].
-pub fn growing(pencil: &Pencil, shift: f64, bounds: &Bounds) -> Result<Option<Vec<Pair>>, SpectralError> {
+pub fn growing(pencil: &Pencil, shift: f64, bounds: &Bounds) -> Result<Option<Vec<EigenPair>>, SpectralError> {
     if !pencil.finite() {
         return Err(SpectralError::NotFinite);
     }

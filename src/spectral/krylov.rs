@@ -17,7 +17,7 @@ use crate::integrate::halt;
 
 type C = Complex<f64>;
 /// Eigenvalues with their eigenvectors.
-pub(super) type Vectors = Vec<(C, Vec<C>)>;
+pub(super) type RotatedVectors = Vec<(C, Vec<C>)>;
 
 /// Ratio to the largest θ below which θ belongs to an infinite eigenvalue.
 pub(super) const FINITE: f64 = 1e-14;
@@ -29,7 +29,7 @@ pub(super) fn pairs(
     shifted: &mut Shifted,
     count: usize,
     options: &EigenvalueOptions,
-) -> Result<(Vectors, usize), SpectralError> {
+) -> Result<(RotatedVectors, usize), SpectralError> {
     let n = shifted.differential.len();
     let wanted = count.min(n);
     let size = (2 * wanted + 20).min(n);
@@ -176,7 +176,7 @@ impl Space {
     }
 
     /// Eigenvalues and eigenvectors from the first `wanted` Schur vectors.
-    fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> Vectors {
+    fn vectors(&self, shifted: &mut Shifted, q: &DMatrix<C>, t: &DMatrix<C>, wanted: usize) -> RotatedVectors {
         let largest = t[(0, 0)].norm();
         let finite = (0..wanted).take_while(|&k| t[(k, k)].norm() > FINITE * largest);
         finite

@@ -77,7 +77,7 @@ impl Default for EigenvalueOptions {
 
 /// An eigenvalue with its eigenvectors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct EigenPair {
     /// Eigenvalue `s`, in the unit of A over B.
     pub s: Complex<f64>,
     /// Right eigenvector `x`, of unit length; one entry per column.
@@ -93,7 +93,7 @@ pub struct Pair {
 /// Relative distance up to which an unrefined eigenvalue is the conjugate of another one.
 const CONJUGATE: f64 = 1e-6;
 
-impl Pair {
+impl EigenPair {
     fn conjugate(&self) -> Self {
         Self {
             s: self.s.conj(),
@@ -108,7 +108,7 @@ impl Pair {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Eigenvalues {
     /// Eigenpairs, nearest first.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<EigenPair>,
     /// Upper limit of the number of finite eigenvalues.
     pub finite: usize,
     /// Sparse factorisations.
@@ -198,7 +198,7 @@ pub fn nearest(
         }
     };
     pairs.truncate(count);
-    let mut refined: Vec<Pair> = Vec::with_capacity(pairs.len());
+    let mut refined: Vec<EigenPair> = Vec::with_capacity(pairs.len());
     let mut alone: Vec<usize> = vec![];
     for (s, x) in pairs {
         // A and B are real: the conjugate of an eigenpair is an eigenpair of the same accuracy
@@ -211,7 +211,7 @@ pub fn nearest(
             refined.push(refine::refine(&mut shifted, s, x)?);
         }
     }
-    let far = |pair: &Pair| (pair.s - shift).norm();
+    let far = |pair: &EigenPair| (pair.s - shift).norm();
     refined.sort_by(|a, b| far(a).total_cmp(&far(b)));
     Ok(Eigenvalues {
         pairs: refined,
@@ -225,7 +225,13 @@ pub fn nearest(
 
 /// `yᴴ (A' + s B') x / yᴴ B x` of an eigenpair, for entries A' and B' of the pencil's pattern: the shift of its eigenvalue by a change A'
 /// + s B' of the pencil, with the opposite sign.
-pub fn quotient(pattern: &crate::sparse::Pattern, a: &[f64], b: &[f64], of_b: &[f64], pair: &Pair) -> Complex<f64> {
+pub fn quotient(
+    pattern: &crate::sparse::Pattern,
+    a: &[f64],
+    b: &[f64],
+    of_b: &[f64],
+    pair: &EigenPair,
+) -> Complex<f64> {
     let (mut above, mut below) = (Complex::new(0.0, 0.0), Complex::new(0.0, 0.0));
     for (column, x) in pair.x.iter().enumerate() {
         for entry in pattern.column(column) {

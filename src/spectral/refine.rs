@@ -4,7 +4,7 @@ use nalgebra::Complex;
 
 use super::krylov::unit;
 use super::pencil::Shifted;
-use super::{Pair, SpectralError};
+use super::{EigenPair, SpectralError};
 
 type C = Complex<f64>;
 
@@ -21,7 +21,7 @@ const ROUNDINGS: f64 = 4.0;
 ///
 /// With x on the right-hand side, y belongs to the eigenvalue's whole left space, so repeated eigenvalues are harmless.
 /// For defective eigenvalues, such as those of rigid motions, `yᴴ B x` is small and the bound as large as the error.
-pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
+pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<EigenPair, SpectralError> {
     let pencil = shifted.pencil;
     let first = assess(shifted, s, unit(x))?;
     // solutions with a nearly singular matrix are huge: only their direction matters
@@ -35,7 +35,7 @@ pub(super) fn refine(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, Spe
 }
 
 /// Computes the quotient and the error bound for a vector.
-fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError> {
+fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<EigenPair, SpectralError> {
     let pencil = shifted.pencil;
     shifted.factor(s)?;
     let mut y = x.clone();
@@ -54,7 +54,7 @@ fn assess(shifted: &mut Shifted, s: C, x: Vec<C>) -> Result<Pair, SpectralError>
         .sum();
     let length = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
     let error = moved / weight.norm();
-    Ok(Pair {
+    Ok(EigenPair {
         s,
         x,
         left: y,

@@ -9,7 +9,7 @@ use crate::run::summary::{Status, Summary};
 pub type FollowedRow = (Vec<f64>, Vec<Vec<f64>>);
 
 /// Recorder of chosen columns of a run.
-pub struct Followed<'a> {
+pub struct ColumnRecorder<'a> {
     /// Names of the columns.
     names: &'a [String],
     /// Names of the parameters of the derivatives.
@@ -23,7 +23,7 @@ pub struct Followed<'a> {
     rows: Vec<FollowedRow>,
 }
 
-impl<'a> Followed<'a> {
+impl<'a> ColumnRecorder<'a> {
     /// Records `count` rows of columns, with derivatives.
     pub fn new(names: &'a [String], by: &'a [&'a str], count: usize, stop: &'a dyn Fn() -> bool) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl<'a> Followed<'a> {
     ///
     /// # Errors
     /// The run ended before the last row.
-    pub fn of(self, outcome: Outcome) -> Result<Vec<FollowedRow>> {
+    pub fn rows(self, outcome: Outcome) -> Result<Vec<FollowedRow>> {
         if self.rows.len() == self.count && self.rows.iter().all(|row| row.1.len() == self.by.len()) {
             return Ok(self.rows);
         }
@@ -55,7 +55,7 @@ impl<'a> Followed<'a> {
     }
 }
 
-impl Recorder for Followed<'_> {
+impl Recorder for ColumnRecorder<'_> {
     fn begin(&mut self, header: &Header) -> Result<()> {
         let missing = |name: &str| Error::Usage(format!("the run has no {name} at these values"));
         for name in self.names {

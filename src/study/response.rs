@@ -52,7 +52,7 @@ impl Request {
     ///
     /// # Errors
     /// Those of [`Response::new`].
-    pub fn of(&self, case: &Case) -> Result<LinearResponse> {
+    pub fn compute(&self, case: &Case) -> Result<LinearResponse> {
         LinearResponse::new(case, &self.input, &self.outputs, self.at)
     }
 }
@@ -139,7 +139,10 @@ pub fn respond(case: &Case, request: &Request, response: LinearResponse) -> Resu
     }
     drop(solver);
     for (other, factor) in meshes(case)? {
-        match request.of(&other).and_then(|response| all_at(&response, &frequencies)) {
+        match request
+            .compute(&other)
+            .and_then(|response| all_at(&response, &frequencies))
+        {
             Ok(others) => {
                 for (place, curve) in curves.iter_mut().enumerate() {
                     curve.errors.resize(frequencies.len(), 0.0);
@@ -246,7 +249,7 @@ fn plain(case: &Case, at: Option<f64>) -> std::result::Result<modes::Linearised,
 }
 
 /// Number of poles, or conjugate pairs, with positive real part.
-fn growing_among(pairs: &[spectral::Pair]) -> usize {
+fn growing_among(pairs: &[spectral::EigenPair]) -> usize {
     let growing = pairs.iter().filter(|pair| pair.s.im >= 0.0 && pair.s.re > pair.error);
     growing.count()
 }

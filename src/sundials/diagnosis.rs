@@ -8,7 +8,7 @@ use sundials_sys as s;
 use super::callbacks::Stop;
 use super::ida::Ida;
 use crate::dae::Dae;
-use crate::integrate::{IntegrationError, Worst};
+use crate::integrate::{IntegrationError, WorstUnknown};
 
 impl<D: Dae> Ida<D> {
     /// Resumes a panic of the equations or of the linear solver.
@@ -48,7 +48,7 @@ impl<D: Dae> Ida<D> {
     }
 
     /// The unknown with the largest weighted local error, or last Newton correction.
-    fn worst(&mut self) -> Option<Worst> {
+    fn worst(&mut self) -> Option<WorstUnknown> {
         let memory = self.memory.0;
         // SAFETY: IDA and the vector, to which it copies, are alive.
         let flag = unsafe { s::IDAGetEstLocalErrors(memory, self.scratch.raw()) };
@@ -63,7 +63,7 @@ impl<D: Dae> Ida<D> {
             .zip(self.scratch.entries())
             .map(|(error, weight)| (error * weight).abs());
         let (unknown, ratio) = ratios.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (ratio > 0.0).then(|| Worst {
+        (ratio > 0.0).then(|| WorstUnknown {
             unknown,
             name: self.dae().name(unknown),
             ratio,

@@ -10,7 +10,7 @@ use super::diagnosis::meaning;
 use super::integrals::{self, Correction};
 use super::linear_solver::LinearSolver;
 use super::options::IdaOptions;
-use super::sensitivities::Carried;
+use super::sensitivities::SensitivityVectors;
 use super::shared::Shared;
 use super::vector::Vector;
 use crate::case::schema::Method;
@@ -34,9 +34,9 @@ pub struct AcceptedStep {
 }
 
 /// IDA's memory, freed before everything it points to.
-pub(super) struct Memory(pub *mut c_void);
+pub(super) struct IdaMemory(pub *mut c_void);
 
-impl Drop for Memory {
+impl Drop for IdaMemory {
     fn drop(&mut self) {
         // SAFETY: created by `IDACreate` (or null, which is accepted), freed once.
         unsafe { s::IDAFree(&mut self.0) };
@@ -47,14 +47,14 @@ impl Drop for Memory {
 ///
 /// Fields are in the order in which they must be dropped.
 pub struct Ida<D: Dae> {
-    pub(super) memory: Memory,
+    pub(super) memory: IdaMemory,
     pub(super) solver: LinearSolver,
     pub(super) y: Vector,
     yp: Vector,
     pub(super) scratch: Vector,
     pub(super) quadratures: Option<Vector>,
     pub(super) correction: Correction,
-    pub(super) sensitivities: Option<Carried>,
+    pub(super) sensitivities: Option<SensitivityVectors>,
     pub(super) messages: Shared<Messages>,
     pub(super) bridge: Shared<Bridge<D>>,
     pub(super) context: Context,
@@ -91,7 +91,7 @@ impl<D: Dae> Ida<D> {
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::IDACreate(context.raw()) };
-        let memory = Memory(raw);
+        let memory = IdaMemory(raw);
         bridge.get_mut().ida = raw;
         if raw.is_null() {
             return Err(refuse("no memory for the integrator".to_owned()));

@@ -60,7 +60,7 @@ impl Limit {
         }
     }
 
-    fn of(self, now: f64, before: f64) -> f64 {
+    fn limit_slope(self, now: f64, before: f64) -> f64 {
         match self {
             Self::None => 0.0,
             Self::Now => now,
@@ -123,7 +123,7 @@ impl Correction {
                 if weight > 0.0 {
                     let own = || Limit::minmod(slope, self.slope[k]);
                     self.limits[k] = limits.map_or_else(own, |limits| limits[k]);
-                    self.limited[k] = weight * self.limits[k].of(slope, self.slope[k]);
+                    self.limited[k] = weight * self.limits[k].limit_slope(slope, self.slope[k]);
                 }
                 (self.slope[k], *before) = (slope, *now);
             }

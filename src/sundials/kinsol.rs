@@ -94,9 +94,9 @@ impl fmt::Display for KinsolError {
 impl std::error::Error for KinsolError {}
 
 /// KINSOL's memory, freed before everything it points to.
-struct Memory(*mut c_void);
+struct KinsolMemory(*mut c_void);
 
-impl Drop for Memory {
+impl Drop for KinsolMemory {
     fn drop(&mut self) {
         // SAFETY: created by `KINCreate` (or null, which is accepted), freed once.
         unsafe { s::KINFree(&mut self.0) };
@@ -114,7 +114,7 @@ struct Fixed<D> {
 ///
 /// Fields are in the order in which they must be dropped.
 pub struct Kinsol<D: Dae> {
-    memory: Memory,
+    memory: KinsolMemory,
     solver: LinearSolver,
     y: Vector,
     ones: Vector,
@@ -146,7 +146,7 @@ impl<D: Dae> Kinsol<D> {
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::KINCreate(context.raw()) };
-        let memory = Memory(raw);
+        let memory = KinsolMemory(raw);
         if raw.is_null() {
             return Err(refuse("no memory for the solver".to_owned()));
         }

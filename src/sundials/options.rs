@@ -1,6 +1,6 @@
 //! Settings of IDA.
 
-use crate::integrate::Absolute;
+use crate::integrate::AbsoluteTolerances;
 
 /// Settings of [`super::Ida`]. Weights of the error norm are `1 / (relative |yᵢ| + absoluteᵢ)`.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,7 +8,7 @@ pub struct IdaOptions {
     /// Relative tolerance, > 0.
     pub relative: f64,
     /// Absolute tolerances, > 0.
-    pub absolute: Absolute,
+    pub absolute: AbsoluteTolerances,
     /// Highest order of the backward differentiation formula, 1 to 5. Orders of 3 and above are unstable for undamped
     /// waves.
     pub max_order: u8,
@@ -39,7 +39,7 @@ impl Default for IdaOptions {
     fn default() -> Self {
         Self {
             relative: 1e-4,
-            absolute: Absolute::Same(1e-6),
+            absolute: AbsoluteTolerances::Same(1e-6),
             max_order: 2,
             nonlinear_coefficient: 0.33,
             delta_cj_setup: 0.25,

@@ -47,7 +47,7 @@ impl Slopes {
 }
 
 /// Vectors of an integrator for its sensitivities.
-pub(super) struct Carried {
+pub(super) struct SensitivityVectors {
     s: Vec<Vector>,
     sp: Vec<Vector>,
     pub(super) integrals: Vec<Vector>,
@@ -187,7 +187,7 @@ impl<D: Dae> Ida<D> {
             let made: Result<_, _> = all.iter().map(vector).collect();
             made.map_err(|message| IntegrationError::request(message, time))
         };
-        let carried = Carried {
+        let carried = SensitivityVectors {
             s: vectors(from)?,
             sp: vectors(rates)?,
             integrals: vectors(&vec![vec![0.0; integrals]; if integrals == 0 { 0 } else { count }])?,

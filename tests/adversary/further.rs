@@ -44,7 +44,7 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
 }
 
 fn attachment(r: &mut Random, b: &Beam) -> Value {
-    let at = *r.of(&[0.0, 0.25, 0.5, 0.8, 1.0, 1.0]);
+    let at = *r.choose(&[0.0, 0.25, 0.5, 0.8, 1.0, 1.0]);
     let (k, m) = (b.ei / b.length.powi(3), b.mass * b.length);
     let time = b.times.period;
     let mut one = json!({"at": at});
@@ -60,12 +60,12 @@ fn attachment(r: &mut Random, b: &Beam) -> Value {
         one["mass_kg"] = short(m * r.log(1e-2, 3.0));
     }
     if r.one_in(5) {
-        let key = *r.of(&["force_tangential_n", "force_normal_n"]);
+        let key = *r.choose(&["force_tangential_n", "force_normal_n"]);
         one[key] = signals::load(r, b.times, b.ei / (b.length * b.length));
     }
     if one.get("mass_kg").is_some() && r.one_in(3) {
         one["rotary_inertia_kg_m2"] = short(m * b.length * b.length * r.log(1e-4, 1e-1));
-        let key = *r.of(&["offset_across_m", "offset_along_m"]);
+        let key = *r.choose(&["offset_across_m", "offset_along_m"]);
         one[key] = short(r.sign() * b.length * r.log(1e-3, 0.3));
     }
     one
@@ -106,7 +106,7 @@ pub fn compression(r: &mut Random, pressure: f64) -> Map<String, Value> {
     let fluid = match r.below(3) {
         0 => json!({"bulk_modulus_pa": short(pressure * r.log(3.0, 1e4))}),
         1 => json!({"gas_fraction": short(r.log(1e-3, 0.5)), "ambient_pressure_pa": ambient}),
-        _ => json!({"kind": "gas", "ambient_pressure_pa": ambient, "polytropic_exponent": *r.of(&[1.0, 1.4])}),
+        _ => json!({"kind": "gas", "ambient_pressure_pa": ambient, "polytropic_exponent": *r.choose(&[1.0, 1.4])}),
     };
     fluid.as_object().expect("an object").clone()
 }

@@ -38,7 +38,7 @@ fn wall(r: &mut Random, b: &Beam, number: usize) -> Value {
     // Stiff against the beam: EI/l^4 of deflections, EI/l^3 of a force at a place.
     let stiff = r.log(1e1, 1e5);
     if r.one_in(2) {
-        wall["at"] = json!(*r.of(&[0.5, 0.9, 1.0]));
+        wall["at"] = json!(*r.choose(&[0.5, 0.9, 1.0]));
         wall["stiffness_n_m"] = short(stiff * b.ei / b.length.powi(3));
     } else {
         wall["stiffness_pa"] = short(stiff * b.ei / b.length.powi(4));
@@ -71,7 +71,7 @@ fn supplied(r: &mut Random, b: &Beam, case: &mut Value) {
     for k in 0..1 + r.below(2 * per_row as usize) as i64 {
         let bladder = if k < per_row { k + 1 } else { per_row - k - 1 };
         let ends = [
-            json!({"bladder": bladder, "end": *r.of(&["inlet", "outlet"])}),
+            json!({"bladder": bladder, "end": *r.choose(&["inlet", "outlet"])}),
             json!({"junction": "vessel"}),
         ];
         let way = r.below(2);

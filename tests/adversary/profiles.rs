@@ -31,7 +31,7 @@ pub fn profile(r: &mut Random, sane: bool) -> Value {
 /// Up to 30 waves; often a whole number, which a mesh may see as one that does not change.
 fn wave(r: &mut Random) -> Value {
     let waves = if r.one_in(2) {
-        json!(*r.of(&[1.0, 2.0, 4.0, 8.0, 10.0, 12.0, 16.0, 20.0, 30.0]))
+        json!(*r.choose(&[1.0, 2.0, 4.0, 8.0, 10.0, 12.0, 16.0, 20.0, 30.0]))
     } else {
         short(r.between(0.0, 30.0))
     };
@@ -39,7 +39,7 @@ fn wave(r: &mut Random) -> Value {
     if r.one_in(2) {
         wave["phase_rad"] = short(r.between(0.0, 6.2));
     }
-    let form = *r.of(&["cosine", "sine"]);
+    let form = *r.choose(&["cosine", "sine"]);
     json!({ form: wave })
 }
 
@@ -61,14 +61,14 @@ fn table(r: &mut Random) -> Value {
     at.sort_by(f64::total_cmp);
     at.dedup_by(|b, a| *b - *a < 3e-3);
     let values: Vec<Value> = at.iter().map(|_| short(r.between(-1.0, 1.0))).collect();
-    let interpolation = *r.of(&["linear", "monotone", "cubic"]);
+    let interpolation = *r.choose(&["linear", "monotone", "cubic"]);
     json!({"table": {"positions": at, "values": values, "interpolation": interpolation}})
 }
 
 /// A shape at the start with nothing at either end, whatever holds it: `x^2 (1 - x)^2`, alone or times waves.
 pub fn at_rest_at_its_ends(r: &mut Random, size: f64, sane: bool) -> Value {
     // Few binary digits, so that the sum at the end is nothing.
-    let a = 2f64.powf((16.0 * size).log2().floor()) * r.of(&[1.0, 1.25, 1.5, 1.75]);
+    let a = 2f64.powf((16.0 * size).log2().floor()) * r.choose(&[1.0, 1.25, 1.5, 1.75]);
     let hump = json!({"polynomial": {"coefficients": [0.0, 0.0, a, -2.0 * a, a]}});
     if sane || r.one_in(2) {
         return hump;

@@ -63,8 +63,8 @@ pub fn draw(seed: u64, kind: Kind) -> Value {
     let end = case["time"]["end_s"].as_f64().unwrap_or(b.times.end);
     if !sane && r.one_in(3) {
         // Whole parts of the run, so that the last output is at its end.
-        case["time"]["output_interval_s"] = json!(end / *r.of(&[20.0, 50.0, 200.0]));
-        case["time"]["window_s"] = json!(end / *r.of(&[2.0, 5.0, 10.0]));
+        case["time"]["output_interval_s"] = json!(end / *r.choose(&[20.0, 50.0, 200.0]));
+        case["time"]["window_s"] = json!(end / *r.choose(&[2.0, 5.0, 10.0]));
     }
     if r.one_in(3) {
         case["formulation"] = json!("published");

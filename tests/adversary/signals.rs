@@ -67,10 +67,10 @@ fn plain(r: &mut Random, t: Times, a: f64) -> Value {
             sine(a, r.log(0.2, 20.0) / t.period, phase, [0.0, 0.0, 1.0, 2.5][r.below(4)])
         }
         // As many cycles as samples might be taken of it.
-        3 => sine(a, *r.of(&[10.0, 25.0, 50.0, 100.0]) / end, 0.0, 0.0),
+        3 => sine(a, *r.choose(&[10.0, 25.0, 50.0, 100.0]) / end, 0.0, 0.0),
         4 => sigmoid(r, t, a),
         5 | 6 => {
-            let shape = *r.of(&["linear", "smooth"]);
+            let shape = *r.choose(&["linear", "smooth"]);
             let (start, duration) = (end * r.between(0.0, 0.9), sudden(r, end));
             ramp(r, a, start, duration, shape)
         }
@@ -134,7 +134,7 @@ fn ramp(r: &mut Random, a: f64, start: f64, duration: f64, shape: &str) -> Value
 /// Points anywhere in the run, now and then close to each other.
 fn table(r: &mut Random, t: Times, a: f64, count: usize) -> Value {
     let (mut at, mut times, mut values) = (0.0, vec![], vec![]);
-    let interpolation = *r.of(&["linear", "monotone", "cubic"]);
+    let interpolation = *r.choose(&["linear", "monotone", "cubic"]);
     for k in 0..count {
         let least = if t.sane || interpolation != "linear" { 0.2 } else { 1e-3 };
         at += t.end * r.log(least, 1.0) / count as f64 * if k == 0 { 0.0 } else { 1.0 };

@@ -78,7 +78,7 @@ fn odd(r: &mut Random) -> Value {
         "1e-9",
         "1e9",
     ];
-    serde_json::from_str(r.of::<&str>(&texts)).expect("JSON")
+    serde_json::from_str(r.choose::<&str>(&texts)).expect("JSON")
 }
 
 fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
@@ -146,7 +146,7 @@ fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
         &["effects", "--quiet", "--budget", "1s", "--repeats", "0"],
         &["study", "--quiet", "--budget", "1s"],
     ];
-    let mut arguments: Vec<String> = r.of(&commands).iter().map(ToString::to_string).collect();
+    let mut arguments: Vec<String> = r.choose(&commands).iter().map(ToString::to_string).collect();
     let flags: [&[&str]; 9] = [
         &[],
         &[],
@@ -158,7 +158,7 @@ fn trial(seed: u64, cases: &[PathBuf]) -> Trial {
         &["--set", "x"],
         &["--no-such-flag"],
     ];
-    arguments.extend(r.of(&flags).iter().map(ToString::to_string));
+    arguments.extend(r.choose(&flags).iter().map(ToString::to_string));
     Trial {
         text,
         arguments,

@@ -1,6 +1,6 @@
 //! What is read from the user: very many entries, very large sizes, tables from files, text that a terminal would obey.
 
-mod words;
+mod text;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -175,7 +175,7 @@ fn a_case_names_its_fluid() {
         (water.density_kg_m3, water.viscosity_pa_s)
     );
     assert_eq!(
-        case.origins.words()["/fluid/viscosity_pa_s"],
+        case.origins.describe()["/fluid/viscosity_pa_s"],
         "preset water (IAPWS SR6-08(2011))"
     );
     let resolved: Value = serde_json::from_str(&case.resolved_json()).unwrap();
@@ -188,7 +188,7 @@ fn a_case_names_its_fluid() {
         (fluid.viscosity_pa_s / 10.8e-3 - 1.0).abs() < 0.05,
         "20 C where none is given"
     );
-    assert_eq!(own.origins.words().get("/fluid/density_kg_m3"), None);
+    assert_eq!(own.origins.describe().get("/fluid/density_kg_m3"), None);
     let over = with(json!({"preset": "air"})).unwrap();
     assert!(over.fluid.as_ref().unwrap().density_kg_m3 < 1.3);
     // p/(R T): a gas has its density at the ambient pressure, a liquid everywhere

@@ -251,7 +251,7 @@ fn every_coefficient_has_an_origin() {
         "\"beam\": {\"bending_stiffness_factor\": 0.7}, \"tubes\": {\"permeability_m4\": null}, \"ends\"",
     );
     let sets = ["/bladders/area_per_moment_m2_per_n_m={\"opening\": 1e-6, \"closing\": 2e-6}".to_owned()];
-    let words = parsed(&text, Path::new(""), &sets).expect("a case").origins.words();
+    let words = parsed(&text, Path::new(""), &sets).expect("a case").origins.describe();
     for (pointer, origin) in [
         ("/beam/axial_stiffness_factor", "preset matia-gat-beam"),
         ("/beam/bending_stiffness_factor", "case"),
@@ -268,12 +268,12 @@ fn every_coefficient_has_an_origin() {
     }
     let dry = little(&["/fluid=null", "/bladders=null", "/tubes=null"])
         .origins
-        .words();
+        .describe();
     assert!(dry.keys().all(|k| k.starts_with("/beam/")), "{dry:?}");
     let resolved = little(&[]).resolved_json();
     let again = parsed(&resolved, Path::new(""), &[]).expect("a case");
     assert_eq!(again, little(&[]).resolved(), "origins are no part of a case");
-    let words = again.origins.words();
+    let words = again.origins.describe();
     assert!(
         words.get("/bladders/permeability_m4").is_some_and(|w| w == "case"),
         "{words:?}"

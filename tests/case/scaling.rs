@@ -127,7 +127,7 @@ fn coefficients_given_with_a_modulus_belong_to_it() {
     );
     let words = read(&whole(), &["/beam/young_modulus_pa=1e6".into()], &[])
         .origins
-        .words();
+        .describe();
     assert_eq!(
         words[PER_PRESSURE],
         "preset matia-gat-beam, x 2 to follow modulus and sizes"

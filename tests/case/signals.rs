@@ -1,14 +1,14 @@
 //! Functions of time and place: exact derivatives, smooth joins, switching times.
 
 use proptest::prelude::*;
-use slcbeam::functions::{Clock, Jet, Profile, Signal};
+use slcbeam::functions::{Jet, Profile, Signal, SmoothTime};
 
 fn signal(json: &str) -> Signal {
     serde_json::from_str(json).unwrap()
 }
 
 fn jet(signal: &Signal, t: f64) -> Jet {
-    signal.jet(Clock { t, within: t })
+    signal.jet(SmoothTime { t, within: t })
 }
 
 fn simple() -> BoxedStrategy<Signal> {
@@ -57,7 +57,7 @@ proptest! {
     #[test]
     fn derivatives_agree_with_differences(signal in any_signal(), t in 0.01..2.5f64) {
         let h = 1e-5;
-        let at = |t: f64, within: f64| signal.jet(Clock { t, within });
+        let at = |t: f64, within: f64| signal.jet(SmoothTime { t, within });
         let (before, here, after) = (at(t - h, t), at(t, t), at(t + h, t));
         let scale = 1.0 + here.rate.abs() + here.acceleration.abs();
         let rate = (after.value - before.value) / (2.0 * h);
@@ -101,11 +101,11 @@ fn a_smooth_start_joins_twice_differentiably() {
 #[test]
 fn a_branch_is_chosen_by_the_interval_not_by_the_instant() {
     let step = signal(r#"{"ramp":{"to":3,"start_s":0.5,"duration_s":0}}"#);
-    assert_eq!(step.jet(Clock { t: 0.5, within: 0.4 }).value, 0.0);
-    assert_eq!(step.jet(Clock { t: 0.5, within: 0.6 }).value, 3.0);
+    assert_eq!(step.jet(SmoothTime { t: 0.5, within: 0.4 }).value, 0.0);
+    assert_eq!(step.jet(SmoothTime { t: 0.5, within: 0.6 }).value, 3.0);
     let zigzag = signal(r#"{"table":{"times_s":[0,1,2],"values":[0,1,0],"interpolation":"linear"}}"#);
-    assert_eq!(zigzag.jet(Clock { t: 1.0, within: 0.5 }).rate, 1.0);
-    assert_eq!(zigzag.jet(Clock { t: 1.0, within: 1.5 }).rate, -1.0);
+    assert_eq!(zigzag.jet(SmoothTime { t: 1.0, within: 0.5 }).rate, 1.0);
+    assert_eq!(zigzag.jet(SmoothTime { t: 1.0, within: 1.5 }).rate, -1.0);
     assert_eq!(zigzag.smooth_intervals(1.5), [(0.0, 1.0), (1.0, 1.5)]);
 }
 
@@ -233,14 +233,14 @@ fn third_derivatives_agree_with_differences() {
         let h = 1e-3;
         let a = |k: f64| {
             signal
-                .jet(Clock {
+                .jet(SmoothTime {
                     t: t + k * h,
                     within: t,
                 })
                 .acceleration
         };
         let expected = (a(-2.0) - 8.0 * a(-1.0) + 8.0 * a(1.0) - a(2.0)) / (12.0 * h);
-        let jerk = signal.jet(Clock { t, within: t }).jerk;
+        let jerk = signal.jet(SmoothTime { t, within: t }).jerk;
         assert!(
             (jerk - expected).abs() < 1e-6 * (1.0 + jerk.abs()),
             "{text}: {jerk} {expected}"
@@ -255,7 +255,7 @@ fn a_time_that_stands_twice_is_a_jump() {
         let step = signal(&format!(
             r#"{{"table":{{"times_s":[0,0.25,0.5,0.5,0.75,1],"values":[0,0.5,1,3,2,1],"interpolation":"{kind}"}}}}"#
         ));
-        let at = |t: f64, within: f64| step.jet(Clock { t, within });
+        let at = |t: f64, within: f64| step.jet(SmoothTime { t, within });
         for (t, within, value, rate) in [(0.5, 0.4, 1.0, 2.0), (0.5, 0.6, 3.0, -4.0), (0.25, 0.3, 0.5, 2.0)] {
             let jet = at(t, within);
             assert!(
@@ -295,7 +295,7 @@ fn a_table_that_repeats_is_periodic() {
     let sine = |t: f64| (std::f64::consts::PI * (t - 1.0)).sin();
     for k in 0..=1000 {
         let t = -4.0 + 0.0137 * f64::from(k);
-        let jet = spline.jet(Clock { t, within: 0.0 });
+        let jet = spline.jet(SmoothTime { t, within: 0.0 });
         assert!((jet.value - sine(t)).abs() < 7e-5, "{t} {jet:?}");
         let e = 1e-6;
         let beside = [t - e, t + e].map(|t| spline.value(t));

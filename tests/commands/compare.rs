@@ -221,7 +221,7 @@ fn several_are_compared_with_one() {
             )
         })
         .collect();
-    let found = compare::ManyComparison::of(&all, 1);
+    let found = compare::ManyComparison::new(&all, 1);
     assert_eq!(found.comparisons[0], compare::compare(&all[1], &all[0]));
     assert_eq!(found.comparisons[1], compare::compare(&all[1], &all[2]));
     let said = |more: &[&str]| {

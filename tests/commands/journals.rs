@@ -25,7 +25,7 @@ const WIRED: &str =
 const SHAKEN: &str = "cases/valves-open.json --set /mesh/cells_per_segment=1";
 const MODULUS: &str = "/beam/young_modulus_pa=1e6:4e6";
 
-fn words(text: &str) -> Vec<&str> {
+fn describe(text: &str) -> Vec<&str> {
     text.split_whitespace().collect()
 }
 
@@ -69,7 +69,7 @@ fn killed_and_resumed(asked: &str, file: &str) {
     let dir = TempDir::new().expect("a folder");
     let [whole, out] = ["whole", "killed"].map(|name| dir.path().join(name));
     let all = |out: &Path| {
-        let mut all: Vec<String> = words(asked).into_iter().map(String::from).collect();
+        let mut all: Vec<String> = describe(asked).into_iter().map(String::from).collect();
         all.extend(["--quiet".into(), "--out".into(), out.display().to_string()]);
         all
     };
@@ -268,7 +268,7 @@ fn the_clock_ends_every_command() {
     for (k, (asked, file)) in commands.iter().enumerate() {
         let out = dir.path().join(format!("{k}"));
         let place = out.display().to_string();
-        let all = [&words(asked)[..], &["--max-wall", "0.7", "--quiet", "--out", &place]].concat();
+        let all = [&describe(asked)[..], &["--max-wall", "0.7", "--quiet", "--out", &place]].concat();
         let begun = Instant::now();
         let said = say(&all);
         assert!(

@@ -17,6 +17,6 @@ mod signals;
 mod study;
 mod sweep;
 mod swung;
+mod text;
 mod uncertain;
 mod verify;
-mod words;

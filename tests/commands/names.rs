@@ -7,7 +7,7 @@ use std::thread;
 
 use serde_json::Value;
 
-use super::words::slcbeam;
+use super::text::slcbeam;
 
 /// Goal: every heading of a table and every key of a file that commands leave is explained.
 #[test]

@@ -3,9 +3,9 @@
 use slcbeam::output::ResultFolder;
 use slcbeam::output::kind::FolderKind;
 use slcbeam::output::study as files;
-use slcbeam::study::accuracy::front::{self, CostMark};
+use slcbeam::study::accuracy::pareto_front::{self, CostMark};
 use slcbeam::study::accuracy::study::Study;
-use slcbeam::study::accuracy::trial::{Ending, RunPurpose};
+use slcbeam::study::accuracy::trial::{RunPurpose, TrialOutcome};
 use slcbeam::study::accuracy::{Budget, Scheme, StudyPlan, study};
 use slcbeam::study::evaluations::Evaluations;
 
@@ -146,7 +146,10 @@ fn a_budget_is_kept_and_what_is_left_out_has_a_reason() {
         .filter(|p| p.trial.role == RunPurpose::Point)
         .collect();
     assert_eq!(points.len(), 12, "a row each");
-    let unfinished: Vec<_> = points.iter().filter(|p| p.trial.ending != Ending::Finished).collect();
+    let unfinished: Vec<_> = points
+        .iter()
+        .filter(|p| p.trial.ending != TrialOutcome::Finished)
+        .collect();
     assert!(!unfinished.is_empty() && unfinished.len() < 12);
     assert!(unfinished.iter().all(|p| p.trial.reason.is_some()));
     assert!(files::table(&found).contains("not finished"));
@@ -259,37 +262,37 @@ fn the_front_holds_what_no_other_beats() {
         (f64::NAN, 0.1),
         (2e-1, 1.0),
     ]);
-    let front = front::front(&points);
+    let front = pareto_front::front(&points);
     assert_eq!(front, [0, 1, 3]);
-    let answers = front::answers(&points, &front, &[0.5, 5e-2, 1e-3, 1e-4]);
+    let answers = pareto_front::answers(&points, &front, &[0.5, 5e-2, 1e-3, 1e-4]);
     assert_eq!(
         answers.iter().map(|a| a.point).collect::<Vec<_>>(),
         [Some(0), Some(1), Some(3), None]
     );
-    assert!(front::front(&[]).is_empty());
+    assert!(pareto_front::front(&[]).is_empty());
 }
 
 #[test]
 fn the_foot_and_the_balance_of_a_line() {
     let cost = [3.0, 1.0, 2.0, 4.0];
-    let foot = front::cost_minimum(&[0, 1, 2, 3], &cost, &[30.0, 10.0, 20.0, 40.0]).unwrap();
+    let foot = pareto_front::cost_minimum(&[0, 1, 2, 3], &cost, &[30.0, 10.0, 20.0, 40.0]).unwrap();
     assert_eq!((foot.cheapest, foot.looser, foot.factor), (1, 0, 3.0));
     // A clock that had an accident is no foot.
     assert_eq!(
-        front::cost_minimum(&[0, 1, 2, 3], &cost, &[10.0, 10.0, 20.0, 40.0]),
+        pareto_front::cost_minimum(&[0, 1, 2, 3], &cost, &[10.0, 10.0, 20.0, 40.0]),
         None
     );
-    assert_eq!(front::cost_minimum(&[0, 1], &[1.0, 2.0], &[1.0, 2.0]), None);
+    assert_eq!(pareto_front::cost_minimum(&[0, 1], &[1.0, 2.0], &[1.0, 2.0]), None);
     // Temporal error 1e-1, 1e-2, 1e-4 against 1e-3 in space: halfway between the last two in logarithms.
     let line = [
         (1e-2, 1e-1, 1e-1, 1.0),
         (1e-3, 1e-2, 1e-2, 10.0),
         (1e-4, 1e-4, 1e-3, 100.0),
     ];
-    let at = front::balance(&line, 1e-3).unwrap();
+    let at = pareto_front::balance(&line, 1e-3).unwrap();
     assert!((at.rtol / 1e-3_f64.powf(0.5) / 1e-4_f64.powf(0.5) - 1.0).abs() < 1e-12);
     assert!((at.cost / 1000_f64.sqrt() - 1.0).abs() < 1e-12);
-    assert_eq!(front::balance(&line, 1e-6), None);
+    assert_eq!(pareto_front::balance(&line, 1e-6), None);
 }
 
 #[test]
@@ -305,14 +308,14 @@ fn the_sentence_says_what_an_accuracy_costs() {
     let (coarse, fine) = (at(&found, 2, 1e-3), at(&found, 4, 1e-4));
     found.points[coarse].trial.wall_min_s = 0.03;
     found.points[fine].trial.wall_min_s = 0.4;
-    let answer = |accuracy, point| front::CheapestPoint { accuracy, point };
+    let answer = |accuracy, point| pareto_front::CheapestPoint { accuracy, point };
     found.answers = vec![
         answer(1e-1, Some(coarse)),
         answer(1e-2, Some(coarse)),
         answer(1e-3, Some(fine)),
         answer(1e-4, None),
     ];
-    found.feet = vec![front::CostMinimum {
+    found.feet = vec![pareto_front::CostMinimum {
         cheapest: coarse,
         looser: at(&found, 2, 1e-2),
         factor: 3.0,

@@ -35,7 +35,7 @@ impl Random {
         if self.one_in(2) { 1.0 } else { -1.0 }
     }
     /// One of some.
-    pub fn of<'a, T>(&mut self, some: &'a [T]) -> &'a T {
+    pub fn choose<'a, T>(&mut self, some: &'a [T]) -> &'a T {
         &some[self.below(some.len())]
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use slcbeam::case::schema::Effect;
 use slcbeam::discrete::System;
-use slcbeam::run::known;
+use slcbeam::run::early_warnings;
 use slcbeam::run::modes::{self, ModeOptions};
 
 use super::{RIG, read, run};
@@ -95,7 +95,7 @@ fn what_no_longer_flows_does_not_hammer() {
     let sets = [&[WATER, JUNCTIONS, &tubes, PORTS, GAUGE, AUTO, GONE], &TIMES[..]].concat();
     let hammers = |all: Vec<String>| all.into_iter().find(|w| w.starts_with("W038"));
     let case = read(RIG, &sets);
-    let bound = hammers(known::warnings(&case, &System::new(&case).unwrap()));
+    let bound = hammers(early_warnings::warnings(&case, &System::new(&case).unwrap()));
     assert!(bound.is_some_and(|told| told.contains("the largest steady velocity")));
     let [gone, early, flows] = [
         sets.clone(),

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde_json::{Value, json};
 use slcbeam::case::Case;
-use slcbeam::functions::signals::Clock;
+use slcbeam::functions::signals::SmoothTime;
 use slcbeam::run::modes::linearise;
 use slcbeam::run::periodic::{PeriodicScene, record, shoot};
 use slcbeam::run::record::Memory;
@@ -81,7 +81,7 @@ fn what_is_let_in_is_the_signal() {
                 let (rtol_set, method_set) = (format!("/solver/rtol={rtol:e}"), format!("/solver/method=\"{method}\""));
                 let (memory, summary) = run(&case.to_string(), &[&rtol_set, &method_set]);
                 let given: slcbeam::functions::Signal = serde_json::from_value(signal()).unwrap();
-                let exact = |t: f64| given.jet(Clock { t, within: t }).value;
+                let exact = |t: f64| given.jet(SmoothTime { t, within: t }).value;
                 let times = memory.column("t").unwrap();
                 let off = |name: &str| {
                     let told = memory.column(name).unwrap();

@@ -217,7 +217,7 @@ fn a_resonant_ripple_on_a_slow_load_keeps_inertia() {
 fn largest_steps_see_what_no_break_marks() {
     let largest = |signal: &str, end: f64| {
         let case = written(BEAM, &[tip(signal), format!("/time/end_s={end}")]);
-        slcbeam::run::strides::Strides::new(&case, &System::new(&case).unwrap()).least()
+        slcbeam::run::max_step::StepLimits::new(&case, &System::new(&case).unwrap()).least()
     };
     let mut coefficients = vec!["0"; 60];
     coefficients.push("1");

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use slcbeam::error::At;
+use slcbeam::error::StopPoint;
 use slcbeam::run::equilibrium::{self, EquilibriumOptions, EventKind};
 
 use crate::common::{parse, path_of, shipped, solved, unit};
@@ -102,7 +102,7 @@ fn beam_that_nothing_holds_is_refused() {
     let fault = path.fault.expect("no equilibrium");
     assert!(fault.what.contains("no equilibrium"), "{}", fault.what);
     // an equilibrium has no time, so the error reports none
-    assert_eq!((fault.at, fault.at.time_s()), (At::LoadFactor(0.0), None));
+    assert_eq!((fault.at, fault.at.time_s()), (StopPoint::LoadFactor(0.0), None));
     assert!(fault.cause.is_some_and(|c| c.contains("nothing holds")));
 }
 

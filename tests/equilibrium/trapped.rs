@@ -7,7 +7,7 @@ use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, follow, system};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::study::sense::basis::Basis;
-use slcbeam::study::sense::find::{SenseOptions, find};
+use slcbeam::study::sense::estimate_at_rest::{SenseOptions, find};
 use slcbeam::study::sense::pressures::PressureTable;
 
 use crate::common::{parse, path_of};

@@ -18,7 +18,7 @@ struct Answer {
 
 impl Answer {
     /// Runs `slcbeam COMMAND tests/faults/NAME.json` with changes of the case.
-    fn of(command: &str, name: &str, sets: &[&str]) -> Self {
+    fn run_command(command: &str, name: &str, sets: &[&str]) -> Self {
         let dir = tempfile::tempdir().expect("a folder");
         let case = format!("tests/faults/{name}.json");
         let out = dir.path().join("out").display().to_string();
@@ -32,7 +32,7 @@ impl Answer {
     }
 
     fn run(name: &str, sets: &[&str]) -> Self {
-        let answer = Self::of("run", name, sets);
+        let answer = Self::run_command("run", name, sets);
         assert_eq!(answer.said.code, 0, "{name}: {}", answer.said.err);
         answer
     }
@@ -186,7 +186,7 @@ fn a_valve_that_shuts_hammers() {
 /// Source: `u1 = -(q/k + smoothing/2)`, and a damped run. Goal: the equilibrium of a beam that lies on a wall is found.
 #[test]
 fn a_beam_lies_on_a_wall() {
-    let answer = Answer::of("equilibrium", "lying-on-wall", &[]);
+    let answer = Answer::run_command("equilibrium", "lying-on-wall", &[]);
     assert_eq!(answer.said.code, 0, "{}", answer.said.err);
     let tip = answer.summary["quantities"]["tip_u1_m"].as_f64().expect("a tip");
     near("tip", tip, -5.405e-5, 1e-4);
@@ -195,7 +195,7 @@ fn a_beam_lies_on_a_wall() {
 /// Source: the solution, a strain of 0.008. Goal: no warning of a strain that was only expected.
 #[test]
 fn the_strain_of_the_solution_decides() {
-    let answer = Answer::of("equilibrium", "cable-w004", &[]);
+    let answer = Answer::run_command("equilibrium", "cable-w004", &[]);
     assert_eq!(answer.said.code, 0, "{}", answer.said.err);
     assert!(
         answer.warnings("W004").is_empty() && !answer.said.out.contains("W004"),
@@ -215,7 +215,7 @@ fn a_release_does_not_grow() {
 /// Goal: a table without headings is rejected where it stands, and the result is not touched.
 #[test]
 fn a_table_without_headings_is_rejected() {
-    let answer = Answer::of("run", "no-header", &[]);
+    let answer = Answer::run_command("run", "no-header", &[]);
     assert_eq!(answer.said.code, 3);
     assert!(
         answer.said.err.contains("E008") && answer.said.err.contains("headings"),

@@ -5,15 +5,15 @@ use std::fs;
 use serde_json::Value;
 use slcbeam::case::parameter::with;
 use slcbeam::case::{self, Case};
-use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::normal;
+use slcbeam::numerics::rng::Rng;
 use slcbeam::run::equilibrium::{self, EquilibriumOptions};
 use slcbeam::run::record::{Control, Memory};
 use slcbeam::study::data::{DataTable, Match};
 use slcbeam::study::fit::fit;
 use slcbeam::study::fit::problem::{FitProblem, FitRequest};
-use slcbeam::study::fit::robust::Loss;
-use slcbeam::study::span::ParameterBounds;
+use slcbeam::study::fit::robust::LossFunction;
+use slcbeam::study::search_bounds::ParameterBounds;
 use tempfile::TempDir;
 
 pub use crate::program::say;
@@ -51,7 +51,7 @@ pub fn load(name: &str, sets: &[&str]) -> Case {
 
 /// A source of normal deviations.
 pub fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut chance = Chance::new(seed, 7);
+    let mut chance = Rng::new(seed, 7);
     move || normal::quantile(chance.share())
 }
 
@@ -117,7 +117,7 @@ pub fn by_squares(spans: &[(&str, f64, f64)], matches: &[&str]) -> FitRequest {
         time: None,
         drives: vec![],
         noise: vec![],
-        loss: Loss::Squares,
+        loss: LossFunction::Squares,
         starts: 1,
         jobs: 1,
     }

@@ -52,7 +52,7 @@ fn rectangle(s: C, a: f64, b: f64, viscosity: f64, density: f64) -> C {
 
 /// What flow along 1 m of the bladders of a case has beyond the resistance of creeping flow.
 fn along(case: &Case) -> FlowLaw {
-    let network = ResolvedNetwork::of(case).unwrap().unwrap();
+    let network = ResolvedNetwork::from_case(case).unwrap().unwrap();
     network.along_bladders.unwrap().over(1.0)
 }
 

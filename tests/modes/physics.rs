@@ -186,7 +186,7 @@ fn the_buckled_column_swings() {
     )
     .unwrap();
     let first = |share: f64| {
-        let found = modes::of(modes::at_equilibrium(&case, share / 5.0).unwrap(), &plan(3)).unwrap();
+        let found = modes::compute(modes::at_equilibrium(&case, share / 5.0).unwrap(), &plan(3)).unwrap();
         assert!(!found.about.moving(), "{:e}", found.about.rate);
         assert!(
             found.modes.iter().all(|m| m.kind == TimeBehavior::Oscillation),
@@ -224,7 +224,7 @@ fn shapes_are_alike_or_orthogonal() {
 #[test]
 fn passive_as_the_audit_has_it() {
     let mut case = wet(10, 8.68e-4, 5e-6);
-    let of = |case: &Value| passivity::of(&Model::whole(&checked(case), true).unwrap()).unwrap();
+    let of = |case: &Value| passivity::assess(&Model::whole(&checked(case), true).unwrap()).unwrap();
     let section = Model::whole(&checked(&case), true).unwrap().section;
     let r = 100.0 * 0.046;
     let least = |am: f64| 1.0 - (2.0 * section.bending_stiffness * r * am * am / 1.75e-10).sqrt();
@@ -259,7 +259,7 @@ fn eigenvalues_move_as_differences_say() {
     for at in [None, Some(0.5)] {
         let find = |case: &case::Case| match at {
             None => modes::modes(case, &plan(4)),
-            Some(at) => modes::at_equilibrium(case, at).and_then(|about| modes::of(about, &plan(4))),
+            Some(at) => modes::at_equilibrium(case, at).and_then(|about| modes::compute(about, &plan(4))),
         };
         let base = find(&case).unwrap();
         for pointer in [

@@ -9,7 +9,7 @@ use slcbeam::study::analysis::AnalysisKind;
 use slcbeam::study::optimize::problem::{Goal, OptimizationProblem, OptimizationRequest};
 use slcbeam::study::optimize::wiring::Alternative;
 use slcbeam::study::optimize::{Candidate, optimise};
-use slcbeam::study::span::ParameterBounds;
+use slcbeam::study::search_bounds::ParameterBounds;
 
 use crate::common::*;
 

@@ -1,5 +1,6 @@
 //! Plain English: pages, comments and messages avoid habits that make readers stumble.
 
+use std::collections::BTreeMap;
 use std::fs;
 
 use crate::files::files;
@@ -72,7 +73,7 @@ fn sentences(page: &str) -> Vec<String> {
     all
 }
 
-fn words(sentence: &str) -> usize {
+fn describe(sentence: &str) -> usize {
     let word = |text: &&str| text.chars().any(|c| c.is_ascii_alphabetic());
     sentence.split_whitespace().filter(word).count()
 }
@@ -97,8 +98,8 @@ fn pages_are_plain() {
                 found.push(format!("{name}:{k}: {word}"));
             }
         }
-        let long = sentences(&page).into_iter().filter(|s| words(s) > LONGEST_SENTENCE);
-        found.extend(long.map(|s| format!("{name}: {} words: {s}", words(&s))));
+        let long = sentences(&page).into_iter().filter(|s| describe(s) > LONGEST_SENTENCE);
+        found.extend(long.map(|s| format!("{name}: {} words: {s}", describe(&s))));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
@@ -123,4 +124,36 @@ fn the_source_is_plain() {
         }
     }
     assert!(found.is_empty(), "{} lines\n{}", found.len(), found.join("\n"));
+}
+
+/// Goal: a reader who searches for a public type finds one; constructors and descriptions have names that can be searched for.
+#[test]
+fn names_are_unique() {
+    let mut types: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    let mut found = vec![];
+    for path in files("src", &["rs"]) {
+        let at = path.display().to_string();
+        for line in fs::read_to_string(&path).unwrap().lines() {
+            let words: Vec<&str> = line.split(|c: char| !(c.is_alphanumeric() || c == '_')).collect();
+            let name = |keyword| {
+                let k = words.iter().position(|word| *word == keyword)?;
+                words.get(k + 1).map(|name| (*name).to_owned())
+            };
+            let public = words.iter().find(|word| !word.is_empty()) == Some(&"pub");
+            let kinds = ["struct", "enum", "trait"];
+            if let Some(name) = kinds
+                .into_iter()
+                .find_map(name)
+                .filter(|_| public && !line.contains("//"))
+            {
+                types.entry(name).or_default().push(at.clone());
+            }
+            if let Some(name) = name("fn").filter(|name| ["of", "words"].contains(&name.as_str())) {
+                found.push(format!("{at}: fn {name}"));
+            }
+        }
+    }
+    let twice = types.iter().filter(|(_, at)| at.len() > 1);
+    found.extend(twice.map(|(name, at)| format!("{name}: {}", at.join(", "))));
+    assert!(found.is_empty(), "{} names\n{}", found.len(), found.join("\n"));
 }

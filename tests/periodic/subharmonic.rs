@@ -49,7 +49,7 @@ fn first() -> f64 {
         near_hz: 20.0,
         limits: false,
     };
-    modes::of(about, &plan).expect("modes").modes[0]
+    modes::compute(about, &plan).expect("modes").modes[0]
         .frequency_hz()
         .expect("a swing")
 }
@@ -104,7 +104,7 @@ fn doubled_period_has_the_averaged_amplitude() {
         println!(
             "ratio {ratio}: {found:e} m, averaged {exact:e}, off by {:.2e}; {}",
             found / exact - 1.0,
-            periods.words()
+            periods.describe()
         );
         assert!((found / exact - 1.0).abs() < 0.02, "{ratio}: {found:e} {exact:e}");
         let verdict = floquet::multipliers(&scene, &mut cycle, 4).verdict;
@@ -140,11 +140,11 @@ fn a_cycle_of_one_period_is_told_as_one() {
     let case = shaken(2.0 * f, f, 0.008, 1e-3);
     let (_, _, periods) = subharmonic::find(&case, 2).expect("a cycle");
     assert_eq!((periods.asked, periods.shortest, periods.beside), (2, 1, false));
-    assert!(periods.words().contains("every period"), "{}", periods.words());
+    assert!(periods.describe().contains("every period"), "{}", periods.describe());
     for wrong in [0, 65] {
         let error = subharmonic::find(&case, wrong).err().expect("refused").to_string();
         assert!(error.contains("from 1 to 64"), "{error}");
     }
     let told = Periods { shortest: 2, ..periods };
-    assert!(told.words().contains("after 2 periods"));
+    assert!(told.describe().contains("after 2 periods"));
 }

@@ -12,7 +12,7 @@ use super::common::{AS_PUBLISHED, CONSERVATIVE, PUBLISHED, RECIPROCAL, run, ship
 const TOLERANCES: [&str; 4] = ["1e-4", "1e-5", "1e-6", "1e-7"];
 
 /// Balances of a shipped case for each tolerance, shortened to `end` seconds.
-fn of(name: &str, formulation: &str, coupling: Option<&str>, end: f64) -> Vec<Balances> {
+fn measure_balances(name: &str, formulation: &str, coupling: Option<&str>, end: f64) -> Vec<Balances> {
     let balances = |rtol: &&str| {
         let mut sets = vec![
             formulation.to_string(),
@@ -44,7 +44,7 @@ fn closes(name: &str, end: f64) {
         .skip(usize::from(nonlinear || curved))
     {
         for coupling in couplings {
-            let all = of(name, formulation, *coupling, end);
+            let all = measure_balances(name, formulation, *coupling, end);
             let list = |of: fn(&Balances) -> f64| {
                 all.iter()
                     .map(|b| format!("{:.0e}", of(b)))

@@ -20,7 +20,7 @@ struct Period {
 }
 
 impl Period {
-    fn of(run: &Run) -> Self {
+    fn last_of(run: &Run) -> Self {
         let gained = |names: &[&str]| names.iter().map(|name| run.gained(name, 1.0)).sum::<f64>();
         let harvested = gained(&["harvested"]);
         Self {
@@ -84,7 +84,7 @@ fn harvests(formulation: &str) {
                 rtol,
             ],
         );
-        let period = Period::of(&run);
+        let period = Period::last_of(&run);
         println!(
             "{wiring} {formulation}: input {:.4e} J, harvested {:.4e} J, unaccounted {:.1e}, stored {:.1e} J, formulation adds {:.1e} J",
             period.input,
@@ -149,7 +149,7 @@ fn the_published_coupling_returns_124_times_what_it_takes() {
             "/solver/nonlinear_coefficient=0.01",
         ];
         let run = run_shipped(&format!("harvester-{wiring}"), &sets);
-        let period = Period::of(&run);
+        let period = Period::last_of(&run);
         let returned = period.harvested / (period.input - period.by_damping);
         println!(
             "{wiring}: W_turbine/(W_input - W_damping) = {returned:.3}, share {:.5}, efficiency as the paper has it {:.3}, \

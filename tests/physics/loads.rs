@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 use proptest::prelude::*;
 use slcbeam::case::Case;
 use slcbeam::discrete::{System, TimeData, shapes, start};
-use slcbeam::functions::Clock;
+use slcbeam::functions::SmoothTime;
 use slcbeam::functions::profile::{Integrals, Profile};
 
 use super::common::{EI, run, shipped, within};
@@ -135,7 +135,7 @@ pub fn profiles() -> impl Strategy<Value = Profile> {
 
 /// `∫ f`, `∫ f x` and `∫ |f|` over [0, 1], by Simpson's rule with enough parts between knots to be practically exact.
 fn by_simpson(f: &Profile) -> [f64; 3] {
-    let integrals = Integrals::of(f);
+    let integrals = Integrals::new(f);
     let mut knots = vec![0.0];
     knots.extend_from_slice(integrals.knots_in(0.0, 1.0));
     knots.push(1.0);
@@ -198,7 +198,7 @@ fn very_many_waves_are_integrated_in_closed_form() {
     for waves in [1e3, 12_345.25, 1e7 + 0.25] {
         let k = TAU * waves;
         let sine = profile(&format!(r#"{{"sine":{{"waves":{waves}}}}}"#));
-        let [whole, first, _] = Integrals::of(&sine).moments(0.0, 1.0);
+        let [whole, first, _] = Integrals::new(&sine).moments(0.0, 1.0);
         let exact = (1.0 - k.cos()) / k;
         let moment = k.sin() / (k * k) - k.cos() / k;
         assert!((whole - exact).abs() < 1e-14, "{waves}: {whole} instead of {exact}");
@@ -207,7 +207,7 @@ fn very_many_waves_are_integrated_in_closed_form() {
         let square = profile(&format!(
             r#"{{"product":[{{"sine":{{"waves":{waves}}}}},{{"polynomial":{{"coefficients":[0,1]}}}},{{"sine":{{"waves":{waves}}}}}]}}"#
         ));
-        let mean = Integrals::of(&square).moments(0.0, 1.0)[0];
+        let mean = Integrals::new(&square).moments(0.0, 1.0)[0];
         let k = 2.0 * k;
         let exact = 0.25 - 0.5 * (k.sin() / k + (k.cos() - 1.0) / (k * k));
         assert!((mean - exact).abs() < 1e-13, "{waves}: {mean} instead of {exact}");
@@ -249,7 +249,7 @@ fn a_start_has_its_momentum_on_every_mesh() {
         let case = shipped("dry-cantilever", &[velocity.as_str(), &cells]);
         let system = System::new(&case).unwrap();
         let mut now = TimeData::new(&system);
-        now.update(&system, Clock { t: 0.0, within: 0.0 });
+        now.update(&system, SmoothTime { t: 0.0, within: 0.0 });
         let y = start::state(&system, &case, &now);
         let l = &system.layout;
         let velocities = l.lines[0].unknowns().filter_map(|(node, _, v)| Some((node, v?)));

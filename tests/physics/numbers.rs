@@ -12,7 +12,7 @@ use slcbeam::model::{Model, audit};
 
 use super::common::shipped;
 
-fn of(case: &str, sets: &[&str]) -> BTreeMap<String, f64> {
+fn summary_numbers(case: &str, sets: &[&str]) -> BTreeMap<String, f64> {
     let case = shipped(case, sets);
     numbers(&case, &Model::new(&case).unwrap())
 }
@@ -35,7 +35,7 @@ fn as_printed(what: &str, value: f64, printed: &str) {
 
 #[test]
 fn the_papers_beam_filled_with_water() {
-    let water = of("wiring-2", &[]);
+    let water = summary_numbers("wiring-2", &[]);
     for (key, printed) in [
         ("mass_factor", "1.0273"),
         ("bending_stiffness_n_m2", "0.0503885"),
@@ -64,7 +64,7 @@ fn times_of_the_fluid_for_every_figure() {
         ("shake-wet", "t_s_over_t_f", "10.1"),
         ("bend-wet", "t_s_over_t_f", "1.0"),
     ] {
-        as_printed(&format!("{case} {key}"), of(case, &[])[key], printed);
+        as_printed(&format!("{case} {key}"), summary_numbers(case, &[])[key], printed);
     }
     let turbine = &Model::new(&shipped::<&str>("harvester-parallel-wave", &[]))
         .unwrap()
@@ -78,7 +78,7 @@ fn times_of_the_fluid_for_every_figure() {
 /// "f_m = 0.481, m = 0.494" (A.4.1) holds for a massless fluid, `f_m` cut off rather than rounded: 0.4817.
 #[test]
 fn the_empty_beam() {
-    let empty = of("wiring-2", &["/fluid/density_kg_m3=0"]);
+    let empty = summary_numbers("wiring-2", &["/fluid/density_kg_m3=0"]);
     as_printed("mass per length", empty["mass_per_length_kg_m"], "0.494");
     let f_m = empty["mass_factor"];
     println!("f_m of the empty beam: {f_m:.6}");
@@ -89,9 +89,9 @@ fn the_empty_beam() {
 /// that buckles under its own weight.
 #[test]
 fn loads_of_the_shaken_beam() {
-    let other = of("valves-open", &["/beam/bending_stiffness_factor=0.55"]);
+    let other = summary_numbers("valves-open", &["/beam/bending_stiffness_factor=0.55"]);
     as_printed("b_x*", other["bending_stiffness_n_m2"] / 1e-3, "46.189");
-    let shaken = of("valves-open", &[]);
+    let shaken = summary_numbers("valves-open", &[]);
     as_printed("m a", shaken["inertial_compression_n_m"], "445");
     as_printed("self-weight buckling", shaken["self_weight_buckling_load_n_m"], "395");
 }
@@ -100,12 +100,12 @@ fn loads_of_the_shaken_beam() {
 /// at Fig. 4's amplitude, and that Fig. 5 is stable.
 #[test]
 fn the_mathieu_tongue_of_figure_4() {
-    let growth = |sets: &[&str]| of("valves-open", sets)["mathieu_growth_rate_per_s"];
+    let growth = |sets: &[&str]| summary_numbers("valves-open", sets)["mathieu_growth_rate_per_s"];
     as_printed("growth at U3 0.33", growth(&[]), "6.2");
     assert_eq!(growth(&["/ends/root/clamped/u3_m/sine/amplitude=0.025"]), 0.0);
-    assert_eq!(of("wiring-2", &[])["mathieu_growth_rate_per_s"], 0.0);
+    assert_eq!(summary_numbers("wiring-2", &[])["mathieu_growth_rate_per_s"], 0.0);
 
-    let w1 = 2.0 * std::f64::consts::PI * of("valves-open", &[])["first_bending_frequency_hz"];
+    let w1 = 2.0 * std::f64::consts::PI * summary_numbers("valves-open", &[])["first_bending_frequency_hz"];
     as_printed("w1", w1, "76.9");
     as_printed("kappa_1", MATHIEU_COUPLING, "1.5709");
     let omega = 2.0 * std::f64::consts::PI * 18.0;
@@ -128,7 +128,7 @@ fn the_mathieu_tongue_of_figure_4() {
 #[test]
 fn the_bound_of_the_tongue_begins_before_the_beam_grows() {
     let all = |amplitude: f64| {
-        of(
+        summary_numbers(
             "valves-open",
             &[&format!("/ends/root/clamped/u3_m/sine/amplitude={amplitude}")],
         )
@@ -178,7 +178,7 @@ fn the_slowest_mode_of_a_closed_chain() {
     println!("slowest mode with 1, 2, 4, 8 cells a bladder: {times:.6?} s");
     as_printed("one volume a bladder", 1e3 * times[0], "4.24");
     as_printed("eight", 1e3 * times[3], "4.22");
-    let shown = of("valves-open", &[])["slowest_time_of_network_1_s"];
+    let shown = summary_numbers("valves-open", &[])["slowest_time_of_network_1_s"];
     assert!((shown / times[0] - 1.0).abs() < 1e-9);
     as_printed(
         "factor for w tau = 1",

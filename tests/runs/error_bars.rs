@@ -284,7 +284,7 @@ fn an_error_of_the_companion_alone_is_not_reported() {
 #[test]
 fn a_companion_has_all_effects_and_changes_no_figure() {
     let case = shipped("two-bladders", &["/effects=\"auto\""]);
-    let left_out: Vec<Effect> = slcbeam::study::effects::full::full(&case)
+    let left_out: Vec<Effect> = slcbeam::study::effects::full_model::full(&case)
         .expect("effects")
         .map_or(vec![], |full| full.left_out);
     let with = with_errors(&case);

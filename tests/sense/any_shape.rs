@@ -6,14 +6,14 @@
 use std::f64::consts::PI;
 
 use nalgebra::{DMatrix, DVector};
-use slcbeam::numerics::chance::Chance;
-use slcbeam::numerics::inverse::second_differences;
+use slcbeam::numerics::bayesian_least_squares::second_differences;
+use slcbeam::numerics::rng::Rng;
 use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
 use slcbeam::study::sense::estimate::{EstimateOptions, ForwardModel, Smoothing, estimate};
 use slcbeam::study::sense::load_prior::LoadPrior;
 use slcbeam::study::sense::local_mean::FineLoad;
-use slcbeam::study::sense::rest::{AtRest, probed};
+use slcbeam::study::sense::pressures_at_rest::{AtRest, probed};
 
 use crate::command::{file, found, number, sense};
 use crate::common::{normal_number, sensor};
@@ -26,16 +26,16 @@ fn at(i: usize) -> f64 {
     i as f64 / TRUE as f64
 }
 
-fn within(chance: &mut Chance, low: f64, high: f64) -> f64 {
+fn within(chance: &mut Rng, low: f64, high: f64) -> f64 {
     low + (high - low) * chance.share()
 }
 
-fn sign(chance: &mut Chance) -> f64 {
+fn sign(chance: &mut Rng) -> f64 {
     if chance.share() < 0.5 { -1.0 } else { 1.0 }
 }
 
 /// A pad anywhere, its edges steep or sloping.
-fn pad(chance: &mut Chance) -> Vec<f64> {
+fn pad(chance: &mut Rng) -> Vec<f64> {
     let (middle, half) = (within(chance, 0.05, 0.95), 0.5 * within(chance, 0.05, 0.4));
     let edge = within(chance, 0.005, 0.05);
     let height = |x: f64| (1.0 + (half - (x - middle).abs()) / edge).clamp(0.0, 1.0);
@@ -43,7 +43,7 @@ fn pad(chance: &mut Chance) -> Vec<f64> {
 }
 
 /// A force on a fiftieth of the length.
-fn point(chance: &mut Chance) -> Vec<f64> {
+fn point(chance: &mut Rng) -> Vec<f64> {
     let middle = within(chance, 0.02, 0.98);
     (0..=TRUE)
         .map(|i| f64::from(u8::from((at(i) - middle).abs() < 0.01)))
@@ -51,7 +51,7 @@ fn point(chance: &mut Chance) -> Vec<f64> {
 }
 
 /// Waves of a half to three halves along the beam, or a uniform load.
-fn smooth(chance: &mut Chance) -> Vec<f64> {
+fn smooth(chance: &mut Rng) -> Vec<f64> {
     let waves = chance.below(4) as i32;
     let each: Vec<(f64, f64)> = (0..=waves)
         .map(|k| (normal_number(chance) / f64::from(1 + k), within(chance, 0.0, 2.0 * PI)))
@@ -66,7 +66,7 @@ fn smooth(chance: &mut Chance) -> Vec<f64> {
 }
 
 /// A load without any smoothness beyond a length of 0.03 to 1.
-fn rough(chance: &mut Chance) -> Vec<f64> {
+fn rough(chance: &mut Rng) -> Vec<f64> {
     let length = (within(chance, 0.03_f64.ln(), 0.0)).exp();
     let stays = (-1.0 / (TRUE as f64 * length)).exp();
     let mut value = normal_number(chance);
@@ -94,7 +94,7 @@ const FAMILIES: [&str; 8] = [
     "a point and a pad",
 ];
 
-fn load(family: usize, chance: &mut Chance) -> Vec<f64> {
+fn load(family: usize, chance: &mut Rng) -> Vec<f64> {
     match family {
         0 => pad(chance),
         1 => point(chance),
@@ -162,7 +162,7 @@ fn count(jacobian: &DMatrix<f64>, places: usize, sensors: &[usize], noise: f64, 
     let prior = LoadPrior::new(fine.block.clone());
     (0..FAMILIES.len())
         .map(|family| {
-            let mut chance = Chance::new(41, family as u64);
+            let mut chance = Rng::new(41, family as u64);
             let mut counted = Counted::default();
             for _ in 0..trials {
                 let mut truth = load(family, &mut chance);

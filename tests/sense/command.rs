@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
-use slcbeam::study::sense::rest::{AtRest, labels, probed};
+use slcbeam::study::sense::pressures_at_rest::{AtRest, labels, probed};
 use tempfile::TempDir;
 
 use crate::common::{QUICK, sensor};

@@ -1,8 +1,8 @@
 //! The published beam with sealed bladders, as `slcbeam new sensor` has it, without the load that is to be found.
 
 use slcbeam::case::{self, Case};
-use slcbeam::numerics::chance::Chance;
 use slcbeam::numerics::normal;
+use slcbeam::numerics::rng::Rng;
 
 /// No load of its own, and a mesh that is quick.
 pub const QUICK: [&str; 3] = ["/loads=[]", "/mesh/cells_per_segment=2", "/mesh/cells_per_bladder=1"];
@@ -14,6 +14,6 @@ pub fn sensor(sets: &[&str]) -> Case {
 }
 
 /// A number drawn from the normal distribution.
-pub fn normal_number(chance: &mut Chance) -> f64 {
+pub fn normal_number(chance: &mut Rng) -> f64 {
     normal::quantile(chance.share())
 }

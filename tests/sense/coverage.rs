@@ -3,14 +3,14 @@
 //! Source: the published beam with sealed bladders, loads that bend it by a fifth of its length; noise drawn with fixed seeds.
 
 use nalgebra::{DMatrix, DVector};
-use slcbeam::numerics::chance::Chance;
-use slcbeam::numerics::inverse::second_differences;
+use slcbeam::numerics::bayesian_least_squares::second_differences;
+use slcbeam::numerics::rng::Rng;
 use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
 use slcbeam::study::sense::estimate::{
     EstimateOptions, ForwardModel, LoadEstimates, SenseProblem, Smoothing, estimate,
 };
-use slcbeam::study::sense::rest::{AtRest, probed};
+use slcbeam::study::sense::pressures_at_rest::{AtRest, probed};
 
 use crate::common::{normal_number, sensor};
 
@@ -31,7 +31,7 @@ const TEN: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9];
 const THREE: [usize; 3] = [0, 3, 6];
 
 /// Measurements of some bladders with noise.
-fn noisy(truth: &DVector<f64>, sensors: &[usize], chance: &mut Chance) -> Vec<Option<f64>> {
+fn noisy(truth: &DVector<f64>, sensors: &[usize], chance: &mut Rng) -> Vec<Option<f64>> {
     let mut data = vec![None; truth.len()];
     for k in sensors {
         data[*k] = Some(truth[*k] + NOISE * normal_number(chance));
@@ -78,7 +78,7 @@ fn of_equilibria(other: Basis, trials: usize) -> Vec<Vec<f64>> {
     let first = model.at(&truth).unwrap();
     let none = DMatrix::zeros(0, 2);
     let of = |(stream, sensors): (usize, &[usize])| {
-        let mut chance = Chance::new(20, stream as u64);
+        let mut chance = Rng::new(20, stream as u64);
         shares(trials, &mut |_| {
             let problem = SenseProblem {
                 line: None,
@@ -141,7 +141,7 @@ fn bands_hold_the_loads_where_the_noise_is_estimated() {
     let truth = DVector::from_column_slice(&[0.3, -0.8]);
     let none = DMatrix::zeros(0, 2);
     for (stream, sensors) in [&TEN[..], &THREE].into_iter().enumerate() {
-        let mut chance = Chance::new(21, stream as u64);
+        let mut chance = Rng::new(21, stream as u64);
         let held = shares(TRIALS, &mut |_| {
             let problem = linear(&jacobian, noisy(&(&jacobian * &truth), sensors, &mut chance), 1.0);
             within(
@@ -180,7 +180,7 @@ fn bands_of_a_profile_hold_profiles_that_are_as_smooth_as_is_known() {
     let differences = second_differences(places);
     let deviation = 0.2;
     for (stream, sensors) in [&TEN[..], &THREE].into_iter().enumerate() {
-        let mut chance = Chance::new(22, stream as u64);
+        let mut chance = Rng::new(22, stream as u64);
         let held = shares(TRIALS, &mut |_| {
             let mut truth = DVector::zeros(places);
             truth[0] = normal_number(&mut chance);

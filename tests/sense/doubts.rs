@@ -1,6 +1,6 @@
 //! Pressures that the loads do not explain, and those that they explain as well as noise lets them.
 
-use slcbeam::numerics::chance::Chance;
+use slcbeam::numerics::rng::Rng;
 use slcbeam::study::sense::basis::Basis;
 
 use crate::command::{file, found, number, pressures, sense};
@@ -106,7 +106,7 @@ fn discrepancy_leaves_the_noise() {
     let bladders = [1, 2, 3, 4, 5, 6, 7, 8];
     let (text, _) = pressures(&[], &[Basis::Point(0.4)], &[&[0.5], &[-0.3]], &bladders);
     // what the mesh and a profile of few places leave is below it
-    let mut chance = Chance::new(5, 0);
+    let mut chance = Rng::new(5, 0);
     let mut noisy = vec![];
     for (k, line) in text.lines().enumerate() {
         let cell = |cell: &str| match k {

@@ -3,12 +3,12 @@
 use std::fs;
 
 use nalgebra::{DMatrix, DVector};
-use slcbeam::numerics::chance::Chance;
-use slcbeam::numerics::inverse::second_differences;
+use slcbeam::numerics::bayesian_least_squares::second_differences;
+use slcbeam::numerics::rng::Rng;
 use slcbeam::study::sense::basis::{self, Basis};
 use slcbeam::study::sense::estimate::{EstimateOptions, ForwardModel, Smoothing, estimate};
 use slcbeam::study::sense::in_time::{InTime, Knots};
-use slcbeam::study::sense::rest::probed;
+use slcbeam::study::sense::pressures_at_rest::probed;
 use tempfile::TempDir;
 
 use crate::command::{file, found, number, sense};
@@ -47,7 +47,7 @@ fn measured(dir: &TempDir, noise: f64) -> String {
     let kept: Vec<usize> = (0..headings.len())
         .filter(|k| headings[*k] == "t [s]" || headings[*k].contains("pressure_upper"))
         .collect();
-    let mut chance = Chance::new(31, 0);
+    let mut chance = Rng::new(31, 0);
     let mut table = kept.iter().map(|k| headings[*k]).collect::<Vec<_>>().join(",") + "\n";
     for line in lines.step_by(10) {
         let cells: Vec<&str> = line.split(',').collect();
@@ -141,7 +141,7 @@ fn bands_over_time_hold_the_load() {
     let mut model = InTime::new(&probed, names, &amplitudes, &knots, &instants, &|| false).unwrap();
     let jacobian: DMatrix<f64> = model.at(&vec![0.0; count]).unwrap().1;
     let differences = second_differences(count);
-    let mut chance = Chance::new(32, 0);
+    let mut chance = Rng::new(32, 0);
     let held = shares(400, &mut |_| {
         let mut truth = DVector::zeros(count);
         truth[0] = 0.1 * normal_number(&mut chance);

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 use slcbeam::run::equilibrium::EquilibriumOptions;
 use slcbeam::study::sense::basis::{self, Basis};
 use slcbeam::study::sense::estimate::ForwardModel as _;
-use slcbeam::study::sense::rest::{AtRest, probed};
+use slcbeam::study::sense::pressures_at_rest::{AtRest, probed};
 
 use crate::common::sensor;
 

@@ -4,7 +4,7 @@ use slcbeam::case::Case;
 use slcbeam::case::parameter::{CHANGE, Parameter, STEPS};
 use slcbeam::dae::{BeamDae, Dae, EvaluationError, PerturbedSystems, Seeds};
 use slcbeam::discrete::{System, start};
-use slcbeam::integrate::{Absolute, StartOptions, consistent_sensitivities, consistent_start};
+use slcbeam::integrate::{AbsoluteTolerances, StartOptions, consistent_sensitivities, consistent_start};
 use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
@@ -43,7 +43,7 @@ fn closed_network_keeps_its_volume() {
     consistent_sensitivities(&mut dae, 0.0, [&y, &yp], &mut s, &mut sp).unwrap();
     let options = IdaOptions {
         relative: 1e-6,
-        absolute: Absolute::Same(1e-6),
+        absolute: AbsoluteTolerances::Same(1e-6),
         ..IdaOptions::default()
     };
     let mut ida = Ida::new(dae, 0.0, &y, &yp, &options).unwrap();

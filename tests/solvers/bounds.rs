@@ -1,7 +1,7 @@
 //! Bounds of signals: rigorous and tight.
 
 use proptest::prelude::*;
-use slcbeam::functions::{Clock, Signal};
+use slcbeam::functions::{Signal, SmoothTime};
 
 const END: f64 = 2.0;
 
@@ -117,7 +117,7 @@ fn sampled(signal: &Signal) -> ([f64; 3], [f64; 2]) {
     at.extend(between);
     let mut found = ([0.0_f64; 3], [f64::INFINITY, f64::NEG_INFINITY]);
     let mut see = |t: f64, within: f64| {
-        let jet = signal.jet(Clock { t, within });
+        let jet = signal.jet(SmoothTime { t, within });
         for (most, x) in found.0.iter_mut().zip([jet.value, jet.rate, jet.acceleration]) {
             *most = most.max(x.abs());
         }
@@ -176,7 +176,7 @@ fn departure(signal: &Signal, w: f64, held: f64) -> f64 {
     for pair in at.windows(2) {
         let (a, h) = (pair[0], pair[1] - pair[0]);
         let within = a + 0.5 * h;
-        let value = |t: f64| signal.jet(Clock { t, within }).value;
+        let value = |t: f64| signal.jet(SmoothTime { t, within }).value;
         let (s0, sm, s1) = (value(a), value(within), value(pair[1]));
         // s = s0 + b x + c x², q = s - 2 c/w² + A cos w x + B sin w x
         // a very short piece is treated as straight: the difference of its values would be a rounding error

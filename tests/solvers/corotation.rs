@@ -7,7 +7,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use slcbeam::case;
-use slcbeam::dae::{BeamDae, Corotation, Dae, Seeds, Vectors};
+use slcbeam::dae::{BeamDae, Corotation, Dae, RotatedVectors, Seeds};
 use slcbeam::discrete::System;
 use slcbeam::run::{dynamics, record::Memory, summary::Status};
 use slcbeam::sparse::Lu;
@@ -38,7 +38,7 @@ fn beam(form: &Value) -> BeamDae {
 }
 
 /// Rotates the vectors of a scaled state by an angle; adds `along`, the axial position of each node, to convert displacements to positions.
-fn turned(of: &Vectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(usize) -> f64) {
+fn turned(of: &RotatedVectors, v: &mut [f64], angle: f64, scale: f64, along: impl Fn(usize) -> f64) {
     let (sin, cos) = angle.sin_cos();
     for k in 0..of.across.len() {
         let (i, j) = (of.across.start + k, of.along.start + k);

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use slcbeam::case::{self, Case};
-use slcbeam::run::floors::{Floors, NOTHING};
+use slcbeam::run::rounding_scales::{NOTHING, RoundingScales};
 use slcbeam::run::summary::{Quantity, Status, Summary};
 use slcbeam::study::companion::error::raise_to_balance;
-use slcbeam::study::counted::counted;
 use slcbeam::study::refine::{ReferencedNumber, RefinedNumbers, refine, warning};
+use slcbeam::study::significant::counted;
 
 fn beam(young_modulus_pa: &str, tip: &str) -> Case {
     let text = format!(
@@ -60,7 +60,7 @@ fn finished(last: f64) -> Summary {
 /// window's input energy to 1.8 %, which was off by 14 % and whose balance was open by 18 %.
 #[test]
 fn what_a_balance_leaves_open_is_no_less_than_an_error() {
-    let floors = Floors::of(&beam("1e6", r#""free""#)).unwrap();
+    let floors = RoundingScales::from_case(&beam("1e6", r#""free""#)).unwrap();
     let error = |energy: f64, open: f64| {
         let mut run = finished(1.0);
         run.balances.energy_j.insert("work_loads".into(), 0.1);
@@ -128,11 +128,11 @@ fn numbers_are_refined_until_their_estimates_do() {
 #[test]
 fn round_off_does_not_count() {
     let names = |expected_m: f64, energy: f64, all: &[(&str, f64)]| -> Vec<String> {
-        let floors = Floors {
+        let floors = RoundingScales {
             length: 1.0,
             displacement: 1e-9_f64.min(NOTHING * expected_m),
             pressure: 1e-3,
-            ..Floors::default()
+            ..RoundingScales::default()
         };
         let quantity = |last| Quantity {
             last: Some(last),

@@ -5,8 +5,8 @@ use std::path::Path;
 use slcbeam::case::Case;
 use slcbeam::case::schema::Effect;
 use slcbeam::discrete::System;
-use slcbeam::study::effects::full::full;
-use slcbeam::study::target::first::{LEAST, least_cells, of_best_order};
+use slcbeam::study::effects::full_model::full;
+use slcbeam::study::target::initial_mesh::{LEAST, least_cells, of_best_order};
 
 fn case(more: &str) -> Case {
     let text = format!(

@@ -47,7 +47,7 @@ fn reading(bytes: usize) -> f64 {
 /// Runs `esdirk46` for `STEPS` steps at rtol 1e-4.
 pub fn measure(case: Case) -> Value {
     let begin = Instant::now();
-    let scene = Scene::of(case);
+    let scene = Scene::from_case(case);
     let start = begin.elapsed().as_secs_f64();
     let options = own::options(&scene, "esdirk46", 1e-4).expect("a method");
     let begin = Instant::now();

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use serde_json::{Value, json};
-use slcbeam::integrate::Absolute;
+use slcbeam::integrate::AbsoluteTolerances;
 use slcbeam::onestep::{Method, OneStepOptions};
 use slcbeam::run::method::{Integrator, Options};
 use slcbeam::sundials::IdaOptions;
@@ -16,7 +16,7 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
         Options::OneStep(OneStepOptions {
             method,
             relative: rtol,
-            absolute: Absolute::Same(rtol),
+            absolute: AbsoluteTolerances::Same(rtol),
             max_step: Some(scene.largest_step),
             ..OneStepOptions::default()
         })
@@ -24,7 +24,7 @@ pub fn options(scene: &Scene, name: &str, rtol: f64) -> Option<Options> {
     Some(match name {
         "ida2" => Options::Ida(IdaOptions {
             relative: rtol,
-            absolute: Absolute::Same(rtol),
+            absolute: AbsoluteTolerances::Same(rtol),
             max_order: 2,
             max_step: Some(scene.largest_step),
             nonlinear_coefficient: 0.033,

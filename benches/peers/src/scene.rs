@@ -1,12 +1,12 @@
 //! Problems for all peers: the beam without its ledger, its initial state, and its readings.
 
 use slcbeam::case::{self, Case};
-use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds, Vectors};
+use slcbeam::dae::{BeamDae, Dae, EvaluationError, Seeds, RotatedVectors};
 use slcbeam::discrete::{System, start};
 use slcbeam::integrate::start::{StartOptions, consistent_start};
 use slcbeam::model::AreaLaw;
 use slcbeam::numerics::Planar;
-use slcbeam::run::strides::Strides;
+use slcbeam::run::max_step::StepLimits;
 use slcbeam::sparse::Pattern;
 
 /// Equations of the beam without the energy ledger.
@@ -37,7 +37,7 @@ impl Dae for Bare {
         self.0.enter_smooth_interval(t);
         self.0.jacobian(t, y, yp, seeds, values)
     }
-    fn vectors(&self) -> Vec<Vectors> {
+    fn vectors(&self) -> Vec<RotatedVectors> {
         self.0.vectors()
     }
     fn directions(&self, out: &mut [Planar<f64>]) {
@@ -187,10 +187,10 @@ pub fn case_of(name: &str) -> Case {
 
 impl Scene {
     pub fn named(name: &str) -> Self {
-        Self::of(case_of(name))
+        Self::from_case(case_of(name))
     }
 
-    pub fn of(case: Case) -> Self {
+    pub fn from_case(case: Case) -> Self {
         let mut dae = BeamDae::new(System::new(&case).expect("a system"));
         dae.enter_smooth_interval(0.0);
         let (system, now) = dae.instant(0.0);
@@ -201,7 +201,7 @@ impl Scene {
         let times = (1..=(end / interval).round() as usize)
             .map(|k| k as f64 * interval)
             .collect();
-        let largest_step = Strides::new(&case, dae.system()).least();
+        let largest_step = StepLimits::new(&case, dae.system()).least();
         let readings = Readings::new(dae.system());
         Self {
             case,

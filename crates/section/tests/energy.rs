@@ -39,7 +39,7 @@ fn scaled(energy: &StrainEnergy, y: [f64; 4]) -> [f64; 4] {
 struct Rest(SectionState);
 
 impl Rest {
-    fn of(cell: &FiniteCell) -> Self {
+    fn from_cell(cell: &FiniteCell) -> Self {
         Self(cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2]).unwrap())
     }
 
@@ -88,7 +88,7 @@ fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitte
         let energy = section.strain_energy().unwrap().unwrap();
         assert!(energy.error < 1e-2, "{law:?}: {}", energy.error);
         let cell = cell(&section, 1);
-        let rest = Rest::of(&cell);
+        let rest = Rest::from_cell(&cell);
         // directions without symmetry, inside the ellipsoid
         for direction in [
             [0.6, 0.3, 0.4, 0.1],
@@ -109,7 +109,7 @@ fn the_energy_is_that_of_a_finer_mesh() {
     let section = section(Some(Law::NeoHookean));
     let energy = section.strain_energy().unwrap().unwrap();
     let fine = cell(&section, 2);
-    let rest = Rest::of(&fine);
+    let rest = Rest::from_cell(&fine);
     for direction in [
         [0.7, 0.0, 0.0, 0.0],
         [0.0, 0.8, 0.0, 0.0],
@@ -127,7 +127,7 @@ fn nearer_to_incompressible_little_changes() {
     let section = of_ratio(0.4999, Some(Law::NeoHookean));
     let energy = section.strain_energy().unwrap().unwrap();
     let cell = cell(&section, 1);
-    let rest = Rest::of(&cell);
+    let rest = Rest::from_cell(&cell);
     for direction in [
         [0.7, 0.0, 0.0, 0.0],
         [0.0, 0.8, 0.0, 0.0],

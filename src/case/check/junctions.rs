@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::network::Joined;
+use super::network::ConnectionTable;
 use super::time::END;
 use crate::case::faults::Violations;
 use crate::case::schema::Case;
@@ -16,7 +16,7 @@ const CLOSED: f64 = 1e-9;
 /// Number of instants at which branches are checked if a valve moves.
 const INSTANTS: usize = 200;
 
-pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
+pub(super) fn check(case: &Case, joined: &ConnectionTable, faults: &mut Violations) {
     let names = case.network.as_ref().map_or(&[][..], |network| &network.junctions);
     // of two junctions with one name, the first counts
     let first = |name: &String| names.iter().position(|other| other == name).map(WiringPoint::Junction);
@@ -51,7 +51,7 @@ pub(super) fn check(case: &Case, joined: &Joined, faults: &mut Violations) {
     }
 }
 
-fn instants(joined: &Joined, end: f64) -> Vec<f64> {
+fn instants(joined: &ConnectionTable, end: f64) -> Vec<f64> {
     let mut instants = vec![0.0];
     let openings = joined.branches.iter().filter_map(|(_, opening)| *opening);
     let moving: Vec<&Signal> = openings.filter(|o| !o.is_constant()).collect();
@@ -71,7 +71,7 @@ fn instants(joined: &Joined, end: f64) -> Vec<f64> {
 }
 
 /// Points joined by open branches to a bladder, an accumulator or a pressure port.
-fn reached(joined: &Joined, t: f64) -> BTreeSet<WiringPoint> {
+fn reached(joined: &ConnectionTable, t: f64) -> BTreeSet<WiringPoint> {
     let mut reached = &joined.held | &joined.stores;
     let ends = joined.branches.iter().flat_map(|(points, _)| points);
     reached.extend(ends.filter(|point| matches!(point, WiringPoint::Bladder(..))));

@@ -8,7 +8,9 @@ use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
-use crate::case::wiring::{Bore, Given, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index, bladder_label};
+use crate::case::wiring::{
+    PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index, bladder_label,
+};
 use crate::case::wording::nearest;
 use crate::error::{Code, Violation, listed};
 use crate::functions::signals::Signal;
@@ -26,7 +28,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 
 /// Connections of the network, by point.
 #[derive(Default)]
-pub struct Joined<'a> {
+pub struct ConnectionTable<'a> {
     /// Pointers of everything attached to each point.
     pub attached: BTreeMap<WiringPoint, Vec<String>>,
     /// Single tubes with their opening signals, and turbines.
@@ -40,7 +42,7 @@ pub struct Joined<'a> {
 }
 
 /// Resolves the network without its faulty parts, and reports the faults.
-pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Joined<'a>) {
+pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, ConnectionTable<'a>) {
     let Some((bladders, network)) = case.bladders.as_ref().zip(case.network.as_ref()) else {
         return Default::default();
     };
@@ -49,7 +51,7 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Join
         network,
         usual: case.tubes.as_ref(),
         per_row,
-        joined: Joined::default(),
+        joined: ConnectionTable::default(),
         faults,
     };
     rules.junction_names();
@@ -89,7 +91,7 @@ struct Rules<'a, 'f> {
     network: &'a Network,
     usual: Option<&'a TubeDefaults>,
     per_row: usize,
-    joined: Joined<'a>,
+    joined: ConnectionTable<'a>,
     faults: &'f mut Violations,
 }
 
@@ -98,7 +100,7 @@ impl<'a> Rules<'a, '_> {
         self.faults.push(Violation::new(Code::Wiring, pointer, what));
     }
 
-    fn words(&self, point: WiringPoint) -> String {
+    fn describe(&self, point: WiringPoint) -> String {
         match point {
             WiringPoint::Bladder(index, end) => format!("the {end} of bladder {}", bladder_label(index, self.per_row)),
             WiringPoint::Junction(j) => format!("junction \"{}\"", self.network.junctions[j]),
@@ -176,7 +178,7 @@ impl<'a> Rules<'a, '_> {
         let to = self.point(to, &format!("{pointer}/to"), pointer);
         let points = [from?, to?];
         if points[0] == points[1] {
-            let what = format!("a {what} from {} to itself", self.words(points[0]));
+            let what = format!("a {what} from {} to itself", self.describe(points[0]));
             self.fault(format!("{pointer}/to"), what);
         }
         self.joined.branches.push((points, opening));
@@ -233,10 +235,10 @@ impl<'a> Rules<'a, '_> {
         let mut found = vec![];
         for (i, port) in self.network.ports.iter().enumerate() {
             let pointer = format!("/network/ports/{i}");
-            let pressure = port.pressure_pa.as_ref().map(Given::Pressure);
-            let flow = port.flow_m3_s.as_ref().map(Given::Flow);
-            let volume = port.volume_m3.as_ref().map(Given::Volume);
-            let given: Vec<Given> = [pressure, flow, volume].into_iter().flatten().collect();
+            let pressure = port.pressure_pa.as_ref().map(PortQuantity::Pressure);
+            let flow = port.flow_m3_s.as_ref().map(PortQuantity::Flow);
+            let volume = port.volume_m3.as_ref().map(PortQuantity::Volume);
+            let given: Vec<PortQuantity> = [pressure, flow, volume].into_iter().flatten().collect();
             if given.len() != 1 {
                 let what = match given.len() {
                     0 => "a port with neither pressure, flow nor volume",
@@ -250,7 +252,7 @@ impl<'a> Rules<'a, '_> {
                 continue;
             };
             if let Some(first) = known.get(&at) {
-                let what = format!("a second port at {}, the first is {first}", self.words(at));
+                let what = format!("a second port at {}, the first is {first}", self.describe(at));
                 self.fault(format!("{pointer}/at"), what);
             }
             known.entry(at).or_insert(pointer);
@@ -273,12 +275,15 @@ impl<'a> Rules<'a, '_> {
             if let Some(first) = found.iter().position(|(other, _)| *other == at) {
                 let what = format!(
                     "a second accumulator at {}, the first is /network/accumulators/{first}",
-                    self.words(at)
+                    self.describe(at)
                 );
                 self.fault(format!("{pointer}/at"), what);
             }
             if self.joined.held.contains(&at) {
-                let what = format!("an accumulator at {}, where a port gives the pressure", self.words(at));
+                let what = format!(
+                    "an accumulator at {}, where a port gives the pressure",
+                    self.describe(at)
+                );
                 self.fault(format!("{pointer}/at"), what);
             }
             self.joined.stores.insert(at);
@@ -340,7 +345,7 @@ impl<'a> Rules<'a, '_> {
                         WiringPoint::Bladder(pair[1], BladderEnd::Inlet),
                     ],
                     length_m: usual.length_m,
-                    bore: Bore::usual(usual),
+                    bore: PermeabilitySource::usual(usual),
                     radius_m: Some(usual.radius_m),
                     loss_coefficient: loss_coefficient(None, self.usual),
                     roughness_m: roughness(None, self.usual),
@@ -386,9 +391,9 @@ impl<'a> Rules<'a, '_> {
                 return None;
             }
             (ChainEnd::Sealed | ChainEnd::Connected, _) => return None,
-            (ChainEnd::PressurePa(pressure), _) => Given::Pressure(pressure),
-            (ChainEnd::FlowM3S(flow), _) => Given::Flow(flow),
-            (ChainEnd::VolumeM3(volume), _) => Given::Volume(volume),
+            (ChainEnd::PressurePa(pressure), _) => PortQuantity::Pressure(pressure),
+            (ChainEnd::FlowM3S(flow), _) => PortQuantity::Flow(flow),
+            (ChainEnd::VolumeM3(volume), _) => PortQuantity::Volume(volume),
         };
         Some(WiringPort {
             at: at?,

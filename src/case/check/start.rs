@@ -11,7 +11,7 @@ use crate::case::locate::child;
 use crate::case::schema::{Case, End};
 use crate::error::{Code, Violation};
 use crate::functions::profile::Profile;
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::{Signal, SmoothTime};
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     pressures(case, faults);
@@ -99,7 +99,7 @@ fn agreement(end: &End, name: &str, x: f64, case: &Case, faults: &mut Violations
         let driven = signal.at_start(case.time.end_s);
         let starts = case.start.equilibrium.as_ref().map_or(starts, |start| {
             let t = start.loads_at_s;
-            signal.jet(Clock { t, within: t }).value
+            signal.jet(SmoothTime { t, within: t }).value
         });
         if (starts - driven).abs() > tolerance {
             let by_hand = given.given().any(|(k, _)| k == key);
@@ -143,7 +143,7 @@ impl Signal {
     /// Value at t = 0, taken in the first smooth interval.
     fn at_start(&self, end: f64) -> f64 {
         let (_, stop) = self.smooth_intervals(end)[0];
-        self.jet(Clock {
+        self.jet(SmoothTime {
             t: 0.0,
             within: 0.5 * stop,
         })

@@ -1,7 +1,7 @@
 //! Properties of a tube: its own values, or the defaults of `/tubes`.
 
 use crate::case::schema::{self, CrossSection, TubeDefaults};
-use crate::case::wiring::Bore;
+use crate::case::wiring::PermeabilitySource;
 
 /// Default loss of a tube, in dynamic pressures of its mean velocity: sharp entrance 0.5, exit 1.
 const SHARP_EDGED: f64 = 1.5;
@@ -26,10 +26,10 @@ pub(super) fn roughness(own: Option<f64>, usual: Option<&TubeDefaults>) -> f64 {
 }
 
 /// Length [m] and bore of a tube: its own, or those of `/tubes`.
-pub(super) fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> Option<(f64, Bore<'a>)> {
-    let own = tube.permeability_m4.map(Bore::Permeability);
+pub(super) fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> Option<(f64, PermeabilitySource<'a>)> {
+    let own = tube.permeability_m4.map(PermeabilitySource::Permeability);
     let bore = own
-        .or_else(|| tube.cross_section.as_ref().map(Bore::CrossSection))
-        .or_else(|| usual.map(Bore::usual))?;
+        .or_else(|| tube.cross_section.as_ref().map(PermeabilitySource::CrossSection))
+        .or_else(|| usual.map(PermeabilitySource::usual))?;
     Some((tube.length_m.or_else(|| usual.map(|tubes| tubes.length_m))?, bore))
 }

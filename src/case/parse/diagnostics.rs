@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::misread::{self, Slip};
+use super::common_mistakes::{self, Slip};
 use super::{MOST_FAULTS, Parser};
 use crate::case::wording::short;
 use crate::error::{Code, Violation};
@@ -38,7 +38,7 @@ impl Parser<'_> {
             .next()
             .map_or(0, |line| line.trim_end().len());
         let text = &self.text[start..start + line];
-        let hint = match misread::closed_otherwise(text) {
+        let hint = match common_mistakes::closed_otherwise(text) {
             Some(quote) => format!("it ends with {quote}; write a straight double quote in its place"),
             None => "end it with a double quote".to_owned(),
         };
@@ -48,7 +48,7 @@ impl Parser<'_> {
 
     pub(super) fn unexpected<T>(&mut self, wanted: &str) -> Option<T> {
         let rest = &self.text[self.at..];
-        if let Some(slip) = misread::quoted(rest) {
+        if let Some(slip) = common_mistakes::quoted(rest) {
             self.slip(self.at, slip);
             return None;
         }
@@ -67,7 +67,7 @@ impl Parser<'_> {
             Some(b'\'') => fault.hint("text needs double quotes"),
             Some(b';') => fault.hint("separate members and entries by `,`"),
             Some(b) if b.is_ascii_digit() && self.is_behind_decimal_comma() => {
-                let hint = misread::loosely(self.around());
+                let hint = common_mistakes::loosely(self.around());
                 fault.hint(hint.unwrap_or_else(|| "write decimals with a point".into()))
             }
             _ => fault,

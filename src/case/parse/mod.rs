@@ -1,12 +1,12 @@
 //! Strict JSON reader that stores places, continues after invalid numbers, and describes every mistake.
 //!
 //! ```text
-//! diagnostics faults of a text
-//! misread     common mistakes and their intended meaning
+//! diagnostics      faults of a text
+//! common_mistakes  common mistakes and their intended meaning
 //! ```
 
+pub(super) mod common_mistakes;
 mod diagnostics;
-pub(super) mod misread;
 
 use std::collections::HashMap;
 
@@ -244,7 +244,7 @@ impl Parser<'_> {
 
     fn word(&mut self) -> Option<JsonKind> {
         let start = self.at;
-        let of_word = |c: char| c.is_ascii_alphanumeric() || "+-._".contains(c) || misread::MINUS.contains(&c);
+        let of_word = |c: char| c.is_ascii_alphanumeric() || "+-._".contains(c) || common_mistakes::MINUS.contains(&c);
         let rest = &self.text[start..];
         self.at += rest.find(|c| !of_word(c)).unwrap_or(rest.len());
         let word = &self.text[start..self.at];
@@ -256,7 +256,7 @@ impl Parser<'_> {
         }
         let number = serde_json::from_str(word).ok();
         let like = number.is_some() || word.ends_with(|c: char| c.is_ascii_digit());
-        if let Some(slip) = misread::behind_number(word, rest, &self.pointer).filter(|_| like) {
+        if let Some(slip) = common_mistakes::behind_number(word, rest, &self.pointer).filter(|_| like) {
             return self.slip(start, slip).map(|()| JsonKind::Null);
         }
         if let Some(number) = number {
@@ -265,10 +265,10 @@ impl Parser<'_> {
         if self.at == self.text.len() && self.depth > 0 {
             return self.ends_early(start, "the rest of it");
         }
-        let fault = match word.replace(misread::MINUS, "-").parse::<f64>() {
+        let fault = match word.replace(common_mistakes::MINUS, "-").parse::<f64>() {
             Ok(number) if number.is_finite() => self
                 .fault(start..self.at, format!("{} is not a JSON number", short(word)))
-                .hint(match word.contains(misread::MINUS) {
+                .hint(match word.contains(common_mistakes::MINUS) {
                     true => format!("write {number:?}, with the minus sign of the keyboard"),
                     false => format!("write {number:?}"),
                 }),
@@ -276,10 +276,10 @@ impl Parser<'_> {
                 .fault(start..self.at, format!("{} is not a finite number", short(word)))
                 .allowed("finite numbers of magnitude up to 1.797e308"),
             Err(_) => {
-                let whole = misread::words(rest, word.len());
+                let whole = common_mistakes::with_following_words(rest, word.len());
                 self.at = start + whole.len();
                 self.fault(start..self.at, format!("`{}` is not a JSON value", short(whole)))
-                    .hint(misread::word(whole, &self.pointer))
+                    .hint(common_mistakes::word(whole, &self.pointer))
             }
         };
         self.report(fault);
@@ -287,7 +287,7 @@ impl Parser<'_> {
     }
 
     fn is_minus(&self) -> bool {
-        self.text[self.at..].starts_with(misread::MINUS)
+        self.text[self.at..].starts_with(common_mistakes::MINUS)
     }
 
     fn peek(&self) -> Option<u8> {

@@ -63,7 +63,7 @@ macro_rules! effects {
 
         impl EffectChoices {
             /// Choice of an effect; `Auto` for an effect that cannot be chosen.
-            pub fn of(&self, effect: Effect) -> Choice {
+            pub fn choice(&self, effect: Effect) -> Choice {
                 match effect {
                     $(Effect::$Chosen => self.$chosen,)*
                     $(Effect::$Given => Choice::Auto,)*

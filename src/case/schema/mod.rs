@@ -11,7 +11,7 @@ use slcbeam_section::input::Section;
 use crate::case::faults::CaseSource;
 use crate::case::origins::Origins;
 use crate::case::presets::Preset;
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::{Signal, SmoothTime};
 
 mod attachments;
 mod beam;
@@ -146,7 +146,7 @@ impl Case {
 
     /// Value of a signal at which the beam rests when the run begins: 0, or the value in the equilibrium of the start.
     pub fn held_at_start(&self, signal: &Signal) -> f64 {
-        let value = |t: f64| signal.jet(Clock { t, within: t }).value;
+        let value = |t: f64| signal.jet(SmoothTime { t, within: t }).value;
         self.start
             .equilibrium
             .as_ref()

@@ -58,7 +58,7 @@ impl SectionFile {
 /// # Errors
 /// [`crate::error::Error::Case`] with the unreadable parts.
 pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<SectionFile> {
-    let source = CaseSource::of(path, text);
+    let source = CaseSource::new(path, text);
     let (file, violations) = json::parse(text);
     let Some(file) = file.filter(|_| violations.is_empty()) else {
         return Err(source.error(violations));

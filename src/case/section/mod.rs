@@ -60,7 +60,7 @@ fn violations(error: Error, at: &str) -> Vec<Violation> {
 
 /// Values that a section adds to its case.
 #[derive(Debug)]
-pub(super) struct Brought {
+pub(super) struct SectionValues {
     /// Dimensions, material and coefficients in the form of a case. If the section cannot be computed, those of a preset, so that the rest
     /// of the case can be checked.
     pub values: Value,
@@ -71,18 +71,18 @@ pub(super) struct Brought {
 }
 
 /// Returns the values of the section of a case, if it has one.
-pub(super) fn of(case: &Value) -> Option<Brought> {
+pub(super) fn computed_values(case: &Value) -> Option<SectionValues> {
     let given = case.get(KEY).filter(|given| given.is_object())?;
     let found = read(given, AT).map_err(|violation| vec![*violation]);
     let found = found.and_then(|section| Ok((values(case, &section)?, section.three_d)));
     Some(match found {
-        Ok((values, three_d)) => Brought {
+        Ok((values, three_d)) => SectionValues {
             faults: contradictions(case, &values),
             values,
             three_d,
             stands_in: false,
         },
-        Err(faults) => Brought {
+        Err(faults) => SectionValues {
             values: stand_in(case),
             three_d: false,
             stands_in: true,
@@ -102,7 +102,7 @@ pub(super) fn release(case: &mut Value, file: &Value) {
     if !case.get(KEY).is_some_and(Value::is_object) {
         return;
     }
-    let Some(brought) = of(file).filter(|brought| !brought.stands_in) else {
+    let Some(brought) = computed_values(file).filter(|brought| !brought.stands_in) else {
         return;
     };
     let mut pointers = vec![PER_ROW.to_owned()];
@@ -125,7 +125,7 @@ pub(super) fn release(case: &mut Value, file: &Value) {
     released.iter().for_each(|pointer| sets::remove(case, pointer));
 }
 
-impl Brought {
+impl SectionValues {
     /// True if the values are those of a preset.
     pub(super) fn stands_in(&self) -> bool {
         self.stands_in

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::{CaseArguments, MapArguments, ResultArguments, UncertainArguments};
-use crate::run::modes::Sort;
+use crate::run::modes::ModeFilter;
 
 /// Of which kind modes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -16,7 +16,7 @@ pub enum ModeKind {
     Growth,
 }
 
-impl From<ModeKind> for Sort {
+impl From<ModeKind> for ModeFilter {
     fn from(kind: ModeKind) -> Self {
         match kind {
             ModeKind::Oscillation => Self::Oscillation,
@@ -33,7 +33,7 @@ pub struct EquilibriumArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
@@ -42,7 +42,7 @@ pub struct EquilibriumArguments {
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     pub load_factor: f64,
     /// Points along the path at least
-    #[arg(long, value_name = "COUNT", default_value_t = 16, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 16, value_parser = crate::cli::progress_line::count)]
     pub points: usize,
     /// Stay on a path that becomes unstable (a column that stays straight) instead of taking the one that crosses it
     #[arg(long)]
@@ -52,7 +52,7 @@ pub struct EquilibriumArguments {
     #[arg(long, value_name = "POINTER")]
     pub sensitivity: Vec<String>,
     /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Uncertain numbers.
     #[command(flatten)]
@@ -72,16 +72,16 @@ pub struct ModesArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Modes to find; rigid motions and kept volumes come besides
-    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = crate::cli::progress_line::count)]
     pub count: usize,
     /// Those of one kind alone
     #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["map", "accuracy", "uncertain"])]
     pub kind: Option<ModeKind>,
     /// Find those nearest this frequency [Hz] [default: the slowest]
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::line::frequency)]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub near: Option<f64>,
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
     /// repeatable
@@ -91,7 +91,7 @@ pub struct ModesArguments {
     #[command(flatten)]
     pub map: MapArguments,
     /// Choose mesh so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "map", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", conflicts_with = "map", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Uncertain numbers.
     #[command(flatten)]

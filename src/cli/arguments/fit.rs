@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{CaseArguments, ResultArguments};
-use crate::study::fit::robust::Loss;
+use crate::study::fit::robust::LossFunction;
 
 /// Weight of large residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -16,7 +16,7 @@ pub enum Robust {
     Cauchy,
 }
 
-impl From<Robust> for Loss {
+impl From<Robust> for LossFunction {
     fn from(one: Robust) -> Self {
         match one {
             Robust::Huber => Self::Huber,
@@ -67,7 +67,7 @@ pub struct FitArguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,
     /// Simulations at once [default: one for every core]
-    #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub jobs: Option<usize>,
     /// Its result.
     #[command(flatten)]
@@ -93,7 +93,7 @@ pub struct CompareArguments {
     #[arg(long, value_name = "COLUMN", requires = "matches")]
     pub time: Option<String>,
     /// A page of tables and of histories over each other, report.html in this folder; or a picture of two, where it ends in .svg
-    #[arg(short, long, value_name = "FOLDER", value_parser = crate::cli::line::output_path())]
+    #[arg(short, long, value_name = "FOLDER", value_parser = crate::cli::progress_line::output_path())]
     pub out: Option<PathBuf>,
     /// Print as JSON
     #[arg(long)]

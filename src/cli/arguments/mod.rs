@@ -21,9 +21,9 @@ use super::export::ExportArguments;
 use super::interrupt::WallArguments;
 use super::measure::MeasureArguments;
 use super::new::NewArguments;
-use super::place::PlaceArguments;
 use super::report::ReportArguments;
 use super::response::ResponseArguments;
+use super::result_folder::PlaceArguments;
 use super::schema::SchemaArguments;
 pub use at_rest::{EquilibriumArguments, ModesArguments};
 pub use fit::{CompareArguments, FitArguments, FittedThrough};
@@ -198,7 +198,7 @@ pub struct StudyArguments {
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "2,5")]
     pub orders: Vec<u8>,
     /// Timed runs of a setting, after one to warm up, as far as the budget allows
-    #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = crate::cli::progress_line::count)]
     pub repeats: usize,
     /// Subject of table, picture and sentence: a column, field or figure [default: tip_u1, else tip_u3]
     #[arg(long, value_name = "NAME")]
@@ -224,7 +224,7 @@ pub struct EffectsArguments {
     #[arg(long, value_name = "TIME", default_value = "120s")]
     pub budget: String,
     /// Timed runs of each model, after one to warm up, as far as the budget allows; with 0 no verdict looks at time
-    #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 3, value_parser = crate::cli::progress_line::count)]
     pub repeats: usize,
     /// Quantity that table and picture show, or "largest": of each effect the one that changes most [default: tip_u1_m, else
     /// tip_u3_m]
@@ -248,7 +248,7 @@ pub struct FloquetArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Multipliers, the largest first
-    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = crate::cli::progress_line::count)]
     pub count: usize,
     /// Period of a case in which nothing is periodic
     #[arg(long, value_name = "SECONDS", conflicts_with = "map")]
@@ -257,7 +257,7 @@ pub struct FloquetArguments {
     #[command(flatten)]
     pub map: MapArguments,
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "map", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", conflicts_with = "map", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Uncertain numbers.
     #[command(flatten)]

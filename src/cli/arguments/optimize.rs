@@ -17,7 +17,7 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "POINTER=JSON|JSON..")]
     pub choose: Vec<String>,
     /// Choose between all wirings in which the first two chains, of opposite bladders, change sides at most so often along the beam
-    #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub crossovers: Option<usize>,
     /// The figure that is to be largest, as the table of sweep names it, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
     #[arg(
@@ -40,7 +40,7 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub starts: u32,
     /// Searches at once [default: one for every core]
-    #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub jobs: Option<usize>,
     /// Its result.
     #[command(flatten)]

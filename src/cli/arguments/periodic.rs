@@ -15,10 +15,10 @@ pub struct PeriodicArguments {
     #[arg(long, value_name = "POINTER=FROM:TO:COUNT[:log]")]
     pub sweep: Option<String>,
     /// Look for a cycle that comes back after so many periods of what drives the case: 2 for a period that doubles
-    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = crate::cli::progress_line::count)]
     pub periods: usize,
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "sweep", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", conflicts_with = "sweep", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with_all = ["accuracy", "sweep"])]

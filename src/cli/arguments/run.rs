@@ -17,7 +17,7 @@ pub struct RunArguments {
     #[command(flatten)]
     pub place: PlaceArguments,
     /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
-    #[arg(long, value_name = "REL", conflicts_with = "resume", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", conflicts_with = "resume", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]
@@ -26,7 +26,7 @@ pub struct RunArguments {
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Stop after so many seconds of wall time, with everything so far written
-    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::line::duration)]
+    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::progress_line::duration)]
     pub max_wall: Option<f64>,
     /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
     #[arg(long)]

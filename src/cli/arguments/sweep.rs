@@ -68,13 +68,13 @@ pub struct SweepArguments {
     #[arg(long = "set", value_name = "POINTER=JSON")]
     pub sets: Vec<String>,
     /// Choose mesh and tolerance of every design so that the estimated relative error of every number is below this, such as 0.01
-    #[arg(long, value_name = "REL", value_parser = crate::cli::line::ratio)]
+    #[arg(long, value_name = "REL", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
     /// Leave out the errors that meshes make of cycles, equilibria and modes, which takes a third of the time that it takes with them
     #[arg(long)]
     pub no_mesh_errors: bool,
     /// Designs computed at once [default: one for every core]
-    #[arg(long, value_name = "N", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub jobs: Option<usize>,
     /// Compute a part alone, such as 2/8: the second of eight; `slcbeam merge` joins them
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
@@ -83,7 +83,7 @@ pub struct SweepArguments {
     #[arg(long, value_enum, conflicts_with_all = ["shard", "restart", "retry"])]
     pub script: Option<Script>,
     /// Shards of the script
-    #[arg(long, value_name = "N", default_value_t = 8, requires = "script", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "N", default_value_t = 8, requires = "script", value_parser = crate::cli::progress_line::count)]
     pub shards: usize,
     /// Tables alone: no pictures and no page, neither of the sweep nor of designs
     #[arg(long)]

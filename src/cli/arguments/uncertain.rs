@@ -15,7 +15,7 @@ pub struct UncertainArguments {
     #[arg(long, value_name = "POINTER=SPEC")]
     pub uncertain: Vec<String>,
     /// Samples, each of them computed
-    #[arg(long, value_name = "COUNT", default_value_t = 64, requires = "uncertain", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", default_value_t = 64, requires = "uncertain", value_parser = crate::cli::progress_line::count)]
     pub samples: usize,
     /// Sobol's indices as well, whose share of the variance is which number's: as many samples again, and as many more for each number
     #[arg(long, requires = "uncertain")]
@@ -24,7 +24,7 @@ pub struct UncertainArguments {
     #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "uncertain")]
     pub seed: u64,
     /// Samples at once [default: one a core]
-    #[arg(long, value_name = "COUNT", requires = "uncertain", value_parser = crate::cli::line::count)]
+    #[arg(long, value_name = "COUNT", requires = "uncertain", value_parser = crate::cli::progress_line::count)]
     pub jobs: Option<usize>,
 }
 

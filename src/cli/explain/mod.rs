@@ -1,7 +1,7 @@
 //! `slcbeam explain`: meaning of a message, a key, an effect, a column or a symbol.
 //!
 //! ```text
-//! pages       descriptions of words, symbols and columns in the documentation
+//! pages  descriptions of words, symbols and columns in the documentation
 //! ```
 
 mod pages;
@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::{Value, json};
 
-use crate::case::{Meaning, meanings, nearest, synonyms};
+use crate::case::{KeyDescription, meanings, nearest, synonyms};
 use crate::error::{Code, Error, Result};
 
 /// Largest number of keys listed for a word.
@@ -65,7 +65,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
         found = named(&snake);
         found.extend(named(&format!("{snake}s")));
     }
-    let entries = pages::of(name);
+    let entries = pages::find(name);
     let elsewhere = synonyms::elsewhere(name);
     let mut text = String::new();
     if found.is_empty() && entries.is_empty() {
@@ -86,8 +86,8 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
     }
     // a word may be a key and also mean others: flow is an effect, and a port has flow_m3_s
     let known = found.len();
-    let also = synonyms::of(name).into_iter().flat_map(named).take(MOST);
-    let also: Vec<&Meaning> = also.filter(|m| !found.contains(m)).collect();
+    let also = synonyms::keys_meant_by(name).into_iter().flat_map(named).take(MOST);
+    let also: Vec<&KeyDescription> = also.filter(|m| !found.contains(m)).collect();
     found.extend(also);
     for (k, m) in found.iter().enumerate() {
         if k == known && k > 0 {
@@ -98,7 +98,7 @@ pub fn explain(asked: &ExplainArguments) -> Result<ExitCode> {
             let _ = writeln!(text, "  {}: {}", inner.place, inner.meaning);
         }
     }
-    let row = |m: &Meaning| json!({"key": m.place, "meaning": m.meaning});
+    let row = |m: &KeyDescription| json!({"key": m.place, "meaning": m.meaning});
     let keys = found.iter().map(|m| {
         let mut entry = row(m);
         entry["keys"] = inside(&all, m).map(row).collect();
@@ -128,20 +128,20 @@ fn snake(name: &str) -> String {
 }
 
 /// Keys that a word may mean, and the reason: synonyms, keys with the word in their name, or keys with the word in their description.
-fn likely<'m>(all: &'m [Meaning], word: &str) -> (&'static str, Vec<&'m Meaning>) {
-    let keys = synonyms::of(word);
+fn likely<'m>(all: &'m [KeyDescription], word: &str) -> (&'static str, Vec<&'m KeyDescription>) {
+    let keys = synonyms::keys_meant_by(word);
     let meant = keys.iter().flat_map(|key| all.iter().filter(move |m| m.name == *key));
-    let meant: Vec<&Meaning> = meant.take(MOST).collect();
+    let meant: Vec<&KeyDescription> = meant.take(MOST).collect();
     if !meant.is_empty() {
         return ("related:", meant);
     }
     let word = word.to_lowercase();
-    let part = |m: &&Meaning| word.len() > 2 && m.name.split('_').any(|part| part == word);
-    let parts: Vec<&Meaning> = all.iter().filter(part).take(MOST).collect();
+    let part = |m: &&KeyDescription| word.len() > 2 && m.name.split('_').any(|part| part == word);
+    let parts: Vec<&KeyDescription> = all.iter().filter(part).take(MOST).collect();
     if !parts.is_empty() {
         return ("keys with this word in their names:", parts);
     }
-    let has_word = |m: &&Meaning| {
+    let has_word = |m: &&KeyDescription| {
         let text = m.meaning.to_lowercase();
         let mut words = text.split(|c: char| !c.is_alphanumeric());
         word.len() > 3 && words.any(|one| one == word)
@@ -152,7 +152,7 @@ fn likely<'m>(all: &'m [Meaning], word: &str) -> (&'static str, Vec<&'m Meaning>
     )
 }
 
-fn unknown(all: &[Meaning], what: &str, name: &str) -> Error {
+fn unknown(all: &[KeyDescription], what: &str, name: &str) -> Error {
     let known = all
         .iter()
         .map(|m| m.name.as_str())
@@ -166,7 +166,7 @@ fn unknown(all: &[Meaning], what: &str, name: &str) -> Error {
 }
 
 /// Keys and words of the value at a key, one level down.
-fn inside<'m>(all: &'m [Meaning], of: &'m Meaning) -> impl Iterator<Item = &'m Meaning> {
+fn inside<'m>(all: &'m [KeyDescription], of: &'m KeyDescription) -> impl Iterator<Item = &'m KeyDescription> {
     all.iter().filter(|m| {
         of.objects.iter().any(|object| {
             m.place.strip_prefix(object.as_str()).is_some_and(|rest| {

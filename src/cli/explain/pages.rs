@@ -52,7 +52,7 @@ impl Explanation {
 }
 
 /// All meanings of a name; a figure is found by its quantity and its kind: `tip_u1_m.max_abs`.
-pub fn of(name: &str) -> Vec<Explanation> {
+pub fn find(name: &str) -> Vec<Explanation> {
     let mut found = exactly(name);
     if found.is_empty()
         && let Some((quantity, kind)) = name.rsplit_once('.')
@@ -103,7 +103,7 @@ fn quantities(name: &str) -> Vec<Explanation> {
         Explanation::new("column", name, what)
     });
     let figure = Interest::named(name).map(|one| {
-        let what = format!("{} [{}], under quantities in summary.json", one.words(), one.unit());
+        let what = format!("{} [{}], under quantities in summary.json", one.describe(), one.unit());
         Explanation::new("figure", name, what)
     });
     let field = BeamField::named(name).map(|one| {
@@ -229,7 +229,7 @@ mod tests {
                 for quoted in row[0].split('`').skip(1).step_by(2) {
                     let name = quoted.split(" [").next().unwrap_or_default();
                     let file = name.contains(['.', '/']) || name.contains("--");
-                    assert!(file || !of(name).is_empty(), "{page}: {name}");
+                    assert!(file || !find(name).is_empty(), "{page}: {name}");
                 }
             }
         }
@@ -241,7 +241,7 @@ mod tests {
         let mut count = 0;
         for row in rows(GLOSSARY).filter(|row| !["word", "symbol"].contains(&row[0])) {
             let name = row[0].split([',', ';']).next().unwrap_or_default();
-            assert!(!of(name).is_empty(), "{name}");
+            assert!(!find(name).is_empty(), "{name}");
             count += 1;
         }
         assert!(count > 80, "{count}");

@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 use super::arguments::RunArguments;
 use super::interrupt::WallArguments;
-use super::progress::Watcher;
+use super::progress::ProgressDisplay;
 use super::uncertain::{self, Uncertain};
-use super::{interrupt, line, size, summary_box, terminal};
+use super::{interrupt, progress_line, resources, summary_box, terminal};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
@@ -29,7 +29,7 @@ use crate::output::uncertainty as files;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress};
 use crate::run::summary::{Status, Summary};
-use crate::run::wall::{Laps, WallTimes};
+use crate::run::wall_time::{Stopwatch, WallTimes};
 use crate::study::analysis::AnalysisKind;
 use crate::study::analysis::AnalysisRequest;
 use crate::study::companion::{self, Accurate};
@@ -39,15 +39,15 @@ use resume::resume;
 
 /// Runs a case into a result folder; `began` is the start of the program.
 pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
-    let mut laps = Laps::since(began);
-    let case = &size::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
+    let mut laps = Stopwatch::since(began);
+    let case = &resources::load_with(&asked.case.case, &asked.case.sets, asked.sensitivities.len())?;
     let model = Model::new(case)?;
     let start_up = laps.lap();
     let system = System::chosen(case, model)?;
-    let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+    let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
     let out = asked.place.folder(&case.name, FolderKind::Run);
     if !asked.resume {
-        size::run_fits(case, &system, asked.sensitivities.len(), &out)?;
+        resources::run_fits(case, &system, asked.sensitivities.len(), &out)?;
     }
     let parameters = Parameter::find_all(case, &asked.sensitivities)?;
     if (asked.accuracy.is_some() || asked.resume) && !asked.uncertain.uncertain.is_empty() {
@@ -121,7 +121,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
     } else {
         let box_text = summary_box::render(&summary, &out, !asked.lean, terminal::colour_out(), terminal::width());
         super::print_painted(&box_text)?;
-        super::print(&uncertainty.as_ref().map_or(String::new(), files::words))?;
+        super::print(&uncertainty.as_ref().map_or(String::new(), files::describe))?;
     }
     written?;
     if let Some(aside) = aside {
@@ -131,7 +131,7 @@ pub fn run(asked: &RunArguments, began: Instant) -> Result<ExitCode> {
 }
 
 /// Closes a folder whose page is written; its summary includes all wall time until then.
-fn close(finished: Finished, summary: &mut Summary, laps: &mut Laps) -> Result<()> {
+fn close(finished: Finished, summary: &mut Summary, laps: &mut Stopwatch) -> Result<()> {
     let folder = finished.close()?;
     summary.wall_s.files += laps.lap();
     summary.wall_s.close(laps.total());
@@ -148,7 +148,7 @@ struct Way {
 impl Way {
     /// True if a run with derivatives by some numbers has a companion: if it has error bars and the memory suffices for both.
     fn has_companion(&self, case: &Case, by: &[Parameter]) -> bool {
-        !self.lean && size::holds_companion(case, by.len())
+        !self.lean && resources::holds_companion(case, by.len())
     }
 }
 
@@ -157,7 +157,7 @@ type SharedHook = Rc<RefCell<Hook>>;
 
 fn hook(asked: &RunArguments) -> SharedHook {
     let interrupted = interrupt::flag();
-    let mut watcher = Watcher::new(asked.quiet);
+    let mut watcher = ProgressDisplay::new(asked.quiet);
     let deadline = asked
         .max_wall
         .map(|seconds| Instant::now() + Duration::from_secs_f64(seconds));
@@ -180,7 +180,7 @@ fn own(hook: &SharedHook) -> Hook {
 
 /// Runs one of many cases into a folder of its own, which may contain the files of an interrupted run.
 pub fn into(case: &Case, ask: AnalysisRequest, dir: &Path, lean: bool, stop: &Arc<AtomicBool>) -> Result<Outcome> {
-    let mut laps = Laps::since(Instant::now());
+    let mut laps = Stopwatch::since(Instant::now());
     let interrupted = Arc::clone(stop);
     let way = Way {
         hook: Rc::new(RefCell::new(Box::new(move |_: &Progress| {
@@ -236,7 +236,7 @@ fn record(
     way: &Way,
     annotate: Annotate,
 ) -> Result<Recorded> {
-    let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
+    let mut recorder = FolderRecorder::new(folder, Labels::from_case(case), own(&way.hook)).lean(way.lean);
     let mut outcome = match way.has_companion(case, by) {
         true => companion::run(case, system, by, &mut recorder)?,
         false => dynamics::run_with(case, system, by, &mut recorder)?,
@@ -300,7 +300,7 @@ fn reach(
     let mut candidate = |case: &Case, accuracy: &Accurate| -> Result<Outcome> {
         let inside = result.candidate()?;
         let folder = ResultFolder::claim(inside.path(), FolderKind::Run, false)?;
-        let mut recorder = FolderRecorder::new(folder, Labels::of(case), own(&way.hook)).lean(way.lean);
+        let mut recorder = FolderRecorder::new(folder, Labels::from_case(case), own(&way.hook)).lean(way.lean);
         let outcome = companion::measured(case, System::new(case)?, accuracy, &mut recorder)?;
         let Recorded {
             outcome,
@@ -333,7 +333,7 @@ fn reach(
     if placed && unwritten.is_ok() {
         unwritten = summary::write(&result, &outcome.summary).map(|_| ());
     }
-    let finished = placed.then(|| Finished::of(result));
+    let finished = placed.then(|| Finished::new(result));
     Ok(Recorded {
         outcome,
         finished,

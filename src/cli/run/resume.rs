@@ -47,7 +47,7 @@ pub(super) fn resume(case: &Case, system: System, asked: &[Parameter], out: &Pat
     }
     let header = Observer::header(case, &system);
     let mut recorder =
-        FolderRecorder::resume(folder, Labels::of(case), own(&way.hook), &saved, &header)?.lean(way.lean);
+        FolderRecorder::resume(folder, Labels::from_case(case), own(&way.hook), &saved, &header)?.lean(way.lean);
     let outcome = match way.has_companion(case, kept) {
         true => companion::resume(case, system, &saved.run, &mut recorder)?,
         false => dynamics::resume(case, system, &saved.run, &mut recorder)?,

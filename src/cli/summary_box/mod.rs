@@ -147,7 +147,7 @@ fn uncertain(summary: &Summary) -> Option<String> {
     let of = |(one, word): (Interest, &str)| {
         let value = get(summary, one)?.largest()?;
         let figures = ["extreme", "max_abs", "window_max_abs"];
-        let band = bands::of(&summary.bands, one.name(), &figures, value)?;
+        let band = bands::find(&summary.bands, one.name(), &figures, value)?;
         let text = hold(format!("{word} {}", bands::short(band, one.unit())?));
         // a narrow box may break the line between the ends of a band
         Some(text.replace("…\u{a0}", "… ").replace("\u{a0}(", " ("))

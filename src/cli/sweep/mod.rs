@@ -18,7 +18,7 @@ use crate::output::folder::ResultFolder;
 use crate::output::kind::FolderKind;
 use crate::output::report;
 use crate::output::sweep::script::{Jobs, Scheduler, script};
-use crate::output::sweep::{self as files, FOLDERS, JOURNAL, Survey, words};
+use crate::output::sweep::{self as files, FOLDERS, JOURNAL, JournalSummary, text};
 use crate::results;
 use crate::results::sweep::SweepPlan;
 use crate::run::dynamics::Outcome;
@@ -63,8 +63,8 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     }
     let journal = folder.path(JOURNAL);
     let done = match &before {
-        Some(_) => Survey::of(&journal, plan)?,
-        None => Survey::of(&PathBuf::new(), plan)?,
+        Some(_) => JournalSummary::read(&journal, plan)?,
+        None => JournalSummary::read(&PathBuf::new(), plan)?,
     };
     if let Some(damage) = done.damage() {
         terminal::print_line(&format!("slcbeam: {damage}. Designs without a row are computed again."));
@@ -79,7 +79,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     } else if !asked.result.quiet && done.count() > 0 {
         terminal::print_line(&format!(
             "slcbeam: already computed: {}; continuing with {}",
-            words::several(done.count()),
+            text::several(done.count()),
             left.len()
         ));
     }
@@ -87,7 +87,7 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
     if asked.keep_cases && !stopped {
         keep_others(&source, &folder, &done)?;
     }
-    let survey = Survey::of(&journal, plan)?;
+    let survey = JournalSummary::read(&journal, plan)?;
     let summary = files::summarize(plan, &survey)?;
     let written = files::write(&folder, plan, &survey, &summary, asked.lean);
     let written = written.and_then(|()| match asked.lean {
@@ -99,13 +99,13 @@ pub fn sweep(asked: &SweepArguments) -> Result<ExitCode> {
         folder.dir(),
         written,
         || results::text(&summary),
-        || words::words(&summary, &survey).unwrap_or_default(),
+        || text::describe(&summary, &survey).unwrap_or_default(),
     )?;
     if stopped {
         let missing = summary.missing;
         terminal::print_line(&format!(
             "slcbeam: interrupted; {} left to compute. The same command continues with them",
-            words::several(missing)
+            text::several(missing)
         ));
     }
     let finished = survey.statuses.get(&Status::Finished).is_some_and(|n| *n > 0);
@@ -202,7 +202,7 @@ fn compute_all(
     asked: &SweepArguments,
     source: &DesignSource,
     folder: &ResultFolder,
-    done: &Survey,
+    done: &JournalSummary,
     left: &[usize],
     jobs: usize,
     flag: &Arc<AtomicBool>,
@@ -252,7 +252,7 @@ fn compute_all(
                 analysis::found(&case, ask, &stop, &|case| keep.run(case, ask, &stop))?
             }
         };
-        Some(SweepRow::of(design, found, begin.elapsed().as_secs_f64()))
+        Some(SweepRow::new(design, found, begin.elapsed().as_secs_f64()))
     };
     pool::each(left, jobs, &work, &mut |row: SweepRow| {
         if let Some(error) = unkept.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
@@ -273,7 +273,7 @@ fn compute_all(
 }
 
 /// Stores the cases of designs that were computed before cases were requested.
-fn keep_others(source: &DesignSource, folder: &ResultFolder, done: &Survey) -> Result<()> {
+fn keep_others(source: &DesignSource, folder: &ResultFolder, done: &JournalSummary) -> Result<()> {
     let plan = &source.plan;
     for number in (0..plan.designs).filter(|number| done.has(*number)) {
         let name = files::numbered(plan, number);

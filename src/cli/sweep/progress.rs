@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crate::cli::line::{PLAIN, ProgressLine};
+use crate::cli::progress_line::{PLAIN, ProgressLine};
 use crate::cli::terminal;
 use crate::output::numbers::{count, counted, duration};
 
@@ -39,7 +39,7 @@ impl Counter {
     pub fn one(&mut self, failed: bool) {
         self.done += 1;
         self.failed += usize::from(failed);
-        let words = || {
+        let describe = || {
             let left = self.begun.elapsed().as_secs_f64() / self.done as f64 * (self.of - self.done) as f64;
             let failed = match self.failed {
                 0 => String::new(),
@@ -49,10 +49,10 @@ impl Counter {
             format!("{done} of {of} {}{failed} · {} left", self.what, duration(left))
         };
         if let Some(bar) = &self.shown.bar {
-            bar.set_message(words());
+            bar.set_message(describe());
             bar.tick();
         } else if self.shown.lines && self.printed.elapsed() >= EVERY {
-            terminal::print_line(&words());
+            terminal::print_line(&describe());
             self.printed = Instant::now();
         }
     }

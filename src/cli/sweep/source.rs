@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use super::overridden;
 use crate::case::{self, Case};
 use crate::cli::arguments::SweepArguments;
-use crate::cli::{line, size, terminal};
+use crate::cli::{progress_line, resources, terminal};
 use crate::error::{Error, Result};
-use crate::study::sweep::plan::{Listed, SweepPlan};
+use crate::study::sweep::plan::{SweepPlan, SweptCase};
 use crate::study::sweep::table::DesignTable;
-use crate::study::sweep::{Design, Designs, Draw, Vary};
+use crate::study::sweep::{Design, Designs, Draw, VariedNumber};
 
 /// Pointers of the values that an accuracy determines.
 const CHOSEN: [&str; 3] = ["/mesh/cells_per_segment", "/mesh/cells_per_bladder", "/solver/rtol"];
@@ -33,12 +33,12 @@ impl DesignSource {
     /// # Errors
     /// Contradictory arguments, or invalid cases.
     pub fn read(asked: &SweepArguments) -> Result<Self> {
-        let accuracy = asked.accuracy.map(line::accuracy).transpose()?;
+        let accuracy = asked.accuracy.map(progress_line::accuracy).transpose()?;
         let draw = Draw::parse(&asked.design)?;
         let varied = asked
             .vary
             .iter()
-            .map(|text| Vary::parse(text))
+            .map(|text| VariedNumber::parse(text))
             .collect::<Result<Vec<_>>>()?;
         if varied.is_empty() && asked.designs.is_none() && asked.cases.len() == 1 {
             let what = "only one case, and no number is varied: give --vary POINTER=SPEC, --designs FILE.csv, or \
@@ -95,7 +95,7 @@ impl DesignSource {
                 .tables
                 .iter()
                 .fold(written.json, |all, (name, text)| all + name + text);
-            plan.cases.push(Listed {
+            plan.cases.push(SweptCase {
                 name: case.name.clone(),
                 file: path.display().to_string(),
                 crc32: [text.as_bytes(), resolved.as_bytes()].map(crc32fast::hash),
@@ -131,7 +131,7 @@ impl DesignSource {
     /// Those of the command; or `jobs` copies of the case exceed the memory.
     pub fn check(&self, number: usize, jobs: usize) -> Result<()> {
         let case = self.case(&self.designs.design(number))?;
-        size::fits(&case, 0, jobs)?;
+        resources::fits(&case, 0, jobs)?;
         self.plan.command.analysis().check(&case)
     }
 
@@ -156,7 +156,7 @@ fn name_faulty<T>(found: Result<T>, designs: &Designs, design: &Design) -> Resul
 }
 
 fn name(designs: &Designs, design: &Design, more: usize) {
-    let values = design.words(designs.pointers());
+    let values = design.describe(designs.pointers());
     let place = if values.is_empty() {
         values
     } else {
@@ -173,7 +173,7 @@ fn name(designs: &Designs, design: &Design, more: usize) {
 }
 
 /// Checks that the names of the cases differ.
-fn alike(cases: &[Listed]) -> Result<()> {
+fn alike(cases: &[SweptCase]) -> Result<()> {
     for (k, case) in cases.iter().enumerate() {
         if let Some(other) = cases[..k].iter().find(|other| other.name == case.name) {
             return Err(Error::Usage(format!(

@@ -1,7 +1,7 @@
 //! Layout of the unknowns: order, names and characteristic sizes.
 //!
 //! An omitted effect has no unknowns: a driven end has no position, a quasi-static solid no velocities, a dry beam no fluid. Equation i
-//! belongs to unknown i. Unknowns are grouped in the blocks [`Line`], [`Turning`], [`Coupling`] and [`Network`].
+//! belongs to unknown i. Unknowns are grouped in the blocks [`Line`], [`SectionRotation`], [`Coupling`] and [`Network`].
 
 mod solid;
 mod wet;
@@ -13,7 +13,7 @@ use crate::case::schema::Effect;
 use crate::case::wiring::bladder_label;
 use crate::model::Model;
 
-pub use solid::{LineLayout, Relaxation, Turning};
+pub use solid::{LineLayout, Relaxation, SectionRotation};
 pub use wet::{CouplingUnknowns, NetworkUnknowns};
 
 /// Blocks of unknowns, in this order, and properties of each unknown.
@@ -22,7 +22,7 @@ pub struct Layout {
     /// Transverse (`u1`) and axial (`u3`) motion of the beam.
     pub lines: [LineLayout; 2],
     /// Rotation of sections that shear.
-    pub turning: Turning,
+    pub turning: SectionRotation,
     /// Relaxed strains of the solid.
     pub relaxation: Relaxation,
     /// Coupling variables of beam and bladders.
@@ -66,7 +66,7 @@ impl Layout {
     pub fn new(model: &Model, mesh: &BeamMesh, fluid: Option<&FluidMesh>) -> Self {
         let mut build = Builder::default();
         let lines = LineLayout::both(model, mesh, &mut build);
-        let turning = Turning::new(model, mesh, &mut build);
+        let turning = SectionRotation::new(model, mesh, &mut build);
         let relaxation = Relaxation::new(model, mesh, &mut build);
         let wet = model.wet.as_ref().zip(fluid);
         let coupling = wet.map_or_else(Default::default, |(wet, _)| {

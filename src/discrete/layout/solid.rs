@@ -21,7 +21,7 @@ pub struct LineLayout {
 
 /// Rotation of the sections of cells; empty if sections remain perpendicular to the beam.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Turning {
+pub struct SectionRotation {
     /// Section angles θ.
     pub angle: Range<usize>,
     /// Rates of the section angles; none without rotary inertia.
@@ -98,7 +98,7 @@ impl LineLayout {
     }
 }
 
-impl Turning {
+impl SectionRotation {
     /// Every angle and, if it is an unknown, its rate, cell by cell.
     pub fn unknowns(&self) -> impl Iterator<Item = (usize, Option<usize>)> {
         let (angle, rate) = (self.angle.start, self.rate.as_ref().map(|rate| rate.start));

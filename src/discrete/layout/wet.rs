@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Builder, Name};
 use crate::discrete::fluid_mesh::{LinkEnd, MeshFlow, MeshLink};
-use crate::discrete::{BeamMesh, FluidMesh, let_in};
+use crate::discrete::{BeamMesh, FluidMesh, injected_volume};
 use crate::model::{LumpedKind, Model, Wet};
 
 /// Scale of an injected volume relative to its size: it is one of many unknowns in the error test, and all work follows from it.
@@ -128,7 +128,8 @@ impl NetworkUnknowns {
             lumped_volume.push(fed.then(|| build.push(name("volume change [m^3]"), volume, rate, true)));
         }
         let sources = 0..wet.network.sources.len();
-        let paced = sources.filter(|&source| wet.flows && wet.network.paced && let_in::is_kept(&wet.network, source));
+        let paced =
+            sources.filter(|&source| wet.flows && wet.network.paced && injected_volume::is_kept(&wet.network, source));
         let let_in = paced.map(|source| {
             let compliance = wet.network.compliance_at(wet.network.sources[source].into, wet);
             let volume = CLOSELY * (compliance * s.pressure).max(stored * fluid.ds);

@@ -7,8 +7,8 @@ use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
 use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
-use crate::discrete::residual::{nonlinear, small};
-use crate::discrete::{FluidMesh, System, TimeData, Workspace, let_in};
+use crate::discrete::residual::{nonlinear, von_karman};
+use crate::discrete::{FluidMesh, System, TimeData, Workspace, injected_volume};
 use crate::model::bladder::{kink_curvature, kink_slope};
 use crate::model::network::{LinkKind, ResolvedNetwork};
 use crate::model::{AreaLaw, CouplingLaw, LumpedKind, LumpedNetwork, Wet};
@@ -45,7 +45,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     for (k, lumped) in wet.lumped.iter().enumerate() {
         w.fluid.lumped_rate[k] = match (&lumped.kind, system.layout.network.lumped_pressure[k]) {
             (LumpedKind::Port(port), _) => now.port_pressure_rate[*port],
-            (_, Some(unknown)) => yp[unknown] + let_in::pressing(wet, lumped, now)[1],
+            (_, Some(unknown)) => yp[unknown] + injected_volume::pressing(wet, lumped, now)[1],
             _ => 0.0,
         };
         for &bladder in &lumped.bladders {
@@ -85,7 +85,7 @@ pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
                 .0
         })
     };
-    small::foreshorten(system, now, stretch_rate, w);
+    von_karman::foreshorten(system, now, stretch_rate, w);
 }
 
 /// Adds the power of a coupling without reciprocity; returns the rate of curvature at an end with a given moment, less that of `M/EI`.

@@ -1,7 +1,7 @@
 //! Work in zero time at a switch: a solid without inertia jumps with its load, and ends with their moment.
 
 use super::{EnergyRate, add, add_all, add_rates, fluid, ports, solid};
-use crate::discrete::kick::{self, Nodal};
+use crate::discrete::velocity_jump::{self, Nodal};
 use crate::discrete::{System, TimeData, Workspace};
 use crate::functions::signals::Jet;
 use crate::model::Kinematics;
@@ -69,8 +69,8 @@ pub fn strokes(
     }
     let last = mesh.nodes - 1;
     let jumps: Nodal = was.iter().zip(is).map(|(a, b)| *b - *a).collect();
-    let impulses = kick::impulses(system, &jumps, w);
-    let around = kick::taken_around(system, &jumps, w);
+    let impulses = velocity_jump::impulses(system, &jumps, w);
+    let around = velocity_jump::taken_around(system, &jumps, w);
     let streams = system.model.surroundings.as_ref().is_some_and(|s| s.stream.is_some());
     for node in 0..=last {
         let end = after.end(node);

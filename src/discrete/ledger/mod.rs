@@ -19,7 +19,7 @@ pub use solid::reaction;
 use crate::case::schema::Effect;
 use serde::{Deserialize, Serialize};
 
-use super::{CompleteState, System, TimeData, Workspace, readings, residual, touching};
+use super::{CompleteState, System, TimeData, Workspace, contact_points, readings, residual};
 
 /// Rates that are integrated during a run, for the balances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,7 +244,7 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
     e.compression = compressed::energy(system, &w) + held;
     e.accumulators = walls;
     e.tubes = tubes::kinetic(system, &w);
-    e.contacts = touching::energy(system, &w);
+    e.contacts = contact_points::energy(system, &w);
     e.springs = system
         .attached
         .iter()
@@ -253,7 +253,7 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)
-        .map(|i| system.lengths[i] * residual::around::kinetic(system, now, &w, i))
+        .map(|i| system.lengths[i] * residual::ambient_fluid::kinetic(system, now, &w, i))
         .sum();
     e
 }

@@ -4,7 +4,7 @@ use super::fluid::{beyond_stored, component, stored_rate};
 use super::{ENERGY_RATES, rate_count};
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
 use crate::discrete::residual::fluid::{pressure_at, through_bridge};
-use crate::discrete::{System, TimeData, Workspace, let_in};
+use crate::discrete::{System, TimeData, Workspace, injected_volume};
 use crate::model::network::Feed;
 use crate::model::{LumpedKind, Wet};
 
@@ -86,7 +86,10 @@ pub fn settle(system: &System, now: &TimeData, integrals: &mut [f64]) {
         let component = network.component_of(source.into);
         if let Some(open) = component.and_then(|own| network.open_number(own)) {
             let [left, by_law] = [2 * open, 2 * (network.open.len() + open)];
-            for entry in [left, by_law].into_iter().filter(|_| let_in::is_kept(network, k)) {
+            for entry in [left, by_law]
+                .into_iter()
+                .filter(|_| injected_volume::is_kept(network, k))
+            {
                 integrals[ENERGY_RATES.len() + entry] -= more;
             }
         }

@@ -1,7 +1,7 @@
 //! Reactions of driven ends by two methods, whose difference is a mesh error.
 
 use crate::case::schema::Effect;
-use crate::discrete::{Attached, Body, CompleteState, System, TimeData};
+use crate::discrete::{CompleteState, MeshedAttachment, MeshedBody, System, TimeData};
 use crate::model::Kinematics;
 
 /// Sums of squares over driven ends and directions: of the reactions, and of the differences between both methods [N^2]. The first sum
@@ -13,14 +13,14 @@ pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
     let (mesh, section, l) = (&system.mesh, &system.model.section, &system.layout);
     let mut squares = [0.0; 2];
     // an attachment between the two cells would let the section force jump
-    let inner = |a: &Attached| {
+    let inner = |a: &MeshedAttachment| {
         let near = |node: usize| (1..=2).contains(&node) || (1..=2).contains(&(mesh.cells - node));
         a.weights
             .into_iter()
             .enumerate()
             .any(|(k, weight)| weight > 0.0 && near(a.node + k))
     };
-    let turned = |body: &Body| body.cells().any(|(cell, _)| cell < 2 || cell + 2 >= mesh.cells);
+    let turned = |body: &MeshedBody| body.cells().any(|(cell, _)| cell < 2 || cell + 2 >= mesh.cells);
     if mesh.cells < 2
         || !system.touching.is_empty()
         || system.attached.iter().any(inner)

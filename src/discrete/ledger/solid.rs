@@ -4,7 +4,7 @@ use super::{EnergyRate, Rates, StoredEnergies, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
-use crate::discrete::residual::{fourth, relaxation};
+use crate::discrete::residual::{fourth_order, relaxation};
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
@@ -132,7 +132,7 @@ fn bending(
             let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
             let mut elastic_rate = e.moment.rate / section.bending_stiffness;
             if mesh.fourth {
-                let beside = fourth::neighbour(system, i);
+                let beside = fourth_order::neighbour(system, i);
                 let (left, right) = mesh.segments_of_node(beside);
                 // curvatures by pressure on the left of nodes
                 let by_pressure = 0.5 * (curvature_rate(w, beside) + curvature_rate(w, beside + right - left));
@@ -243,7 +243,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             e.kinetic += 0.5 * system.masses[i] * (w.motion.v[i].x * w.motion.v[i].x + along * along);
         }
         e.bending += if mesh.fourth {
-            fourth::of_bending(system, now, w, i)
+            fourth_order::of_bending(system, now, w, i)
         } else {
             0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness
         };
@@ -258,7 +258,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
     for c in 0..mesh.cells {
         if system.model.effects.has(Effect::AxialStretch) {
             e.axial += if mesh.fourth {
-                fourth::of_stretch(system, w, c)
+                fourth_order::of_stretch(system, w, c)
             } else {
                 0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness
             };
@@ -274,10 +274,10 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         }
     }
     if mesh.fourth && sheared {
-        e.bending += 0.5 * mesh.h * section.shear_stiffness * fourth::squares(&w.shape.sections.shear);
+        e.bending += 0.5 * mesh.h * section.shear_stiffness * fourth_order::squares(&w.shape.sections.shear);
         if system.model.effects.has(Effect::RotaryInertia) {
             let inertia = section.mass_per_length * section.gyration_radius_squared;
-            e.rotary += 0.5 * mesh.h * inertia * fourth::squares(&w.shape.angle_rate);
+            e.rotary += 0.5 * mesh.h * inertia * fourth_order::squares(&w.shape.angle_rate);
         }
     }
     e

@@ -135,7 +135,7 @@ impl BeamField {
     }
 
     /// Fields of a system.
-    pub fn of(system: &System) -> impl Iterator<Item = Self> {
+    pub fn recorded(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
         let shears = !system.layout.turning.angle.is_empty();
         Self::ALL.into_iter().filter(move |field| {
@@ -184,7 +184,7 @@ impl FieldAxis {
     }
 
     /// Axes of a system.
-    pub fn of(system: &System) -> impl Iterator<Item = Self> {
+    pub fn recorded(system: &System) -> impl Iterator<Item = Self> {
         let wet = system.fluid.is_some();
         Self::ALL
             .into_iter()
@@ -202,7 +202,7 @@ impl FieldAxis {
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
             return vec![];
         };
-        let map = NetworkCoordinate::of(wet, tube_length);
+        let map = NetworkCoordinate::with_table_ratio(wet, tube_length);
         let k = fluid.cells_per_bladder;
         let at = |array: usize, cell: usize| match self {
             Self::Bladder => bladder_label(cell / k, wet.per_row) as f64,
@@ -229,7 +229,7 @@ pub fn cell_order(system: &System, tube_length: f64) -> Vec<usize> {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return vec![];
     };
-    let map = NetworkCoordinate::of(wet, tube_length);
+    let map = NetworkCoordinate::with_table_ratio(wet, tube_length);
     let bladders = map.arrays.iter().flatten();
     bladders.flat_map(|&bladder| fluid.cells_of(bladder)).collect()
 }

@@ -5,13 +5,13 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::observables::{Group, Observable};
-use crate::discrete::glance::Watched;
+use crate::discrete::extrema::MonitoredQuantity;
 
 /// Source of a quantity of interest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InterestSource {
     /// Oscillating values, also between output times; of two, the one with the larger magnitude.
-    Motion(&'static [Watched]),
+    Motion(&'static [MonitoredQuantity]),
     /// Sum of the energies of one group.
     Energy(Group),
     /// Efficiency: harvested energy over energy put in; in the window, over all energy spent in it.
@@ -59,13 +59,13 @@ macro_rules! interest {
 
 // name [unit], words, condition, source, columns of the history from which it can also be computed
 interest! {
-    TipU1: "tip_u1_m" ["m"], "tip deflection", Always, InterestSource::Motion(&[Watched::Tip1]), [Observable::TipU1];
-    TipU3: "tip_u3_m" ["m"], "axial tip displacement", Always, InterestSource::Motion(&[Watched::Tip3]), [Observable::TipU3];
-    TipAngle: "tip_angle_rad" ["rad"], "tip angle", Always, InterestSource::Motion(&[Watched::Angle]), [Observable::TipAngle];
-    MidspanU1: "midspan_u1_m" ["m"], "deflection in the middle", Always, InterestSource::Motion(&[Watched::Middle1]), [];
-    LargestU1: "largest_u1_m" ["m"], "largest deflection", Always, InterestSource::Motion(&[Watched::Largest1]), [];
-    LargestU3: "largest_u3_m" ["m"], "largest axial displacement", Always, InterestSource::Motion(&[Watched::Largest3]), [];
-    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure in size, above or below that around", Wet, InterestSource::Motion(&[Watched::High, Watched::Low]),
+    TipU1: "tip_u1_m" ["m"], "tip deflection", Always, InterestSource::Motion(&[MonitoredQuantity::Tip1]), [Observable::TipU1];
+    TipU3: "tip_u3_m" ["m"], "axial tip displacement", Always, InterestSource::Motion(&[MonitoredQuantity::Tip3]), [Observable::TipU3];
+    TipAngle: "tip_angle_rad" ["rad"], "tip angle", Always, InterestSource::Motion(&[MonitoredQuantity::Angle]), [Observable::TipAngle];
+    MidspanU1: "midspan_u1_m" ["m"], "deflection in the middle", Always, InterestSource::Motion(&[MonitoredQuantity::Middle1]), [];
+    LargestU1: "largest_u1_m" ["m"], "largest deflection", Always, InterestSource::Motion(&[MonitoredQuantity::Largest1]), [];
+    LargestU3: "largest_u3_m" ["m"], "largest axial displacement", Always, InterestSource::Motion(&[MonitoredQuantity::Largest3]), [];
+    MaxPressure: "max_pressure_pa" ["Pa"], "the largest pressure in size, above or below that around", Wet, InterestSource::Motion(&[MonitoredQuantity::High, MonitoredQuantity::Low]),
         [Observable::MaxPressure, Observable::MinPressure];
     InputEnergy: "input_energy_j" ["J"], "energy put in", Always, InterestSource::Energy(Group::PutIn), [];
     HarvestedEnergy: "harvested_energy_j" ["J"], "energy harvested", Turbines, InterestSource::Energy(Group::Harvested), [];
@@ -84,7 +84,7 @@ impl Interest {
     }
 
     /// Name used within a sentence.
-    pub fn words(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         self.entry().words
     }
 
@@ -99,7 +99,7 @@ impl Interest {
     }
 
     /// Quantities of a run; the flags state the presence of fluid and of turbines.
-    pub fn of([wet, turbines]: [bool; 2]) -> impl Iterator<Item = Self> {
+    pub fn recorded([wet, turbines]: [bool; 2]) -> impl Iterator<Item = Self> {
         Self::ALL.iter().copied().filter(move |one| match one.entry().when {
             When::Always => true,
             When::Wet => wet,

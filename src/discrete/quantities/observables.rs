@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::look::Look;
+use super::evaluate::StateView;
 use crate::case::schema::Effect;
 use crate::discrete::System;
 use crate::discrete::ledger::{EnergyRate, passed};
@@ -10,11 +10,11 @@ use crate::model::effects::DecisionCause;
 
 /// Source of a quantity.
 #[derive(Clone, Copy, Debug)]
-pub enum Read {
+pub enum QuantitySource {
     /// The time [s].
     Time,
     /// A state; smooth as long as extreme values stay at their fixed positions.
-    State(fn(&Look) -> f64),
+    State(fn(&StateView) -> f64),
     /// Integrals of [`crate::discrete::ledger::flows`] since the start.
     Integral(fn(&[f64]) -> f64),
     /// Integrals since the start, with the system that determines their index.
@@ -135,7 +135,7 @@ fn injected(system: &System, integrals: &[f64]) -> f64 {
 }
 
 /// Total inflow through all ports, exactly from the storage of their networks [m^3/s].
-fn port_flow(look: &Look) -> f64 {
+fn port_flow(look: &StateView) -> f64 {
     let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
         return 0.0;
     };
@@ -159,7 +159,7 @@ struct Entry {
     group: Group,
     role: QuantityRole,
     present: fn(&System) -> bool,
-    read: Read,
+    read: QuantitySource,
 }
 
 macro_rules! observables {
@@ -189,73 +189,73 @@ macro_rules! observables {
 
 // name [unit], label, words, group, role, condition, evaluation, description
 observables! {
-    Time: "t" ["s"], "time", "time", Time, Recorded, always, Read::Time,
+    Time: "t" ["s"], "time", "time", Time, Recorded, always, QuantitySource::Time,
         "time";
-    TipU1: "tip_u1" ["m"], "tip u₁", "tip deflection", Tip, Headline, always, Read::State(|look| look.tip_u1()),
+    TipU1: "tip_u1" ["m"], "tip u₁", "tip deflection", Tip, Headline, always, QuantitySource::State(|look| look.tip_u1()),
         "transverse displacement of the tip";
-    TipU3: "tip_u3" ["m"], "tip u₃", "axial tip displacement", Tip, Headline, always, Read::State(|look| look.tip_u3()),
+    TipU3: "tip_u3" ["m"], "tip u₃", "axial tip displacement", Tip, Headline, always, QuantitySource::State(|look| look.tip_u3()),
         "axial displacement of the tip";
-    TipAngle: "tip_angle" ["rad"], "tip angle", "tip angle", Tip, Studied, always, Read::State(|look| look.tip_angle()),
+    TipAngle: "tip_angle" ["rad"], "tip angle", "tip angle", Tip, Studied, always, QuantitySource::State(|look| look.tip_angle()),
         "slope angle phi of the tip, counted over full turns";
-    MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, wet, Read::State(|look| look.max_pressure()),
+    MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, wet, QuantitySource::State(|look| look.max_pressure()),
         "pressure of the cell with the highest pressure";
-    MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, wet, Read::State(|look| look.min_pressure()),
+    MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, wet, QuantitySource::State(|look| look.min_pressure()),
         "pressure of the cell with the lowest pressure";
-    TurbinePower: "turbine_power" ["W"], "turbine power", "turbine power", Power, Studied, wet, Read::State(|look| look.turbine_power()),
+    TurbinePower: "turbine_power" ["W"], "turbine power", "turbine power", Power, Studied, wet, QuantitySource::State(|look| look.turbine_power()),
         "power of all turbines";
-    LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, wet, Read::State(|look| look.least_opening()),
+    LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, wet, QuantitySource::State(|look| look.least_opening()),
         "smallest bladder cross-section over that at rest; 0 is closed";
-    PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, Read::State(port_flow),
+    PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, QuantitySource::State(port_flow),
         "flow through all ports into the networks";
-    InjectedVolume: "injected_volume" ["m^3"], "injected volume", "injected volume", Ports, Recorded, open, Read::Through(injected),
+    InjectedVolume: "injected_volume" ["m^3"], "injected volume", "injected volume", Ports, Recorded, open, QuantitySource::Through(injected),
         "volume injected through all ports since the start, minus the outflow";
-    KineticEnergy: "kinetic_energy" ["J"], "kinetic energy", "kinetic energy", Stored, Studied, always, Read::State(|look| look.stored.kinetic),
+    KineticEnergy: "kinetic_energy" ["J"], "kinetic energy", "kinetic energy", Stored, Studied, always, QuantitySource::State(|look| look.stored.kinetic),
         "kinetic energy of the beam's translation";
-    RotaryEnergy: "rotary_energy" ["J"], "rotary energy", "rotary energy", Stored, Recorded, always, Read::State(|look| look.stored.rotary),
+    RotaryEnergy: "rotary_energy" ["J"], "rotary energy", "rotary energy", Stored, Recorded, always, QuantitySource::State(|look| look.stored.rotary),
         "kinetic energy of the sections' rotation";
-    AxialEnergy: "axial_energy" ["J"], "axial energy", "axial energy", Stored, Studied, always, Read::State(|look| look.stored.axial),
+    AxialEnergy: "axial_energy" ["J"], "axial energy", "axial energy", Stored, Studied, always, QuantitySource::State(|look| look.stored.axial),
         "elastic energy of stretch";
-    BendingEnergy: "bending_energy" ["J"], "bending energy", "bending energy", Stored, Studied, always, Read::State(|look| look.stored.bending),
+    BendingEnergy: "bending_energy" ["J"], "bending energy", "bending energy", Stored, Studied, always, QuantitySource::State(|look| look.stored.bending),
         "elastic energy of bending";
-    BladderEnergy: "bladder_energy" ["J"], "bladder energy", "bladder energy", Stored, Studied, always, Read::State(|look| look.stored.bladders),
+    BladderEnergy: "bladder_energy" ["J"], "bladder energy", "bladder energy", Stored, Studied, always, QuantitySource::State(|look| look.stored.bladders),
         "energy stored in the bladders";
-    SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, Read::State(|look| look.stored.section),
+    SectionEnergy: "section_energy" ["J"], "section energy", "energy of finite strain", Stored, Recorded, nonlinear, QuantitySource::State(|look| look.stored.section),
         "energy of the section at finite strain, beyond those that are quadratic";
-    RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of relaxing branches", Stored, Recorded, relaxing, Read::State(|look| look.stored.relaxing),
+    RelaxingEnergy: "relaxing_energy" ["J"], "relaxing energy", "energy of relaxing branches", Stored, Recorded, relaxing, QuantitySource::State(|look| look.stored.relaxing),
         "energy of the Maxwell branches of moments and normal forces";
-    AccumulatorEnergy: "accumulator_energy" ["J"], "accumulator energy", "energy in accumulators", Stored, Recorded, accumulating, Read::State(|look| look.stored.accumulators),
+    AccumulatorEnergy: "accumulator_energy" ["J"], "accumulator energy", "energy in accumulators", Stored, Recorded, accumulating, QuantitySource::State(|look| look.stored.accumulators),
         "energy in accumulators";
-    CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, Read::State(|look| look.stored.compression),
+    CompressionEnergy: "compression_energy" ["J"], "compression energy", "energy of compressed fluid", Stored, Recorded, compressed, QuantitySource::State(|look| look.stored.compression),
         "energy of compressed fluid, relative to ambient pressure";
-    TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes and along bladders", Stored, Recorded, inert, Read::State(|look| look.stored.tubes),
+    TubeEnergy: "tube_energy" ["J"], "tube energy", "energy of the fluid in tubes and along bladders", Stored, Recorded, inert, QuantitySource::State(|look| look.stored.tubes),
         "kinetic energy of the fluid in tubes and along bladders";
-    ContactEnergy: "contact_energy" ["J"], "contact energy", "elastic energy of contacts", Stored, Recorded, touching, Read::State(|look| look.stored.contacts),
+    ContactEnergy: "contact_energy" ["J"], "contact energy", "elastic energy of contacts", Stored, Recorded, touching, QuantitySource::State(|look| look.stored.contacts),
         "elastic energy of contacts";
-    SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, Read::State(|look| look.stored.springs),
+    SpringEnergy: "spring_energy" ["J"], "spring energy", "energy of springs to ground", Stored, Recorded, attached, QuantitySource::State(|look| look.stored.springs),
         "elastic energy of springs between beam and ground";
-    SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, Read::State(|look| look.stored.around),
+    SurroundingEnergy: "surrounding_energy" ["J"], "energy around", "energy of the fluid around the beam", Stored, Recorded, around, QuantitySource::State(|look| look.stored.around),
         "kinetic energy of the fluid around that moves with the beam";
-    WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Loads as usize]),
+    WorkLoads: "work_loads" ["J"], "work of loads", "work of the loads", PutIn, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Loads as usize]),
         "work of distributed loads and end forces";
-    WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ends as usize]),
+    WorkEnds: "work_ends" ["J"], "work of ends", "work of the driven ends", PutIn, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Ends as usize]),
         "work of driven ends and end moments";
-    WorkPorts: "work_ports" ["J"], "work of ports", "work of the ports", PutIn, Recorded, always, Read::Integral(|i| i[EnergyRate::Ports as usize]),
+    WorkPorts: "work_ports" ["J"], "work of ports", "work of the ports", PutIn, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Ports as usize]),
         "work of pressure and flow ports";
-    DissipatedBladders: "dissipated_bladders" ["J"], "lost in bladders", "lost to flow in the bladders", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Bladders as usize]),
+    DissipatedBladders: "dissipated_bladders" ["J"], "lost in bladders", "lost to flow in the bladders", Lost, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Bladders as usize]),
         "dissipated by flow in the bladders";
-    DissipatedTubes: "dissipated_tubes" ["J"], "lost in tubes", "lost to flow in the tubes", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Tubes as usize]),
+    DissipatedTubes: "dissipated_tubes" ["J"], "lost in tubes", "lost to flow in the tubes", Lost, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Tubes as usize]),
         "dissipated by flow in the tubes";
-    Harvested: "harvested" ["J"], "harvested", "harvested by the turbines", Harvested, Studied, always, Read::Integral(|i| i[EnergyRate::Turbines as usize]),
+    Harvested: "harvested" ["J"], "harvested", "harvested by the turbines", Harvested, Studied, always, QuantitySource::Integral(|i| i[EnergyRate::Turbines as usize]),
         "harvested by the turbines";
-    DissipatedRectifiers: "dissipated_rectifiers" ["J"], "lost in rectifiers", "lost in check valves", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Rectifiers as usize]),
+    DissipatedRectifiers: "dissipated_rectifiers" ["J"], "lost in rectifiers", "lost in check valves", Lost, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Rectifiers as usize]),
         "dissipated in check valves";
-    DissipatedDamping: "dissipated_damping" ["J"], "lost in damping", "lost to damping", Lost, Recorded, always, Read::Integral(|i| i[EnergyRate::Damping as usize]),
+    DissipatedDamping: "dissipated_damping" ["J"], "lost in damping", "lost to damping", Lost, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Damping as usize]),
         "dissipated by material damping and drag";
-    WorkFormulation: "work_formulation" ["J"], "published formulation", "added by the published momentum balance", Added, Recorded, always, Read::Integral(|i| i[EnergyRate::Formulation as usize]),
+    WorkFormulation: "work_formulation" ["J"], "published formulation", "added by the published momentum balance", Added, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Formulation as usize]),
         "energy that the published momentum balance adds";
-    WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, Read::Integral(|i| i[EnergyRate::Reciprocity as usize]),
+    WorkReciprocity: "work_reciprocity" ["J"], "lack of reciprocity", "added by a coupling without reciprocity", Added, Recorded, always, QuantitySource::Integral(|i| i[EnergyRate::Reciprocity as usize]),
         "energy that a coupling without reciprocity adds";
-    EnergyResidual: "energy_residual" ["J"], "open balance", "open balance", Open, Recorded, always, Read::Open,
+    EnergyResidual: "energy_residual" ["J"], "open balance", "open balance", Open, Recorded, always, QuantitySource::Open,
         "energy minus energy at the start minus all of the above: error of the integrator";
 }
 
@@ -276,7 +276,7 @@ impl Observable {
     }
 
     /// Name used within a sentence.
-    pub fn words(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         self.entry().words
     }
 
@@ -296,7 +296,7 @@ impl Observable {
     }
 
     /// Source of the quantity.
-    pub fn read(self) -> Read {
+    pub fn read(self) -> QuantitySource {
         self.entry().read
     }
 
@@ -306,7 +306,7 @@ impl Observable {
     }
 
     /// Quantities in the history of a system.
-    pub fn of(system: &System) -> Vec<Self> {
+    pub fn recorded(system: &System) -> Vec<Self> {
         let all = Self::ALL.iter().copied();
         all.filter(|one| (one.entry().present)(system)).collect()
     }
@@ -327,7 +327,7 @@ impl Observable {
 
     /// True if it has a derivative by a number of the case: not for time, nor for the balance residual, an error of the time integration.
     pub fn has_derivative(self) -> bool {
-        !matches!(self.read(), Read::Time | Read::Open)
+        !matches!(self.read(), QuantitySource::Time | QuantitySource::Open)
     }
 }
 
@@ -342,7 +342,7 @@ mod tests {
         for flow in ENERGY_RATES.iter().filter(|flow| flow.energy_sign() != 0.0) {
             let mut one_joule = [0.0; ENERGY_RATES.len()];
             one_joule[*flow as usize] = 1.0;
-            let has = |one: &&Observable| matches!(one.read(), Read::Integral(of) if one.unit() == "J" && of(&one_joule) == 1.0);
+            let has = |one: &&Observable| matches!(one.read(), QuantitySource::Integral(of) if one.unit() == "J" && of(&one_joule) == 1.0);
             let own: Vec<_> = Observable::ALL.iter().filter(has).collect();
             assert_eq!(own.len(), 1, "{flow:?}");
             let comes_in = matches!(own[0].group(), Group::PutIn | Group::Added);

@@ -1,9 +1,9 @@
 //! Quantities at places named in the case.
 
 use super::Observable;
-use super::look::Look;
+use super::evaluate::StateView;
 use crate::case::schema::{Case, Probe as Written};
-use crate::discrete::turns::{first_angle, tip_angle};
+use crate::discrete::angle_unwrapping::{first_angle, tip_angle};
 use crate::discrete::{BeamMesh, System};
 
 /// A place of the beam, on a mesh.
@@ -35,7 +35,7 @@ type Entry = (
     &'static str,
     &'static str,
     bool,
-    fn(&MeshProbe, &Look) -> f64,
+    fn(&MeshProbe, &StateView) -> f64,
 );
 
 /// Quantities recorded at each probe.
@@ -121,7 +121,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> + '_ {
 }
 
 /// Values of the columns in a state.
-pub fn values<'a>(look: &'a Look) -> impl Iterator<Item = f64> + 'a {
+pub fn values<'a>(look: &'a StateView) -> impl Iterator<Item = f64> + 'a {
     entries(look.system).map(|(probe, entry)| (entry.4)(probe, look))
 }
 
@@ -173,7 +173,7 @@ impl MeshProbe {
     }
 
     /// Angle along the chain of midpoints, `φ_{c+1} = φ_c - h κ_{c+1}`, with the full turns of the tip's angle.
-    fn angle(&self, look: &Look) -> f64 {
+    fn angle(&self, look: &StateView) -> f64 {
         let (kappa, h) = (&look.w.shape.kappa, look.system.mesh.h);
         let (node, share) = self.node;
         let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
@@ -188,7 +188,7 @@ impl MeshProbe {
     }
 
     /// `λ - 1 ± κ h_s/2`, κ relative to the rest curvature.
-    fn surface(&self, look: &Look, side: f64) -> f64 {
+    fn surface(&self, look: &StateView, side: f64) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
             + side * self.half_height * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
@@ -200,7 +200,7 @@ impl MeshProbe {
     /// ```text
     /// σ = E (λ - 1 ± κ h_s/2 + N_r/EA ± M_r h_s/(2 EI))        N_r, M_r: forces of the branches
     /// ```
-    fn stress(&self, look: &Look, side: f64) -> f64 {
+    fn stress(&self, look: &StateView, side: f64) -> f64 {
         let (section, forces) = (&look.system.model.section, &look.w.forces);
         let normal = |c: usize| forces.relaxing_normal.get(c).copied().unwrap_or(0.0);
         let moment = |i: usize| forces.relaxing_moment.get(i).copied().unwrap_or(0.0);
@@ -209,7 +209,7 @@ impl MeshProbe {
         self.young_modulus * (self.surface(look, side) + relaxing)
     }
 
-    fn pressure(&self, look: &Look, row: usize) -> f64 {
+    fn pressure(&self, look: &StateView, row: usize) -> f64 {
         let wet = look.system.model.wet.as_ref();
         wet.map_or(0.0, |wet| look.w.fluid.mean_pressure[wet.pair(self.segment)[row]])
     }

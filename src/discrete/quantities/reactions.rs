@@ -1,12 +1,12 @@
 //! Reactions: forces and couples at ends with given motion, at springs and dashpots, and angles of ends that can rotate.
 
-use super::look::Look;
+use super::evaluate::StateView;
 use super::probes::HistoryColumn;
 use crate::case::{Rotation, Translation};
 use crate::discrete::System;
+use crate::discrete::angle_unwrapping::{first_angle, nearest};
 use crate::discrete::ledger::reaction;
 use crate::discrete::residual::momentum::end_tangent;
-use crate::discrete::turns::{first_angle, nearest};
 
 /// A reaction quantity of an end or of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,7 +88,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
 }
 
 /// Values of the reaction quantities in a state.
-pub fn values(look: &Look, put: &mut impl FnMut(f64)) {
+pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
     let (system, now, w) = (look.system, look.now, &*look.w);
     let node = |end: usize| end * (system.mesh.nodes - 1);
     for one in all(system) {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Group, Look, Observable, Read, probes, stations};
+use super::{Group, Observable, QuantitySource, StateView, probes, stations};
 use crate::discrete::System;
 
 /// Values of observables at one instant, followed by those of ports, accumulators, walls and reactions, and those of probes.
@@ -16,9 +16,12 @@ pub struct ObservableRow {
 
 impl ObservableRow {
     /// Creates a row of zeros for a system.
-    pub fn of(system: &System) -> Self {
+    pub fn from_system(system: &System) -> Self {
         let stations = stations::columns(system, false).len();
-        Self::new(Observable::of(system), [stations, probes::columns(system).count()])
+        Self::new(
+            Observable::recorded(system),
+            [stations, probes::columns(system).count()],
+        )
     }
 
     /// Creates a row of zeros for columns and for the given numbers of values of stations and of probes.
@@ -32,7 +35,7 @@ impl ObservableRow {
     }
 
     /// Evaluates a state at a time [s], with integrals up to that time and the residual of the energy balance [J].
-    pub fn take(&mut self, t: f64, look: &Look, integrals: &[f64], open: f64) {
+    pub fn take(&mut self, t: f64, look: &StateView, integrals: &[f64], open: f64) {
         let (values, rest) = self.values.split_at_mut(self.columns.len());
         let (at_stations, at_probes) = rest.split_at_mut(self.stations);
         if !at_stations.is_empty() {
@@ -40,11 +43,11 @@ impl ObservableRow {
         }
         for (value, column) in values.iter_mut().zip(&self.columns) {
             *value = match column.read() {
-                Read::Time => t,
-                Read::State(read) => read(look),
-                Read::Integral(of) => of(integrals),
-                Read::Through(of) => of(look.system, integrals),
-                Read::Open => open,
+                QuantitySource::Time => t,
+                QuantitySource::State(read) => read(look),
+                QuantitySource::Integral(of) => of(integrals),
+                QuantitySource::Through(of) => of(look.system, integrals),
+                QuantitySource::Open => open,
             };
         }
         for (value, read) in at_probes.iter_mut().zip(probes::values(look)) {

@@ -1,11 +1,11 @@
 //! Quantities of each port, accumulator, wall and reaction, and, for states at rest, of each bladder.
 
-use super::look::Look;
+use super::evaluate::StateView;
 use super::probes::{HistoryColumn, key};
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
-use crate::discrete::{System, touching};
+use crate::discrete::{System, contact_points};
 
 /// Columns of all ports, accumulators, walls and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
@@ -110,7 +110,7 @@ pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
 }
 
 /// Writes the values in a state; without integrals those of a state at rest.
-pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
+pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
     let mut out = out.iter_mut();
     let mut put = |value: f64| {
         if let Some(place) = out.next() {
@@ -120,7 +120,7 @@ pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
     network_values(look, integrals, &mut put);
     reactions::values(look, &mut put);
     for wall in 0..look.system.model.contacts.len() {
-        let [normal, friction, depth] = touching::felt(look.system, &look.w, wall);
+        let [normal, friction, depth] = contact_points::felt(look.system, &look.w, wall);
         put(normal);
         if integrals.is_some() {
             put(friction);
@@ -129,7 +129,7 @@ pub fn values(look: &Look, integrals: Option<&[f64]>, out: &mut [f64]) {
     }
 }
 
-fn network_values(look: &Look, integrals: Option<&[f64]>, put: &mut impl FnMut(f64)) {
+fn network_values(look: &StateView, integrals: Option<&[f64]>, put: &mut impl FnMut(f64)) {
     let (Some(wet), Some(fluid)) = (&look.system.model.wet, &look.system.fluid) else {
         return;
     };

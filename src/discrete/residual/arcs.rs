@@ -1,6 +1,6 @@
 //! Fourth-order strains of cells whose sections shear.
 
-use super::fourth::{arc, bends_its_cells, shares};
+use super::fourth_order::{arc, bends_its_cells, shares};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::BeamShape;
 use crate::discrete::{System, TimeData, Workspace};

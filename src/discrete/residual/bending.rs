@@ -1,7 +1,7 @@
 //! Moments, and the shear forces of sections that remain perpendicular to the beam.
 
 use super::solid::node_stretch;
-use super::{fourth, relaxation};
+use super::{fourth_order, relaxation};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
@@ -52,7 +52,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         given_moment(system, now, node, w);
     }
     if system.mesh.fourth {
-        fourth::moments(&system.mesh, now, &mut w.forces.moment);
+        fourth_order::moments(&system.mesh, now, &mut w.forces.moment);
     }
     relaxation::moments(system, now, w);
     if section.bending_damping_time > 0.0 {
@@ -66,7 +66,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
             w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
         }
         if system.mesh.fourth {
-            fourth::moments(&system.mesh, now, &mut w.forces.viscous_moment);
+            fourth_order::moments(&system.mesh, now, &mut w.forces.viscous_moment);
         }
     }
 }
@@ -94,7 +94,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     w.forces.moment[node] = elastic;
     let mut alpha = free_curvature + elastic / T::constant(ei);
     if system.mesh.fourth {
-        alpha = free_curvature + (elastic * (2.0 / ei) + fourth::beside(system, w, node)) * (1.0 / 3.0);
+        alpha = free_curvature + (elastic * (2.0 / ei) + fourth_order::beside(system, w, node)) * (1.0 / 3.0);
     }
     if w.relaxed.curvature.is_empty() {
         w.shape.kappa[node] = if published { alpha / stretch } else { alpha };

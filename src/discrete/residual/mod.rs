@@ -1,19 +1,19 @@
 //! The semi-discrete equations, in the paper's order.
 
+pub mod ambient_fluid;
 pub mod arcs;
-pub mod around;
 pub mod bar;
 pub mod bending;
 pub mod fluid;
-pub mod fourth;
+pub mod fourth_order;
 pub mod momentum;
 pub mod nonlinear;
 pub mod relaxation;
 pub mod rows;
-pub mod sheared;
-pub mod small;
 pub mod solid;
+pub mod timoshenko;
 mod unpack;
+pub mod von_karman;
 
 use super::{System, TimeData, Workspace};
 use crate::case::schema::Effect;
@@ -48,36 +48,36 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             bar::section_forces(system, w);
         }
         Kinematics::Linear | Kinematics::SmallRotation => {
-            small::kinematics(system, now, w);
+            von_karman::kinematics(system, now, w);
             if sheared {
-                sheared::kinematics(system, now, w);
+                timoshenko::kinematics(system, now, w);
             }
-            fourth::arcs(system, now, w);
-            small::rates(system, now, w);
-            small::normal_forces(system, now, w);
+            fourth_order::arcs(system, now, w);
+            von_karman::rates(system, now, w);
+            von_karman::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
-            fourth::arc_moments(system, now, w);
+            fourth_order::arc_moments(system, now, w);
             if sheared {
-                sheared::forces(system, now, w);
+                timoshenko::forces(system, now, w);
             } else {
-                small::section_forces(system, now, w);
+                von_karman::section_forces(system, now, w);
             }
         }
         Kinematics::FiniteRotation => {
             if sheared {
-                sheared::kinematics(system, now, w);
+                timoshenko::kinematics(system, now, w);
             } else {
                 solid::kinematics(system, now, w);
             }
-            fourth::arcs(system, now, w);
+            fourth_order::arcs(system, now, w);
             solid::rates(system, now, w);
             solid::normal_forces(system, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
-            fourth::arc_moments(system, now, w);
+            fourth_order::arc_moments(system, now, w);
             if sheared {
-                sheared::forces(system, now, w);
+                timoshenko::forces(system, now, w);
             } else {
                 bending::shears(system, w);
                 solid::section_forces(system, now, w);
@@ -93,7 +93,7 @@ pub fn complete<T: Scalar>(system: &System, now: &TimeData, yp: &[T], w: &mut Wo
     unpack::complete_velocities(system, now, yp, w);
     match system.model.kinematics {
         Kinematics::Bar => bar::strain_rates(system, w),
-        Kinematics::Linear | Kinematics::SmallRotation => small::strain_rates(system, now, w),
+        Kinematics::Linear | Kinematics::SmallRotation => von_karman::strain_rates(system, now, w),
         Kinematics::FiniteRotation => solid::strain_rates(system, now, w),
     }
 }
@@ -108,7 +108,7 @@ pub fn residual<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w
 pub fn equations<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: &Workspace<T>, r: &mut [T]) {
     momentum::momentum(system, now, w, r);
     rows::motion(system, y, yp, r);
-    sheared::rows(system, w, r);
+    timoshenko::rows(system, w, r);
     relaxation::rows(system, now, w, r);
     rows::means(system, w, r);
     nonlinear::areas(system, w, r);

@@ -1,9 +1,9 @@
 //! Momentum balance of nodes, and the forces on them.
 
-use super::{around, fourth};
+use super::{ambient_fluid, fourth_order};
 use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
-use crate::discrete::{System, TimeData, Workspace, bodies, touching};
+use crate::discrete::{System, TimeData, Workspace, bodies, contact_points};
 use crate::model::Kinematics;
 use crate::numerics::{Planar, Scalar, wide};
 
@@ -108,7 +108,7 @@ pub fn outer_forces<T: Scalar>(
     if system.stands_alone {
         return;
     }
-    around::forces(system, now, w, node, system.lengths[node], &mut each);
+    ambient_fluid::forces(system, now, w, node, system.lengths[node], &mut each);
     for (attached, weight) in at_node(&system.attached, node) {
         let given = attached.given(system, now, w);
         each(Some(EnergyRate::Loads), given * weight);
@@ -119,7 +119,7 @@ pub fn outer_forces<T: Scalar>(
         bodies::forces(system, w, node, |force| each(None, force));
     }
     if !system.touching.is_empty() {
-        touching::forces(system, w, node, &mut each);
+        contact_points::forces(system, w, node, &mut each);
     }
 }
 
@@ -224,7 +224,7 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
     }
     add_means(&forces.shear, &mut added, |at_node| &mut at_node.z);
     if system.mesh.fourth {
-        let excess = |i: usize| w.shape.kappa[i] - fourth::elastic_curvature(system, now, w, i);
+        let excess = |i: usize| w.shape.kappa[i] - fourth_order::elastic_curvature(system, now, w, i);
         wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     } else {
         let softness = 1.0 / system.model.section.bending_stiffness;
@@ -270,6 +270,6 @@ fn turn_excess<T: Scalar>(
 /// `V^ e_t(φ^) - N^ e_n(φ^)` from `(N^, V^)`.
 #[inline(always)]
 fn across_and_along<T: Scalar>(both: Planar<T>, tangents: [Planar<T>; 2]) -> Planar<T> {
-    let tangent = around::mean_direction(tangents);
+    let tangent = ambient_fluid::mean_direction(tangents);
     tangent.times(both.z) - tangent.normal().times(both.x)
 }

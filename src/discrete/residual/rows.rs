@@ -2,7 +2,7 @@
 
 use super::fluid::{driving, over_bridge};
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge, MeshFlow, MeshLink};
-use crate::discrete::{System, TimeData, Workspace, let_in};
+use crate::discrete::{System, TimeData, Workspace, injected_volume};
 use crate::model::LumpedKind;
 use crate::model::network::Feed;
 use crate::numerics::Scalar;
@@ -94,7 +94,7 @@ pub fn lumped<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
                     Feed::Volume(_) => 0.0,
                 };
                 r[unknown] = yp[unknown] - T::constant(sources.iter().map(pumped).sum());
-                volume - y[unknown] - T::constant(let_in::into_lumped(wet, lumped, now)[0])
+                volume - y[unknown] - T::constant(injected_volume::into_lumped(wet, lumped, now)[0])
             }
             _ => volume - T::constant(fluid.volume_at_start[k]),
         };

@@ -1,6 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use super::{fourth, sheared};
+use super::{fourth_order, timoshenko};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::{BeamShape, Sections};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
@@ -61,7 +61,7 @@ pub fn lines<T: Scalar>(
     let strains = &mut shape.strain[..cells];
     for c in 0..cells {
         let e = (u[c + 1] - u[c]) * inverse;
-        let line = CellLine::of(Planar::new(e.x, e.z + 1.0));
+        let line = CellLine::new(Planar::new(e.x, e.z + 1.0));
         d3[c] = line.d3;
         stretch[c] = line.stretch;
         per_stretch[c] = line.per_stretch;
@@ -85,7 +85,7 @@ pub struct CellLine<T> {
 
 impl<T: Scalar> CellLine<T> {
     #[inline(always)]
-    fn of(d3: Planar<T>) -> Self {
+    fn new(d3: Planar<T>) -> Self {
         let stretch = d3.squared().sqrt();
         let per_stretch = T::constant(1.0) / stretch;
         Self {
@@ -117,7 +117,7 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
 /// Rates of stretch and angle.
 fn line_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     if system.model.effects.has(Effect::Shear) {
-        sheared::strain_rates(system, w);
+        timoshenko::strain_rates(system, w);
         return;
     }
     let inverse = 1.0 / system.mesh.h;
@@ -185,9 +185,9 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         }
     }
     if system.mesh.fourth {
-        fourth::of_cells(&mut w.forces.normal);
+        fourth_order::of_cells(&mut w.forces.normal);
         if section.axial_damping_time > 0.0 {
-            fourth::of_cells(&mut w.forces.viscous_normal);
+            fourth_order::of_cells(&mut w.forces.viscous_normal);
         }
     }
 }
@@ -246,9 +246,9 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
     let (tangent, section_force) = (&shape.tangent[..cells], &mut forces.section[..cells]);
     let (normal, shear) = (&forces.normal[..cells], &forces.shear[..cells]);
     wide!(turned(tangent, [normal, shear], section_force));
-    if fourth::bends_its_cells(system) {
+    if fourth_order::bends_its_cells(system) {
         for c in 0..cells {
-            let share = fourth::arc(system, now, &shape.kappa, c);
+            let share = fourth_order::arc(system, now, &shape.kappa, c);
             section_force[c] += tangent[c].times(normal[c] * share);
         }
     }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use crate::discrete::injected_volume::{self, InjectedShare, Store};
 use crate::discrete::layout::LineLayout;
-use crate::discrete::let_in::{self, InjectedShare, Store};
 use crate::discrete::time_data::Frame;
 use crate::discrete::workspace::Motion;
 use crate::discrete::{System, TimeData, Workspace};
@@ -92,7 +92,7 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
         for (k, lumped) in wet.lumped.iter().enumerate() {
             w.fluid.lumped[k] = match (&lumped.kind, l.network.lumped_pressure[k]) {
                 (LumpedKind::Port(port), _) => T::constant(now.port_pressure[*port]),
-                (_, Some(unknown)) => y[unknown] + T::constant(let_in::pressing(wet, lumped, now)[0]),
+                (_, Some(unknown)) => y[unknown] + T::constant(injected_volume::pressing(wet, lumped, now)[0]),
                 _ => T::zero(),
             };
         }

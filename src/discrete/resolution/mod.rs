@@ -4,8 +4,8 @@
 //! is judged by its effect on the beam. A narrow load far from supports acts only by its force. A wave shorter than a cell only causes
 //! bending between the nodes. Initial values are judged by their energy, and by the phase errors of their short waves during a run.
 
-mod begun;
-mod held;
+mod initial_values;
+mod load_distribution;
 mod ports;
 mod statics;
 mod vibrations;
@@ -19,7 +19,7 @@ use crate::functions::signals::Signal;
 use crate::model::{DistributedLoad, Model, Storage};
 
 use super::{System, shapes};
-use begun::Begun;
+use initial_values::InitialShape;
 pub use ports::JumpIntoBladder;
 use statics::Shape;
 
@@ -78,7 +78,7 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<MeshFi
         let on = |cells: usize| (shape.left_out(segments * cells), shape.what()).into();
         all.push(finding(shape.pointer.clone(), cells, along, on));
     }
-    for begun in Begun::all(case, system) {
+    for begun in InitialShape::all(case, system) {
         let on = |cells: usize| {
             let cells = segments * cells;
             match later {
@@ -229,7 +229,7 @@ fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
 /// Relative error of a root mean square.
 fn change(on_mesh: f64, profile: &Profile) -> f64 {
     let square = Profile::Product(vec![profile.clone(), profile.clone()]);
-    let exact = Integrals::of(&square).moments(0.0, 1.0)[0].max(0.0).sqrt();
+    let exact = Integrals::new(&square).moments(0.0, 1.0)[0].max(0.0).sqrt();
     ratio((on_mesh.sqrt() - exact).abs(), exact, exact)
 }
 

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 use super::LeftOut;
 use crate::case::schema::{BladderEnd, Case, Effect};
 use crate::case::wiring::bladder_index;
-use crate::functions::signals::{Clock, Signal};
+use crate::functions::signals::{Signal, SmoothTime};
 use crate::model::network::{Feed, LinkKind, NetworkNode, PrescribedFlow, PressurePort};
 use crate::model::{Model, Storage, Wet, characteristic};
 
@@ -144,7 +144,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<PortEffect> {
 /// True if the pressure of a port at the start differs from that of the fluid behind it.
 fn begins_with_jump(case: &Case, signal: &Signal) -> bool {
     let within = 0.5 * signal.smooth_intervals(case.time.end_s)[0].1;
-    let first = signal.jet(Clock { t: 0.0, within }).value;
+    let first = signal.jet(SmoothTime { t: 0.0, within }).value;
     case.start.pressures.is_empty() && first != case.held_at_start(signal)
 }
 

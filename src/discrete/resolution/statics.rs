@@ -5,7 +5,7 @@ use crate::functions::profile::Integrals;
 use crate::model::loads::LoadKind;
 use crate::model::{DistributedLoad, Model};
 
-use super::held::{self, Part};
+use super::load_distribution::{self, Part};
 use super::ratio;
 use crate::discrete::shapes;
 
@@ -84,7 +84,7 @@ impl Shape {
     /// ```
     pub fn left_out(&self, cells: usize) -> f64 {
         let (mut parts, shear, scale) = self.cantilever(cells);
-        held::hold(&self.held, self.bends(), shear, &mut parts);
+        load_distribution::hold(&self.held, self.bends(), shear, &mut parts);
         let (mut turned, mut largest, mut off, mut most_off) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         let (mut on_mesh, mut exact) = (0.0, 0.0);
         for cell in parts.chunk_by(|p, q| p.cell == q.cell) {
@@ -117,7 +117,7 @@ impl Shape {
         let integrals: Vec<_> = self
             .loads
             .iter()
-            .map(|(load, _)| Integrals::of(&load.profile))
+            .map(|(load, _)| Integrals::new(&load.profile))
             .collect();
         let mut parts = divided(&integrals, cells);
         let (mut shear, mut value, mut scale) = (0.0, 0.0, 0.0_f64);

@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
 use crate::case::relaxation;
 use crate::case::schema::Branch;
+use crate::discrete::euler_bernoulli_modes::{self, StraightMode};
 use crate::discrete::shapes;
-use crate::discrete::straight::{self, StraightMode};
 use crate::functions::profile::Profile;
 use crate::model::Model;
 
@@ -53,13 +53,13 @@ impl Vibrations {
             )
         };
         let modes = if bends {
-            straight::bending(&model.ends, MODES)
+            euler_bernoulli_modes::bending(&model.ends, MODES)
         } else {
-            straight::axial(&model.ends, MODES)
+            euler_bernoulli_modes::axial(&model.ends, MODES)
         };
         let mut given = shapes::at_nodes(profile, CELLS);
         let largest = given.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for rigid in straight::rigid(&model.ends, bends) {
+        for rigid in euler_bernoulli_modes::rigid(&model.ends, bends) {
             let [part, square] = products(&given, rigid);
             let removed = part / square;
             let values = given.iter_mut().enumerate();

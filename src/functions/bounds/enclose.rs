@@ -4,12 +4,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::interval::{Bounded, Interval, JetSpan};
 use crate::functions::curve::Interpolation;
-use crate::functions::jet::{Clock, Jet};
+use crate::functions::jet::{Jet, SmoothTime};
 use crate::functions::signals::{Polynomial, Ramp, RampShape, Sigmoid, Signal, Sine, Table};
 
 impl Bounded for Signal {
     fn exactly(&self, t: f64, within: f64) -> Jet {
-        self.jet(Clock { t, within })
+        self.jet(SmoothTime { t, within })
     }
 
     fn span(&self, from: f64, to: f64) -> JetSpan {
@@ -177,7 +177,7 @@ impl Ramp {
         }
         if from < stop && to > self.start_s {
             let within = self.start_s + 0.5 * self.duration_s;
-            let at = |t: f64| self.jet(Clock { t, within });
+            let at = |t: f64| self.jet(SmoothTime { t, within });
             let places = STEP_EXTREMES.map(|s| self.start_s + s * self.duration_s);
             all = all.hull(hull(at, from.max(self.start_s), to.min(stop), places));
         }

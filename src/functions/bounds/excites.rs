@@ -43,7 +43,7 @@ struct Part {
 
 impl Excitation {
     /// Excitation by a signal until `end` [s], with the value `held` before the start.
-    pub fn of(signal: &Signal, end: f64, held: f64) -> Self {
+    pub fn from_signal(signal: &Signal, end: f64, held: f64) -> Self {
         let mut breaks = vec![];
         signal.breaks(end, &mut breaks);
         let first = breaks.into_iter().filter(|t| *t > 0.0).fold(end, f64::min);
@@ -60,7 +60,7 @@ impl Excitation {
                     ..Variation::default()
                 }
             } else {
-                Variation::of(&tone.envelope, end)
+                Variation::up_to(&tone.envelope, end)
             },
         };
         Self {

@@ -36,7 +36,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Largest magnitudes of a signal over the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sizes {
+pub struct SignalSizes {
     /// Largest value.
     pub value: f64,
     /// Largest rate [1/s].
@@ -51,7 +51,7 @@ pub struct Sizes {
 
 /// A possible violation of given limits by a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Excess {
+pub struct LimitExcess {
     /// Time [s].
     pub t: f64,
     /// Value.
@@ -75,7 +75,7 @@ impl Signal {
     }
 
     /// Largest magnitudes until `end` [s].
-    pub fn largest(&self, end: f64) -> Sizes {
+    pub fn largest(&self, end: f64) -> SignalSizes {
         let to = self.repeats_within(0.0, end);
         let (mut all, limited) = sizes(&IntervalSearch::new(self, 0.0, to));
         if limited {
@@ -88,7 +88,7 @@ impl Signal {
             all = std::array::from_fn(|k| all[k].min(most[k]));
         }
         let [value, rate, acceleration, jerk] = all;
-        Sizes {
+        SignalSizes {
             value,
             rate,
             acceleration,
@@ -98,10 +98,10 @@ impl Signal {
     }
 
     /// Magnitudes that the signal reaches until `end` [s]: lower bounds of those of [`Self::largest`].
-    pub fn reaches(&self, end: f64) -> Sizes {
+    pub fn reaches(&self, end: f64) -> SignalSizes {
         let to = self.repeats_within(0.0, end);
         let [value, rate, acceleration, jerk] = reached(&IntervalSearch::new(self, 0.0, to));
-        Sizes {
+        SignalSizes {
             value,
             rate,
             acceleration,
@@ -131,7 +131,7 @@ impl Signal {
 
     /// Excitation of oscillators until `end` [s], from rest at the value `held`.
     pub fn excitation(&self, end: f64, held: f64) -> Excitation {
-        Excitation::of(self, end, held)
+        Excitation::from_signal(self, end, held)
     }
 
     /// Highest frequency of its sines [Hz]; frequencies of factors add.
@@ -159,7 +159,7 @@ impl Signal {
             let (size, moved, amount) = match tone.envelope.0.as_slice() {
                 [] => (1.0, 0.0, end),
                 _ => {
-                    let v = Variation::of(&tone.envelope, end);
+                    let v = Variation::up_to(&tone.envelope, end);
                     (v.size[0], v.integral[1] + v.jumps[0], v.integral[0])
                 }
             };
@@ -195,7 +195,7 @@ impl Signal {
 
     /// First found violation of the limits until `end` [s]; none if the value certainly, or after a long search
     /// probably, stays within.
-    pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<Excess> {
+    pub fn leaves(&self, low: f64, high: f64, end: f64) -> Option<LimitExcess> {
         let to = self.repeats_within(0.0, end);
         let search = IntervalSearch::new(self, 0.0, to);
         let beyond = |x: f64| (x - high).max(low - x);
@@ -204,7 +204,7 @@ impl Signal {
             |jet| beyond(jet.value),
             |reached, bound, _| reached > 0.0 || bound <= 0.0,
         );
-        (found.reached > 0.0).then(|| Excess {
+        (found.reached > 0.0).then(|| LimitExcess {
             t: found.place,
             value: self.value(found.place),
         })

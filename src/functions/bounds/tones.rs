@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use super::interval::{Bounded, JetSpan};
 use super::search::{IntervalSearch, sizes};
-use crate::functions::jet::{Clock, Jet};
+use crate::functions::jet::{Jet, SmoothTime};
 use crate::functions::signals::{Ramp, RampShape, Signal};
 
 /// Largest number of tones; products with more are not expanded.
@@ -171,7 +171,7 @@ impl Bounded for ToneProduct<'_> {
     fn exactly(&self, t: f64, within: f64) -> Jet {
         let jets = self.0.iter().map(|factor| match factor {
             Factor::Given(signal) => signal.exactly(t, within),
-            Factor::Start(ramp) => ramp.jet(Clock { t, within }),
+            Factor::Start(ramp) => ramp.jet(SmoothTime { t, within }),
         });
         jets.reduce(|a, b| a * b).unwrap_or(Jet::constant(1.0))
     }

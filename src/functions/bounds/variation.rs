@@ -27,7 +27,7 @@ pub struct Variation {
 
 impl Variation {
     /// Variation of a function.
-    pub fn of<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
+    pub fn up_to<F: Bounded + ?Sized>(function: &F, end: f64) -> Self {
         Self {
             size: sizes(&IntervalSearch::new(function, 0.0, end)).0,
             ..Self::summed(function, end, 4)
@@ -48,7 +48,7 @@ impl Variation {
         let (mut gaps, mut settled) = ([0.0; 4], [0.0; 4]);
         let mut before: Option<[f64; 4]> = None;
         for (from, to) in search.smooth() {
-            let piece = Part::of(function, from, to);
+            let piece = Part::between(function, from, to);
             let [first, last] = piece.ends.map(|jet| parts(&jet));
             match before {
                 None => v.start = first.map(f64::abs),
@@ -73,7 +73,7 @@ impl Variation {
                 add(&mut settled, 1.0, &part.integral);
                 continue;
             }
-            let halves = [(part.from, middle), (middle, part.to)].map(|(a, b)| Part::of(function, a, b));
+            let halves = [(part.from, middle), (middle, part.to)].map(|(a, b)| Part::between(function, a, b));
             add(&mut v.integral, -1.0, &part.integral);
             add(&mut gaps, -1.0, &part.gap);
             for half in halves {
@@ -107,7 +107,7 @@ struct Part {
 
 impl Part {
     /// A derivative of constant sign integrates to a difference.
-    fn of<F: Bounded + ?Sized>(function: &F, from: f64, to: f64) -> Self {
+    fn between<F: Bounded + ?Sized>(function: &F, from: f64, to: f64) -> Self {
         let (span, [first, _, last]) = span_with_jets(function, from, to);
         let length = to - from;
         let (mut integral, mut gap) = ([0.0; 4], [0.0; 4]);

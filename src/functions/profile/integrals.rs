@@ -34,7 +34,7 @@ pub struct Integrals<'a> {
 
 impl<'a> Integrals<'a> {
     /// Integrals of a profile.
-    pub fn of(profile: &'a Profile) -> Self {
+    pub fn new(profile: &'a Profile) -> Self {
         let mut knots = vec![];
         profile.add_knots(&mut knots);
         knots.sort_by(f64::total_cmp);
@@ -103,7 +103,7 @@ impl<'a> Integrals<'a> {
     fn piece(&self, p: f64, q: f64) -> [f64; 3] {
         let half_waves = self.half_waves(q - p);
         if half_waves > HALF_WAVES
-            && let Some(waves) = Waves::of(self.profile, p, q)
+            && let Some(waves) = Waves::decompose(self.profile, p, q)
         {
             return waves.moments().map(|m| (q - p) * m);
         }

@@ -17,7 +17,7 @@ pub(super) struct Waves(Vec<(f64, Coefficients)>);
 
 impl Waves {
     /// Expands a profile between `p` and `q` without knots; none for a sum or product of too many waves.
-    pub fn of(profile: &Profile, p: f64, q: f64) -> Option<Self> {
+    pub fn decompose(profile: &Profile, p: f64, q: f64) -> Option<Self> {
         let length = q - p;
         let wave = |wave: &Wave, quarter: f64| {
             // a cos(k x + φ) = Re a exp(i (k p + φ)) exp(i k (q - p) t)
@@ -44,7 +44,7 @@ impl Waves {
             Profile::Sum(terms) => {
                 let mut sum = Self(vec![]);
                 for term in terms {
-                    for (theta, c) in Self::of(term, p, q)?.0 {
+                    for (theta, c) in Self::decompose(term, p, q)?.0 {
                         sum.add(theta, &c);
                     }
                 }
@@ -53,7 +53,7 @@ impl Waves {
             Profile::Product(factors) => {
                 let mut product = real(vec![1.0])?;
                 for factor in factors {
-                    product = product.times(&Self::of(factor, p, q)?);
+                    product = product.times(&Self::decompose(factor, p, q)?);
                     if product.0.len() > MOST {
                         return None;
                     }

@@ -1,7 +1,7 @@
 //! Consistent initial values by Newton's iteration.
 
-mod chords;
 mod options;
+mod simplified_newton;
 
 pub use options::{ConsistentStart, StartError, StartOptions};
 

@@ -40,7 +40,7 @@ pub enum DecisionCause {
     /// Kept regardless of its number.
     Kept(Keeps),
     /// Number compared with the tolerance.
-    Weighed(Weighed),
+    Weighed(MeasuredAgainst),
     /// No load acts across; fraction of the buckling load reached by compression.
     Straight(f64),
     /// All bladders are sealed; their number.
@@ -52,13 +52,13 @@ pub enum DecisionCause {
         /// Number of all bladders.
         all: usize,
         /// Leakage of the others.
-        leaks: Weighed,
+        leaks: MeasuredAgainst,
     },
 }
 
 /// A number with its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighed {
+pub struct MeasuredAgainst {
     /// Kind of number.
     pub what: DecisiveNumber,
     /// Its value.
@@ -67,7 +67,7 @@ pub struct Weighed {
     pub tolerance: f64,
 }
 
-impl Weighed {
+impl MeasuredAgainst {
     /// True if the effect is kept; an unknown number keeps it.
     pub fn on(&self) -> bool {
         self.value.is_nan() || self.value >= self.tolerance
@@ -189,7 +189,7 @@ impl Display for DecisionCause {
     }
 }
 
-impl Display for Weighed {
+impl Display for MeasuredAgainst {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let value = match self.value.is_finite() {
             true => significant(self.value, 2),

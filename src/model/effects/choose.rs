@@ -1,6 +1,6 @@
 //! Decides on effects one by one; each decision depends on the earlier ones.
 
-use super::cause::{DecisionCause, DecisiveNumber, Keeps, Weighed};
+use super::cause::{DecisionCause, DecisiveNumber, Keeps, MeasuredAgainst};
 use super::obstacles::{self, Obstacle};
 use super::table::{given, needs};
 use super::{Decision, EffectScene, EffectSet};
@@ -55,7 +55,7 @@ impl<'a> Chooser<'a> {
     /// where an obstacle prevents omission; the case is rejected if omission was requested.
     fn decide(&mut self, effect: Effect) -> (bool, DecisionCause) {
         if let Err(why) = self.possible(effect) {
-            if self.choices.of(effect) == Choice::On {
+            if self.choices.choice(effect) == Choice::On {
                 self.contradicts(effect, &why);
             }
             return (false, why);
@@ -115,7 +115,7 @@ impl<'a> Chooser<'a> {
     }
 
     fn decide_possible(&mut self, effect: Effect) -> (bool, DecisionCause) {
-        match self.choices.of(effect) {
+        match self.choices.choice(effect) {
             Choice::On => (true, DecisionCause::Asked),
             Choice::Off => match self.obstacle(effect) {
                 None => (false, DecisionCause::LeftOut),
@@ -169,7 +169,7 @@ impl<'a> Chooser<'a> {
     /// True if an effect that requires tube inertia is switched on by name.
     fn asked_with_inertia(&self) -> bool {
         let with = [Effect::BladderInertia, Effect::UnsteadyFriction];
-        with.iter().any(|&effect| self.choices.of(effect) == Choice::On)
+        with.iter().any(|&effect| self.choices.choice(effect) == Choice::On)
     }
 
     /// The sloshing number, if inertia along bladders is still possible: no choice by name and no earlier decision
@@ -177,8 +177,8 @@ impl<'a> Chooser<'a> {
     fn may_swing(&self, scene: &EffectScene) -> Option<f64> {
         let bladders = Effect::BladderInertia;
         let massless = self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
-        let named = self.choices.of(bladders);
-        let off = named == Choice::Off || self.choices.of(Effect::TubeInertia) == Choice::Off;
+        let named = self.choices.choice(bladders);
+        let off = named == Choice::Off || self.choices.choice(Effect::TubeInertia) == Choice::Off;
         let unasked = bladders.by_name(self.case.formulation) && named != Choice::On;
         (!massless && !off && !unasked).then(|| scene.sloshing(self.tolerance))
     }
@@ -216,7 +216,7 @@ impl<'a> Chooser<'a> {
     fn automatic(&self, effect: Effect, scene: &EffectScene) -> (bool, DecisionCause) {
         let kept = |keeps: Keeps| (true, DecisionCause::Kept(keeps));
         let unstable = |why: String| (true, DecisionCause::Unstable(why));
-        let weighed = |what: DecisiveNumber, value: f64| Weighed {
+        let weighed = |what: DecisiveNumber, value: f64| MeasuredAgainst {
             what,
             value,
             tolerance: self.tolerance,
@@ -304,7 +304,7 @@ impl<'a> Chooser<'a> {
             Effect::Compressibility => weigh(DecisiveNumber::Compression, scene.compression_of_fluid()),
             Effect::TubeInertia => {
                 let (tubes, bladders) = (scene.tubes(self.tolerance).inertia, scene.sloshing(self.tolerance));
-                match self.choices.of(Effect::BladderInertia) {
+                match self.choices.choice(Effect::BladderInertia) {
                     Choice::Auto if bladders > tubes => weigh(DecisiveNumber::Sloshing, bladders),
                     _ => weigh(DecisiveNumber::Inertance, tubes),
                 }

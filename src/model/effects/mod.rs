@@ -1,11 +1,11 @@
 //! Choice of the simulated effects, each with its reason.
 //!
 //! ```text
-//! table       effects required by each effect, and data of a case for it
-//! choose      decisions in order: requirements, obstacles, automatic choices
-//! scene       numbers for automatic choices
-//! obstacles   inputs of a case that require an effect
-//! cause       reasons for decisions
+//! table      effects required by each effect, and data of a case for it
+//! choose     decisions in order: requirements, obstacles, automatic choices
+//! scene      numbers for automatic choices
+//! obstacles  inputs of a case that require an effect
+//! cause      reasons for decisions
 //! ```
 //!
 //! A new effect needs a physics module, a line of the list in [`crate::case::schema`], and a place in
@@ -22,7 +22,7 @@ use super::ResolvedNetwork;
 use crate::case::schema::{Case, Effect};
 use crate::error::Violation;
 
-pub use cause::{DecisionCause, DecisiveNumber, Keeps, Weighed};
+pub use cause::{DecisionCause, DecisiveNumber, Keeps, MeasuredAgainst};
 use choose::Chooser;
 pub use obstacles::Obstacle;
 pub use scene::EffectScene;

@@ -8,7 +8,7 @@ use super::{
     LinkKind, NetworkNode, PrescribedFlow, PressurePort, ResolvedNetwork, TubeFlow, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
-use crate::case::wiring::{Bore, Given, Wiring, WiringPoint, WiringTube};
+use crate::case::wiring::{PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringTube};
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 
@@ -98,11 +98,11 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
 }
 
 /// Permeability `q1c` [m^4].
-fn permeability(bore: Bore) -> f64 {
+fn permeability(bore: PermeabilitySource) -> f64 {
     match bore {
-        Bore::Permeability(permeability) => permeability,
-        Bore::CrossSection(section) => duct::permeability(section),
-        Bore::Radius(radius) => duct::circle(radius),
+        PermeabilitySource::Permeability(permeability) => permeability,
+        PermeabilitySource::CrossSection(section) => duct::permeability(section),
+        PermeabilitySource::Radius(radius) => duct::circle(radius),
     }
 }
 
@@ -121,15 +121,15 @@ fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(Wir
     for port in wiring.chain_ports.iter().chain(&wiring.ports) {
         let name = port.name.map_or_else(|| wiring.label(port.at), str::to_owned);
         let thing = match port.given {
-            Given::Flow(flow) => Thing::Source {
+            PortQuantity::Flow(flow) => Thing::Source {
                 name,
                 feed: Feed::Flow(flow.clone()),
             },
-            Given::Volume(volume) => Thing::Source {
+            PortQuantity::Volume(volume) => Thing::Source {
                 name,
                 feed: Feed::Volume(volume.clone()),
             },
-            Given::Pressure(pressure) => {
+            PortQuantity::Pressure(pressure) => {
                 let pressure = pressure.clone();
                 ports.push(PressurePort { pressure, name });
                 Thing::Pressure { port: ports.len() - 1 }

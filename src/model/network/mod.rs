@@ -1,24 +1,24 @@
 //! The network as a graph: bladder ends, junctions and ports joined by conductances.
 //!
 //! ```text
-//! graph        graph of a resolved case
-//! components   connected components
-//! tube         inertia, unsteady friction and losses in tubes
-//! along        flow along a bladder
-//! ladder       unsteady friction
-//! check_valve  check valves and relief valves
-//! ends         ends of tubes with inertia
-//! accumulator  vessels that store fluid under pressure
+//! graph              graph of a resolved case
+//! components         connected components
+//! tube               inertia, unsteady friction and losses in tubes
+//! bladder_flow       flow along a bladder
+//! unsteady_friction  unsteady friction
+//! check_valve        check valves and relief valves
+//! ends               ends of tubes with inertia
+//! accumulator        vessels that store fluid under pressure
 //! ```
 
 mod accumulator;
-mod along;
+mod bladder_flow;
 mod check_valve;
 mod components;
 mod ends;
 mod graph;
-mod ladder;
 pub mod tube;
+mod unsteady_friction;
 
 use super::{Wet, duct};
 use crate::case::schema::{BladderEnd, Bladders, Case};
@@ -27,12 +27,12 @@ use crate::error::Result;
 use crate::functions::signals::Signal;
 
 pub use accumulator::{AccumulatorElement, AccumulatorLaw};
-pub use along::AlongBladder;
+pub use bladder_flow::AlongBladder;
 pub use check_valve::CheckValveLaw;
 pub use components::Component;
 pub use ends::TubeEnd;
-pub use ladder::{BRANCHES, Ladder};
 pub use tube::{FlowLaw, TubeFlow};
+pub use unsteady_friction::{BRANCHES, Ladder};
 
 /// A point of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,13 +228,13 @@ impl ResolvedNetwork {
     /// Network of the bladders of a case; none for a dry beam.
     ///
     /// # Errors
-    /// Returns the errors of [`Wiring::of`].
-    pub fn of(case: &Case) -> Result<Option<Self>> {
+    /// Returns the errors of [`Wiring::from_case`].
+    pub fn from_case(case: &Case) -> Result<Option<Self>> {
         let Some((fluid, bladders)) = case.fluid.as_ref().zip(case.bladders.as_ref()) else {
             return Ok(None);
         };
         let factor = case.network.as_ref().map_or(1.0, |network| network.permeability_factor);
-        Ok(Some(graph::graph(&Wiring::of(case)?, factor, fluid, bladders)))
+        Ok(Some(graph::graph(&Wiring::from_case(case)?, factor, fluid, bladders)))
     }
 
     /// True if no port or source touches the component.

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
-use super::ladder::{BRANCHES, Ladder};
+use super::unsteady_friction::{BRANCHES, Ladder};
 use super::{Link, LinkKind, ResolvedNetwork};
 use crate::case::schema::{Effect, Fluid};
 use crate::case::wiring::WiringTube;

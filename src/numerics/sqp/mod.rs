@@ -110,7 +110,7 @@ pub fn minimise(start: &[f64], options: &SqpOptions, evaluate: &mut EvaluateFunc
     let mut b = DMatrix::identity(n, n) * (at.slope.amax() / FIRST).max(f64::MIN_POSITIVE.sqrt());
     let (mut fresh, mut steps, mut price, mut reach) = (true, 0, PRICE[0], LONGEST);
     loop {
-        let step = Step::of(&x, &at, &b, &mut price, reach);
+        let step = Step::solve(&x, &at, &b, &mut price, reach);
         let end = |ended| {
             Some(SqpMinimum {
                 x: x.clone(),
@@ -225,7 +225,7 @@ struct Step {
 impl Step {
     /// Best step for the curvature `b`. Raises the penalty until the step satisfies the inequalities as far as
     /// possible, and the penalty exceeds all multipliers.
-    fn of(x: &[f64], at: &SqpPoint, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
+    fn solve(x: &[f64], at: &SqpPoint, b: &DMatrix<f64>, price: &mut f64, reach: f64) -> Self {
         loop {
             let step = Self::at_price(x, at, b, [*price, reach]);
             let short = step.left > HELD && step.multipliers.iter().any(|l| *l >= *price * (1.0 - 1e-9));

@@ -11,7 +11,7 @@ use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::results;
 use crate::study::effects::ablation::{ComparedRun, LARGEST};
-use crate::study::effects::change::ModelMeasure;
+use crate::study::effects::figure_change::ModelMeasure;
 use crate::study::effects::{Ablation, EffectVerdict};
 
 pub use table::{csv, sentence, table};
@@ -50,7 +50,7 @@ impl ShownQuantity {
     }
 
     /// Name of the quantity in text.
-    pub fn words(&self) -> &str {
+    pub fn describe(&self) -> &str {
         match self {
             Self::Quantity(name) => name,
             Self::Largest => "the quantity that changes most",
@@ -107,7 +107,7 @@ pub fn bars(found: &Ablation, shown: &ShownQuantity) -> AblationBars {
     bars.extend(table::beside(found).map(|(name, c)| bar(name, c, None)));
     AblationBars {
         case: found.case.clone(),
-        measure: shown.words().into(),
+        measure: shown.describe().into(),
         tolerance: found.tolerance,
         own: shown.own(found),
         bars,

@@ -7,9 +7,9 @@ use crate::case::schema::Effect;
 use crate::output::columns;
 use crate::output::numbers::{counted, percent, significant};
 use crate::output::records::{self, number};
-use crate::study::accuracy::trial::Ending;
+use crate::study::accuracy::trial::TrialOutcome;
 use crate::study::effects::ablation::ComparedRun;
-use crate::study::effects::change::Judged;
+use crate::study::effects::figure_change::ComparedFigures;
 use crate::study::effects::{Ablation, AblationRow, EffectVerdict};
 
 const HEADINGS: &str = "<left out | <verdict | change | largest | <in | unknowns | steps | work | time | <decides";
@@ -17,7 +17,7 @@ const HEADINGS: &str = "<left out | <verdict | change | largest | <in | unknowns
 /// Table of the changes of one quantity: one line per effect, the combined choices, and a legend.
 pub fn table(found: &Ablation, shown: &ShownQuantity) -> String {
     let full = &found.full;
-    let mut text = format!("{}: what each effect does, to {}\n", found.case, shown.words());
+    let mut text = format!("{}: what each effect does, to {}\n", found.case, shown.describe());
     let Some(_) = &full.summary else {
         let why = full.reason.as_deref().unwrap_or("no reason given");
         let _ = writeln!(text, "\nthe full model did not run to the end: {why}");
@@ -95,13 +95,13 @@ fn legend(found: &Ablation, shown: &ShownQuantity) -> String {
         found.tolerance,
         found.rtol,
         own(shown.own(found)),
-        shown.words(),
+        shown.describe(),
     );
     if let Some((error, name)) = worst {
         let _ = write!(text, ", at most {error:.1e} ({name})");
     }
     text += "\nwork: residual evaluations times unknowns, time: least wall time; both over those of the model compared with\n";
-    if found.judged_by == Judged::WindowStatistics {
+    if found.judged_by == ComparedFigures::WindowStatistics {
         text += "the motion cannot be computed to the end at this tolerance: root mean squares and increments over the window are compared instead\n";
     }
     text
@@ -117,7 +117,7 @@ fn name(row: &AblationRow) -> String {
 /// Verdict of an effect, or `not run`.
 fn said(row: &AblationRow) -> &'static str {
     match &row.left_out {
-        Some(c) if c.trial.ending == Ending::Skipped => "not run",
+        Some(c) if c.trial.ending == TrialOutcome::Skipped => "not run",
         _ => word(row.verdict),
     }
 }

@@ -1,12 +1,12 @@
 //! Output files of a load path, `path.csv`, `shapes.csv`, `equilibrium.json` and `path.svg`, and its text.
 
-mod words;
+mod text;
 
 use std::path::PathBuf;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::shortest;
-use super::plot::canvas::{Anchor, Stroke, Words};
+use super::plot::canvas::{LineStyle, TextAnchor, TextStyle};
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries, equally_scaled};
 use super::plot::{extent, over_time};
@@ -25,7 +25,7 @@ use crate::run::record::HistoryColumn;
 use crate::run::summary::Accuracy;
 use crate::study::refine::meshes::Meshes;
 
-pub use words::words;
+pub use text::describe;
 
 /// One row per state.
 pub const CSV: &str = "path.csv";
@@ -80,7 +80,7 @@ pub fn json(found: &LoadPath) -> String {
     let event = |e: &EquilibriumEvent| kept::PathEvent {
         load_factor: e.load_factor(),
         stage: several.then_some(e.stage + 1),
-        what: e.words().into(),
+        what: e.describe().into(),
     };
     let derivatives = |s: &EquilibriumSensitivity| {
         let (value, derivatives) = (s.parameter.value, keyed(&s.row));
@@ -193,8 +193,8 @@ fn drawn(found: &LoadPath) -> Option<String> {
         let mut series: Vec<_> = (1..points.len())
             .map(|k| {
                 let stroke = match stable(k - 1) && stable(k) {
-                    true => Stroke::solid(PALETTE[0], 1.8),
-                    false => Stroke::dashed(PALETTE[1], 1.8, (3.0, 3.0)),
+                    true => LineStyle::solid(PALETTE[0], 1.8),
+                    false => LineStyle::dashed(PALETTE[1], 1.8, (3.0, 3.0)),
                 };
                 PictureSeries::line(points[k - 1..=k].iter().copied(), stroke)
             })
@@ -215,7 +215,7 @@ fn drawn(found: &LoadPath) -> Option<String> {
                 at,
                 (8.0, -8.0),
                 letter,
-                Words::new(11.0, Anchor::Left),
+                TextStyle::new(11.0, TextAnchor::Left),
             ));
         }
         let moves = points.iter().any(|p| p.0.abs() > 0.0);

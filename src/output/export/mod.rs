@@ -1,14 +1,14 @@
 //! Exports a result to other formats: tables of the fields, and moving surfaces.
 //!
 //! ```text
-//! instants  choice of recorded times
-//! staged    a folder whose files appear together
-//! tables    csv/: one table per field
-//! vtk       vtk/: beam, bladders and tubes as surfaces and lines in space
+//! instants       choice of recorded times
+//! staged_folder  a folder whose files appear together
+//! tables         csv/: one table per field
+//! vtk            vtk/: beam, bladders and tubes as surfaces and lines in space
 //! ```
 
 pub mod instants;
-mod staged;
+mod staged_folder;
 pub mod tables;
 pub mod vtk;
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::ExportedFiles;
-use super::staged::Staged;
+use super::staged_folder::StagedFolder;
 use crate::error::Result;
 use crate::output::folder::TABLES;
 use crate::output::history::HistoryWriter;
@@ -15,7 +15,7 @@ use crate::study::compare::{Array, Recording};
 /// Columns are `t [s]`, then places: `theta=0.0025 m` along the beam, `bladder=-3 s=0.0115 m` in the fluid, with `s` from the bladder's
 /// inlet. The name of the field, which is also that of the file, contains the unit.
 pub fn write(dir: &Path, from: &Recording, instants: &[usize]) -> Result<ExportedFiles> {
-    let staged = Staged::new(dir, TABLES)?;
+    let staged = StagedFolder::new(dir, TABLES)?;
     let mut written = ExportedFiles::new(staged.target().to_path_buf());
     for field in &from.fields {
         let path = staged.path(&format!("{}.csv", field.name));

@@ -1,10 +1,10 @@
 //! Output files of a fit, `fit.json`, `fit.csv`, `fit.svg` and `fitted-case.json`, and its text.
 
-mod words;
+mod text;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
-use super::plot::canvas::Stroke;
+use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
@@ -13,10 +13,10 @@ use crate::error::Result;
 use crate::results;
 use crate::study::data::Matched;
 use crate::study::fit::Fitted;
-use crate::study::fit::beside::DataComparison;
+use crate::study::fit::comparison::DataComparison;
 use crate::study::fit::problem::{Abscissa, FitProblem};
 
-pub use words::{comparison, words};
+pub use text::{comparison, describe};
 
 /// Complete result.
 pub const JSON: &str = "fit.json";
@@ -57,7 +57,7 @@ fn beside(problem: &FitProblem) -> Vec<(String, Vec<f64>)> {
 /// Index of the observation of a column in each row, if there is one.
 fn places(problem: &FitProblem, column: usize) -> Vec<Option<usize>> {
     let mut all = vec![None; problem.rows()];
-    for (place, one) in problem.of(column) {
+    for (place, one) in problem.observations(column) {
         all[one.row] = Some(place);
     }
     all
@@ -143,10 +143,10 @@ fn over_data(
     noise: Option<f64>,
 ) -> [Panel; 2] {
     let rings = |points: Vec<(f64, f64)>| PictureSeries::marks(points, Glyph::Ring(2.6, 1.1), PALETTE[1]);
-    let stroke = Stroke::solid(PALETTE[0], 1.6);
+    let stroke = LineStyle::solid(PALETTE[0], 1.6);
     let levels: Vec<f64> = noise.into_iter().flat_map(|noise| [-noise, noise]).collect();
     let ends = [data.first(), data.last()].map(|p| p.map_or(0.0, |p| p.0));
-    let dashed = Stroke::dashed(PALETTE[9], 0.8, (4.0, 3.0));
+    let dashed = LineStyle::dashed(PALETTE[9], 0.8, (4.0, 3.0));
     let level = |level: &f64| PictureSeries::line(ends.map(|x| (x, *level)), dashed);
     let left = levels.iter().map(level).chain([rings(residuals)]).collect();
     let model = match line {

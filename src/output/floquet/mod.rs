@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use super::columns::{table, warnings};
 use super::folder::ResultFolder;
 use super::numbers::{counted, shortest, significant};
-use super::plot::canvas::{INK, Stroke};
+use super::plot::canvas::{INK, LineStyle};
 use super::plot::colour::{self, Colour, PALETTE};
 use super::plot::picture::{ColourBar, Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
@@ -34,7 +34,7 @@ pub fn csv(floquet: &Floquet) -> String {
 }
 
 /// Table of the multipliers, and the verdict.
-pub fn words(found: &CycleResult) -> String {
+pub fn describe(found: &CycleResult) -> String {
     let Floquet {
         multipliers,
         conserved,
@@ -66,7 +66,7 @@ pub fn words(found: &CycleResult) -> String {
     let headings = " | <multiplier | modulus | growth [1/s] | frequency [Hz] | by steps [1/s] | <part";
     text += &table(headings, rows);
     if let Some(periods) = &found.periods {
-        let _ = writeln!(text, "\n{}", periods.words());
+        let _ = writeln!(text, "\n{}", periods.describe());
     }
     if *conserved == 1 {
         text += "\nleft out: the multiplier 1 of a conserved volume\n";
@@ -75,12 +75,12 @@ pub fn words(found: &CycleResult) -> String {
     }
     let _ = writeln!(text, "\n{}", verdict.words);
     if let Some(refined) = &found.refined {
-        let _ = writeln!(text, "\n{}", refined.words());
+        let _ = writeln!(text, "\n{}", refined.describe());
     }
     if let Some(accuracy) = &found.accuracy {
-        let _ = write!(text, "\n{}", super::accuracy::words(accuracy));
+        let _ = write!(text, "\n{}", super::accuracy::describe(accuracy));
     }
-    if let Some(words) = found.meshes.as_ref().and_then(Meshes::words) {
+    if let Some(words) = found.meshes.as_ref().and_then(Meshes::describe) {
         let _ = writeln!(text, "\n{words}");
     }
     text += &warnings(&found.warnings);
@@ -185,7 +185,7 @@ fn multipliers(found: &CycleResult) -> Option<String> {
         .map(|a| (a.cos(), a.sin()));
     let mut series = vec![PictureSeries::line(
         circle,
-        Stroke::solid(Colour(0x6b, 0x72, 0x7a), 1.2),
+        LineStyle::solid(Colour(0x6b, 0x72, 0x7a), 1.2),
     )];
     for (k, m) in all.iter().enumerate() {
         let colour = if m.modulus > 1.0 { UNSTABLE } else { PALETTE[0] };
@@ -255,7 +255,7 @@ fn tongues(map: &Map) -> Option<String> {
             .mathieu
             .iter()
             .flat_map(|m| map.frequencies_hz.iter().zip(&m.onset_m));
-        let dashed = Stroke::dashed(INK, 1.4, (5.0, 3.0));
+        let dashed = LineStyle::dashed(INK, 1.4, (5.0, 3.0));
         series.push(PictureSeries::line(onset.map(|(f, a)| (*f, within(*a))), dashed));
         let inside = |value: f64, (first, last, half): (f64, f64, f64)| (first - half..=last + half).contains(&value);
         let own = (inside(map.own.0, across) && inside(map.own.1, up)).then_some(map.own);

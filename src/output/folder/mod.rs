@@ -1,10 +1,10 @@
 //! The result folder: one writer at a time, no incomplete file, no foreign file removed.
 
-mod cased;
-mod laid;
+mod atomic_file;
 mod lock;
 mod origin;
-mod whole;
+mod stored_case;
+mod unsynced_files;
 
 use std::fs;
 use std::io::{self, Read as _, Write as _};
@@ -15,13 +15,13 @@ use super::uncertainty::UNCERTAINTY;
 use crate::case::{CaseText, is_table};
 use crate::error::{Error, Result};
 use crate::results;
+pub(crate) use atomic_file::{
+    AtomicFile, Wait, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
+};
+pub use atomic_file::{replace, replace_alike};
 use lock::Lock;
 use origin::ORIGIN;
 pub use origin::other_origin;
-pub(crate) use whole::{
-    Wait, Whole, at_once, create, damaged, entries, name_of, open, put_whole, result, text_of, unlink,
-};
-pub use whole::{replace, replace_alike};
 
 /// The resolved case.
 pub const CASE: &str = "case.json";
@@ -76,8 +76,8 @@ pub struct ResultFolder {
     /// True if the folder was created here. It is removed on drop if it is empty.
     made: bool,
     lock: Option<Lock>,
-    origin: origin::Origin,
-    laid: laid::Laid,
+    origin: origin::CaseOrigin,
+    laid: unsynced_files::UnsyncedFiles,
 }
 
 impl ResultFolder {
@@ -116,8 +116,8 @@ impl ResultFolder {
             older,
             made,
             lock: Some(lock),
-            origin: origin::Origin::default(),
-            laid: laid::Laid::default(),
+            origin: origin::CaseOrigin::default(),
+            laid: unsynced_files::UnsyncedFiles::default(),
         };
         folder.sweep();
         Ok(folder)
@@ -175,10 +175,11 @@ impl ResultFolder {
     /// Writes files, each as [`ResultFolder::write`], together with laid files; waits for the disk once.
     fn write_all<T: AsRef<[u8]>>(&self, files: &[(&str, T)]) -> Result<Vec<PathBuf>> {
         self.record_origin()?;
-        let fill = |(name, bytes): &(&str, T)| Whole::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
+        let fill =
+            |(name, bytes): &(&str, T)| AtomicFile::fill(&self.path(name), |file| file.write_all(bytes.as_ref()));
         let parts = files.iter().map(fill).collect::<Result<Vec<_>>>()?;
         let laid = self.laid();
-        at_once(parts.iter().chain(&laid).map(Whole::wait).collect())?;
+        at_once(parts.iter().chain(&laid).map(AtomicFile::wait).collect())?;
         parts.into_iter().try_for_each(|part| part.name().map(|_| ()))?;
         Ok(files.iter().map(|(name, _)| self.path(name)).collect())
     }

@@ -13,7 +13,7 @@ pub const ORIGIN: &str = ".slcbeam.case";
 
 /// Case file of the next result, and whether the folder already names it.
 #[derive(Debug, Default)]
-pub(super) struct Origin {
+pub(super) struct CaseOrigin {
     /// Path to the case file, if known.
     file: Option<String>,
     /// True if the recorded path stays: a run resumes, or the case in the folder itself is run.
@@ -24,7 +24,7 @@ pub(super) struct Origin {
 impl ResultFolder {
     /// Assigns the next results to the file of this case. A case in the folder itself leaves the recorded path as it is.
     #[must_use]
-    pub fn of(mut self, case: &Case) -> Self {
+    pub fn with_case(mut self, case: &Case) -> Self {
         self.origin.file = way(&self.dir, &case.source.path);
         self.origin.stays = self.origin.file.is_none();
         self

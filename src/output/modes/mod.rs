@@ -12,15 +12,15 @@ use super::accuracy;
 use super::arrays::write_array;
 use super::folder::{ResultFolder, fault};
 use super::numbers::{counted, significant};
-use super::plot::canvas::{INK, Stroke};
+use super::plot::canvas::{INK, LineStyle};
 use super::plot::colour::{Colour, PALETTE};
 use super::plot::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use crate::error::{Code, Result};
 use crate::model::passivity::{self, Passivity};
 use crate::results;
-use crate::results::modes::{self as kept, About};
+use crate::results::modes::{self as kept, LinearisedState};
 use crate::results::run::Bands;
-use crate::run::modes::{Mode, ModeOptions, ModeSensitivity, Modes, Sort, TimeBehavior};
+use crate::run::modes::{Mode, ModeFilter, ModeOptions, ModeSensitivity, Modes, TimeBehavior};
 use crate::run::summary::Accuracy;
 use crate::study::refine;
 
@@ -45,11 +45,11 @@ pub struct Report<'a> {
     /// Requested search.
     pub plan: &'a ModeOptions,
     /// The only kind of modes requested, if any.
-    pub sort: Option<Sort>,
+    pub sort: Option<ModeFilter>,
     /// Modes found.
     pub found: &'a Modes,
     /// State of linearization.
-    pub state: About,
+    pub state: LinearisedState,
     /// Derivatives with respect to numbers of the case.
     pub sensitivities: &'a [ModeSensitivity],
     /// Estimated errors, if an accuracy was requested.
@@ -64,8 +64,8 @@ impl Report<'_> {
     /// State of linearization as text: `the start`.
     pub fn about(&self) -> String {
         match self.state {
-            About::Start => "the start".into(),
-            About::Equilibrium => format!("the equilibrium under the loads at t = {} s", self.found.about.at),
+            LinearisedState::Start => "the start".into(),
+            LinearisedState::Equilibrium => format!("the equilibrium under the loads at t = {} s", self.found.about.at),
         }
     }
 
@@ -141,8 +141,8 @@ impl Report<'_> {
 
     fn passivity(&self) -> Option<(Passivity, String)> {
         let model = &self.found.about.system().model;
-        let found = passivity::of(model)?;
-        let words = found.words(&model.wet.as_ref()?.coupling);
+        let found = passivity::assess(model)?;
+        let words = found.describe(&model.wet.as_ref()?.coupling);
         Some((found, words))
     }
 
@@ -156,7 +156,10 @@ impl Report<'_> {
             .chain(coupling)
             .chain(warnings)
             .chain(derivatives)
-            .chain(self.accuracy.map(|found| accuracy::words(found).trim_end().to_string()))
+            .chain(
+                self.accuracy
+                    .map(|found| accuracy::describe(found).trim_end().to_string()),
+            )
             .collect();
         all.join("\n")
     }
@@ -322,7 +325,7 @@ fn drawn(report: &Report) -> Option<String> {
         let mut left = complex(along.clone(), &theta, beam, ("u", "m"));
         left.heading.1.bold = true;
         left.heading.1.colour = if mode.kind.grows() { UNSTABLE } else { INK };
-        left = left.headed(format!("{}  {}", k + 1, table::words(mode)));
+        left = left.headed(format!("{}  {}", k + 1, table::describe(mode)));
         let wet = per_row > 0 && shape.pressure.len() == 2 * per_row;
         let right = wet.then(|| {
             let (upper, lower) = shape.pressure.split_at(per_row);
@@ -351,10 +354,10 @@ fn complex(x: PictureAxis, xs: &[f64], lines: [(&[Complex<f64>], &str); 2], (nam
         let part = |of: fn(&Complex<f64>) -> f64| xs.iter().copied().zip(y.iter().map(of));
         // a curve that is in phase throughout has no imaginary part to draw
         if y.iter().any(|y| y.im.abs() > 1e-3 * size) {
-            let behind = Stroke::dashed(colour, 1.1, (4.0, 3.0));
+            let behind = LineStyle::dashed(colour, 1.1, (4.0, 3.0));
             series.push(PictureSeries::line(part(|y| y.im), behind));
         }
-        let ahead = PictureSeries::line(part(|y| y.re), Stroke::solid(colour, 1.6));
+        let ahead = PictureSeries::line(part(|y| y.re), LineStyle::solid(colour, 1.6));
         series.push(ahead.named(name));
     }
     let floor = (1e-3 * size).max(f64::MIN_POSITIVE.sqrt());

@@ -134,7 +134,7 @@ fn digits(value: f64, error: f64) -> usize {
 }
 
 /// Short text of a mode.
-pub fn words(mode: &Mode) -> String {
+pub fn describe(mode: &Mode) -> String {
     let kind = mode.kind.word();
     match (mode.frequency_hz(), mode.time_s()) {
         (Some(f), Some(_)) => {

@@ -1,10 +1,10 @@
 //! Output files of an optimization, `optimum.json`, `designs.csv`, `optimum.svg` and `optimum-case.json`, and its text.
 
-mod words;
+mod text;
 
 use super::folder::{CASE, ResultFolder};
 use super::numbers::{shortest, significant};
-use super::plot::canvas::{FAINT_INK, Stroke};
+use super::plot::canvas::{FAINT_INK, LineStyle};
 use super::plot::colour::PALETTE;
 use super::plot::extent;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -12,12 +12,12 @@ use super::records;
 use crate::case::readable;
 use crate::error::{Result, visible};
 use crate::results;
-use crate::study::optimize::Optimised;
-use crate::study::optimize::found::ComputedDesign;
+use crate::study::optimize::OptimizedCase;
+use crate::study::optimize::outcome::ComputedDesign;
 use crate::study::optimize::problem::OptimizationProblem;
 use crate::study::sweep::unit::unit;
 
-pub use words::{place, ranked, words};
+pub use text::{describe, place, ranked};
 
 /// Complete result.
 pub const JSON: &str = "optimum.json";
@@ -32,7 +32,7 @@ pub const BEST: &str = "optimum-case.json";
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &Optimised) -> Result<()> {
+pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &OptimizedCase) -> Result<()> {
     let (own, best) = (problem.case.written(), found.case.written());
     let mut files = vec![
         (CSV, table(problem, found)),
@@ -44,7 +44,7 @@ pub fn write(folder: &mut ResultFolder, problem: &OptimizationProblem, found: &O
     folder.fill_with_both([&own, &best], files).map(|_| ())
 }
 
-fn table(problem: &OptimizationProblem, found: &Optimised) -> String {
+fn table(problem: &OptimizationProblem, found: &OptimizedCase) -> String {
     let (searches, alternatives) = (found.optimum.starts.len(), &found.optimum.alternatives);
     let choice = (!alternatives.is_empty()).then_some("alternative");
     let begin = ["design"].into_iter().chain(choice).chain(["search"]).map(String::from);
@@ -79,7 +79,7 @@ fn table(problem: &OptimizationProblem, found: &Optimised) -> String {
 const DRAWN: usize = 6;
 
 /// Picture of the figure over the designs in order, and over each varied number.
-fn drawn(problem: &OptimizationProblem, found: &Optimised) -> Option<String> {
+fn drawn(problem: &OptimizationProblem, found: &OptimizedCase) -> Option<String> {
     let optimum = &found.optimum;
     let name = readable::figure_name(&optimum.goal.figure);
     let figures = || found.history.iter().filter_map(|one| Some(one.figures.as_ref()?[0]));
@@ -110,7 +110,7 @@ fn drawn(problem: &OptimizationProblem, found: &Optimised) -> Option<String> {
     let in_order = in_order.filter_map(|(k, one)| Some((k as f64, one.figures.as_ref()?[0])));
     designs.series.insert(
         0,
-        PictureSeries::line(in_order, Stroke::dashed(PALETTE[9], 0.8, (3.0, 3.0))),
+        PictureSeries::line(in_order, LineStyle::dashed(PALETTE[9], 0.8, (3.0, 3.0))),
     );
     let numbers = problem.spans.iter().enumerate().take(DRAWN).map(|(i, span)| {
         let (name, unit) = (

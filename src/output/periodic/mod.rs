@@ -10,7 +10,7 @@ pub use energies::{energies, headings as energy_headings, shown as energy_shown}
 use super::columns::{aligned, table};
 use super::folder::ResultFolder;
 use super::numbers::{counted, quantity, shortest, significant};
-use super::plot::canvas::Stroke;
+use super::plot::canvas::LineStyle;
 use super::plot::colour::PALETTE;
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records;
@@ -68,7 +68,7 @@ pub fn csv(found: &CyclePath) -> String {
 }
 
 /// Table of the cycles, and the work.
-pub fn words(found: &CyclePath) -> String {
+pub fn describe(found: &CyclePath) -> String {
     let harvested = energies::harvested(found);
     let energies: String = energy_headings(&harvested)
         .map(|heading| format!(" | {heading}"))
@@ -135,7 +135,7 @@ fn picture(found: &CyclePath) -> Option<String> {
                 .filter(move |(_, m)| unstable(m) == which);
             PictureSeries::marks(all.map(|(p, _)| *p), Glyph::Ring(3.4, 1.4), PALETTE[usize::from(which)])
         };
-        let line = PictureSeries::line(points.iter().copied(), Stroke::solid(PALETTE[0], 1.4));
+        let line = PictureSeries::line(points.iter().copied(), LineStyle::solid(PALETTE[0], 1.4));
         let y = PictureAxis::new(name, unit, 5).with(&[0.0]);
         Some(Panel::new(
             (560.0, 170.0),

@@ -1,6 +1,6 @@
 //! `effects.svg`: one bar per effect for the change of results without it, on a logarithmic scale, and one for the remaining work.
 
-use super::canvas::{Anchor, FAINT_INK, INK, Stroke, Words};
+use super::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::extent;
 use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -68,7 +68,7 @@ pub fn draw(data: &AblationBars) -> Option<String> {
     let mut work = vec![];
     for (k, bar) in data.bars.iter().enumerate() {
         let [below, at, above] = [-0.32, 0.0, 0.32].map(|off| row(k) + off);
-        let small = Words::new(10.0, Anchor::Left);
+        let small = TextStyle::new(10.0, TextAnchor::Left);
         let word =
             |text: &str, colour: Colour| PictureSeries::label((lo, at), (6.0, 0.0), text, small.coloured(colour));
         changes.push(match bar.change {
@@ -87,16 +87,16 @@ pub fn draw(data: &AblationBars) -> Option<String> {
                 (most, at),
                 (6.0, 0.0),
                 significant(bar.work, 2),
-                Words::new(11.0, Anchor::Left),
+                TextStyle::new(11.0, TextAnchor::Left),
             ));
         }
     }
-    let dashed = Stroke::dashed(INK, 1.2, (5.0, 3.0));
+    let dashed = LineStyle::dashed(INK, 1.2, (5.0, 3.0));
     let tolerance = PictureSeries::line([(data.tolerance, 0.0), (data.tolerance, count)], dashed);
     changes.push(tolerance.named(format!("tolerance {:e}", data.tolerance)));
     work.push(PictureSeries::line(
         [(1.0, 0.0), (1.0, count)],
-        Stroke::solid(FAINT_INK, 1.0),
+        LineStyle::solid(FAINT_INK, 1.0),
     ));
     let y = PictureAxis {
         labels: Some(

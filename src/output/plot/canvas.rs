@@ -15,7 +15,7 @@ pub const FAINT_INK: Colour = Colour(0x5f, 0x66, 0x6e);
 
 /// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stroke {
+pub struct LineStyle {
     /// Color.
     pub colour: Colour,
     /// Width in points.
@@ -24,7 +24,7 @@ pub struct Stroke {
     pub dash: Option<(f64, f64)>,
 }
 
-impl Stroke {
+impl LineStyle {
     /// An unbroken line.
     pub fn solid(colour: Colour, width: f64) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Stroke {
 
 /// Reference point of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Anchor {
+pub enum TextAnchor {
     /// Left end, vertical middle.
     Left,
     /// Middle.
@@ -56,22 +56,22 @@ pub enum Anchor {
 
 /// Style of a text.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Words {
+pub struct TextStyle {
     /// Size in points.
     pub size: f64,
     /// Color.
     pub colour: Colour,
     /// Reference point.
-    pub anchor: Anchor,
+    pub anchor: TextAnchor,
     /// True for bold text.
     pub bold: bool,
     /// True for text that runs upwards.
     pub upright: bool,
 }
 
-impl Words {
+impl TextStyle {
     /// Plain text.
-    pub fn new(size: f64, anchor: Anchor) -> Self {
+    pub fn new(size: f64, anchor: TextAnchor) -> Self {
         Self {
             size,
             colour: INK,
@@ -120,7 +120,7 @@ impl Canvas {
     }
 
     /// A line through points; broken where a coordinate is not finite.
-    pub fn line(&mut self, points: &[(f64, f64)], stroke: Stroke) {
+    pub fn line(&mut self, points: &[(f64, f64)], stroke: LineStyle) {
         let (colour, width) = (stroke.colour, tenths(stroke.width).max(0.1));
         let dash = stroke
             .dash
@@ -159,12 +159,12 @@ impl Canvas {
     }
 
     /// The outline of a rectangle.
-    pub fn frame(&mut self, a: (f64, f64), b: (f64, f64), stroke: Stroke) {
+    pub fn frame(&mut self, a: (f64, f64), b: (f64, f64), stroke: LineStyle) {
         self.line(&[a, (b.0, a.1), b, (a.0, b.1), a], stroke);
     }
 
     /// An open ring about a point.
-    pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: Stroke) {
+    pub fn ring(&mut self, centre: (f64, f64), radius: f64, stroke: LineStyle) {
         let ((x, y), radius, colour, width) = (fine(centre), tenths(radius), stroke.colour, stroke.width);
         self.put(format_args!(
             "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"/>"
@@ -172,14 +172,14 @@ impl Canvas {
     }
 
     /// Draws text at a point.
-    pub fn text(&mut self, at: (f64, f64), text: &str, words: Words) {
+    pub fn text(&mut self, at: (f64, f64), text: &str, words: TextStyle) {
         if text.is_empty() {
             return;
         }
         let anchor = match words.anchor {
-            Anchor::Left => "start",
-            Anchor::Centre => "middle",
-            Anchor::Right => "end",
+            TextAnchor::Left => "start",
+            TextAnchor::Centre => "middle",
+            TextAnchor::Right => "end",
         };
         // Half an ex below the point centers lowercase letters; capitals and digits need slightly more.
         let lower = 0.09 * words.size;

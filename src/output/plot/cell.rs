@@ -2,7 +2,7 @@
 
 use slcbeam_section::picture::Picture;
 
-use super::canvas::{FAINT_INK, INK, Stroke};
+use super::canvas::{FAINT_INK, INK, LineStyle};
 use super::colour::{Colour, PALETTE};
 use super::picture::{self, Panel, PictureAxis, PictureSeries};
 
@@ -11,7 +11,7 @@ const HEIGHT: f64 = 200.0;
 /// Largest displacement drawn, relative to the height of the cell. It also sets the margin.
 const SHOWN: f64 = 0.12;
 /// Sides of triangles.
-const SIDES: Stroke = Stroke {
+const SIDES: LineStyle = LineStyle {
     colour: Colour(0xff, 0xff, 0xff),
     width: 0.3,
     dash: None,
@@ -42,7 +42,10 @@ pub fn draw(cell: &Picture, load: usize) -> Option<Deformed> {
         series.push(PictureSeries::area(sides, fill(*material)));
         series.push(PictureSeries::line(sides, SIDES));
     }
-    for (factor, stroke) in [(0.0, Stroke::solid(FAINT_INK, 0.5)), (factor, Stroke::solid(INK, 1.2))] {
+    for (factor, stroke) in [
+        (0.0, LineStyle::solid(FAINT_INK, 0.5)),
+        (factor, LineStyle::solid(INK, 1.2)),
+    ] {
         let edges = cell.outline.iter().map(|edge| edge.map(|k| at(k, factor)));
         series.extend(edges.map(|edge| PictureSeries::line(edge, stroke)));
     }

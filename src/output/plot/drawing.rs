@@ -1,6 +1,6 @@
 //! Draws a picture as SVG: grids, series, axes, legends and color scales of its panels.
 
-use super::canvas::{Anchor, Canvas, FAINT_INK, INK, Stroke, Words, picture};
+use super::canvas::{Canvas, FAINT_INK, INK, LineStyle, TextAnchor, TextStyle, picture};
 use super::colour::Colour;
 use super::labels::LabelRoom;
 use super::layout::{MARGIN, NORMAL, PlacedPanel, SAMPLE, SMALL, lay, width_of};
@@ -8,7 +8,7 @@ use super::picture::{Glyph, Picture, PictureSeries, SeriesKind};
 
 const GRID: Colour = Colour(0xe4, 0xe7, 0xea);
 const ZERO: Colour = Colour(0xa9, 0xaf, 0xb6);
-const FRAME: Stroke = Stroke {
+const FRAME: LineStyle = LineStyle {
     colour: Colour(0x6b, 0x72, 0x7a),
     width: 0.8,
     dash: None,
@@ -21,13 +21,13 @@ impl Picture {
         self.rows.iter().flatten().next()?;
         let (rows, (width, height), about) = lay(self);
         Some(picture(width, height, |canvas| {
-            let bold = Words {
+            let bold = TextStyle {
                 bold: true,
-                ..Words::new(16.0, Anchor::Left)
+                ..TextStyle::new(16.0, TextAnchor::Left)
             };
             canvas.text((MARGIN, 20.0), &self.title, bold);
             for (k, line) in about.iter().enumerate() {
-                let words = Words::new(NORMAL, Anchor::Left).coloured(FAINT_INK);
+                let words = TextStyle::new(NORMAL, TextAnchor::Left).coloured(FAINT_INK);
                 canvas.text((MARGIN, 40.0 + 16.0 * k as f64), line, words);
             }
             rows.iter().flatten().for_each(|laid| laid.draw(canvas));
@@ -62,7 +62,7 @@ impl PlacedPanel<'_> {
         for entry in &self.legend {
             let (x, y) = (self.left + entry.at.0, self.top + entry.at.1);
             entry.series.iter().for_each(|one| sample(canvas, (x, y), one));
-            let words = Words::new(SMALL, Anchor::Left);
+            let words = TextStyle::new(SMALL, TextAnchor::Left);
             for (k, line) in entry.text.lines().enumerate() {
                 canvas.text((x + SAMPLE, y + 14.0 * k as f64), line, words);
             }
@@ -108,13 +108,13 @@ impl PlacedPanel<'_> {
     fn grid(&self, canvas: &mut Canvas) {
         for (x, _) in &self.x.ticks {
             let at = self.place(self.x.share(*x), 0.0).0;
-            canvas.line(&[(at, self.top), (at, self.bottom())], Stroke::solid(GRID, 0.7));
+            canvas.line(&[(at, self.top), (at, self.bottom())], LineStyle::solid(GRID, 0.7));
         }
         for (y, _) in &self.y.ticks {
             let at = self.place(0.0, self.y.share(*y)).1;
             let zero = *y == 0.0 && !self.y.logarithmic && self.panel.y.labels.is_none();
             let colour = if zero { ZERO } else { GRID };
-            canvas.line(&[(self.left, at), (self.right(), at)], Stroke::solid(colour, 0.7));
+            canvas.line(&[(self.left, at), (self.right(), at)], LineStyle::solid(colour, 0.7));
         }
     }
 
@@ -127,18 +127,18 @@ impl PlacedPanel<'_> {
             let at = self.place(0.0, self.y.share(*y)).1;
             canvas.line(&[(left - 4.0, at), (left, at)], FRAME);
             if self.labelled[1] && room.claim((left, at)) {
-                canvas.text((left - 7.0, at), label, Words::new(SMALL, Anchor::Right));
+                canvas.text((left - 7.0, at), label, TextStyle::new(SMALL, TextAnchor::Right));
             }
         }
-        let words = Words::new(NORMAL, Anchor::Centre);
-        let upright = Words { upright: true, ..words };
+        let words = TextStyle::new(NORMAL, TextAnchor::Centre);
+        let upright = TextStyle { upright: true, ..words };
         if self.labelled[1] {
             let at = (left - self.beside(), self.top + 0.5 * self.panel.size.1);
             canvas.text(at, &self.name(), upright);
         }
         let groups = &self.panel.x.groups;
         let down = if groups.is_empty() { 0.0 } else { 16.0 };
-        let small = Words::new(SMALL, Anchor::Centre);
+        let small = TextStyle::new(SMALL, TextAnchor::Centre);
         let longest = |all: &[(f64, String)]| all.iter().map(|(_, text)| width_of(text, SMALL)).fold(4.0, f64::max);
         let mut room = LabelRoom::new((0.85 * longest(groups), SMALL));
         for (x, label) in groups {
@@ -176,9 +176,9 @@ impl PlacedPanel<'_> {
         for (x, label) in &scale.ticks {
             let at = self.bottom() - self.panel.size.1 * scale.share(*x);
             canvas.line(&[(right, at), (right + 4.0, at)], FRAME);
-            canvas.text((right + 7.0, at), label, Words::new(SMALL, Anchor::Left));
+            canvas.text((right + 7.0, at), label, TextStyle::new(SMALL, TextAnchor::Left));
         }
-        let words = Words::new(SMALL, Anchor::Left);
+        let words = TextStyle::new(SMALL, TextAnchor::Left);
         canvas.text((left - 4.0, self.top - 12.0), scale.named(&bar.axis.name).trim(), words);
         if let Some((colour, text)) = &bar.besides {
             let at = self.bottom() + 18.0;
@@ -203,11 +203,11 @@ fn sample(canvas: &mut Canvas, (x, y): (f64, f64), one: &PictureSeries) {
 impl Glyph {
     fn draw(self, canvas: &mut Canvas, (x, y): (f64, f64), colour: Colour) {
         match self {
-            Self::Ring(r, width) => canvas.ring((x, y), r, Stroke::solid(colour, width)),
+            Self::Ring(r, width) => canvas.ring((x, y), r, LineStyle::solid(colour, width)),
             Self::Square(r) => canvas.rectangle((x - r, y - r), (x + r, y + r), colour),
-            Self::Box(r) => canvas.frame((x - r, y - r), (x + r, y + r), Stroke::solid(colour, 1.2)),
+            Self::Box(r) => canvas.frame((x - r, y - r), (x + r, y + r), LineStyle::solid(colour, 1.2)),
             Self::Cross(r) => {
-                let stroke = Stroke::solid(INK, 1.3);
+                let stroke = LineStyle::solid(INK, 1.3);
                 canvas.line(&[(x - r, y - r), (x + r, y + r)], stroke);
                 canvas.line(&[(x - r, y + r), (x + r, y - r)], stroke);
             }

@@ -1,6 +1,6 @@
 //! `energy.svg`: stored energies, works and losses over time, and the residual of the energy balance.
 
-use super::canvas::Stroke;
+use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::{PlottedCurve, times_of};
@@ -24,11 +24,11 @@ pub fn belongs(one: Observable) -> bool {
 }
 
 fn is_stored(curve: &PlottedCurve) -> bool {
-    curve.of().is_some_and(|one| one.group() == Group::Stored)
+    curve.observable().is_some_and(|one| one.group() == Group::Stored)
 }
 
 fn is_residual(curve: &PlottedCurve) -> bool {
-    curve.of().is_some_and(|one| one.group() == Group::Open)
+    curve.observable().is_some_and(|one| one.group() == Group::Open)
 }
 
 /// Draws the picture; `None` if there is nothing to draw.
@@ -37,11 +37,11 @@ pub fn draw(data: &Energy) -> Option<String> {
     let x = times_of(lines.iter().copied())?;
     let largest = lines.iter().map(|c| c.max_abs()).fold(0.0, f64::max);
     let entry = |(k, curve): (usize, &&PlottedCurve)| {
-        let stroke = Stroke {
+        let stroke = LineStyle {
             dash: (!is_stored(curve)).then_some((6.0, 3.5)),
-            ..Stroke::solid(PALETTE[k % PALETTE.len()], 1.5)
+            ..LineStyle::solid(PALETTE[k % PALETTE.len()], 1.5)
         };
-        let label = curve.of().map_or(curve.name.as_str(), |one| one.label());
+        let label = curve.observable().map_or(curve.name.as_str(), |one| one.label());
         PictureSeries::line(curve.points.iter().copied(), stroke).named(label)
     };
     let panel = |height: f64, y: PictureAxis, series: Vec<PictureSeries>| Panel {
@@ -54,7 +54,7 @@ pub fn draw(data: &Energy) -> Option<String> {
     let residual = residual.map(|curve| {
         let over = if largest > 0.0 { largest } else { 1.0 };
         let points = curve.points.iter().map(|p| (p.0, p.1 / over));
-        let line = PictureSeries::line(points, Stroke::solid(PALETTE[9], 1.2));
+        let line = PictureSeries::line(points, LineStyle::solid(PALETTE[9], 1.2));
         let y = PictureAxis::new("residual", "1", 4).above(1e-16);
         panel(
             100.0,

@@ -1,6 +1,6 @@
 //! `history.svg`: quantities over time, one panel per quantity.
 
-use super::canvas::Stroke;
+use super::canvas::LineStyle;
 use super::colour::PALETTE;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::{PlottedCurve, times_of};
@@ -35,7 +35,7 @@ fn floor(unit: &str) -> f64 {
 
 /// Name beside the vertical axis of a panel.
 fn name(curves: &[&PlottedCurve]) -> &'static str {
-    match curves[0].of() {
+    match curves[0].observable() {
         Some(one) if one.group() == Group::Pressure => "max, min p",
         Some(one) => one.label(),
         None => "",
@@ -50,7 +50,7 @@ pub fn draw(data: &HistoryPlot) -> Option<String> {
         // the second curve of a panel uses the other half of the palette
         let colour = |c: usize| PALETTE[(k + 5 * c) % PALETTE.len()];
         let line = |(c, curve): (usize, &&PlottedCurve)| {
-            PictureSeries::line(curve.points.iter().copied(), Stroke::solid(colour(c), 1.2))
+            PictureSeries::line(curve.points.iter().copied(), LineStyle::solid(colour(c), 1.2))
         };
         let unit = &*curves[0].unit;
         let y = PictureAxis::new(name(curves), unit, 4).above(floor(unit));
@@ -72,13 +72,13 @@ pub fn draw(data: &HistoryPlot) -> Option<String> {
 /// Curves of each panel; omits powers that are zero throughout.
 fn panels(data: &HistoryPlot) -> Vec<Vec<&PlottedCurve>> {
     let mut panels: Vec<Vec<&PlottedCurve>> = vec![];
-    for (one, curve) in data.curves.iter().filter_map(|c| Some((c.of()?, c))) {
+    for (one, curve) in data.curves.iter().filter_map(|c| Some((c.observable()?, c))) {
         let group = one.group();
         if curve.points.is_empty() || group == Group::Power && curve.max_abs() == 0.0 {
             continue;
         }
         let joins = |panel: &&mut Vec<&PlottedCurve>| {
-            let first = panel[0].of();
+            let first = panel[0].observable();
             group != Group::Tip && first.is_some_and(|first| first.group() == group && first.unit() == one.unit())
         };
         match panels.iter_mut().find(joins) {

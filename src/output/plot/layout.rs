@@ -251,7 +251,7 @@ impl<'a> PlacedPanel<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::plot::canvas::Stroke;
+    use crate::output::plot::canvas::LineStyle;
     use crate::output::plot::colour::PALETTE;
     use crate::output::plot::picture::PictureAxis;
 
@@ -259,7 +259,7 @@ mod tests {
     #[test]
     fn panels_share_axes_and_legend() {
         let panel = |end: f64| {
-            let line = PictureSeries::line([(0.0, 1.0), (end, 2.0)], Stroke::solid(PALETTE[0], 1.0));
+            let line = PictureSeries::line([(0.0, 1.0), (end, 2.0)], LineStyle::solid(PALETTE[0], 1.0));
             let axes = ["time", "size"].map(|name| PictureAxis::new(name, "m", 5));
             let [x, y] = axes;
             Panel::new(

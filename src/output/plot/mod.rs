@@ -34,7 +34,7 @@ pub mod history;
 pub mod pressure;
 pub mod workprecision;
 
-use self::canvas::Stroke;
+use self::canvas::LineStyle;
 use self::picture::{ColourBar, PictureAxis, PictureSeries};
 use super::numbers;
 use crate::discrete::quantities::Observable;
@@ -59,7 +59,7 @@ pub struct PlottedCurve {
 
 impl PlottedCurve {
     /// The observable with this name, if there is one.
-    pub fn of(&self) -> Option<Observable> {
+    pub fn observable(&self) -> Option<Observable> {
         Observable::named(&self.name)
     }
 
@@ -138,7 +138,7 @@ pub fn over_time(times: &[f64], curves: impl IntoIterator<Item = Vec<(f64, f64)>
     let colours = times.iter().map(|t| colour::of_time((t - from) / range));
     let lines = colours
         .zip(curves)
-        .map(|(colour, curve)| PictureSeries::line(curve, Stroke::solid(colour, 1.3)));
+        .map(|(colour, curve)| PictureSeries::line(curve, LineStyle::solid(colour, 1.3)));
     lines.collect()
 }
 

@@ -1,6 +1,6 @@
 //! A picture as data: rows of panels, each with two axes and series. [`Picture::svg`] is the only place that draws one.
 
-use super::canvas::{Anchor, INK, Stroke, Words};
+use super::canvas::{INK, LineStyle, TextAnchor, TextStyle};
 use super::colour::Colour;
 use super::extent;
 use super::ticks::Scale;
@@ -22,7 +22,7 @@ pub struct Panel {
     /// Width and height of the frame [pt].
     pub size: (f64, f64),
     /// Heading above the frame.
-    pub heading: (String, Words),
+    pub heading: (String, TextStyle),
     /// Horizontal axis.
     pub x: PictureAxis,
     /// Vertical axis.
@@ -75,7 +75,7 @@ pub struct PictureSeries {
 #[derive(Clone, Debug, PartialEq)]
 pub enum SeriesKind {
     /// A line, broken where a coordinate is not finite.
-    Line(Vec<(f64, f64)>, Stroke),
+    Line(Vec<(f64, f64)>, LineStyle),
     /// Symbols at points.
     Marks(Vec<(f64, f64)>, Glyph, Colour),
     /// A filled polygon below the grid.
@@ -83,7 +83,7 @@ pub enum SeriesKind {
     /// A filled rectangle between two corners, clipped to the frame.
     Cell([(f64, f64); 2], Colour),
     /// Text at a distance [pt] from a point; omitted if it would overlap an earlier one.
-    Label((f64, f64), (f64, f64), String, Words),
+    Label((f64, f64), (f64, f64), String, TextStyle),
 }
 
 /// A symbol with its radius [pt].
@@ -128,7 +128,7 @@ impl Panel {
     pub fn new(size: (f64, f64), x: PictureAxis, y: PictureAxis, series: Vec<PictureSeries>) -> Self {
         Self {
             size,
-            heading: (String::new(), Words::new(12.0, Anchor::Left)),
+            heading: (String::new(), TextStyle::new(12.0, TextAnchor::Left)),
             x,
             y,
             series,
@@ -230,7 +230,7 @@ impl PictureSeries {
     }
 
     /// A line.
-    pub fn line(points: impl IntoIterator<Item = (f64, f64)>, stroke: Stroke) -> Self {
+    pub fn line(points: impl IntoIterator<Item = (f64, f64)>, stroke: LineStyle) -> Self {
         Self::new(SeriesKind::Line(points.into_iter().collect(), stroke))
     }
 
@@ -257,13 +257,13 @@ impl PictureSeries {
     }
 
     /// Text.
-    pub fn label(at: (f64, f64), off: (f64, f64), text: impl Into<String>, words: Words) -> Self {
+    pub fn label(at: (f64, f64), off: (f64, f64), text: impl Into<String>, words: TextStyle) -> Self {
         Self::new(SeriesKind::Label(at, off, text.into(), words))
     }
 
     /// A legend entry without data.
     pub fn note(text: impl Into<String>) -> Self {
-        Self::line([], Stroke::solid(INK, 0.0)).named(text)
+        Self::line([], LineStyle::solid(INK, 0.0)).named(text)
     }
 
     /// Adds a legend entry.

@@ -1,6 +1,6 @@
 //! `pressure.svg`: pressure along the networks over the last cycle, blue to red.
 
-use super::canvas::Stroke;
+use super::canvas::LineStyle;
 use super::colour::Colour;
 use super::picture::{Panel, Picture, PictureAxis, PictureSeries};
 use super::{TimeSpan, extent, over_time, time_bar};
@@ -59,7 +59,7 @@ pub fn draw(data: &Pressure) -> Option<String> {
     series.extend(over_time(&data.times, curves));
     for pair in networks.windows(2) {
         let middle = 0.5 * (data.x_f[pair[0].1 - 1] + data.x_f[pair[1].0]);
-        let dashed = Stroke::dashed(DIVIDE, 1.0, (5.0, 4.0));
+        let dashed = LineStyle::dashed(DIVIDE, 1.0, (5.0, 4.0));
         series.push(PictureSeries::line([(middle, low), (middle, high)], dashed));
     }
     let panel = Panel {

@@ -3,7 +3,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::canvas::{Anchor, FAINT_INK, INK, Stroke, Words};
+use super::canvas::{FAINT_INK, INK, LineStyle, TextAnchor, TextStyle};
 use super::colour::{Colour, PALETTE};
 use super::extent;
 use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -13,7 +13,7 @@ use crate::study::accuracy::Scheme;
 
 /// A run as a marker.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Marker {
+pub struct RunMarker {
     /// Relative error.
     pub error: f64,
     /// Relative error of the time integration alone.
@@ -47,7 +47,7 @@ pub struct MeshLine {
     /// Scheme of time integration; determines the marker.
     pub scheme: Scheme,
     /// Runs, from loose to tight tolerance.
-    pub markers: Vec<Marker>,
+    pub markers: Vec<RunMarker>,
     /// Point of equal errors.
     pub balance: Option<BalanceMark>,
 }
@@ -99,16 +99,17 @@ pub fn draw(data: &WorkPrecision) -> Option<String> {
             SHADE,
         ));
     }
-    let mut front: Vec<&Marker> = markers().filter(|m| m.front).collect();
+    let mut front: Vec<&RunMarker> = markers().filter(|m| m.front).collect();
     front.sort_by(|a, b| b.error.total_cmp(&a.error));
-    let line = PictureSeries::line(front.iter().map(|m| (m.error, m.least_s)), Stroke::solid(FRONT, 9.0));
+    let line = PictureSeries::line(front.iter().map(|m| (m.error, m.least_s)), LineStyle::solid(FRONT, 9.0));
     let balances = balances(data);
     series.push(line);
     series.extend(balances.iter().cloned());
     series.extend(lines(data, |m| Some(m.error)));
     // tolerances at the markers of the front
-    let words = Words::new(9.5, Anchor::Right).coloured(FAINT_INK);
-    let label = |m: &&Marker| PictureSeries::label((m.error, m.least_s), (-8.0, 10.0), format!("{:e}", m.rtol), words);
+    let words = TextStyle::new(9.5, TextAnchor::Right).coloured(FAINT_INK);
+    let label =
+        |m: &&RunMarker| PictureSeries::label((m.error, m.least_s), (-8.0, 10.0), format!("{:e}", m.rtol), words);
     series.extend(front.iter().map(label));
     series.extend(notes(data, !balances.is_empty()));
     let across = match data.split {
@@ -136,15 +137,15 @@ fn around((lo, hi): (f64, f64)) -> (f64, f64) {
 }
 
 /// Markers of every mesh and scheme over an error, joined by lines, with whiskers to their median times.
-fn lines(data: &WorkPrecision, error: fn(&Marker) -> Option<f64>) -> Vec<PictureSeries> {
+fn lines(data: &WorkPrecision, error: fn(&RunMarker) -> Option<f64>) -> Vec<PictureSeries> {
     let mut meshes: Vec<usize> = data.lines.iter().map(|l| l.cells).collect();
     meshes.sort_unstable();
     meshes.dedup();
     let mut series = vec![];
     for line in data.lines.iter().filter(|line| !line.markers.is_empty()) {
         let colour = PALETTE[meshes.iter().position(|k| *k == line.cells).unwrap_or(0) % PALETTE.len()];
-        let found = |m: &Marker| error(m).filter(|e| *e > 0.0 && m.least_s > 0.0);
-        let shown: Vec<(&Marker, f64)> = line.markers.iter().filter_map(|m| Some((m, found(m)?))).collect();
+        let found = |m: &RunMarker| error(m).filter(|e| *e > 0.0 && m.least_s > 0.0);
+        let shown: Vec<(&RunMarker, f64)> = line.markers.iter().filter_map(|m| Some((m, found(m)?))).collect();
         let dash = match (line.scheme.method, line.scheme.order) {
             (Method::Ida, 1 | 2) => None,
             (Method::Ida, _) => Some((5.0, 3.5)),
@@ -152,13 +153,13 @@ fn lines(data: &WorkPrecision, error: fn(&Marker) -> Option<f64>) -> Vec<Picture
         };
         let cells = if line.cells == 1 { "cell" } else { "cells" };
         let name = format!("{} {cells}, {}", line.cells, line.scheme);
-        let stroke = Stroke {
+        let stroke = LineStyle {
             dash,
-            ..Stroke::solid(colour, 1.5)
+            ..LineStyle::solid(colour, 1.5)
         };
         series.push(PictureSeries::line(shown.iter().map(|(m, e)| (*e, m.least_s)), stroke).named(&*name));
-        let whisker = |(m, e): &(&Marker, f64)| {
-            PictureSeries::line([(*e, m.least_s), (*e, m.median_s)], Stroke::solid(colour, 1.0))
+        let whisker = |(m, e): &(&RunMarker, f64)| {
+            PictureSeries::line([(*e, m.least_s), (*e, m.median_s)], LineStyle::solid(colour, 1.0))
         };
         series.extend(shown.iter().map(whisker));
         for judged in [true, false] {
@@ -187,7 +188,7 @@ fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
     let all = schemes.into_iter().map(of).filter(|points| !points.is_empty());
     let drawn = all.flat_map(|points| {
         [
-            PictureSeries::line(points.iter().copied(), Stroke::dashed(FAINT_INK, 1.0, (2.0, 4.0))),
+            PictureSeries::line(points.iter().copied(), LineStyle::dashed(FAINT_INK, 1.0, (2.0, 4.0))),
             PictureSeries::marks(points, Glyph::Cross(5.0), INK),
         ]
     });
@@ -196,7 +197,7 @@ fn balances(data: &WorkPrecision) -> Vec<PictureSeries> {
 
 /// Legend entries without a line of their own.
 fn notes(data: &WorkPrecision, balances: bool) -> Vec<PictureSeries> {
-    let front = PictureSeries::line([], Stroke::solid(FRONT, 9.0));
+    let front = PictureSeries::line([], LineStyle::solid(FRONT, 9.0));
     let mut all = vec![front.named("no run is cheaper and\nmore accurate; rtol\nbeside it")];
     let none = |glyph: Glyph, colour: Colour| PictureSeries::marks([], glyph, colour);
     if balances {

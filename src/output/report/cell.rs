@@ -6,7 +6,7 @@ use slcbeam_section::coefficients::Options;
 use slcbeam_section::geometry::outline::Outline;
 use slcbeam_section::input::Section;
 
-use super::pack;
+use super::base64;
 use crate::output::numbers::significant;
 use crate::output::plot::cell;
 
@@ -30,7 +30,7 @@ pub fn pictures(section: &Section) -> Vec<Value> {
         let drawn = cell::draw(&found, load)?;
         Some(json!({
             "title": name,
-            "picture": pack::image("image/svg+xml", drawn.svg.as_bytes()),
+            "picture": base64::image("image/svg+xml", drawn.svg.as_bytes()),
             "about": format!("1 {unit}, displacements × {}", significant(drawn.factor, 1)),
         }))
     };

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, WrittenPage, pack, page, warnings};
+use super::{FolderKind, Page, WrittenPage, base64, page, warnings};
 use crate::discrete::quantities::{Observable, QuantityRole};
 use crate::error::{Error, Result};
 use crate::output::folder::{REPORT, fault, replace_alike};
@@ -13,7 +13,7 @@ use crate::output::numbers::{percent, quantity};
 use crate::study::compare::difference::Difference;
 use crate::study::compare::many::column_at;
 use crate::study::compare::{ManyComparison, Recording};
-use crate::study::fit::beside::{ComparedColumn, DataComparison as Data};
+use crate::study::fit::comparison::{ComparedColumn, DataComparison as Data};
 
 /// Largest number of instants shown of a history.
 const INSTANTS: usize = 1500;
@@ -67,7 +67,7 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<WrittenPage>
         ]);
         let numbers = numbers.as_array().cloned().unwrap_or_default();
         [
-            vec![json!(one.matched.words()), json!(one.quantity), json!(one.unit)],
+            vec![json!(one.matched.describe()), json!(one.quantity), json!(one.unit)],
             numbers,
         ]
         .concat()
@@ -75,7 +75,7 @@ pub fn over_data(dir: &Path, picture: &str, found: &Data) -> Result<WrittenPage>
     page.fill(json!({
         "facts": [format!("Run: {}", found.run), format!("Data: {}", found.data)],
         "figures": [{
-            "title": "Data and run", "picture": pack::image("image/svg+xml", picture.as_bytes()),
+            "title": "Data and run", "picture": base64::image("image/svg+xml", picture.as_bytes()),
             "about": "Rings are measured, the line is the run. Below, run less data.",
         }],
         "table": {
@@ -186,7 +186,7 @@ fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
         let one = Observable::named(&column.name);
         there.then(|| {
             let none = vec![f64::NAN; times.len()];
-            let packed = values.iter().map(|v| pack::numbers(v.as_ref().unwrap_or(&none).iter().copied()));
+            let packed = values.iter().map(|v| base64::numbers(v.as_ref().unwrap_or(&none).iter().copied()));
             json!({
                 "name": column.name, "unit": column.unit, "label": one.map_or(column.name.as_str(), |one| one.label()),
                 "about": one.map_or("", Observable::about), "usual": one.is_some_and(|one| one.role() == QuantityRole::Headline),
@@ -205,7 +205,7 @@ fn overlay(all: &[&Recording], names: &[String]) -> Option<Value> {
         }
     );
     (times.len() > 1 && !quantities.is_empty()).then(|| {
-        json!({"times": pack::numbers(times.iter().copied()), "runs": names, "quantities": quantities, "note": note})
+        json!({"times": base64::numbers(times.iter().copied()), "runs": names, "quantities": quantities, "note": note})
     })
 }
 

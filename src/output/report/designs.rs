@@ -2,11 +2,13 @@
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, capital, pack};
+use super::{FolderKind, MOST_ROWS, Page, Place, StoredResult, base64, capital};
 use crate::error::Result;
 use crate::output::folder::{CASE, REPORT};
-use crate::output::sweep::words::{kinds, several};
-use crate::output::sweep::{CASES, FOLDERS, JOURNAL, Survey, TABLE, about, numbered, pictures, table, warnings};
+use crate::output::sweep::text::{kinds, several};
+use crate::output::sweep::{
+    CASES, FOLDERS, JOURNAL, JournalSummary, TABLE, about, numbered, pictures, table, warnings,
+};
 use crate::results::sweep::{Sweep, SweepPlan};
 
 /// Largest number of columns of the page's table; the file contains the rest.
@@ -22,7 +24,7 @@ pub fn data(place: &Place) -> Result<Page> {
     {
         case.file = CASE.into();
     }
-    let survey = Survey::of(&place.path(JOURNAL), &plan)?;
+    let survey = JournalSummary::read(&place.path(JOURNAL), &plan)?;
     let found = about(&plan, &survey);
     let mut page = place.page(FolderKind::Designs, &plan.title(), Some(&head));
     page.warnings = warnings(&plan, &survey)?;
@@ -44,7 +46,7 @@ pub fn data(place: &Place) -> Result<Page> {
         let own = || drawn.iter().find(|(name, _)| *name == file);
         let picture = place
             .picture(file)
-            .or_else(|| Some(pack::image("image/svg+xml", own()?.1.as_bytes()).into()))?;
+            .or_else(|| Some(base64::image("image/svg+xml", own()?.1.as_bytes()).into()))?;
         Some(json!({"title": title, "picture": picture, "about": about}))
     };
     let figures = [
@@ -66,7 +68,7 @@ pub fn data(place: &Place) -> Result<Page> {
 }
 
 /// Table of the designs. Each design links to its page or case, if kept, and has the command that repeats it.
-fn rows(place: &Place, found: &Sweep, survey: &Survey) -> Result<Value> {
+fn rows(place: &Place, found: &Sweep, survey: &JournalSummary) -> Result<Value> {
     let plan = &found.plan;
     let columns = found.columns.len().min(MOST_COLUMNS);
     let mut rows: Vec<Vec<Value>> = vec![];

@@ -7,7 +7,7 @@ use crate::discrete::quantities::{Group, Observable};
 use crate::run::summary::Summary;
 
 /// Entries of the ledger, and names of the columns drawn over time.
-pub fn of(summary: &Summary, history: &ReportHistory) -> Value {
+pub fn to_json(summary: &Summary, history: &ReportHistory) -> Value {
     let of = |groups: &[Group]| -> Vec<Observable> { groups.iter().copied().flat_map(Observable::grouped).collect() };
     let stored = of(&[Group::Stored]);
     let comes_in = of(&[Group::PutIn, Group::Added]);
@@ -16,7 +16,7 @@ pub fn of(summary: &Summary, history: &ReportHistory) -> Value {
     let entries = |list: &[Observable], sign: f64| -> Vec<Value> {
         let known = list.iter().filter(|one| at_end(one) != 0.0);
         known
-            .map(|one| json!({"name": one.name(), "words": one.words(), "joule": sign * at_end(one)}))
+            .map(|one| json!({"name": one.name(), "words": one.describe(), "joule": sign * at_end(one)}))
             .collect()
     };
     let sum = |list: &[Observable]| list.iter().map(at_end).sum::<f64>();

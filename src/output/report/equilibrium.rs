@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, pack, sheet};
+use super::{FolderKind, Page, Place, StoredResult, base64, csv_table};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::equilibrium::{CSV, JSON, SHAPES};
@@ -77,7 +77,7 @@ pub fn data(place: &Place) -> Result<Page> {
         ],
         "tiles": std::iter::once(first).chain(others).flatten().collect::<Vec<_>>(),
         "events": found.events, "derivatives": found.sensitivities,
-        "path": sheet::read(&place.path(CSV), |_| true), "shapes": shapes(&place.path(SHAPES)),
+        "path": csv_table::read(&place.path(CSV), |_| true), "shapes": shapes(&place.path(SHAPES)),
         "command": format!("slcbeam equilibrium {CASE}{} --at {at} --load-factor {share}", via(&found)),
     }));
     Ok(page)
@@ -146,9 +146,9 @@ fn shapes(path: &Path) -> Value {
     let nodes: Vec<usize> = (0..rows.len()).filter(|k| k % stride == 0 || *k == last).collect();
     let along = |offset: usize| {
         let pairs = kept.iter().flat_map(|s| nodes.iter().map(move |k| (s, k)));
-        pack::numbers(pairs.map(|(s, k)| rows[*k][1 + 2 * s + offset]))
+        base64::numbers(pairs.map(|(s, k)| rows[*k][1 + 2 * s + offset]))
     };
     json!({
-        "states": kept, "theta": pack::numbers(nodes.iter().map(|&k| rows[k][0])), "x": along(0), "z": along(1),
+        "states": kept, "theta": base64::numbers(nodes.iter().map(|&k| rows[k][0])), "x": along(0), "z": along(1),
     })
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::pack;
+use super::base64;
 use crate::discrete::quantities::BeamField;
 use crate::output::arrays::TIMES;
 use crate::output::folder::damaged;
@@ -85,14 +85,14 @@ pub fn read(path: &Path, frequency: Option<f64>) -> io::Result<Value> {
             );
             return Err(damaged(why));
         }
-        Ok(pack::numbers(rows(&mut npz, name, &chosen, groups)?))
+        Ok(base64::numbers(rows(&mut npz, name, &chosen, groups)?))
     };
     let (span, cycle) = plot::instants(&kept, frequency, CURVES);
-    let first = |name: &str| pack::numbers(groups.iter().map(|g| mean(g, contents.axis(name))));
+    let first = |name: &str| base64::numbers(groups.iter().map(|g| mean(g, contents.axis(name))));
     Ok(json!({
-        "times": pack::numbers(kept.iter().copied()),
+        "times": base64::numbers(kept.iter().copied()),
         "recorded": times.len(),
-        "theta": pack::numbers(nodes.iter().map(|&k| theta[k])),
+        "theta": base64::numbers(nodes.iter().map(|&k| theta[k])),
         "nodes_recorded": theta.len(),
         "cycle": cycle,
         "whole": span == plot::TimeSpan::WholeRun,

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::pack;
+use super::base64;
 use crate::discrete::quantities::{Group, Observable, QuantityRole};
 use crate::error::Result;
 use crate::output::envelope::{Envelope, HistorySource as Recorded, RowOrigin, each_row};
@@ -94,7 +94,7 @@ impl ReportHistory {
             all.insert("label".into(), label.into());
             all.insert("about".into(), one.map_or("", Observable::about).into());
             all.insert("usual".into(), one.is_some_and(usual).into());
-            all.insert("values".into(), pack::numbers(values.iter().copied()));
+            all.insert("values".into(), base64::numbers(values.iter().copied()));
             Value::Object(all)
         });
         let shown = self.columns.first().map_or(0, Vec::len) as u64;

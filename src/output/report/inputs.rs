@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::pack;
+use super::base64;
 use crate::case::schema::Load;
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::Signal;
@@ -22,7 +22,7 @@ struct Input<'a> {
 /// Columns of all inputs that vary in time, at the instants of a history. If `joined`, pairs of instants stand for stretches of time, and
 /// the values are the extremes of the signal in each.
 pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
-    let network = ResolvedNetwork::of(case).ok().flatten();
+    let network = ResolvedNetwork::from_case(case).ok().flatten();
     let ends = [("root", case.ends.root.resolve()), ("tip", case.ends.tip.resolve())];
     let mut all = loads(case);
     for (name, end) in &ends {
@@ -35,7 +35,7 @@ pub fn columns(case: &Case, times: &[f64], joined: bool) -> Vec<Value> {
     let column = |(number, one): (usize, Input)| {
         json!({
             "name": format!("input_{}", number + 1), "unit": one.unit, "group": "What acts", "label": one.label,
-            "about": "a signal of the case", "usual": true, "values": pack::numbers(values(one.signal, times, joined)),
+            "about": "a signal of the case", "usual": true, "values": base64::numbers(values(one.signal, times, joined)),
         })
     };
     changing.enumerate().map(column).collect()

@@ -3,7 +3,7 @@
 //! ```text
 //! kind        kind of result in a folder
 //! page        shell, style, scripts and data as one text
-//! pack        arrays as base64
+//! base64      arrays as base64
 //! frames      fields of a run at chosen instants
 //! cell        the cell of the section under its loads
 //! history     history.csv, thinned to the resolution of a screen
@@ -12,10 +12,10 @@
 //! inputs      functions of time as columns beside the history
 //! per_cycle   powers and efficiency over the preceding period
 //! run         the page of a run or a cycle
-//! energy_balance       the energy ledger, its entries and their sum
+//! energy_balance  the energy ledger, its entries and their sum
 //! facts       effects, solver, wall time, characteristic numbers as text
 //! parameters  the case as a table, described by its schema
-//! sheet       CSV files as tables
+//! csv_table   CSV files as tables
 //! warnings    warnings with titles and explanations
 //! compared    pages that compare several results, or one result with measured data
 //! equilibrium, modes, studies, cycles, designs, fit, sense, optimum   the pages of the other commands
@@ -25,8 +25,10 @@
 //! The data of a page is JSON in a script element that is not executed. The scripts insert every text of a case as text, so that none of it
 //! is parsed as markup. The same folder gives the same bytes.
 
+mod base64;
 mod cell;
 mod compared;
+mod csv_table;
 mod cycles;
 mod designs;
 mod energy_balance;
@@ -38,7 +40,6 @@ mod history;
 mod inputs;
 mod modes;
 mod optimum;
-mod pack;
 mod page;
 mod parameters;
 mod per_cycle;
@@ -46,7 +47,6 @@ mod response;
 mod run;
 mod scene;
 mod sense;
-mod sheet;
 mod signals;
 mod studies;
 mod warnings;
@@ -60,7 +60,7 @@ use serde_json::{Map, Value, json};
 
 pub use compared::{compared, over_data};
 
-use super::envelope::Remembered;
+use super::envelope::HistoryInMemory;
 use super::folder::{CASE, REPORT, ResultFolder, entries, name_of, open, put_whole, replace_alike, text_of};
 use super::kind::FolderKind;
 use super::uncertainty::{self, UNCERTAINTY};
@@ -118,7 +118,7 @@ pub fn complete(folder: &ResultFolder, case: &Case) -> Result<()> {
 /// # Errors
 ///
 /// As [`write`].
-pub fn lay(folder: &ResultFolder, history: Option<&Remembered>) -> Result<()> {
+pub fn lay(folder: &ResultFolder, history: Option<&HistoryInMemory>) -> Result<()> {
     let dir = folder.dir();
     let text = halt::complete(|| text(&Place::new(dir, history), FolderKind::find(dir)?, false))?;
     folder.lay(REPORT, text.as_bytes()).map(|_| ())
@@ -169,13 +169,13 @@ fn text(place: &Place, kind: FolderKind, elsewhere: bool) -> Result<String> {
 struct Place<'a> {
     dir: &'a Path,
     /// The history of a run that has just ended.
-    history: Option<&'a Remembered>,
+    history: Option<&'a HistoryInMemory>,
     case: Option<Case>,
     case_text: Option<String>,
 }
 
 impl<'a> Place<'a> {
-    fn new(dir: &'a Path, history: Option<&'a Remembered>) -> Self {
+    fn new(dir: &'a Path, history: Option<&'a HistoryInMemory>) -> Self {
         let path = dir.join(CASE);
         Self {
             dir,
@@ -204,7 +204,7 @@ impl<'a> Place<'a> {
             let size = fs::metadata(self.path(name)).ok()?.len();
             return Some(json!({"file": name, "bytes": size}));
         }
-        Some(pack::image("image/svg+xml", &bytes).into())
+        Some(base64::image("image/svg+xml", &bytes).into())
     }
 
     /// Files beside the page, sorted by name; omits hidden files and folders.
@@ -229,9 +229,9 @@ impl<'a> Place<'a> {
         let section = self.case.as_ref().and_then(|c| c.section.as_ref());
         let text = self.case_text.as_ref().filter(|text| text.len() < LARGEST_TEXT);
         page.fill(json!({
-            "kind": kind.name(), "version": env!("CARGO_PKG_VERSION"), "made": head.map(Head::words), "name": name,
+            "kind": kind.name(), "version": env!("CARGO_PKG_VERSION"), "made": head.map(Head::describe), "name": name,
             "about": self.case.as_ref().map_or("", |c| c.about.as_str()), "files": self.files(),
-            "cell": section.map_or_else(Vec::new, cell::pictures), "scene": self.case.as_ref().and_then(scene::of),
+            "cell": section.map_or_else(Vec::new, cell::pictures), "scene": self.case.as_ref().and_then(scene::to_json),
             // placeholder: see `text`
             "parameters": null, "case_text": text, "characteristic": numbers,
         }));

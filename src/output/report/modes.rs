@@ -5,14 +5,14 @@ use std::path::Path;
 
 use serde_json::{Map, Value, json};
 
-use super::{FolderKind, Page, Place, StoredResult, capital, pack, sheet};
+use super::{FolderKind, Page, Place, StoredResult, base64, capital, csv_table};
 use crate::error::Result;
 use crate::output::bands;
 use crate::output::folder::CASE;
 use crate::output::modes::{ARRAYS, CSV, JSON, PICTURE};
 use crate::output::npz::Npz;
 use crate::output::numbers::{counted, significant};
-use crate::results::modes::{About, ModesRecord};
+use crate::results::modes::{LinearisedState, ModesRecord};
 
 /// Columns of the page's table; the file contains the rest.
 const COLUMNS: [&str; 9] = [
@@ -39,7 +39,7 @@ pub fn data(place: &Place) -> Result<Page> {
     } else {
         ("unstable", "bad")
     };
-    let table = sheet::read(&place.path(CSV), |name| COLUMNS.contains(&name));
+    let table = csv_table::read(&place.path(CSV), |name| COLUMNS.contains(&name));
     page.warnings.clone_from(&found.warnings);
     let shapes = shapes(&place.path(ARRAYS));
     if let Some(e) = shapes.as_ref().err().filter(|e| e.kind() != io::ErrorKind::NotFound) {
@@ -52,7 +52,7 @@ pub fn data(place: &Place) -> Result<Page> {
     };
     // Older results do not store the state. At 0 s it is then taken as the start, later as an equilibrium.
     let at = match (found.state, found.at_s) {
-        (Some(About::Start), _) | (None, 0.0) => String::new(),
+        (Some(LinearisedState::Start), _) | (None, 0.0) => String::new(),
         (_, at) => format!(" --at {at}"),
     };
     let kind = found
@@ -120,7 +120,7 @@ fn shapes(path: &Path) -> io::Result<Value> {
     };
     let mut all = Map::new();
     let (nodes, theta) = read("theta_m")?;
-    all.insert("theta_m".into(), pack::numbers(theta));
+    all.insert("theta_m".into(), base64::numbers(theta));
     // A dry beam has no bladders.
     let bladders = read("pressure_amplitude_pa")
         .ok()
@@ -132,7 +132,7 @@ fn shapes(path: &Path) -> io::Result<Value> {
     for name in wanted {
         let (shape, values) = read(name)?;
         let kept = most.max(1) * shape.get(1).copied().unwrap_or(1);
-        all.insert((*name).into(), pack::numbers(values.into_iter().take(kept)));
+        all.insert((*name).into(), base64::numbers(values.into_iter().take(kept)));
     }
     all.insert("bladders".into(), json!(bladders));
     all.insert("most".into(), json!(most.max(1)));

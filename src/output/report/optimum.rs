@@ -6,8 +6,8 @@ use super::{FolderKind, Page, Place, StoredResult};
 use crate::error::Result;
 use crate::output::numbers::{duration, percent, quantity, significant};
 use crate::output::optimum::{BEST, CSV, JSON, PICTURE, place as position, ranked};
+use crate::output::sweep::text::several;
 use crate::output::sweep::unit;
-use crate::output::sweep::words::several;
 use crate::results::optimum::{DerivativeSource, Optimum, Variable};
 
 /// Page of `optimize`.

@@ -13,7 +13,7 @@ pub fn rows(text: &str) -> Vec<Value> {
     let Ok(case) = serde_json::from_str::<Value>(text) else {
         return vec![];
     };
-    let schema = Schema::of(schema_of_resolved());
+    let schema = Schema::new(schema_of_resolved());
     let mut out = vec![];
     if let Value::Object(all) = &case {
         for (key, value) in all {
@@ -89,7 +89,7 @@ struct Schema<'a> {
 }
 
 impl<'a> Schema<'a> {
-    fn of(whole: &'a Value) -> Self {
+    fn new(whole: &'a Value) -> Self {
         Self {
             part: whole,
             definitions: &whole["$defs"],

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
+use super::base64;
 use super::history::ReportHistory;
-use super::pack;
 use crate::discrete::quantities::{Group, Observable};
 use crate::run::energies::ROUNDING;
 
@@ -48,7 +48,7 @@ pub fn columns(history: &ReportHistory, period: f64) -> Vec<Value> {
     let column = |name: &str, unit: &str, label: &str, about: &str, values: Vec<f64>| {
         json!({
             "name": name, "unit": unit, "group": "Over the last cycle", "label": label, "about": about, "usual": false,
-            "values": pack::numbers(values),
+            "values": base64::numbers(values),
         })
     };
     vec![

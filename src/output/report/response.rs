@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, significant};
 use crate::output::response::{JSON, PICTURE};
-use crate::results::response::{About, ResponseRecord};
+use crate::results::response::{LinearisedState, ResponseRecord};
 
 /// Data of the page.
 pub fn data(place: &Place) -> Result<Page> {
@@ -64,8 +64,8 @@ pub fn data(place: &Place) -> Result<Page> {
         }),
     );
     let at = match found.state {
-        About::Start => String::new(),
-        About::Equilibrium => format!(" --at {}", found.at_s),
+        LinearisedState::Start => String::new(),
+        LinearisedState::Equilibrium => format!(" --at {}", found.at_s),
     };
     page.put(
         "command",

@@ -46,7 +46,7 @@ pub fn data(place: &Place) -> Result<Page> {
     // reads the fields in a thread
     let (motion, recorded) = thread::scope(|scope| {
         let motion = begin(scope, || frames::read(&fields, frequency));
-        let recorded = ReportHistory::read(Recorded::of(place.dir, place.history)).map(|history| {
+        let recorded = ReportHistory::read(Recorded::new(place.dir, place.history)).map(|history| {
             let columns = history.json(beside(place, &history, frequency));
             (history, columns)
         });
@@ -118,7 +118,7 @@ fn fill(page: &mut Page, summary: &Summary, history: &ReportHistory) {
     page.warnings.clone_from(&summary.warnings);
     page.fill(json!({
         "status": {"word": word, "tone": tone, "reason": summary.reason}, "facts": facts_line(summary), "tiles": tiles(summary),
-        "ledger": energy_balance::of(summary, history), "effects": facts::effects(summary), "work": facts::work(summary),
+        "ledger": energy_balance::to_json(summary, history), "effects": facts::effects(summary), "work": facts::work(summary),
         "remarks": remarks(summary),
     }));
 }
@@ -180,7 +180,7 @@ struct Shown {
 
 impl Shown {
     /// Text without a band.
-    fn words(text: String) -> Self {
+    fn describe(text: String) -> Self {
         Self { text, band: None }
     }
 
@@ -195,7 +195,7 @@ impl Shown {
             "%" => with_error(100.0 * value, 100.0 * error, "1") + " %",
             _ => with_error(value, error, unit),
         };
-        let band = bands::of(&summary.bands, name, figures, value);
+        let band = bands::find(&summary.bands, name, figures, value);
         let error = figures.iter().find_map(|figure| summary.error(name, figure));
         Self {
             text: error.map_or_else(|| formatted(value, 3), with),
@@ -239,7 +239,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
             .map_or(String::new(), |t| format!("; within 5 % after {}", quantity(t, "s", 3)));
         tile(
             "Rise time",
-            step.rise_time_s.map(|t| Shown::words(quantity(t, "s", 3))),
+            step.rise_time_s.map(|t| Shown::describe(quantity(t, "s", 3))),
             &format!("of u₁ at the tip, from 10 to 90 % of its way{settles}"),
         );
     }
@@ -288,7 +288,7 @@ fn tiles(summary: &Summary) -> Vec<Value> {
     let open = summary.balances.energy_residual_relative;
     tile(
         "Unaccounted energy",
-        open.is_finite().then(|| Shown::words(percent(open))),
+        open.is_finite().then(|| Shown::describe(percent(open))),
         "of the largest energy: the error of the integration",
     );
     all

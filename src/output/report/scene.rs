@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::signals::{is_zero, peak, words};
+use super::signals::{describe, is_zero, peak};
 use crate::case::schema::{AccumulatorKind, BladderEnd, ChainEnd, Load, Rectifier};
-use crate::case::wiring::{Given, Wiring, WiringPoint, WiringTube};
+use crate::case::wiring::{PortQuantity, Wiring, WiringPoint, WiringTube};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
 use crate::model::{ContactWall, ResolvedNetwork};
@@ -14,7 +14,7 @@ use crate::output::numbers::{quantity, significant, trimmed};
 const PLACES: usize = 41;
 
 /// Drawing of a case; `None` if the case has no length.
-pub fn of(case: &Case) -> Option<Value> {
+pub fn to_json(case: &Case) -> Option<Value> {
     let beam = &case.beam;
     if !(beam.length_m > 0.0 && beam.height_m > 0.0) {
         return None;
@@ -28,7 +28,7 @@ pub fn of(case: &Case) -> Option<Value> {
             "{} long, {} high, {} wide",
             q(beam.length_m, "m"), q(beam.height_m, "m"), q(beam.width_m, "m")
         ),
-        "bladders": case.bladders.as_ref().zip(ResolvedNetwork::of(case).ok()?).map(|(b, network)| json!({
+        "bladders": case.bladders.as_ref().zip(ResolvedNetwork::from_case(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
             "length": b.length_m,
             "height": b.height_m,
@@ -72,7 +72,7 @@ fn q(x: f64, unit: &str) -> String {
 
 /// Chains, tubes, ports and turbines, by indices of bladders and names of junctions.
 fn wiring(case: &Case) -> Option<Value> {
-    let found = Wiring::of(case).ok()?;
+    let found = Wiring::from_case(case).ok()?;
     let end_s = case.time.end_s;
     let point = |point: &WiringPoint| match *point {
         WiringPoint::Bladder(bladder, end) => json!({"bladder": bladder, "outlet": end == BladderEnd::Outlet}),
@@ -81,7 +81,7 @@ fn wiring(case: &Case) -> Option<Value> {
     let valve = |opening: &Signal| match opening {
         Signal::Constant(o) if *o >= 1.0 => None,
         Signal::Constant(o) => Some(format!("valve open to {}", q(*o, "1"))),
-        moving => Some(format!("valve, opening {}", words(moving, "1"))),
+        moving => Some(format!("valve, opening {}", describe(moving, "1"))),
     };
     let written = case.network.iter().flat_map(|network| &network.chains);
     let chains = written.zip(&found.chains).map(|(chain, bladders)| {
@@ -101,7 +101,7 @@ fn wiring(case: &Case) -> Option<Value> {
         });
         let pump = tube
             .pump
-            .map(|pump| format!("pump, {}", words(&pump.pressure_pa, "Pa")));
+            .map(|pump| format!("pump, {}", describe(&pump.pressure_pa, "Pa")));
         let all: Vec<String> = [valve(tube.opening), check, pump].into_iter().flatten().collect();
         (!all.is_empty()).then(|| all.join("; "))
     };
@@ -123,9 +123,9 @@ fn wiring(case: &Case) -> Option<Value> {
     });
     let ports = found.ports.iter().map(|p| {
         let (kind, words) = match p.given {
-            Given::Pressure(signal) => ("pressure", pressure(signal)),
-            Given::Flow(signal) => ("flow", flow(signal, end_s)),
-            Given::Volume(signal) => ("flow", volume(signal, end_s)),
+            PortQuantity::Pressure(signal) => ("pressure", pressure(signal)),
+            PortQuantity::Flow(signal) => ("flow", flow(signal, end_s)),
+            PortQuantity::Volume(signal) => ("flow", volume(signal, end_s)),
         };
         json!({"name": p.name, "at": point(&p.at), "kind": kind, "words": words})
     });
@@ -145,7 +145,7 @@ fn pressure(signal: &Signal) -> String {
     if is_zero(signal) {
         return "open, p = 0".into();
     }
-    format!("p = {}", words(signal, "Pa"))
+    format!("p = {}", describe(signal, "Pa"))
 }
 
 /// A volume in microliters, from 10 ml on in milliliters. The scripts of the page use the same units beside axes.
@@ -177,7 +177,7 @@ fn largest(signal: &Signal, end_s: f64) -> f64 {
 
 /// An end: its form, constraints, prescribed motions and loads.
 fn end(resolved: &ResolvedEnd, form: &str, end_s: f64) -> Value {
-    let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| words(signal, unit));
+    let driven = |signal: &Signal, unit: &str| (!is_zero(signal)).then(|| describe(signal, unit));
     let motion = |t: &Translation| match t {
         Translation::Displacement(s) => driven(s, "m"),
         Translation::Force(_) => None,
@@ -242,5 +242,5 @@ fn load(load: &Load, end_s: f64) -> Value {
         .iter()
         .map(|x| if largest > 0.0 { x / largest } else { 0.0 })
         .collect();
-    json!({"kind": kind, "values": scaled, "words": format!("{what}: {}{shape}", words(&distributed.signal, unit))})
+    json!({"kind": kind, "values": scaled, "words": format!("{what}: {}{shape}", describe(&distributed.signal, unit))})
 }

@@ -9,9 +9,9 @@ use crate::output::numbers::{counted, quantity, trimmed};
 const LONGEST: usize = 90;
 
 /// Text of a signal in a unit: `±12 mm at 20 Hz`.
-pub fn words(signal: &Signal, unit: &str) -> String {
+pub fn describe(signal: &Signal, unit: &str) -> String {
     let q = |x: f64| trimmed(&quantity(x, unit, 3));
-    let all = |parts: &[Signal], unit: &str| parts.iter().map(|s| words(s, unit)).collect::<Vec<_>>();
+    let all = |parts: &[Signal], unit: &str| parts.iter().map(|s| describe(s, unit)).collect::<Vec<_>>();
     match signal {
         Signal::Constant(value) => q(*value),
         Signal::Sine(Sine {

@@ -8,7 +8,7 @@ use crate::output::effects::{self as effects_files, ShownQuantity};
 use crate::output::folder::CASE;
 use crate::output::numbers::{counted, duration, percent, significant};
 use crate::output::plot::ablation::Bar;
-use crate::output::plot::workprecision::{Marker, MeshLine, WorkPrecision};
+use crate::output::plot::workprecision::{MeshLine, RunMarker, WorkPrecision};
 use crate::output::study as study_files;
 use crate::results::studies::{Ablation, Study};
 use crate::study::accuracy::study::StudyPoint;
@@ -78,11 +78,11 @@ fn cost(data: &WorkPrecision) -> Option<Value> {
     let mut meshes: Vec<usize> = data.lines.iter().map(|line| line.cells).collect();
     meshes.sort_unstable();
     meshes.dedup();
-    let drawn = |marker: &&Marker| marker.error > 0.0 && marker.least_s > 0.0;
+    let drawn = |marker: &&RunMarker| marker.error > 0.0 && marker.least_s > 0.0;
     let series = |line: &MeshLine| {
         let cells = counted(line.cells as u64, "cell");
         let name = format!("{cells}, {}", method(line.scheme));
-        let point = |marker: &Marker| {
+        let point = |marker: &RunMarker| {
             let worth = if marker.front { "; worth using" } else { "" };
             let doubt = if marker.judged {
                 ""

@@ -1,12 +1,12 @@
 //! Output files of `slcbeam sense`, `sense.csv`, `sensors.csv`, `sense.json` and `sense.svg`, and its text.
 
-mod words;
+mod text;
 
 use std::path::PathBuf;
 
 use super::folder::ResultFolder;
 use super::numbers::shortest;
-use super::plot::canvas::Stroke;
+use super::plot::canvas::LineStyle;
 use super::plot::colour::{Colour, PALETTE};
 use super::plot::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
 use super::records::{self, number};
@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::results;
 use crate::results::sense::{BandKind, Banded, ChosenSensors, Sensed};
 
-pub use words::{about_band, about_noise, about_sight, answer, list, table, words};
+pub use text::{about_band, about_noise, about_sight, answer, describe, list, table};
 
 /// One row per row of measurements.
 pub const CSV: &str = "sense.csv";
@@ -157,7 +157,7 @@ fn banded<'a>(line: impl Iterator<Item = (f64, &'a Banded)>, axes: [&str; 4]) ->
     let half = |one: &Banded| 0.5 * (one.high - one.low);
     let line: Vec<_> = line.map(|(x, one)| (x, one.value, half(one))).collect();
     let band: Vec<_> = line.iter().map(|(x, y, half)| (*x, y - half, y + half)).collect();
-    let curve = PictureSeries::line(line.iter().map(|p| (p.0, p.1)), Stroke::solid(PALETTE[0], 1.6));
+    let curve = PictureSeries::line(line.iter().map(|p| (p.0, p.1)), LineStyle::solid(PALETTE[0], 1.6));
     (line.len() > 1).then(|| plane(axes, vec![PictureSeries::band(&band, BAND), curve]))
 }
 
@@ -165,7 +165,7 @@ fn banded<'a>(line: impl Iterator<Item = (f64, &'a Banded)>, axes: [&str; 4]) ->
 fn beside(line: Vec<(f64, f64)>, points: Vec<(f64, f64)>, colour: usize) -> Vec<PictureSeries> {
     let colour = PALETTE[colour];
     vec![
-        PictureSeries::line(line, Stroke::solid(colour, 1.6)),
+        PictureSeries::line(line, LineStyle::solid(colour, 1.6)),
         PictureSeries::marks(points, Glyph::Ring(2.6, 1.1), colour),
     ]
 }

@@ -1,23 +1,23 @@
 //! Output files of a study, `study.csv`, `study.json` and `study.svg`, and its text.
 //!
 //! ```text
-//! table   for the terminal, and as CSV
-//! words   the closing sentence
+//! table  for the terminal, and as CSV
+//! text   the closing sentence
 //! ```
 
 mod table;
-mod words;
+mod text;
 
 use std::path::PathBuf;
 
 use super::folder::ResultFolder;
-use super::plot::workprecision::{self, BalanceMark, Marker, MeshLine, WorkPrecision};
+use super::plot::workprecision::{self, BalanceMark, MeshLine, RunMarker, WorkPrecision};
 use crate::error::Result;
 use crate::results;
 use crate::study::accuracy::Study;
 
 pub use table::{csv, table};
-pub use words::sentence;
+pub use text::sentence;
 
 /// One row per setting and measure.
 pub const CSV: &str = "study.csv";
@@ -48,7 +48,7 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
             let markers = study.line(cells, scheme).into_iter().filter_map(|k| {
                 let trial = &study.points[k].trial;
                 let error = study.error(k)?;
-                Some(Marker {
+                Some(RunMarker {
                     error: error.total.max,
                     temporal: error.temporal.map(|e| e.max),
                     least_s: trial.wall_min_s,
@@ -73,7 +73,7 @@ pub fn picture(study: &Study) -> Option<WorkPrecision> {
     let repeats = study.points.iter().map(|p| p.trial.repeats).max().unwrap_or(1);
     Some(WorkPrecision {
         case: study.case.clone(),
-        measure: words::spoken(&measure.name),
+        measure: text::spoken(&measure.name),
         own: measure.own().max,
         repeats,
         lines,

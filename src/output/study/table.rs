@@ -2,14 +2,14 @@
 
 use std::fmt::Write as _;
 
-use super::words::spoken;
+use super::text::spoken;
 use crate::output::columns;
 use crate::output::numbers::{counted, significant};
 use crate::output::records::{self, number};
 use crate::study::accuracy::Study;
 use crate::study::accuracy::plan::fluid_cells;
 use crate::study::accuracy::study::StudyPoint;
-use crate::study::accuracy::trial::{Ending, RunPurpose};
+use crate::study::accuracy::trial::{RunPurpose, TrialOutcome};
 
 const HEADINGS: &str =
     "cells | method | rtol | time | median | steps | residuals | factor. | failed | in time | in space | total | ";
@@ -97,12 +97,12 @@ fn reasons(point: &StudyPoint) -> String {
     )
 }
 
-fn ending(ending: Ending) -> &'static str {
+fn ending(ending: TrialOutcome) -> &'static str {
     match ending {
-        Ending::Finished => "finished",
-        Ending::Stopped => "stopped",
-        Ending::Failed => "failed",
-        Ending::Skipped => "skipped",
+        TrialOutcome::Finished => "finished",
+        TrialOutcome::Stopped => "stopped",
+        TrialOutcome::Failed => "failed",
+        TrialOutcome::Skipped => "skipped",
     }
 }
 

@@ -5,10 +5,10 @@ use std::io::{BufWriter, Write as _};
 
 use zip::ZipWriter;
 
-use super::journal::Survey;
+use super::journal::JournalSummary;
 use super::{ARRAYS, numeric};
 use crate::error::Result;
-use crate::output::arrays::{Patient, write_array};
+use crate::output::arrays::{FirstErrorWriter, write_array};
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::results::sweep::{SweepColumn, SweepPlan};
 use crate::run::summary::Status;
@@ -21,7 +21,7 @@ const HELD: usize = 4 << 20;
 ///
 /// # Errors
 /// The file cannot be written, or the journal cannot be read.
-pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, columns: &[SweepColumn]) -> Result<()> {
+pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &JournalSummary, columns: &[SweepColumn]) -> Result<()> {
     let rows = survey.count();
     let named: Vec<(&str, &str)> = columns
         .iter()
@@ -30,7 +30,7 @@ pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, columns: 
     let at_once = (HELD / rows.max(1)).max(1);
     let mut reading = Ok(());
     put_whole(&folder.path(ARRAYS), |file| {
-        let mut npz = ZipWriter::new(BufWriter::new(Patient::new(file)));
+        let mut npz = ZipWriter::new(BufWriter::new(FirstErrorWriter::new(file)));
         for group in named.chunks(at_once) {
             let mut held = vec![Vec::with_capacity(rows); group.len()];
             let read = survey.each(|row| {

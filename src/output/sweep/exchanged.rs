@@ -1,10 +1,10 @@
 //! Text about modes that change places between neighboring designs.
 
-use super::Survey;
+use super::JournalSummary;
 use crate::error::{Code, Result};
 use crate::output::numbers::{significant, trimmed};
 use crate::results::sweep::SweepPlan;
-use crate::study::sweep::exchanged::{Exchange, MOST, Swinging, exchanges};
+use crate::study::sweep::exchanged::{DesignModes, Exchange, MOST, exchanges};
 
 /// Largest number of exchanges listed.
 const LISTED: usize = 3;
@@ -13,11 +13,11 @@ const LISTED: usize = 3;
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn of(plan: &SweepPlan, survey: &Survey) -> Result<Vec<Exchange>> {
+pub fn find_exchanges(plan: &SweepPlan, survey: &JournalSummary) -> Result<Vec<Exchange>> {
     let mut designs = vec![];
     survey.each(|row| {
         if designs.len() < MOST {
-            designs.extend(Swinging::of(&row));
+            designs.extend(DesignModes::from_row(&row));
         }
         Ok(())
     })?;

@@ -13,7 +13,7 @@ use crate::study::sweep::{SweepPlan, SweepRow};
 
 /// Content of a journal without its rows.
 #[derive(Clone, Debug, Default)]
-pub struct Survey {
+pub struct JournalSummary {
     lines: Lines,
     /// Byte offset of the line of each design, plus 1; 0 if there is none.
     begins: Vec<u64>,
@@ -25,13 +25,13 @@ pub struct Survey {
     pub statuses: BTreeMap<Status, usize>,
 }
 
-impl Survey {
+impl JournalSummary {
     /// Reads a journal; a missing file counts as empty. Ignores damaged lines. Of several rows of a design the first that finished counts,
     /// else the last.
     ///
     /// # Errors
     /// The journal cannot be read.
-    pub fn of(path: &Path, plan: &SweepPlan) -> Result<Self> {
+    pub fn read(path: &Path, plan: &SweepPlan) -> Result<Self> {
         let mut found = Self {
             begins: vec![0; plan.designs],
             ended: vec![None; plan.designs],

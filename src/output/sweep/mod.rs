@@ -1,15 +1,15 @@
 //! Output files of many designs.
 //!
 //! ```text
-//! journal   designs.jsonl: one line per design, safe on disk as soon as it is computed
-//! table     sweep.csv: one row per design
-//! arrays    sweep.npz: the same numbers
-//! exchanged modes that change places between neighboring designs
-//! warned    warnings of designs, counted
-//! pictures  sweep.svg, map.svg
-//! words     text of many designs
-//! script    jobs for Slurm and GNU parallel
-//! parts     joins shards
+//! journal         designs.jsonl: one line per design, safe on disk as soon as it is computed
+//! table           sweep.csv: one row per design
+//! arrays          sweep.npz: the same numbers
+//! exchanged       modes that change places between neighboring designs
+//! warning_counts  warnings of designs, counted
+//! pictures        sweep.svg, map.svg
+//! text            text of many designs
+//! script          jobs for Slurm and GNU parallel
+//! shards          joins shards
 //! ```
 //!
 //! Rows are read from the journal one by one, in the order of their numbers. Memory contains only the offset of each line.
@@ -17,12 +17,12 @@
 pub mod arrays;
 pub mod exchanged;
 pub mod journal;
-pub mod parts;
 pub mod pictures;
 pub mod script;
+pub mod shards;
 pub mod table;
-pub mod warned;
-pub mod words;
+pub mod text;
+pub mod warning_counts;
 
 use std::fs;
 use std::io::Write as _;
@@ -40,7 +40,7 @@ use crate::study::analysis::word;
 pub use crate::study::sweep::unit::unit;
 
 pub use super::journal::Journal;
-pub use journal::Survey;
+pub use journal::JournalSummary;
 
 /// The requested sweep; exists from the beginning.
 pub const PLAN: &str = "plan.json";
@@ -143,7 +143,7 @@ pub fn keep_case(folder: &ResultFolder, name: &str, case: &CaseText) -> Result<(
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn summarize(plan: &SweepPlan, survey: &Survey) -> Result<Sweep> {
+pub fn summarize(plan: &SweepPlan, survey: &JournalSummary) -> Result<Sweep> {
     Ok(Sweep {
         warnings: warnings(plan, survey)?,
         ..about(plan, survey)
@@ -154,7 +154,13 @@ pub fn summarize(plan: &SweepPlan, survey: &Survey) -> Result<Sweep> {
 ///
 /// # Errors
 /// A file cannot be read or written.
-pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, sweep: &Sweep, lean: bool) -> Result<()> {
+pub fn write(
+    folder: &ResultFolder,
+    plan: &SweepPlan,
+    survey: &JournalSummary,
+    sweep: &Sweep,
+    lean: bool,
+) -> Result<()> {
     table::write(folder, plan, survey, &sweep.columns)?;
     arrays::write(folder, plan, survey, &sweep.columns)?;
     folder.write(JSON, results::text(sweep).as_bytes())?;
@@ -175,14 +181,14 @@ pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, sweep: &S
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn warnings(plan: &SweepPlan, survey: &Survey) -> Result<Vec<String>> {
-    let mut all = exchanged::warnings(&exchanged::of(plan, survey)?);
-    all.extend(warned::of(survey)?);
+pub fn warnings(plan: &SweepPlan, survey: &JournalSummary) -> Result<Vec<String>> {
+    let mut all = exchanged::warnings(&exchanged::find_exchanges(plan, survey)?);
+    all.extend(warning_counts::count_warnings(survey)?);
     Ok(all)
 }
 
 /// Description of the table of these rows, without warnings.
-pub fn about(plan: &SweepPlan, survey: &Survey) -> Sweep {
+pub fn about(plan: &SweepPlan, survey: &JournalSummary) -> Sweep {
     let (rows, expected) = (survey.count(), plan.share());
     let statuses = survey
         .statuses
@@ -201,7 +207,7 @@ pub fn about(plan: &SweepPlan, survey: &Survey) -> Sweep {
 }
 
 /// Columns of the table.
-fn columns(plan: &SweepPlan, survey: &Survey) -> Vec<SweepColumn> {
+fn columns(plan: &SweepPlan, survey: &JournalSummary) -> Vec<SweepColumn> {
     let mut used = std::collections::BTreeSet::new();
     let mut column = |name: &str, unit: &str, text: bool| {
         let plain: String = name

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Survey, exchanged, numeric, table, unit};
+use super::{JournalSummary, exchanged, numeric, table, unit};
 use crate::case::readable;
 use crate::error::Result;
 use crate::output::plot::designs::{self, DesignNumbers, Drawn};
@@ -34,7 +34,7 @@ const FIRST: [&str; 13] = [
 ///
 /// # Errors
 /// The journal cannot be read.
-pub fn draw(plan: &SweepPlan, survey: &Survey) -> Result<Vec<(&'static str, String)>> {
+pub fn draw(plan: &SweepPlan, survey: &JournalSummary) -> Result<Vec<(&'static str, String)>> {
     let data = data(plan, survey)?;
     if data.designs.len() < 2 || data.varied.is_empty() {
         return Ok(vec![]);
@@ -59,7 +59,7 @@ pub fn draw(plan: &SweepPlan, survey: &Survey) -> Result<Vec<(&'static str, Stri
 }
 
 /// Data of the designs that finished, thinned to those drawn.
-fn data(plan: &SweepPlan, survey: &Survey) -> Result<Drawn> {
+fn data(plan: &SweepPlan, survey: &JournalSummary) -> Result<Drawn> {
     let mut varied: Vec<Vec<Option<f64>>> = vec![vec![]; plan.axes.len()];
     let (mut named, mut numbers) = (vec![], vec![]);
     let mut figures: BTreeMap<&str, Vec<f64>> = FIRST.iter().map(|name| (*name, vec![])).collect();
@@ -134,7 +134,7 @@ fn data(plan: &SweepPlan, survey: &Survey) -> Result<Drawn> {
             })
             .collect(),
         joined: numbered.iter().all(|&k| plan.listed(k)),
-        apart: exchanged::of(plan, survey)?,
+        apart: exchanged::find_exchanges(plan, survey)?,
         designs: numbers,
         of,
         figures,

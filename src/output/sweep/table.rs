@@ -6,7 +6,7 @@ use std::io::{BufWriter, Write as _};
 use serde_json::Value;
 
 use super::TABLE;
-use super::journal::Survey;
+use super::journal::JournalSummary;
 use crate::error::Result;
 use crate::output::folder::{ResultFolder, put_whole};
 use crate::output::numbers::shortest;
@@ -19,7 +19,7 @@ use crate::study::sweep::SweepRow;
 ///
 /// # Errors
 /// The file cannot be written, or the journal cannot be read.
-pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &Survey, columns: &[SweepColumn]) -> Result<()> {
+pub fn write(folder: &ResultFolder, plan: &SweepPlan, survey: &JournalSummary, columns: &[SweepColumn]) -> Result<()> {
     let mut reading = Ok(());
     put_whole(&folder.path(TABLE), |file| {
         let mut table = csv::Writer::from_writer(BufWriter::new(file));
@@ -40,7 +40,7 @@ pub fn cell(value: &Value) -> String {
 }
 
 /// A row in the order of the columns.
-pub fn cells(plan: &SweepPlan, survey: &Survey, row: &SweepRow) -> Vec<String> {
+pub fn cells(plan: &SweepPlan, survey: &JournalSummary, row: &SweepRow) -> Vec<String> {
     let found = &row.found;
     let by_name: HashMap<&str, f64> = found.figures.iter().map(|(name, x)| (name.as_str(), *x)).collect();
     let mut all = Vec::with_capacity(survey.figures.len() + row.values.len() + 7);

@@ -9,7 +9,7 @@ use crate::run::checkpoint::Checkpoint;
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::observe::Observer;
 use crate::run::record::{Control, Header, Recorder};
-use crate::run::sensitivity::forward::Before;
+use crate::run::sensitivity::forward::BeforeSwitch;
 
 impl Run<'_> {
     /// Computes the equilibrium in which the case begins. The recorder can stop the search at every point of the path.
@@ -46,7 +46,7 @@ impl Run<'_> {
     }
 
     /// Sensitivities stored in a checkpoint, on the left side of its stop.
-    pub(super) fn before(&mut self, dae: &mut BeamDae, from: &Checkpoint) -> Option<Before> {
+    pub(super) fn before(&mut self, dae: &mut BeamDae, from: &Checkpoint) -> Option<BeforeSwitch> {
         let (forward, kept) = (self.forward.as_mut()?, from.forward.as_ref()?);
         Some(forward.take_up(kept, dae, from.t, [&self.state, &self.rates]))
     }
@@ -56,7 +56,7 @@ impl Run<'_> {
         &mut self,
         dae: &mut BeamDae,
         from: &Checkpoint,
-        before: Option<Before>,
+        before: Option<BeforeSwitch>,
     ) -> std::result::Result<(), SolverError> {
         let (Some(forward), Some(before)) = (&mut self.forward, before) else {
             return Ok(());

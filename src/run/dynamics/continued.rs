@@ -6,7 +6,7 @@ use crate::case::schema::Case;
 use crate::discrete::System;
 use crate::error::Result;
 use crate::run::record::Recorder;
-use crate::run::sensitivity::forward::{Alike, By};
+use crate::run::sensitivity::forward::{Alike, DerivativeParameters};
 
 /// Derivatives that are integrated from given initial values.
 pub struct ContinuedDerivatives<'a> {
@@ -26,11 +26,11 @@ pub fn go_on(
     along: Option<&ContinuedDerivatives<'_>>,
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
-    let by = along.map_or(By::default(), |along| By {
+    let by = along.map_or(DerivativeParameters::default(), |along| DerivativeParameters {
         alike: Some(along.alike),
-        ..By::pointers(along.by)
+        ..DerivativeParameters::pointers(along.by)
     });
-    let (mut run, mut dae) = Run::of(case, system, by)?;
+    let (mut run, mut dae) = Run::new(case, system, by)?;
     dae.enter_smooth_interval(0.5 * run.stops[0].t);
     run.prepare(&dae);
     run.state.copy_from_slice(y);

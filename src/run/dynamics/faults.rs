@@ -1,7 +1,7 @@
 //! Errors that end a run, with cause and hint.
 
-use super::pace::STALL_STEPS;
-use crate::error::{At, Code, SolverError};
+use super::stall::STALL_STEPS;
+use crate::error::{Code, SolverError, StopPoint};
 use crate::integrate::{IntegrationError, StartError};
 
 pub(super) fn fault(failure: &IntegrationError) -> SolverError {
@@ -11,7 +11,7 @@ pub(super) fn fault(failure: &IntegrationError) -> SolverError {
         } else {
             Code::Integrator
         },
-        at: At::Time(failure.time),
+        at: StopPoint::Time(failure.time),
         what: failure.to_string(),
         unknown: failure
             .worst
@@ -40,7 +40,7 @@ pub(super) fn fault(failure: &IntegrationError) -> SolverError {
 fn at(t: f64, code: Code, [what, cause, hint]: [&str; 3]) -> SolverError {
     SolverError {
         code,
-        at: At::Time(t),
+        at: StopPoint::Time(t),
         what: what.into(),
         unknown: None,
         cause: Some(cause.into()),

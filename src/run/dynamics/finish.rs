@@ -7,7 +7,7 @@ use crate::discrete::System;
 use crate::discrete::quantities::{Group, Interest};
 use crate::error::Code;
 use crate::integrate::SolverWallTimes;
-use crate::model::hammer;
+use crate::model::water_hammer;
 use crate::run::method::{Integrator, IntegratorOptions};
 use crate::run::order;
 use crate::run::sensitivity::forward::ForwardSensitivities;
@@ -55,7 +55,7 @@ impl Run<'_> {
     pub(super) fn judge_network(&mut self, system: &System) {
         let (s, seen) = (&mut self.summary, &self.observer.seen);
         s.ports = seen.probes.ports.quantities();
-        let hammers = hammer::confirmed(self.case, &system.model, s.time_s, &seen.valve_flows);
+        let hammers = water_hammer::confirmed(self.case, &system.model, s.time_s, &seen.valve_flows);
         s.warnings.extend(hammers);
         let unbounded = unbounded::leave_out(self.case, system, s.time_s, &mut s.ports);
         s.warnings.extend(unbounded);

@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::integrate::IntegrationError;
 use crate::run::method::Integrator;
 use crate::run::record::{Control, Progress, Recorder, Sampled};
-use crate::run::schedule::Due;
+use crate::run::schedule::SampleTime;
 
 /// Wall time after which the recorder is asked if the run continues, however many samples a step has.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -226,13 +226,13 @@ impl Run<'_> {
         solver: &mut Integrator<BeamDae>,
         from: f64,
         until: f64,
-        first: Due,
+        first: SampleTime,
         recorder: &mut dyn Recorder,
     ) -> Result<Option<End>> {
         let mut asked = Instant::now();
         let mut within = from;
         let mut due = Some(first);
-        while let Some(Due { t, output }) = due {
+        while let Some(SampleTime { t, output }) = due {
             if asked.elapsed() >= PATIENCE {
                 asked = Instant::now();
                 if let Control::Stop(reason) = recorder.progress(&Progress {

@@ -5,8 +5,8 @@ mod continued;
 mod faults;
 mod finish;
 mod follow;
-mod pace;
 pub mod simulator;
+mod stall;
 mod switch;
 
 use std::collections::BTreeMap;
@@ -14,18 +14,18 @@ use std::time::Instant;
 
 pub use continued::{ContinuedDerivatives, go_on};
 use faults::{fault, inconsistent, stalled, too_many_steps};
-use pace::Pace;
+use stall::StallDetector;
 
 use super::checkpoint::Checkpoint;
 use super::growth::LinearProperties;
+use super::max_step::StepLimits;
 use super::method::{self, Integrator, IntegratorOptions};
 use super::observe::Observer;
 use super::record::{Control, Header, Progress, Recorder};
 use super::schedule::{self, Outputs, ScheduledStop};
-use super::sensitivity::forward::{By, ForwardSensitivities};
-use super::strides::Strides;
+use super::sensitivity::forward::{DerivativeParameters, ForwardSensitivities};
 use super::summary::{Counters, ProgramChoice, Status, Summary, WallTimes};
-use super::{known, wall::Laps, waves};
+use super::{early_warnings, wall_time::Stopwatch, waves};
 use crate::case::{inherited, parameter::Parameter, schema::Case};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
@@ -55,7 +55,7 @@ pub fn run(case: &Case, recorder: &mut dyn Recorder) -> Result<Outcome> {
 /// # Errors
 /// The recorder's, and [`Error::Usage`](crate::error::Error::Usage) for a number by which there is no derivative.
 pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (run, dae) = Run::of(case, system, By::pointers(by))?;
+    let (run, dae) = Run::new(case, system, DerivativeParameters::pointers(by))?;
     run.go(dae, None, recorder)
 }
 
@@ -67,11 +67,11 @@ pub fn run_with(case: &Case, system: System, by: &[Parameter], recorder: &mut dy
 pub fn run_at(
     case: &Case,
     system: System,
-    by: By<'_>,
+    by: DerivativeParameters<'_>,
     instants: &[f64],
     recorder: &mut dyn Recorder,
 ) -> Result<Outcome> {
-    let (mut run, dae) = Run::of(case, system, by)?;
+    let (mut run, dae) = Run::new(case, system, by)?;
     run.outputs = Outputs::at(case, instants);
     run.go(dae, None, recorder)
 }
@@ -81,7 +81,7 @@ pub fn run_at(
 /// # Errors
 /// As [`run_with`].
 pub fn figures(case: &Case, system: System, recorder: &mut dyn Recorder) -> Result<Outcome> {
-    let (mut run, dae) = Run::of(case, system, By::pointers(&[]))?;
+    let (mut run, dae) = Run::new(case, system, DerivativeParameters::pointers(&[]))?;
     run.waves = None;
     run.go(dae, None, recorder)
 }
@@ -90,7 +90,7 @@ pub fn figures(case: &Case, system: System, recorder: &mut dyn Recorder) -> Resu
 pub fn resume(case: &Case, system: System, checkpoint: &Checkpoint, recorder: &mut dyn Recorder) -> Result<Outcome> {
     checkpoint.fits(case, &system)?;
     let parameters = checkpoint.forward.as_ref().map_or(&[][..], |kept| &kept.parameters);
-    let (run, dae) = Run::of(case, system, By::pointers(parameters))?;
+    let (run, dae) = Run::new(case, system, DerivativeParameters::pointers(parameters))?;
     run.go(dae, Some(checkpoint), recorder)
 }
 
@@ -99,7 +99,7 @@ struct Run<'a> {
     observer: Observer,
     outputs: Outputs,
     stops: Vec<ScheduledStop>,
-    strides: Strides,
+    strides: StepLimits,
     /// Examination for growing waves, where there may be any.
     waves: Option<waves::WaveWatch>,
     summary: Summary,
@@ -108,7 +108,7 @@ struct Run<'a> {
     inertia: bool,
     forward: Option<ForwardSensitivities<'a>>,
     held: Option<String>,
-    laps: Laps,
+    laps: Stopwatch,
     /// State of progress at the end of the last step.
     latest: Progress,
     /// Time of the last output that was recorded [s].
@@ -132,12 +132,12 @@ enum End {
 }
 
 impl<'a> Run<'a> {
-    fn of(case: &'a Case, system: System, by: By<'a>) -> Result<(Self, BeamDae)> {
-        let laps = Laps::since(Instant::now());
+    fn new(case: &'a Case, system: System, by: DerivativeParameters<'a>) -> Result<(Self, BeamDae)> {
+        let laps = Stopwatch::since(Instant::now());
         let interval = case.time.output_interval();
         let mathieu = characteristic::mathieu(&system.model);
         let characteristic = characteristic::numbers_with(case, &system.model, mathieu.as_ref());
-        let mut warnings = known::before_a_run(case, &system, &characteristic);
+        let mut warnings = early_warnings::before_a_run(case, &system, &characteristic);
         if !by.parameters.is_empty() {
             warnings.extend(audit::derivatives(case));
             warnings.extend(inherited::varied(
@@ -151,7 +151,7 @@ impl<'a> Run<'a> {
         } else {
             method::with_sensitivities(case, &system)
         };
-        let strides = Strides::new(case, &system);
+        let strides = StepLimits::new(case, &system);
         let options = IntegratorOptions::new(case, &system, &chosen, strides.least());
         let inertia = system.layout.inertia;
         let linear = LinearProperties {
@@ -216,7 +216,7 @@ impl<'a> Run<'a> {
                 accuracy: None,
                 sensitivities: Default::default(),
                 characteristic,
-                origins: case.origins.words(),
+                origins: case.origins.describe(),
                 warnings,
             },
             options,
@@ -340,7 +340,7 @@ impl Run<'_> {
         if let Some(end) = self.enter(solver, recorder)? {
             return Ok(end);
         }
-        let mut pace = Pace::new(solver.time());
+        let mut pace = StallDetector::new(solver.time());
         for k in first..self.stops.len() {
             let stop = self.stops[k];
             loop {

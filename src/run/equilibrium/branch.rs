@@ -1,6 +1,6 @@
 //! Transition from a path to another one that crosses it.
 
-use super::path::{End, Follower, NEAR, PATIENCE, Way, difference};
+use super::path::{NEAR, PATIENCE, PathError, PathFollower, PathSoFar, difference};
 use super::state::EquilibriumStability;
 use super::{EquilibriumEvent, EventKind};
 use crate::numerics::kernels;
@@ -12,11 +12,15 @@ const ASIDE: f64 = 0.02;
 const SHARE: f64 = 0.02;
 const INVERSE_ITERATIONS: usize = 12;
 
-impl Follower<'_> {
+impl PathFollower<'_> {
     /// Leaves a path where another one crosses it, by a step in the direction of least stiffness, in which the matrix is nearly
     /// singular. The step is towards a positive sign of its largest displacement. If the other side has fewer unstable directions,
     /// the step is towards that side.
-    pub(super) fn leave(&mut self, trail: &mut Way, beyond: (f64, Option<EquilibriumStability>)) -> Result<f64, End> {
+    pub(super) fn leave(
+        &mut self,
+        trail: &mut PathSoFar,
+        beyond: (f64, Option<EquilibriumStability>),
+    ) -> Result<f64, PathError> {
         let n = self.n;
         let last = trail.last.clone();
         let mut x = last.clone();
@@ -24,7 +28,7 @@ impl Follower<'_> {
             .map_err(|failure| self.fail(&failure, last[n]))?;
         let mut direction = self.softest();
         // the eigenvalue that changes sign is proportional to the distance
-        let here = EquilibriumStability::of(self.solver.dae_mut().statics(), last[n], &last[..n]);
+        let here = EquilibriumStability::assess(self.solver.dae_mut().statics(), last[n], &last[..n]);
         let share = last[n] + (beyond.0 - last[n]) * between(here, beyond.1);
         self.path.events.push(EquilibriumEvent {
             stage: self.stage,
@@ -61,7 +65,7 @@ impl Follower<'_> {
         })?;
         self.orientation = self.solver.determinant_sign();
         let taken = self.norm(&difference(&x, &last));
-        *trail = Way::new(self, last, taken, x.clone());
+        *trail = PathSoFar::new(self, last, taken, x.clone());
         self.keep(&x)?;
         Ok(taken)
     }
@@ -92,7 +96,7 @@ impl Follower<'_> {
     /// Number of unstable directions of a state; `usize::MAX` if there is no state or its stability is unknown.
     fn unstable(&mut self, x: Option<&Vec<f64>>) -> usize {
         let n = self.n;
-        let stability = x.and_then(|x| EquilibriumStability::of(self.solver.dae_mut().statics(), x[n], &x[..n]));
+        let stability = x.and_then(|x| EquilibriumStability::assess(self.solver.dae_mut().statics(), x[n], &x[..n]));
         stability.map_or(usize::MAX, |s| s.unstable)
     }
 

@@ -1,15 +1,15 @@
 //! Errors that end a path before the requested load.
 
-use super::path::{End, Follower};
+use super::path::{PathError, PathFollower};
 use super::state::EquilibriumState;
 use super::{EquilibriumEvent, EventKind};
 use crate::discrete::ValveTangents;
 use crate::error::numbers::counted;
-use crate::error::{At, Code, SolverError};
+use crate::error::{Code, SolverError, StopPoint};
 use crate::integrate::halt::{self, INTERRUPTED};
 use crate::sundials::KinsolError;
 
-impl Follower<'_> {
+impl PathFollower<'_> {
     /// True if the load moves away from the requested one on the way to a state.
     pub(super) fn turns(&self, now: &EquilibriumState) -> bool {
         let away = |state: &EquilibriumState| (self.options.share - state.share).abs();
@@ -18,7 +18,7 @@ impl Follower<'_> {
     }
 
     /// Error for a load that turns back beyond the range of the model, where states describe no beam.
-    pub(super) fn beyond(&mut self) -> End {
+    pub(super) fn beyond(&mut self) -> PathError {
         let states = self.path.states.iter().filter(|state| state.stage == self.stage);
         let shares = states.map(|state| state.share);
         let asked = self.options.share.signum();
@@ -37,21 +37,21 @@ impl Follower<'_> {
             "the load turns back at {} (limit point), outside the range of the model: {beyond}",
             self.options.place(self.stage, &format!("{largest:.4}"))
         );
-        End(SolverError {
+        PathError(SolverError {
             cause: Some("loads that the beam cannot carry, or that exceed the range of the model".into()),
             hint: Some("keep the loads within the range of the model (--load-factor), or stiffen the beam".into()),
             ..fault(self.stage as f64 + largest, &what)
         })
     }
 
-    pub(super) fn lost(&self, share: f64) -> End {
+    pub(super) fn lost(&self, share: f64) -> PathError {
         let points = counted(self.path.states.len() as u64, "point");
         let factor = self.stage as f64 + share;
         let what = format!("the path does not reach the requested load factor: it ends after {points} at {factor:.4}");
-        End(fault(factor, &what))
+        PathError(fault(factor, &what))
     }
 
-    pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> End {
+    pub(super) fn fail(&self, failure: &KinsolError, share: f64) -> PathError {
         if halt::asked() {
             return stopped(self.stage as f64 + share, INTERRUPTED);
         }
@@ -75,7 +75,7 @@ impl Follower<'_> {
                 ..fault
             }
         };
-        End(SolverError {
+        PathError(SolverError {
             unknown: failure.worst.clone(),
             ..fault(
                 self.stage as f64 + share,
@@ -110,7 +110,7 @@ pub(super) fn dry(mut fault: SolverError) -> SolverError {
 pub(super) fn fault(share: f64, what: &str) -> SolverError {
     SolverError {
         code: Code::NoEquilibrium,
-        at: At::LoadFactor(share),
+        at: StopPoint::LoadFactor(share),
         what: what.into(),
         unknown: None,
         cause: Some(if share == 0.0 {
@@ -127,8 +127,8 @@ pub(super) fn fault(share: f64, what: &str) -> SolverError {
 }
 
 /// End of a path on request.
-pub(super) fn stopped(share: f64, reason: &str) -> End {
-    End(SolverError {
+pub(super) fn stopped(share: f64, reason: &str) -> PathError {
+    PathError(SolverError {
         code: Code::Interrupted,
         cause: None,
         hint: None,

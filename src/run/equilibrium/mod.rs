@@ -1,19 +1,19 @@
 //! Static equilibrium: the path from rest to the full load, with every point solved by KINSOL.
 //!
 //! ```text
-//! stages       sequences of loads: the whole path
-//! arclength    equilibrium with the load factor as an additional unknown
-//! natural      coordinates in which paths are nearly straight
-//! overdamped   motion without inertia to the next equilibrium, where walls turn the path too sharply
-//! predict      prediction of the next point
-//! path         step by step along the path, by predictions; limit points, bifurcations
-//! judge        stability of the states
-//! sensitivity  derivatives by numbers of the case, or along any change of it
-//! trapped      stages required by valves that closed before: the fluid behind them
-//! resting      states under loads that differ a little from those of a known one
-//! faults       errors that end a path before its loads are reached
-//! branch       transition from one path to another that crosses it
-//! state        values of a state; a state as unknowns of another system
+//! stages            sequences of loads: the whole path
+//! arclength         equilibrium with the load factor as an additional unknown
+//! path_coordinates  coordinates in which paths are nearly straight
+//! overdamped        motion without inertia to the next equilibrium, where walls turn the path too sharply
+//! predictor         prediction of the next point
+//! path              step by step along the path, by predictions; limit points, bifurcations
+//! stability         stability of the states
+//! sensitivity       derivatives by numbers of the case, or along any change of it
+//! trapped_fluid     stages required by valves that closed before: the fluid behind them
+//! nearby            states under loads that differ a little from those of a known one
+//! faults            errors that end a path before its loads are reached
+//! branch            transition from one path to another that crosses it
+//! state             values of a state; a state as unknowns of another system
 //! ```
 //!
 //! Everything that acts grows in proportion from zero: loads, motions of the ends, pressures and flows of ports, volumes of closed
@@ -23,31 +23,31 @@
 mod arclength;
 mod branch;
 mod faults;
-mod judge;
-mod natural;
+mod nearby;
 mod overdamped;
 mod path;
-mod predict;
-mod resting;
+mod path_coordinates;
+mod predictor;
 mod sensitivity;
+mod stability;
 mod stages;
 mod state;
-mod trapped;
+mod trapped_fluid;
 
 use crate::case::schema::{Case, EquilibriumStart};
 use crate::dae::BeamDae;
 use crate::discrete::System;
-use crate::error::{self, At, Code, SolverError};
+use crate::error::{self, Code, SolverError, StopPoint};
 use crate::run::range::{MACH, REYNOLDS, STRAIN};
 use crate::run::record::Control;
-use crate::run::unphysical::{Met, Unphysical};
+use crate::run::unphysical::{Unphysical, UnphysicalRecord};
 use crate::sundials::Solution;
 
-pub use resting::Resting;
+pub use nearby::KnownEquilibrium;
 pub use sensitivity::{Derivative, EquilibriumSensitivity, ParameterDirection, along, differentiate};
 pub use stages::follow;
 pub use state::{EquilibriumStability, EquilibriumState, columns, restate};
-pub use trapped::{TIGHT, TrappedFluid, kept, warning as trapped};
+pub use trapped_fluid::{TIGHT, TrappedFluid, kept, warning as trapped};
 
 /// Options of a search for equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -121,7 +121,7 @@ pub struct Path {
     /// Largest strain of a fiber, and its load factor.
     pub strain: [f64; 2],
     /// Unphysical states of the path, by load factor.
-    unphysical: Met,
+    unphysical: UnphysicalRecord,
     /// Limits of physical states.
     limits: Unphysical,
     /// Warning about fluid behind valves that closed before, if there is any.
@@ -155,7 +155,7 @@ impl EquilibriumEvent {
     }
 
     /// Description for messages.
-    pub fn words(&self) -> &'static str {
+    pub fn describe(&self) -> &'static str {
         match self.kind {
             EventKind::LimitPoint => "limit point: the load that the beam carries turns back here",
             EventKind::Bifurcation => {
@@ -251,7 +251,7 @@ pub fn at_start_watched(
     let path = path.map_err(|error| faults::fault(0.0, &error.to_string()))?;
     if let Some(fault) = path.fault {
         return Err(SolverError {
-            at: At::Time(0.0),
+            at: StopPoint::Time(0.0),
             what: format!("no equilibrium to start from: {}", fault.what),
             ..fault
         });

@@ -1,6 +1,6 @@
 //! Motion without inertia to the next equilibrium, where walls turn the path too sharply to be followed.
 
-use super::path::{self, End, Follower, Next, PATIENCE, Way, difference};
+use super::path::{self, NextAction, PATIENCE, PathError, PathFollower, PathSoFar, difference};
 use crate::sundials::KinsolError;
 
 /// First resistance [1/s^2], and its factors after a failed and after a successful step.
@@ -18,7 +18,7 @@ const MOST: usize = 600;
 /// Fractions of the requested share by which the load increases, largest first.
 const SHARES: [f64; 3] = [1.0 / 16.0, 1.0 / 128.0, 1.0 / 1024.0];
 
-impl Follower<'_> {
+impl PathFollower<'_> {
     /// True if the beam can touch a wall.
     fn has_walls(&mut self) -> bool {
         !self.solver.dae_mut().statics().system().touching.is_empty()
@@ -75,7 +75,7 @@ impl Follower<'_> {
     }
 
     /// Continues where the path cannot be followed: the beam moves to equilibrium at a larger share of the loads. `lost` is the error.
-    pub(super) fn go_around(&mut self, way: &mut Way, lost: End) -> Result<Next, End> {
+    pub(super) fn go_around(&mut self, way: &mut PathSoFar, lost: PathError) -> Result<NextAction, PathError> {
         if lost.0.cause.is_none() || !self.has_walls() {
             return Err(lost);
         }
@@ -93,11 +93,11 @@ impl Follower<'_> {
             self.bounds.push(self.branch);
             self.keep(&x)?;
             if share == target {
-                return Ok(Next::Arrived);
+                return Ok(NextAction::Arrived);
             }
             let (next, step) = self.set_out(x, by, path::LONGEST);
             *way = next;
-            return Ok(Next::Step(step));
+            return Ok(NextAction::Step(step));
         }
         Err(lost)
     }

@@ -2,12 +2,12 @@
 
 use super::arclength::Arclength;
 use super::faults::stopped;
-use super::natural::Natural;
-use super::predict::Trail;
+use super::path_coordinates::PathCoordinates;
+use super::predictor::RecentPoints;
 use super::state::{self, EquilibriumStability, EquilibriumState};
 use super::{EquilibriumEvent, EquilibriumOptions, EventKind, Path};
 use crate::discrete::System;
-use crate::discrete::glance::Watched;
+use crate::discrete::extrema::MonitoredQuantity;
 use crate::error::SolverError;
 use crate::run::range::Limits;
 use crate::run::record::Control;
@@ -53,10 +53,10 @@ pub(super) fn weights(system: &System) -> Vec<f64> {
 }
 
 /// Error that ends a path early.
-pub(super) struct End(pub SolverError);
+pub(super) struct PathError(pub SolverError);
 
 /// Action after a step.
-pub(super) enum Next {
+pub(super) enum NextAction {
     /// Another step of this length.
     Step(f64),
     /// Another path crosses before this share, at which the state has this stability.
@@ -65,14 +65,14 @@ pub(super) enum Next {
     Arrived,
 }
 
-pub(super) struct Follower<'a> {
+pub(super) struct PathFollower<'a> {
     /// Stage of the path, from 0.
     pub(super) stage: usize,
     /// Sign of the determinant of the equations. It changes where another path crosses, but not at a limit point.
     pub(super) orientation: i8,
     /// Index of the state with which the present branch begins.
     pub(super) branch: usize,
-    pub(super) natural: Natural,
+    pub(super) natural: PathCoordinates,
     /// Indices of states where stability may change: after a limit point, on a new branch.
     pub(super) bounds: Vec<usize>,
     pub(super) solver: Kinsol<Arclength>,
@@ -85,25 +85,25 @@ pub(super) struct Follower<'a> {
 }
 
 /// The path so far: its last points in natural coordinates, the last one also in unknowns.
-pub(super) struct Way {
-    natural: Trail,
+pub(super) struct PathSoFar {
+    natural: RecentPoints,
     /// The last point.
     pub last: Vec<f64>,
 }
 
-impl Way {
+impl PathSoFar {
     /// Creates the path of two points at a distance.
-    pub fn new(follower: &mut Follower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
+    pub fn new(follower: &mut PathFollower, before: Vec<f64>, distance: f64, last: Vec<f64>) -> Self {
         let statics = follower.solver.dae_mut().statics();
         let first = follower.natural.of_unknowns(statics, &before, None);
         let second = follower.natural.of_unknowns(statics, &last, Some(&first));
         Self {
-            natural: Trail::through(first, distance, second),
+            natural: RecentPoints::through(first, distance, second),
             last,
         }
     }
 
-    fn push(&mut self, follower: &mut Follower, distance: f64, x: Vec<f64>) {
+    fn push(&mut self, follower: &mut PathFollower, distance: f64, x: Vec<f64>) {
         let statics = follower.solver.dae_mut().statics();
         let z = follower.natural.of_unknowns(statics, &x, Some(self.natural.last()));
         self.natural.push(distance, z);
@@ -111,9 +111,9 @@ impl Way {
     }
 }
 
-impl Follower<'_> {
+impl PathFollower<'_> {
     /// Follows the path from a state at share 0 to the end of the stage; the state is stored if it is `new`.
-    pub(super) fn go(&mut self, start: Vec<f64>, new: bool) -> Result<(), End> {
+    pub(super) fn go(&mut self, start: Vec<f64>, new: bool) -> Result<(), PathError> {
         self.solver.dae_mut().at_share(0.0);
         let mut x = start.clone();
         if let Err(failure) = self.solve(&mut x, START_PATIENCE) {
@@ -131,16 +131,16 @@ impl Follower<'_> {
                 next => next?,
             };
             step = match next {
-                Next::Step(step) => step.min(longest),
-                Next::Branch(share, stability) => self.leave(&mut trail, (share, stability))?,
-                Next::Arrived => return Ok(()),
+                NextAction::Step(step) => step.min(longest),
+                NextAction::Branch(share, stability) => self.leave(&mut trail, (share, stability))?,
+                NextAction::Arrived => return Ok(()),
             };
         }
     }
 
     /// Path from a state just solved at a prescribed share, and the length of its first step: a share change of `by`, at
     /// most `longest`.
-    pub(super) fn set_out(&mut self, x: Vec<f64>, by: f64, longest: f64) -> (Way, f64) {
+    pub(super) fn set_out(&mut self, x: Vec<f64>, by: f64, longest: f64) -> (PathSoFar, f64) {
         let mut direction = vec![0.0; self.n + 1];
         direction[self.n] = 1.0;
         self.solver.apply_inverse(&mut direction);
@@ -149,11 +149,11 @@ impl Follower<'_> {
         direction.iter_mut().for_each(|d| *d *= unit);
         let behind = 1e-3 * step;
         let before = x.iter().zip(&direction).map(|(x, d)| x - behind * d).collect();
-        (Way::new(self, before, behind, x), step)
+        (PathSoFar::new(self, before, behind, x), step)
     }
 
     /// Makes one step, shortened until it succeeds.
-    fn step(&mut self, trail: &mut Way, mut step: f64) -> Result<Next, End> {
+    fn step(&mut self, trail: &mut PathSoFar, mut step: f64) -> Result<NextAction, PathError> {
         let (n, target) = (self.n, self.options.share);
         let last = trail.last.clone();
         let mut growth = GROWTH;
@@ -195,8 +195,8 @@ impl Follower<'_> {
                 let orientation = if arrives && x[n] < last[n] { -1 } else { 1 } * self.solver.determinant_sign();
                 if orientation != self.orientation && self.options.branches {
                     if step <= NEAR {
-                        let beyond = EquilibriumStability::of(self.solver.dae_mut().statics(), x[n], &x[..n]);
-                        return Ok(Next::Branch(x[n], beyond));
+                        let beyond = EquilibriumStability::assess(self.solver.dae_mut().statics(), x[n], &x[..n]);
+                        return Ok(NextAction::Branch(x[n], beyond));
                     }
                     step = (0.25 * step).max(NEAR);
                     growth = 1.0;
@@ -206,20 +206,20 @@ impl Follower<'_> {
                 let taken = self.norm(&difference(&x, &last));
                 let degree = f64::from(trail.natural.degree());
                 if turned.is_some() {
-                    *trail = Way::new(self, last, taken, x.clone());
+                    *trail = PathSoFar::new(self, last, taken, x.clone());
                 } else {
                     trail.push(self, taken, x.clone());
                 }
                 self.keep(&x)?;
                 if arrives {
-                    return Ok(Next::Arrived);
+                    return Ok(NextAction::Arrived);
                 }
                 if x[n].abs() > FURTHEST || self.path.states.len() > MOST_POINTS {
                     return Err(self.lost(x[n]));
                 }
                 let by_distance = (WANTED / off.max(1e-12)).powf(1.0 / degree);
                 let by_work = WANTED_ITERATIONS / iterations as f64;
-                return Ok(Next::Step(taken * by_distance.min(by_work).clamp(0.3, growth)));
+                return Ok(NextAction::Step(taken * by_distance.min(by_work).clamp(0.3, growth)));
             }
             self.path.rejected += 1;
             passed = false;
@@ -248,7 +248,7 @@ impl Follower<'_> {
 
     /// Predicts the next point of the path: a step beyond its last one, or at the requested share if the prediction reaches it. Returns
     /// the point, and true if the step ends at the requested share.
-    fn foretold(&mut self, trail: &Way, step: &mut f64, passed: bool) -> (Vec<f64>, bool) {
+    fn foretold(&mut self, trail: &PathSoFar, step: &mut f64, passed: bool) -> (Vec<f64>, bool) {
         let (n, target) = (self.n, self.options.share);
         let share = |z: &[f64]| z[z.len() - 1];
         let mut guess = trail.natural.beyond(*step);
@@ -285,7 +285,7 @@ impl Follower<'_> {
     }
 
     /// Stores a state and passes it to `watch`.
-    pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), End> {
+    pub(super) fn keep(&mut self, x: &[f64]) -> Result<(), PathError> {
         let state = EquilibriumState::read(self.solver.dae_mut().statics(), x, self.stage);
         let factor = state.load_factor();
         let (beyond, glance) = state::within(self.solver.dae_mut().statics(), x, &self.limits, factor);
@@ -297,7 +297,7 @@ impl Follower<'_> {
         let all = [
             (self.limits.reynolds(&glance), &mut path.reynolds),
             (self.limits.mach(&glance), &mut path.mach),
-            (glance.of(Watched::Strain)[0], &mut path.strain),
+            (glance.value_and_rate(MonitoredQuantity::Strain)[0], &mut path.strain),
         ];
         for (value, largest) in all {
             if value > largest[0] {

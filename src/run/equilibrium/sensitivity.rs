@@ -1,6 +1,6 @@
 //! Derivatives of an equilibrium with respect to numbers of its case.
 
-use super::stages::{Held, begin, grow};
+use super::stages::{StageEquilibrium, begin, grow};
 use super::state::EquilibriumState;
 use super::{EquilibriumOptions, Path};
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
@@ -89,7 +89,7 @@ pub fn along(
     directions: &[ParameterDirection],
 ) -> Result<Vec<Derivative>> {
     let mut found: Vec<Derivative> = vec![];
-    let mut before: Option<Held> = None;
+    let mut before: Option<StageEquilibrium> = None;
     let stages = options.resolved(case)?.stages();
     for (number, stage) in stages.iter().enumerate() {
         let Some(state) = path.states.iter().rfind(|state| state.stage == number) else {
@@ -118,7 +118,7 @@ pub fn along(
             now.push(Derivative { y, row });
         }
         found = now;
-        before = Some(Held {
+        before = Some(StageEquilibrium {
             y: state.y.clone(),
             layout: statics.system().layout.clone(),
         });
@@ -136,7 +136,7 @@ fn changed(
     (options, number, count): (&EquilibriumOptions, usize, usize),
     direction: &ParameterDirection,
     statics: &StaticBeam,
-    before: Option<(&Held, &[f64])>,
+    before: Option<(&StageEquilibrium, &[f64])>,
 ) -> Result<Vec<(f64, f64, StaticBeam)>> {
     let one = |(steps, weight): (f64, f64)| {
         let step = steps * direction.step;
@@ -147,7 +147,7 @@ fn changed(
             let what = "a small change of it changes the number of valve closures";
             return Err(Error::Usage(format!("{}: {what}", direction.name)));
         };
-        let held = before.map(|(held, derivative)| Held {
+        let held = before.map(|(held, derivative)| StageEquilibrium {
             y: held.y.iter().zip(derivative).map(|(y, d)| y + step * d).collect(),
             layout: held.layout.clone(),
         });

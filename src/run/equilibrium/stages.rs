@@ -2,10 +2,10 @@
 
 use super::arclength::Arclength;
 use super::faults::{dry, fault};
-use super::natural::Natural;
-use super::path::{End, Follower, weights};
+use super::path::{PathError, PathFollower, weights};
+use super::path_coordinates::PathCoordinates;
 use super::state::EquilibriumState;
-use super::trapped::{self, TIGHT};
+use super::trapped_fluid::{self, TIGHT};
 use super::{EquilibriumOptions, Path};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, StaticBeam};
@@ -13,7 +13,7 @@ use crate::discrete::layout::Layout;
 use crate::discrete::{System, TimeData, start};
 use crate::error::{self, SolverError};
 use crate::functions::signals::Polynomial;
-use crate::functions::{Clock, Signal};
+use crate::functions::{Signal, SmoothTime};
 use crate::model::network::Feed;
 use crate::model::{Model, Storage};
 use crate::run::range::Limits;
@@ -24,9 +24,9 @@ use crate::sundials::Kinsol;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stage {
     /// Instant of the loads with which it begins; `None` for zero loads.
-    from: Option<Clock>,
+    from: Option<SmoothTime>,
     /// Instant of the loads with which it ends.
-    to: Clock,
+    to: SmoothTime,
     /// Instant of the valve openings [s].
     valves: f64,
 }
@@ -36,7 +36,7 @@ impl Stage {
     pub fn from_nothing(to: f64) -> Self {
         Self {
             from: None,
-            to: Clock { t: to, within: to },
+            to: SmoothTime { t: to, within: to },
             valves: to,
         }
     }
@@ -49,7 +49,7 @@ impl EquilibriumOptions {
         let mut from = None;
         let stage = |(k, &t): (usize, &f64)| {
             let valves = self.valves_s.get(k).copied();
-            let to = Clock {
+            let to = SmoothTime {
                 t,
                 within: if valves.is_some_and(|valves| valves < t) {
                     t.next_down()
@@ -76,7 +76,7 @@ impl EquilibriumOptions {
 const ROUND_OFF: f64 = 1e-12;
 
 /// A system whose signals follow a stage while t increases from 0 to 1.
-pub(super) struct Grown {
+pub(super) struct StagedLoads {
     /// The system.
     pub system: System,
     /// Volume that each source of prescribed flow has added since t = 0, at both ends of the stage [m^3].
@@ -84,7 +84,7 @@ pub(super) struct Grown {
 }
 
 /// An equilibrium between two stages.
-pub(super) struct Held {
+pub(super) struct StageEquilibrium {
     /// Scaled unknowns.
     pub y: Vec<f64>,
     /// Layout of the unknowns.
@@ -95,15 +95,15 @@ pub(super) struct Held {
 ///
 /// # Errors
 /// Those of [`System::new`].
-pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<Grown> {
-    let Grown { system, pumped } = growing(case, Model::whole(case, false)?, stage)?;
+pub(super) fn grow(case: &Case, stage: &Stage) -> error::Result<StagedLoads> {
+    let StagedLoads { system, pumped } = growing(case, Model::whole(case, false)?, stage)?;
     let system = system.accepted(case)?;
-    Ok(Grown { system, pumped })
+    Ok(StagedLoads { system, pumped })
 }
 
 /// System of a stage, from a given model of the case.
-pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<Grown> {
-    let at = |signal: &Signal, clock: Clock| signal.jet(clock).value;
+pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Result<StagedLoads> {
+    let at = |signal: &Signal, clock: SmoothTime| signal.jet(clock).value;
     let between = |from: f64, to: f64| {
         if from == to {
             Signal::Constant(to)
@@ -134,7 +134,7 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     });
     let still: Vec<Option<Signal>> = still.collect();
     let stands = |opening: &Signal| {
-        let valves = Clock {
+        let valves = SmoothTime {
             t: stage.valves,
             within: stage.valves,
         };
@@ -159,19 +159,19 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
         wet.lumped.clear();
     }
     let system = System::with(case, model)?;
-    Ok(Grown { system, pumped })
+    Ok(StagedLoads { system, pumped })
 }
 
 /// Equations of a stage and the scaled unknowns with which it begins: those of an equilibrium, or zero. From zero, volumes grow to
 /// those of the start of the case.
-pub(super) fn begin(case: &Case, grown: Grown, held: Option<&Held>) -> (StaticBeam, Vec<f64>) {
-    let Grown { system, pumped } = grown;
+pub(super) fn begin(case: &Case, grown: StagedLoads, held: Option<&StageEquilibrium>) -> (StaticBeam, Vec<f64>) {
+    let StagedLoads { system, pumped } = grown;
     if let Some(held) = held {
         let y = system.layout.take_over(&held.layout, &held.y);
         return (StaticBeam::from_state(system, &y, &pumped), y);
     }
     let mut now = TimeData::new(&system);
-    now.update(&system, Clock { t: 0.0, within: 0.0 });
+    now.update(&system, SmoothTime { t: 0.0, within: 0.0 });
     let volumes = start::state(&system, case, &now);
     let y = vec![0.0; volumes.len()];
     (StaticBeam::from_nothing(system, &volumes, &pumped), y)
@@ -196,7 +196,7 @@ pub fn follow(
 /// results decreases in proportion to zero, and the stage begins in the equilibrium that is reached.
 pub(super) fn follow_of(
     case: &Case,
-    grow: &dyn Fn(&Stage) -> error::Result<Grown>,
+    grow: &dyn Fn(&Stage) -> error::Result<StagedLoads>,
     options: &EquilibriumOptions,
     judged: bool,
     watch: &mut dyn FnMut(&EquilibriumState) -> Control,
@@ -204,10 +204,10 @@ pub(super) fn follow_of(
     let options = &options.resolved(case)?;
     let stages = options.stages();
     let mut path = Path {
-        trapped: trapped::warning(case, options)?,
+        trapped: trapped_fluid::warning(case, options)?,
         ..Path::default()
     };
-    let mut held: Option<Held> = None;
+    let mut held: Option<StageEquilibrium> = None;
     let mut valves = vec![];
     for (number, stage) in stages.iter().enumerate() {
         let grown = grow(stage)?;
@@ -244,7 +244,7 @@ pub(super) fn follow_of(
             return Ok(path);
         };
         let y = last.y.clone();
-        held = Some(Held { y, layout });
+        held = Some(StageEquilibrium { y, layout });
     }
     Ok(path)
 }
@@ -264,7 +264,7 @@ fn stretch(
     let weights = weights(statics.system());
     let limits = Limits::new(case, statics.system());
     path.limits = limits.unphysical.clone();
-    let natural = Natural::of(&statics);
+    let natural = PathCoordinates::new(&statics);
     let solver = match Kinsol::new(Arclength::new(statics)) {
         Err(failure) => {
             path.fault = Some(fault(stage as f64, &failure.what));
@@ -276,7 +276,7 @@ fn stretch(
     x.push(0.0);
     // The state between two stages belongs to the first, and is the reference for a reversal of the load in the second.
     let begins = path.states.len();
-    let mut follower = Follower {
+    let mut follower = PathFollower {
         stage,
         orientation: 0,
         branch: begins.saturating_sub(usize::from(!new)),
@@ -294,16 +294,16 @@ fn stretch(
     if judged {
         follower.judge();
     }
-    path.fault = ended.err().map(|End(fault)| if wet { fault } else { dry(fault) });
+    path.fault = ended.err().map(|PathError(fault)| if wet { fault } else { dry(fault) });
 }
 
 /// Switches valves under constant loads, from the state before.
 fn switch(
     case: &Case,
-    grown: Grown,
+    grown: StagedLoads,
     options: &EquilibriumOptions,
     stage: usize,
-    held: &mut Held,
+    held: &mut StageEquilibrium,
 ) -> std::result::Result<(), SolverError> {
     let (mut statics, y) = begin(case, grown, Some(held));
     let layout = statics.system().layout.clone();
@@ -327,7 +327,7 @@ fn switch(
     match (path.fault, path.states.last()) {
         (None, Some(last)) => {
             let y = last.y.clone();
-            *held = Held { y, layout };
+            *held = StageEquilibrium { y, layout };
             Ok(())
         }
         (failed, _) => Err(lost(&failed.map_or_else(String::new, |fault| fault.what))),

@@ -1,12 +1,12 @@
 //! State of equilibrium.
 
 use crate::dae::{BeamDae, Dae as _, Seeds, StaticBeam};
+use crate::discrete::extrema::MonitoredValues;
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
-use crate::discrete::glance::Glance;
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Look, Observable, ObservableRow, probes, stations};
+use crate::discrete::quantities::{Observable, ObservableRow, StateView, probes, stations};
 use crate::discrete::residual::relaxation;
-use crate::discrete::{System, TimeData, Workspace, let_in};
+use crate::discrete::{System, TimeData, Workspace, injected_volume};
 use crate::run::range::Limits;
 use crate::run::record::HistoryColumn;
 use crate::spectral;
@@ -48,7 +48,10 @@ pub struct EquilibriumStability {
 
 /// Quantities of a history that an equilibrium has too.
 fn at_rest(system: &System) -> Vec<Observable> {
-    Observable::of(system).into_iter().filter(|one| one.at_rest()).collect()
+    Observable::recorded(system)
+        .into_iter()
+        .filter(|one| one.at_rest())
+        .collect()
 }
 
 /// Columns of the row of a [`State`], the load factor first.
@@ -75,7 +78,7 @@ impl EquilibriumState {
         let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
         let zeros = vec![0.0; y.len()];
         let (system, now, w) = statics.beam().evaluate(share, y, &zeros);
-        let look = Look::new(system, now, w, ledger::energies(system, now, w));
+        let look = StateView::new(system, now, w, ledger::energies(system, now, w));
         let others = [stations::columns(system, true).len(), probes::columns(system).count()];
         let mut read = ObservableRow::new(at_rest(system), others);
         read.take(share, &look, &[], 0.0);
@@ -97,17 +100,17 @@ impl EquilibriumState {
 }
 
 /// Describes the limit that a state exceeds, if any, and returns the glance at the state.
-pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, Glance) {
+pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, MonitoredValues) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
-    let glance = Glance::new(system, now, share, limits.half_height, w);
+    let glance = MonitoredValues::new(system, now, share, limits.half_height, w);
     let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
     (beyond, glance)
 }
 
 impl EquilibriumStability {
     /// Stability of a state with scaled unknowns `y` under a load factor; `None` if the eigenvalues were not found.
-    pub fn of(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
+    pub fn assess(statics: &mut StaticBeam, share: f64, y: &[f64]) -> Option<Self> {
         let mut values = vec![0.0; statics.pattern().entries()];
         statics
             .jacobian(share, y, &[], Seeds::Step { cj: 0.0 }, &mut values)
@@ -132,7 +135,7 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
     relaxation::settle(to, now, &w, &mut z);
     fluid(&w, to, &mut z);
     flows(before, &w, to, &mut z);
-    let_in::count_from(to, now, &mut z);
+    injected_volume::count_from(to, now, &mut z);
     for (z, scale) in z.iter_mut().zip(&to.layout.scales) {
         *z /= scale;
     }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Multiplier;
 use super::shape::EnergyPart;
-use crate::run::null;
+use crate::run::json_null;
 
 /// Growth over a period below which a disturbance counts as neutral: the effect of the steps' own error on a multiplier of one.
 const NEUTRAL: f64 = 1e-5;
@@ -29,7 +29,7 @@ pub struct CycleVerdict {
     /// Stability class.
     pub stability: CycleStability,
     /// Growth rate of the largest multiplier [1/s].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub growth_per_s: f64,
     /// Description in a sentence.
     pub words: String,

@@ -18,7 +18,7 @@ const PATIENCE: usize = 8;
 const SAME: f64 = 1e-6;
 
 /// A search from zero of which only a part of the eigenvalues converged.
-pub struct Clustered {
+pub struct PartialSearch {
     /// Start of the search.
     pub shift: Complex<f64>,
     /// Number of eigenvalues that converged.
@@ -27,7 +27,7 @@ pub struct Clustered {
     pub wanted: usize,
 }
 
-impl Clustered {
+impl PartialSearch {
     /// Finds the modes nearer than the cluster, and the oscillations beyond it.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use super::shape::ModeShape;
-use crate::spectral::Pair;
+use crate::spectral::EigenPair;
 
 /// Behavior of a mode in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -61,7 +61,7 @@ const SHARE: f64 = 1e-9;
 const STILL: f64 = 1e-12;
 
 /// Kind of a pair, and `s` without the parts that are round-off. `frequency` [1/s] is that of the beam.
-pub fn judge(pair: &Pair, shape: &ModeShape, frequency: f64, length: f64) -> (TimeBehavior, Complex<f64>) {
+pub fn judge(pair: &EigenPair, shape: &ModeShape, frequency: f64, length: f64) -> (TimeBehavior, Complex<f64>) {
     let still = BEYOND * pair.error + STILL * frequency;
     if pair.s.norm() <= still {
         let kind = if shape.without_pressure(length) {

@@ -3,8 +3,8 @@
 use crate::case::Case;
 use crate::dae::{BeamDae, Dae as _, EvaluationError, Seeds};
 use crate::discrete::{System, start};
-use crate::error::{At, Code, Error, Result, SolverError};
-use crate::functions::signals::Clock;
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::functions::signals::SmoothTime;
 use crate::integrate::{StartOptions, consistent_start};
 use crate::model::Model;
 use crate::run::equilibrium::{self, EquilibriumOptions};
@@ -74,7 +74,7 @@ fn about_equilibrium(case: &Case, options: &EquilibriumOptions) -> Result<Linear
     let mut dae = held(case, at)?;
     let at_rest = vec![0.0; dae.len()];
     let y = equilibrium::at_start(case, options, &mut dae, &at_rest).map_err(|mut fault| {
-        fault.at = At::Time(at);
+        fault.at = StopPoint::Time(at);
         Error::Solver(Box::new(fault))
     })?;
     about(dae, at, y)
@@ -98,7 +98,7 @@ fn about(mut dae: BeamDae, at: f64, mut y: Vec<f64>) -> Result<Linearised> {
     let fault = |what: String, unknown| {
         Error::Solver(Box::new(SolverError {
             code: Code::NoStart,
-            at: At::Time(at),
+            at: StopPoint::Time(at),
             what,
             unknown,
             cause: None,
@@ -176,8 +176,8 @@ impl Linearised {
     }
 
     /// Clock of the linearization.
-    pub fn clock(&self) -> Clock {
-        Clock {
+    pub fn clock(&self) -> SmoothTime {
+        SmoothTime {
             t: self.at,
             within: self.at,
         }

@@ -5,7 +5,7 @@
 //! shape        displacements and pressures of an eigenvector; likeness of two shapes
 //! meshes       the same modes on other meshes
 //! clustered    modes beside a cluster of decays
-//! relaxing     modes of a solid that relaxes
+//! relaxation   modes of a solid that relaxes
 //! sensitivity  derivatives by numbers of the case
 //! kind         oscillation, decay, growth, rigid motion, kept volume
 //! sort         modes of one sort, and the order of output
@@ -16,7 +16,7 @@ mod clustered;
 pub mod kind;
 pub mod linearise;
 pub mod meshes;
-mod relaxing;
+mod relaxation;
 pub mod sensitivity;
 pub mod shape;
 pub mod sort;
@@ -26,17 +26,17 @@ use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
-use crate::error::{At, Code, Error, Result, SolverError};
-use crate::run::null;
-use crate::spectral::{self, EigenvalueOptions, Pair, Pencil, SpectralError};
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::run::json_null;
+use crate::spectral::{self, EigenPair, EigenvalueOptions, Pencil, SpectralError};
 
-use clustered::Clustered;
+use clustered::PartialSearch;
 pub use kind::TimeBehavior;
 pub use linearise::{FluidBehavior, Linearised, at_equilibrium, linearise};
 pub use meshes::{ByMesh, compare_meshes};
 pub use sensitivity::{ModeSensitivity, differentiate};
 pub use shape::{ModeShape, Shapes, likeness};
-pub use sort::Sort;
+pub use sort::ModeFilter;
 
 /// Options of a search for modes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,10 +60,10 @@ impl ModeOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LimitingMode {
     /// Frequency [Hz].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub frequency_hz: f64,
     /// Likeness of the shapes, [E33].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub likeness: f64,
 }
 
@@ -180,14 +180,14 @@ pub struct Modes {
 /// # Errors
 /// As [`linearise`], and [`Error::Solver`] if eigenvalues do not converge.
 pub fn modes(case: &Case, plan: &ModeOptions) -> Result<Modes> {
-    of(linearise(case, 0.0, None)?, plan)
+    compute(linearise(case, 0.0, None)?, plan)
 }
 
 /// Modes of a linearisation.
 ///
 /// # Errors
 /// [`Error::Solver`] if eigenvalues do not converge.
-pub fn of(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
+pub fn compute(about: Linearised, plan: &ModeOptions) -> Result<Modes> {
     let mut tally = Tally::default();
     let mut modes = search(&about, FluidBehavior::Flowing, plan, &mut tally)?;
     let (lost, clustered) = (tally.lost, tally.clustered);
@@ -244,9 +244,9 @@ const BESIDE: f64 = 0.1;
 
 fn search(about: &Linearised, fluid: FluidBehavior, plan: &ModeOptions, tally: &mut Tally) -> Result<Vec<Mode>> {
     let (a, b) = about.with(fluid);
-    match relaxing::relaxes(about) {
+    match relaxation::relaxes(about) {
         false => near_to(about, fluid, [&a, &b], plan, tally),
-        true => relaxing::search(about, fluid, [&a, &b], plan, tally),
+        true => relaxation::search(about, fluid, [&a, &b], plan, tally),
     }
 }
 
@@ -292,7 +292,7 @@ fn near_to(
             Err(SpectralError::Slow { converged, .. }) if plan.near_hz == 0.0 && converged > 1 => {
                 tally.clustered |= fluid == FluidBehavior::Flowing;
                 let wanted = plan.count;
-                let search = Clustered {
+                let search = PartialSearch {
                     shift,
                     converged,
                     wanted,
@@ -318,7 +318,7 @@ fn near_to(
 }
 
 /// Mode of a pair; None for the second of two conjugates.
-fn mode(about: &Linearised, shapes: &mut Shapes, pair: &Pair) -> Option<Mode> {
+fn mode(about: &Linearised, shapes: &mut Shapes, pair: &EigenPair) -> Option<Mode> {
     let length = about.system().model.length;
     let shape = shapes.shape(&pair.x);
     let (kind, s) = kind::judge(pair, &shape, about.frequency(), length);
@@ -383,7 +383,7 @@ fn failed(about: &Linearised, failure: &SpectralError) -> Error {
     };
     Error::Solver(Box::new(SolverError {
         code: Code::NoModes,
-        at: At::Time(about.at),
+        at: StopPoint::Time(about.at),
         what: format!("no modes: {failure}"),
         unknown,
         cause: None,

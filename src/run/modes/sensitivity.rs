@@ -8,7 +8,7 @@ use crate::case::Case;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
-use crate::spectral::{self, EigenvalueOptions, Pair};
+use crate::spectral::{self, EigenPair, EigenvalueOptions};
 
 /// Derivatives by one parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub fn differentiate(
     modes: &[Mode],
     parameters: &[Parameter],
 ) -> Result<Vec<ModeSensitivity>> {
-    let pairs: Vec<Pair> = modes
+    let pairs: Vec<EigenPair> = modes
         .iter()
         .map(|mode| {
             let found = spectral::nearest(&about.pencil(), mode.s, 1, &EigenvalueOptions::default())

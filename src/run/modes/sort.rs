@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Linearised, Mode, ModeOptions, Modes, TimeBehavior, of};
+use super::{Linearised, Mode, ModeOptions, Modes, TimeBehavior, compute};
 use crate::error::Result;
 
 /// Sort of modes to select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Sort {
+pub enum ModeFilter {
     /// Oscillations, growing or not.
     Oscillation,
     /// Decays without oscillation.
@@ -17,7 +17,7 @@ pub enum Sort {
     Growth,
 }
 
-impl Sort {
+impl ModeFilter {
     /// True if a mode of this kind belongs to the sort.
     pub fn has(self, kind: TimeBehavior) -> bool {
         match self {
@@ -48,19 +48,19 @@ const AMONG: usize = 8;
 ///
 /// # Errors
 /// As [`of`].
-pub fn of_sort(about: Linearised, plan: &ModeOptions, sort: Option<Sort>) -> Result<(Modes, ModeOptions)> {
+pub fn of_sort(about: Linearised, plan: &ModeOptions, sort: Option<ModeFilter>) -> Result<(Modes, ModeOptions)> {
     // hundreds of decays of the fluid may lie nearer to zero than oscillations and growth, which are listed first
     let (sort, most) = match sort {
         Some(sort) => (sort, MOST),
         None if about.system().layout.inertia && plan.near_hz == 0.0 => {
-            (Sort::Oscillation, (AMONG * plan.count).clamp(plan.count, MOST))
+            (ModeFilter::Oscillation, (AMONG * plan.count).clamp(plan.count, MOST))
         }
-        None => return Ok((of(about, plan)?, *plan)),
+        None => return Ok((compute(about, plan)?, *plan)),
     };
     let mut wider = ModeOptions { limits: false, ..*plan };
     let mut about = about;
     loop {
-        let found = of(about, &wider)?;
+        let found = compute(about, &wider)?;
         let own = found.modes.iter().filter(|mode| sort.has(mode.kind)).count();
         let moving = found.modes.iter().filter(|mode| !mode.kind.stays()).count();
         let more = own < plan.count && moving >= wider.count && wider.count < most;
@@ -70,7 +70,7 @@ pub fn of_sort(about: Linearised, plan: &ModeOptions, sort: Option<Sort>) -> Res
                 ..wider
             };
             return match plan.limits {
-                true => Ok((of(found.about, &plan)?, plan)),
+                true => Ok((compute(found.about, &plan)?, plan)),
                 false => Ok((found, plan)),
             };
         }
@@ -82,7 +82,7 @@ pub fn of_sort(about: Linearised, plan: &ModeOptions, sort: Option<Sort>) -> Res
 
 /// Sorts modes for output: growth, oscillation, decay, constant modes, each from slow to fast. Oscillations are sorted by frequency, as
 /// sweeps number them, others by rate. Keeps only `count` of them, of the sort if one is requested.
-pub fn arrange(modes: &mut Vec<Mode>, sort: Option<Sort>, count: usize) {
+pub fn arrange(modes: &mut Vec<Mode>, sort: Option<ModeFilter>, count: usize) {
     if let Some(sort) = sort {
         modes.retain(|mode| sort.has(mode.kind));
     }

@@ -10,7 +10,7 @@ use crate::discrete::fluid_mesh::{FluidMesh, LinkEnd, MeshLink};
 use crate::discrete::{System, Workspace, start};
 use crate::error::numbers::quantity;
 use crate::error::{Error, Result};
-use crate::functions::Clock;
+use crate::functions::SmoothTime;
 use crate::model::LumpedKind;
 use crate::model::network::{Feed, PrescribedFlow, ResolvedNetwork};
 use crate::numerics::sets::Sets;
@@ -76,7 +76,7 @@ impl Part {
     }
 
     /// Volume that sources add from `from`, with signals as just before or after this instant, to the instant `to` [m^3].
-    fn let_in(&self, network: &ResolvedNetwork, from: Clock, to: f64) -> f64 {
+    fn let_in(&self, network: &ResolvedNetwork, from: SmoothTime, to: f64) -> f64 {
         let lumped = matches!(self.stores, Stores::Lumped(_));
         let of = |source: &usize| match &network.sources[*source].feed {
             Feed::Flow(flow) => flow.integral(to) - flow.integral(from.t),
@@ -179,7 +179,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
     let sources = model.wet.as_ref().map(|wet| wet.network.clone()).unwrap_or_default();
     let kept = equilibrium::kept(case, begins, &settled)?;
     let mut before = BeamDae::new(System::with(case, model)?);
-    let outset = Clock {
+    let outset = SmoothTime {
         t: 0.0,
         within: f64::MIN_POSITIVE,
     };
@@ -190,7 +190,7 @@ pub(super) fn fill(dae: &mut BeamDae, case: &Case, period: f64, y: &mut [f64]) -
         (Some(kept), _) => {
             let t = kept.options.at_s;
             let since = if t > 0.0 {
-                Clock {
+                SmoothTime {
                     t,
                     within: t.next_down(),
                 }

@@ -1,23 +1,23 @@
 //! Steady cycle of a periodically driven case, computed directly.
 //!
 //! ```text
-//! scene        a case in the long run: its periodic signals, its conserved volumes, its period map
-//! fluid        amount of fluid in the conserved volumes
-//! shoot        Newton's iteration on the period map
-//! subharmonic  cycles that return after several periods
-//! record       one period of the cycle as a run
-//! settle       the cycle at a tolerance at which its energy balance closes
-//! sensitivity  derivatives of the cycle by numbers of the case
+//! scene           a case in the long run: its periodic signals, its conserved volumes, its period map
+//! fluid           amount of fluid in the conserved volumes
+//! shooting        Newton's iteration on the period map
+//! subharmonic     cycles that return after several periods
+//! record          one period of the cycle as a run
+//! balanced_cycle  the cycle at a tolerance at which its energy balance closes
+//! sensitivity     derivatives of the cycle by numbers of the case
 //! ```
 
+pub mod balanced_cycle;
 mod fluid;
 pub mod record;
 pub mod scene;
 pub mod sensitivity;
-pub mod settle;
-pub mod shoot;
+pub mod shooting;
 pub mod subharmonic;
 
+pub use balanced_cycle::{Settled, settle};
 pub use scene::PeriodicScene;
-pub use settle::{Settled, settle};
-pub use shoot::{Cycle, ShootingRecord, shoot};
+pub use shooting::{Cycle, ShootingRecord, shoot};

@@ -1,7 +1,7 @@
 //! One period of a cycle as a run of its own, recorded like any other.
 
 use super::scene::PeriodicScene;
-use super::shoot::Cycle;
+use super::shooting::Cycle;
 use crate::case::schema::Case;
 use crate::error::Result;
 use crate::run::dynamics::{self, Outcome};

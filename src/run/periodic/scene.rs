@@ -1,13 +1,13 @@
 //! Scene of a cycle: a case in the long run, as a map of its state over a period.
 
 use super::fluid;
-use super::shoot::ShootingRecord;
+use super::shooting::ShootingRecord;
 use crate::case::Translation;
 use crate::case::schema::{Case, Choice, Effects};
 use crate::dae::BeamDae;
 use crate::discrete::{System, start};
-use crate::error::{At, Code, Error, Result, SolverError};
-use crate::integrate::{Absolute, IntegrationError, StartOptions, consistent_start};
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
+use crate::integrate::{AbsoluteTolerances, IntegrationError, StartOptions, consistent_start};
 use crate::model::Model;
 use crate::onestep::step_map::StepError;
 use crate::onestep::{OneStep, OneStepOptions, StepMap, TableauMethod};
@@ -59,11 +59,11 @@ impl PeriodicScene {
         let mut model = whole(case)?;
         let drive = drive(case, &model, period)?;
         model.replace_signals(settled, settled_opening);
-        Self::of(case, model, drive)
+        Self::with_model(case, model, drive)
     }
 
     /// Scene of another model of the case with settled signals; rejected as by [`System::new`].
-    pub fn of(case: &Case, model: Model, drive: PeriodicDrive) -> Result<Self> {
+    pub fn with_model(case: &Case, model: Model, drive: PeriodicDrive) -> Result<Self> {
         let system = System::with(case, model)?.accepted(case)?;
         let (guess, trapped) = guess(&system, case, drive.period)?;
         Ok(Self {
@@ -160,7 +160,7 @@ impl PeriodicScene {
         OneStepOptions {
             method: self.method,
             relative: self.rtol,
-            absolute: Absolute::Same(self.rtol),
+            absolute: AbsoluteTolerances::Same(self.rtol),
             max_step: Some(self.drive.period / (LEAST_STEPS * self.periods as f64)),
             ..OneStepOptions::default()
         }
@@ -293,7 +293,7 @@ fn error(failure: Box<IntegrationError>) -> StepError {
 pub fn fault(error: StepError) -> Error {
     Error::Solver(Box::new(SolverError {
         code: Code::NoCycle,
-        at: At::Time(error.time),
+        at: StopPoint::Time(error.time),
         what: error.what,
         unknown: None,
         cause: Some("the motion could not be simulated over a period".into()),

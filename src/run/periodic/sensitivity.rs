@@ -1,8 +1,8 @@
 //! Derivatives of a cycle by numbers of its case.
 
+use super::balanced_cycle::Settled;
 use super::record::one_period;
 use super::scene::{PeriodicScene, fault};
-use super::settle::Settled;
 use crate::case::Case;
 use crate::case::parameter::{CHANGE, Parameter, STEPS};
 use crate::dae::{BeamDae, Dae, EvaluationError, PerturbedSystems};

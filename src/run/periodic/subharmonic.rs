@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::PeriodicScene;
 use super::scene::fault;
-use super::shoot::{Cycle, ShootingRecord, attempt, shoot};
+use super::shooting::{Cycle, ShootingRecord, attempt, shoot};
 use crate::case::schema::Case;
 use crate::discrete::layout::LineLayout;
 use crate::error::{Error, Result};
@@ -45,7 +45,7 @@ pub struct Periods {
 
 impl Periods {
     /// Description for messages.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let Self {
             asked,
             shortest,

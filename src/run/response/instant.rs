@@ -3,7 +3,7 @@
 use super::motion;
 use crate::dae::{BeamDae, Dae as _};
 use crate::discrete::ledger;
-use crate::discrete::quantities::{Extremes, Look, ObservableRow, probes, stations};
+use crate::discrete::quantities::{Extremes, ObservableRow, StateView, probes, stations};
 use crate::functions::Signal;
 use crate::functions::signals::Polynomial;
 use crate::integrate::halt;
@@ -103,12 +103,12 @@ impl<'a> Instant<'a> {
 
     pub fn outputs(&mut self) -> Vec<f64> {
         let (system, now, state) = self.dae.evaluate(NOW, &self.y, &self.yp);
-        let look = Look {
+        let look = StateView {
             system,
             now,
             w: state,
             stored: ledger::energies(system, now, state),
-            at: Extremes::of(system, now, &state),
+            at: Extremes::new(system, now, &state),
         };
         let [first, second] = &mut self.rows;
         first.take(NOW, &look, &[], 0.0);

@@ -24,7 +24,7 @@ use crate::case::{self, Case};
 use crate::discrete::System;
 use crate::discrete::quantities::{Group, Observable, probes, stations};
 use crate::error::numbers::counted;
-use crate::error::{At, Code, Error, Result, SolverError};
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
 use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::model::{Model, ResolvedNetwork};
@@ -119,7 +119,7 @@ impl LinearResponse {
         }
         Error::Solver(Box::new(SolverError {
             code: Code::NoModes,
-            at: At::Time(self.about.at),
+            at: StopPoint::Time(self.about.at),
             what: format!("no response: {failure}"),
             unknown: None,
             cause: None,
@@ -188,8 +188,8 @@ fn marked(case: &Case, input: &str) -> Result<(Case, String)> {
 fn with_memory(case: Case) -> Result<(Case, bool)> {
     let memory = Effect::UnsteadyFriction;
     let mut choices = case.effects.choices();
-    let there = EffectSet::whole(&case, ResolvedNetwork::of(&case)?.as_ref()).has(memory);
-    if choices.of(memory) != Choice::Auto || !there {
+    let there = EffectSet::whole(&case, ResolvedNetwork::from_case(&case)?.as_ref()).has(memory);
+    if choices.choice(memory) != Choice::Auto || !there {
         return Ok((case, false));
     }
     choices.set(memory, Choice::On);
@@ -209,7 +209,7 @@ pub fn columns(system: &System) -> Vec<HistoryColumn> {
 }
 
 fn motion(system: &System) -> Vec<Observable> {
-    let mut all = Observable::of(system);
+    let mut all = Observable::recorded(system);
     all.retain(|one| one.group() == Group::Tip || *one == Observable::PortFlow);
     all
 }

@@ -11,7 +11,7 @@
 //! further states.
 
 use super::LinearResponse;
-use crate::error::{At, Code, Error, Result, SolverError};
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
 use crate::sparse::Lu;
 
 /// Fraction of the largest entry of an output's row below which an entry is rounding error.
@@ -62,7 +62,7 @@ impl StateSpace {
         let fault = |what: &str| {
             Error::Solver(Box::new(SolverError {
                 code: Code::NoModes,
-                at: At::Time(about.at),
+                at: StopPoint::Time(about.at),
                 what: format!("no state-space model: {what}"),
                 unknown: None,
                 cause: None,

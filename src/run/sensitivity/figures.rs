@@ -132,7 +132,7 @@ impl DerivativeAccumulator {
             [sum[0] + sign * value, sum[1] + sign * slope]
         };
         let sum = |group: Group| Observable::grouped(group).fold([0.0; 2], |sum, of| add(sum, 1.0, of));
-        for one in Interest::of([true, self.turbines]) {
+        for one in Interest::recorded([true, self.turbines]) {
             let now = match one.source() {
                 InterestSource::Motion(_) => motion(one, &at),
                 InterestSource::Energy(group) => Some(sum(group)),
@@ -158,7 +158,7 @@ impl DerivativeAccumulator {
     ) {
         let in_window = t >= self.window_start;
         let swings =
-            Interest::of([true, self.turbines]).filter(|one| matches!(one.source(), InterestSource::Motion(_)));
+            Interest::recorded([true, self.turbines]).filter(|one| matches!(one.source(), InterestSource::Motion(_)));
         for one in swings {
             if let Some(now) = motion(one, &at) {
                 self.tracks.entry(one).or_default().see(now, in_window);

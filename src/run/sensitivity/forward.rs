@@ -12,9 +12,9 @@ use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::probes::{self, HistoryColumn};
 use crate::discrete::quantities::stations;
-use crate::discrete::quantities::{Observable, Read};
+use crate::discrete::quantities::{Observable, QuantitySource};
 use crate::discrete::{System, start};
-use crate::error::{At, Code, Error, Result, SolverError};
+use crate::error::{Code, Error, Result, SolverError, StopPoint};
 use crate::integrate::{IntegrationError, consistent_sensitivities};
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::schedule::{self, ScheduledStop};
@@ -52,7 +52,7 @@ pub type Changed<'a> = dyn Fn(usize, f64) -> Result<Case> + 'a;
 
 /// Numbers by which a run is differentiated, and functions for changed cases and their systems.
 #[derive(Clone, Copy, Default)]
-pub struct By<'a> {
+pub struct DerivativeParameters<'a> {
     /// The numbers.
     pub parameters: &'a [Parameter],
     /// Systems of changed cases, if not those that follow from each case alone.
@@ -63,7 +63,7 @@ pub struct By<'a> {
     pub states_only: bool,
 }
 
-impl<'a> By<'a> {
+impl<'a> DerivativeParameters<'a> {
     /// Numbers given by their pointers.
     pub fn pointers(parameters: &'a [Parameter]) -> Self {
         Self {
@@ -74,7 +74,7 @@ impl<'a> By<'a> {
 }
 
 /// Data of the instant before a switch.
-pub struct Before {
+pub struct BeforeSwitch {
     state: Vec<f64>,
     rates: Vec<f64>,
     s: Vec<Vec<f64>>,
@@ -86,7 +86,7 @@ impl<'a> ForwardSensitivities<'a> {
     ///
     /// # Errors
     /// [`Error::Usage`] if a change of a number changes the unknowns or the number of switching times.
-    pub fn new(case: &Case, dae: BeamDae, by: By<'a>) -> Result<(Self, BeamDae)> {
+    pub fn new(case: &Case, dae: BeamDae, by: DerivativeParameters<'a>) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let parameters = by.parameters;
         let own = schedule::stops(case, &dae.system().model);
@@ -122,8 +122,8 @@ impl<'a> ForwardSensitivities<'a> {
             all_stops.push(stops);
         }
         let count = parameters.len();
-        let columns = Observable::of(dae.system()).into_iter();
-        let read_off = |one: &Observable| !by.states_only || matches!(one.read(), Read::State(_));
+        let columns = Observable::recorded(dae.system()).into_iter();
+        let read_off = |one: &Observable| !by.states_only || matches!(one.read(), QuantitySource::State(_));
         let columns: Vec<_> = columns.filter(|one| one.has_derivative() && read_off(one)).collect();
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
         let window_start = case.time.end_s - case.time.window() * (1.0 + schedule::SAME);
@@ -202,7 +202,7 @@ impl<'a> ForwardSensitivities<'a> {
     pub fn complete(&mut self, dae: &mut BeamDae, t: f64, state: [&[f64]; 2]) -> std::result::Result<(), SolverError> {
         consistent_sensitivities(dae, t, state, &mut self.s, &mut self.sp).map_err(|what| SolverError {
             code: Code::Singular,
-            at: At::Time(t),
+            at: StopPoint::Time(t),
             what: format!("no consistent sensitivities at t = {t:.6} s: {what}"),
             unknown: None,
             cause: Some("the state is not unique: the beam buckles, or the coupling is not convex".into()),
@@ -225,11 +225,11 @@ impl<'a> ForwardSensitivities<'a> {
         ida: &mut Ida<BeamDae>,
         t: f64,
         [y, yp]: [&[f64]; 2],
-    ) -> std::result::Result<Before, Box<IntegrationError>> {
+    ) -> std::result::Result<BeforeSwitch, Box<IntegrationError>> {
         let mut totals = self.carried.clone();
         self.read(ida, t, &mut totals)?;
         self.carried = totals;
-        Ok(Before {
+        Ok(BeforeSwitch {
             state: y.to_vec(),
             rates: yp.to_vec(),
             s: self.s.clone(),
@@ -249,12 +249,18 @@ impl<'a> ForwardSensitivities<'a> {
     }
 
     /// Restores the data of a checkpoint at a state there, on the left side of its stop.
-    pub fn take_up(&mut self, kept: &StoredSensitivities, dae: &mut BeamDae, t: f64, [y, yp]: [&[f64]; 2]) -> Before {
+    pub fn take_up(
+        &mut self,
+        kept: &StoredSensitivities,
+        dae: &mut BeamDae,
+        t: f64,
+        [y, yp]: [&[f64]; 2],
+    ) -> BeforeSwitch {
         self.s.clone_from(&kept.s);
         self.sp.clone_from(&kept.sp);
         self.carried.clone_from(&kept.carried);
         self.figures.clone_from(&kept.figures);
-        Before {
+        BeforeSwitch {
             state: y.to_vec(),
             rates: yp.to_vec(),
             s: self.s.clone(),
@@ -275,7 +281,7 @@ impl<'a> ForwardSensitivities<'a> {
         dae: &mut BeamDae,
         stop: usize,
         t: f64,
-        before: &Before,
+        before: &BeforeSwitch,
         state: [&[f64]; 2],
     ) -> std::result::Result<(), SolverError> {
         let after = integrands(dae, t, state);
@@ -314,7 +320,7 @@ impl<'a> ForwardSensitivities<'a> {
     }
 
     /// Derivatives of the works of the jump at a switch, between states that each of the changed systems has at its own time.
-    fn jump(&mut self, dae: &mut BeamDae, stop: usize, t: f64, before: &Before, state: [&[f64]; 2]) {
+    fn jump(&mut self, dae: &mut BeamDae, stop: usize, t: f64, before: &BeforeSwitch, state: [&[f64]; 2]) {
         let mut jumped = vec![0.0; dae.integrals()];
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];

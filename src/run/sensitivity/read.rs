@@ -3,12 +3,12 @@
 use super::forward::ForwardSensitivities;
 use crate::dae::BeamDae;
 use crate::discrete::ledger::{self, ports};
-use crate::discrete::quantities::{Extremes, Look, Observable, ObservableRow, Read, probes, stations};
+use crate::discrete::quantities::{Extremes, Observable, ObservableRow, QuantitySource, StateView, probes, stations};
 use crate::integrate::IntegrationError;
 use crate::sundials::Ida;
 
 /// Functions that read a number from a state.
-type Reads = Vec<fn(&Look) -> f64>;
+type Reads = Vec<fn(&StateView) -> f64>;
 
 impl ForwardSensitivities<'_> {
     /// Reads sensitivities from the integrator at time `t` [s] within its last step, and those of integrals into `integrals`.
@@ -66,11 +66,11 @@ impl ForwardSensitivities<'_> {
         self.derive(ida, t, state)?;
         let reads = self.reads();
         let (system, now, w) = ida.dae_mut().evaluate(t, state[0], state[1]);
-        let look = Look::new(system, now, w, ledger::energies(system, now, w));
+        let look = StateView::new(system, now, w, ledger::energies(system, now, w));
         let own: Vec<f64> = reads.iter().map(|read| read(&look)).collect();
         let probed: Vec<f64> = probes::values(&look).collect();
         let (columns, each, behind) = (&self.columns, self.each(), self.before_probes());
-        let read_off = |one: &&Observable| matches!(one.read(), Read::State(_));
+        let read_off = |one: &&Observable| matches!(one.read(), QuantitySource::State(_));
         for (figures, derivatives) in self.figures.iter_mut().zip(parts(&self.row, each)) {
             let value = |which| {
                 let k = columns.iter().filter(read_off).position(|one| *one == which)?;
@@ -97,7 +97,7 @@ impl ForwardSensitivities<'_> {
 
     fn reads(&self) -> Reads {
         let reads = self.columns.iter().filter_map(|one| match one.read() {
-            Read::State(read) => Some(read),
+            QuantitySource::State(read) => Some(read),
             _ => None,
         });
         reads.collect()
@@ -114,7 +114,7 @@ impl ForwardSensitivities<'_> {
         self.read(ida, t, &mut integrals)?;
         let dae = ida.dae_mut();
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let at = Extremes::of(system, now, &w);
+        let at = Extremes::new(system, now, &w);
         let reads = self.reads();
         self.row.clear();
         self.row.push(t);
@@ -129,7 +129,7 @@ impl ForwardSensitivities<'_> {
                 |system, now, rates, w, out| {
                     let w = ledger::complete(system, now, rates, w);
                     let stored = ledger::energies(system, now, w);
-                    let look = Look {
+                    let look = StateView {
                         system,
                         now,
                         w,
@@ -147,8 +147,8 @@ impl ForwardSensitivities<'_> {
             );
             let mut slopes = slopes.iter().copied();
             let of = |one: &Observable| match one.read() {
-                Read::Integral(of) => of(integrals),
-                Read::Through(of) => of(dae.system(), integrals),
+                QuantitySource::Integral(of) => of(integrals),
+                QuantitySource::Through(of) => of(dae.system(), integrals),
                 _ => slopes.next().unwrap_or(0.0),
             };
             let derivatives = self.columns.iter().map(of).map(|slope| slope / parameter.value);

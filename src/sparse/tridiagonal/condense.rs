@@ -10,7 +10,7 @@ const MORE: usize = 2;
 
 /// An unknown that is eliminated by another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Pair {
+pub(super) struct Elimination {
     /// Row of two entries.
     pub row: u32,
     /// Eliminated unknown, and the entry of its coefficient.
@@ -20,15 +20,15 @@ pub(super) struct Pair {
 }
 
 /// The condensed matrix.
-pub(super) struct Condensed {
-    pub pairs: Vec<Pair>,
+pub(super) struct CondensedMatrix {
+    pub pairs: Vec<Elimination>,
     /// Pair that eliminates each unknown.
     pub by: Vec<Option<u32>>,
     /// Row paired with each remaining unknown; unused for the others.
     pub row: Vec<u32>,
 }
 
-impl Condensed {
+impl CondensedMatrix {
     pub fn new(pattern: &Pattern) -> Self {
         let n = pattern.columns();
         let mut rows: Vec<[u32; 3]> = vec![[0, 0, 0]; n]; // count, first entries
@@ -77,7 +77,7 @@ impl Condensed {
             }
             anchor[o] = true;
             this.by[e] = Some(this.pairs.len() as u32);
-            this.pairs.push(Pair {
+            this.pairs.push(Elimination {
                 row: row as u32,
                 given,
                 kept,

@@ -17,26 +17,26 @@ pub(super) fn padded(rows: usize) -> usize {
 }
 
 /// Rounding of a multiplication and addition `a b + c`.
-pub(super) trait Add: Copy {
+pub(super) trait MultiplyAdd: Copy {
     fn add(a: f64, b: f64, c: f64) -> f64;
 }
 
 /// Rounds twice.
 #[derive(Clone, Copy)]
-pub(super) struct Apart;
+pub(super) struct TwoRoundings;
 
 /// Rounds once, in a single instruction.
 #[derive(Clone, Copy)]
-pub(super) struct Fused;
+pub(super) struct OneRounding;
 
-impl Add for Apart {
+impl MultiplyAdd for TwoRoundings {
     #[inline(always)]
     fn add(a: f64, b: f64, c: f64) -> f64 {
         a * b + c
     }
 }
 
-impl Add for Fused {
+impl MultiplyAdd for OneRounding {
     #[inline(always)]
     fn add(a: f64, b: f64, c: f64) -> f64 {
         a.mul_add(b, c)
@@ -45,7 +45,7 @@ impl Add for Fused {
 
 /// `y = M x`, or `y += M x`; M has `x.len()` columns and `y.len()` rows, a multiple of [`LANES`].
 #[inline(always)]
-pub(super) fn multiply<A: Add, const ADDS: bool>(mut m: &[f64], x: &[f64], y: &mut [f64]) {
+pub(super) fn multiply<A: MultiplyAdd, const ADDS: bool>(mut m: &[f64], x: &[f64], y: &mut [f64]) {
     for strip in y.chunks_mut(STRIP) {
         let (own, rest) = m.split_at(strip.len() * x.len());
         m = rest;
@@ -60,7 +60,7 @@ pub(super) fn multiply<A: Add, const ADDS: bool>(mut m: &[f64], x: &[f64], y: &m
 
 /// Sums even and odd columns separately: the two sums are independent.
 #[inline(always)]
-fn columns<A: Add, const ADDS: bool, const H: usize>(m: &[f64], x: &[f64], y: &mut [f64]) {
+fn columns<A: MultiplyAdd, const ADDS: bool, const H: usize>(m: &[f64], x: &[f64], y: &mut [f64]) {
     let Some(y) = y.first_chunk_mut::<H>() else { return };
     let mut even = if ADDS { *y } else { [0.0; H] };
     let mut odd = [0.0; H];
@@ -98,7 +98,7 @@ pub(super) fn strips(d: &[f64], rows: usize, mut out: &mut [f64]) {
 /// `C = -M B` of blocks stored by columns: columns of M have `rows` entries, a multiple of [`LANES`], columns of B
 /// `inner`.
 #[inline(always)]
-pub(super) fn product<A: Add>(m: &[f64], rows: usize, b: &[f64], inner: usize, c: &mut [f64]) {
+pub(super) fn product<A: MultiplyAdd>(m: &[f64], rows: usize, b: &[f64], inner: usize, c: &mut [f64]) {
     for (c, b) in c.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
         for (k, c) in c.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
             let mut sum = [0.0; LANES];
@@ -123,7 +123,7 @@ pub(super) fn place(row: usize, column: usize, rows: usize, columns: usize) -> u
 /// Gauss-Jordan elimination. The pivot is the diagonal entry unless it is below a tenth of the largest entry of its column, each relative
 /// to its row. `exchanged` is work space with one number per column, `room` with three numbers per row.
 #[inline(always)]
-pub(super) fn invert<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
+pub(super) fn invert<A: MultiplyAdd>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
     // loops of constant length need no counter
     match rows {
         4 => invert_by::<A>(d, 4, exchanged, room),
@@ -136,7 +136,7 @@ pub(super) fn invert<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize]
 }
 
 #[inline(always)]
-fn invert_by<A: Add>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
+fn invert_by<A: MultiplyAdd>(d: &mut [f64], rows: usize, exchanged: &mut [usize], room: &mut [f64]) -> bool {
     let n = exchanged.len();
     let (per_size, rest) = room.split_at_mut(rows);
     let (pivots, keep) = rest.split_at_mut(rows);

@@ -21,7 +21,7 @@ mod sweeps;
 
 use crate::numerics::threads::both;
 use crate::sparse::Pattern;
-use dense::{Add, Apart, Fused, padded};
+use dense::{MultiplyAdd, OneRounding, TwoRoundings, padded};
 use plan::{Block, Plan};
 #[cfg(target_arch = "x86_64")]
 use sweeps::wide;
@@ -120,7 +120,7 @@ impl BlockTridiagonal {
             // SAFETY: the processor supports the enabled target features.
             return unsafe { self.factor_wide(pattern, values) };
         }
-        self.factor_by::<Apart>(pattern, values)
+        self.factor_by::<TwoRoundings>(pattern, values)
     }
 
     /// Replaces `b` by the solution of `A x = b`. Panics if `b` has a wrong length.
@@ -134,23 +134,23 @@ impl BlockTridiagonal {
             // SAFETY: the processor supports the enabled target features.
             return unsafe { self.solve_wide(b) };
         }
-        self.solve_by::<Apart>(b);
+        self.solve_by::<TwoRoundings>(b);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
     fn factor_wide(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
-        self.factor_by::<Fused>(pattern, values)
+        self.factor_by::<OneRounding>(pattern, values)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
     fn solve_wide(&mut self, b: &mut [f64]) {
-        self.solve_by::<Fused>(b);
+        self.solve_by::<OneRounding>(b);
     }
 
     #[inline(always)]
-    fn factor_by<A: Add>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
+    fn factor_by<A: MultiplyAdd>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         self.condense(values);
         let twist = self.plan.twist;
         for step in 0..self.plan.steps.len() {
@@ -176,7 +176,7 @@ impl BlockTridiagonal {
 
     /// Assembles a block, subtracts the contributions of the preceding blocks ([`Room::taken`]), and inverts it.
     #[inline(always)]
-    fn block<A: Add>(&mut self, values: &[f64], j: usize) -> bool {
+    fn block<A: MultiplyAdd>(&mut self, values: &[f64], j: usize) -> bool {
         let Self {
             plan,
             onward,
@@ -248,7 +248,7 @@ impl BlockTridiagonal {
     }
 
     #[inline(always)]
-    fn solve_by<A: Add>(&mut self, b: &mut [f64]) {
+    fn solve_by<A: MultiplyAdd>(&mut self, b: &mut [f64]) {
         self.take(b);
         let (plan, x, y) = (&self.plan, &mut self.x, &mut self.y);
         let (blocks, onward, back) = (&plan.blocks[..], &self.onward[..], &self.back[..]);
@@ -333,7 +333,7 @@ impl BlockTridiagonal {
 
     /// True if the backward error of a test solution is small in every row.
     #[inline(always)]
-    fn holds<A: Add>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
+    fn holds<A: MultiplyAdd>(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
         let mut solution = std::mem::take(&mut self.room.solution);
         let mut left = std::mem::take(&mut self.room.left);
         let mut size = std::mem::take(&mut self.room.size);

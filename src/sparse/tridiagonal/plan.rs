@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::condense::Condensed;
+use super::condense::CondensedMatrix;
 use super::dense::{LANES, padded, place};
 use super::levels::Graph;
 use crate::numerics::threads::LARGE;
@@ -46,7 +46,7 @@ impl Block {
 
 /// An unknown that is not eliminated.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kept {
+pub(super) struct RetainedUnknown {
     /// Its index in the blocks.
     pub at: u32,
     /// Its row, and the unknown itself.
@@ -55,7 +55,7 @@ pub(super) struct Kept {
 }
 
 pub(super) struct Plan {
-    pub condensed: Condensed,
+    pub condensed: CondensedMatrix,
     pub blocks: Vec<Block>,
     /// Block at which elimination from both ends meets.
     pub twist: usize,
@@ -68,7 +68,7 @@ pub(super) struct Plan {
     pub apart: bool,
     /// Numbers of factor values, in the order in which they are read: on the way to the twist, and back.
     pub numbers: [usize; 2],
-    pub kept: Vec<Kept>,
+    pub kept: Vec<RetainedUnknown>,
     /// Destination and entry, block by block.
     pub sources: Vec<[u32; 2]>,
     /// Destination, entry and pair of the entries in the column of an eliminated unknown.
@@ -82,7 +82,7 @@ impl Plan {
     pub fn new(pattern: &Pattern, most: usize) -> Option<Self> {
         let n = pattern.columns();
         u32::try_from(pattern.entries()).ok()?;
-        let condensed = Condensed::new(pattern);
+        let condensed = CondensedMatrix::new(pattern);
         let (node_of, unknown_of) = nodes(&condensed, n);
         let row_node = row_nodes(&condensed, &node_of);
         let edges = edges(pattern, &condensed, &node_of, &row_node);
@@ -164,12 +164,12 @@ impl Plan {
         if blocks.iter().map(Block::products).sum::<usize>() > most {
             return None;
         }
-        let kept = unknown_of.iter().enumerate().map(|(node, &unknown)| Kept {
+        let kept = unknown_of.iter().enumerate().map(|(node, &unknown)| RetainedUnknown {
             at: place_of[node],
             row: condensed.row[unknown as usize],
             unknown,
         });
-        let mut kept: Vec<Kept> = kept.collect();
+        let mut kept: Vec<RetainedUnknown> = kept.collect();
         kept.sort_unstable_by_key(|kept| kept.at);
         let mut this = Self {
             kept,
@@ -253,7 +253,7 @@ impl Plan {
 const NONE: u32 = u32::MAX;
 
 /// Number of each unknown among the remaining ones, and the list of remaining unknowns.
-fn nodes(condensed: &Condensed, n: usize) -> (Vec<u32>, Vec<u32>) {
+fn nodes(condensed: &CondensedMatrix, n: usize) -> (Vec<u32>, Vec<u32>) {
     let mut node_of = vec![NONE; n];
     let mut unknown_of = vec![];
     for unknown in (0..n).filter(|&k| condensed.by[k].is_none()) {
@@ -264,7 +264,7 @@ fn nodes(condensed: &Condensed, n: usize) -> (Vec<u32>, Vec<u32>) {
 }
 
 /// Remaining unknown paired with each row.
-fn row_nodes(condensed: &Condensed, node_of: &[u32]) -> Vec<u32> {
+fn row_nodes(condensed: &CondensedMatrix, node_of: &[u32]) -> Vec<u32> {
     let mut row_node = vec![NONE; node_of.len()];
     for (unknown, &node) in node_of.iter().enumerate().filter(|(_, node)| **node != NONE) {
         row_node[condensed.row[unknown] as usize] = node;
@@ -272,7 +272,7 @@ fn row_nodes(condensed: &Condensed, node_of: &[u32]) -> Vec<u32> {
     row_node
 }
 
-fn edges(pattern: &Pattern, condensed: &Condensed, node_of: &[u32], row_node: &[u32]) -> Vec<[u32; 2]> {
+fn edges(pattern: &Pattern, condensed: &CondensedMatrix, node_of: &[u32], row_node: &[u32]) -> Vec<[u32; 2]> {
     let mut edges = vec![];
     for column in 0..pattern.columns() {
         let to = node_of[condensed.joins(column)];

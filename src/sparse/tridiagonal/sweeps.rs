@@ -1,14 +1,14 @@
 //! Sweeps from the ends to the twist and back, on vectors that begin at the place `first`.
 
-use super::dense::{self, Add, Apart, Fused, padded};
+use super::dense::{self, MultiplyAdd, OneRounding, TwoRoundings, padded};
 use super::plan::Block;
 
 /// Right-hand side, and its product with the inverse blocks.
-type Vectors<'a> = [&'a mut [f64]; 2];
+type RotatedVectors<'a> = [&'a mut [f64]; 2];
 
 /// `y = D⁻¹ b` of a block.
 #[inline(always)]
-pub(super) fn apply<A: Add>(block: &Block, onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
+pub(super) fn apply<A: MultiplyAdd>(block: &Block, onward: &[f64], [b, y]: RotatedVectors<'_>, first: usize) {
     let inverse = &onward[block.numbers[0]..][..block.rows * block.size];
     let at = block.at - first;
     dense::multiply::<A, false>(inverse, &b[at..][..block.size], &mut y[at..][..block.rows]);
@@ -16,11 +16,11 @@ pub(super) fn apply<A: Add>(block: &Block, onward: &[f64], [b, y]: Vectors<'_>, 
 
 /// Applies the inverse of each block in this order, and subtracts its contribution to the next block.
 #[inline(always)]
-pub(super) fn inwards<'s, A: Add>(
+pub(super) fn inwards<'s, A: MultiplyAdd>(
     blocks: &[Block],
     steps: impl Iterator<Item = &'s [u32; 2]>,
     onward: &[f64],
-    [b, y]: Vectors<'_>,
+    [b, y]: RotatedVectors<'_>,
     first: usize,
 ) {
     for &[i, next] in steps {
@@ -37,7 +37,7 @@ pub(super) fn inwards<'s, A: Add>(
 
 /// Subtracts from blocks, in this order, the contribution of each one's next block.
 #[inline(always)]
-pub(super) fn outwards<'s, A: Add>(
+pub(super) fn outwards<'s, A: MultiplyAdd>(
     blocks: &[Block],
     steps: impl Iterator<Item = &'s [u32; 2]>,
     back: &[f64],
@@ -61,31 +61,37 @@ pub(super) fn outwards<'s, A: Add>(
 }
 
 /// [`inwards`] in the widest vectors of the processor.
-pub(super) fn to_the_twist(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
+pub(super) fn to_the_twist(
+    blocks: &[Block],
+    steps: &[[u32; 2]],
+    onward: &[f64],
+    [b, y]: RotatedVectors<'_>,
+    first: usize,
+) {
     #[cfg(target_arch = "x86_64")]
     if wide() {
         #[target_feature(enable = "avx2,fma")]
-        fn fused(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: Vectors<'_>, first: usize) {
-            inwards::<Fused>(blocks, steps.iter(), onward, [b, y], first);
+        fn fused(blocks: &[Block], steps: &[[u32; 2]], onward: &[f64], [b, y]: RotatedVectors<'_>, first: usize) {
+            inwards::<OneRounding>(blocks, steps.iter(), onward, [b, y], first);
         }
         // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(blocks, steps, onward, [b, y], first) };
     }
-    inwards::<Apart>(blocks, steps.iter(), onward, [b, y], first);
+    inwards::<TwoRoundings>(blocks, steps.iter(), onward, [b, y], first);
 }
 
 /// [`apply`] in the widest vectors of the processor.
-pub(super) fn at_the_twist(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
+pub(super) fn at_the_twist(block: &Block, onward: &[f64], [b, y]: RotatedVectors<'_>) {
     #[cfg(target_arch = "x86_64")]
     if wide() {
         #[target_feature(enable = "avx2,fma")]
-        fn fused(block: &Block, onward: &[f64], [b, y]: Vectors<'_>) {
-            apply::<Fused>(block, onward, [b, y], 0);
+        fn fused(block: &Block, onward: &[f64], [b, y]: RotatedVectors<'_>) {
+            apply::<OneRounding>(block, onward, [b, y], 0);
         }
         // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(block, onward, [b, y]) };
     }
-    apply::<Apart>(block, onward, [b, y], 0);
+    apply::<TwoRoundings>(block, onward, [b, y], 0);
 }
 
 /// [`outwards`] in the widest vectors of the processor, in the reverse order of the steps.
@@ -94,12 +100,12 @@ pub(super) fn from_the_twist(blocks: &[Block], steps: &[[u32; 2]], back: &[f64],
     if wide() {
         #[target_feature(enable = "avx2,fma")]
         fn fused(blocks: &[Block], steps: &[[u32; 2]], back: &[f64], y: &mut [f64], first: usize) {
-            outwards::<Fused>(blocks, steps.iter().rev(), back, y, first);
+            outwards::<OneRounding>(blocks, steps.iter().rev(), back, y, first);
         }
         // SAFETY: the processor supports the enabled target features.
         return unsafe { fused(blocks, steps, back, y, first) };
     }
-    outwards::<Apart>(blocks, steps.iter().rev(), back, y, first);
+    outwards::<TwoRoundings>(blocks, steps.iter().rev(), back, y, first);
 }
 
 /// True if the processor supports the instructions of x86-64-v3 used here (AVX2 and FMA).

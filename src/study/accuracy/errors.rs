@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::norms::Norms;
-use super::reference::{MeshLimit, Temporal};
+use super::reference::{BestOnMesh, MeshLimit};
 use super::trial::StudyTrial;
 
 /// Relative errors of one signal.
@@ -27,7 +27,7 @@ pub struct SignalErrors {
 pub const BETTER: f64 = 10.0;
 
 /// Computes the errors of every signal of a finished run.
-pub fn errors(trial: &StudyTrial, meshes: &[Temporal], limits: &[MeshLimit]) -> Option<Vec<SignalErrors>> {
+pub fn errors(trial: &StudyTrial, meshes: &[BestOnMesh], limits: &[MeshLimit]) -> Option<Vec<SignalErrors>> {
     let signals = trial.signals.as_ref()?;
     let mesh = meshes.iter().find(|m| m.cells == trial.setting.cells);
     let one = |(k, limit): (usize, &MeshLimit)| {

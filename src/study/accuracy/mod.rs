@@ -1,18 +1,18 @@
 //! Cost of accuracy: wall time and error of a case over tolerance, mesh, order and method.
 //!
 //! ```text
-//! plan       requested settings, their cases, the budget
-//! signals    compared data: histories, fields, quantities; vectors of the same length for every setting
-//! norms      norms of vectors and of their differences
-//! trial      runs of one setting, with work and times
-//! price      expected cost of the next run
-//! scheme     time integration of a setting: method and order
-//! tolerances runs of one mesh and scheme over tolerances, and the error of the tightest run
-//! sweep      all runs within the budget: points, then references
-//! reference  best run on each mesh; limit of vanishing mesh size
-//! errors     temporal, spatial and total error of every point
-//! front      Pareto front, cheapest points, balance of temporal and spatial error, cost minimum
-//! study      the complete study
+//! plan             requested settings, their cases, the budget
+//! signals          compared data: histories, fields, quantities; vectors of the same length for every setting
+//! norms            norms of vectors and of their differences
+//! trial            runs of one setting, with work and times
+//! cost_prediction  expected cost of the next run
+//! scheme           time integration of a setting: method and order
+//! tolerances       runs of one mesh and scheme over tolerances, and the error of the tightest run
+//! sweep            all runs within the budget: points, then references
+//! reference        best run on each mesh; limit of vanishing mesh size
+//! errors           temporal, spatial and total error of every point
+//! pareto_front     Pareto front, cheapest points, balance of temporal and spatial error, cost minimum
+//! study            the complete study
 //! ```
 //!
 //! **Errors.** Let `x(K, τ)` be the result on mesh `K` at tolerance `τ`, `r(K)` the best run on mesh `K`, and `X` the
@@ -21,11 +21,11 @@
 //! and, independently, from a run of another order. The error of `X` is estimated by Richardson extrapolation from
 //! coarser meshes. A point whose error is less than ten times these estimates is marked as not judged.
 
+pub mod cost_prediction;
 pub mod errors;
-pub mod front;
 pub mod norms;
+pub mod pareto_front;
 pub mod plan;
-pub mod price;
 pub mod reference;
 pub mod scheme;
 pub mod signals;

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::run::null;
+use crate::run::json_null;
 
 /// Root mean square and maximum norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Norms {
     /// Root of the mean square.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub l2: f64,
     /// Largest absolute value.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub max: f64,
 }
 
@@ -22,7 +22,7 @@ impl Norms {
     }
 
     /// Computes the norms of a vector; zero for an empty one.
-    pub fn of(values: impl ExactSizeIterator<Item = f64>) -> Self {
+    pub fn from_values(values: impl ExactSizeIterator<Item = f64>) -> Self {
         let count = values.len().max(1) as f64;
         let (sum, max) = values.fold((0.0, 0.0_f64), |(sum, max), x| (sum + x * x, larger(max, x.abs())));
         Self {
@@ -34,7 +34,7 @@ impl Norms {
     /// Computes the norms of the difference of two vectors.
     pub fn between(a: &[f64], b: &[f64]) -> Self {
         debug_assert_eq!(a.len(), b.len());
-        Self::of(a.iter().zip(b).map(|(a, b)| a - b))
+        Self::from_values(a.iter().zip(b).map(|(a, b)| a - b))
     }
 
     /// Combines both norms with those of another by `f`.

@@ -81,7 +81,7 @@ impl Budget {
     }
 
     /// Formats a cost with its unit.
-    pub fn words(self, cost: f64) -> String {
+    pub fn describe(self, cost: f64) -> String {
         match self {
             Self::Wall(_) => format!("{cost:.2} s"),
             Self::Steps(_) => format!("{cost:.0} steps"),

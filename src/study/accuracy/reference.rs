@@ -7,11 +7,11 @@ use super::scheme::Scheme;
 use super::signals::{ComparedSignal, SignalKind};
 use super::tolerances::ToleranceSequence;
 use super::trial::StudyTrial;
-use crate::run::null;
+use crate::run::json_null;
 
 /// The best run on a mesh.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Temporal {
+pub struct BestOnMesh {
     /// Beam cells per segment.
     pub cells: usize,
     /// Time integration of the run.
@@ -19,7 +19,7 @@ pub struct Temporal {
     /// Its tolerance.
     pub rtol: f64,
     /// Its wall time [s].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub wall_s: f64,
     /// Scheme and tolerance of the run that checks it.
     pub checked_by: Option<(Scheme, f64)>,
@@ -48,10 +48,10 @@ pub fn temporal(
     schemes: &[Scheme],
     sizes: &[Norms],
     headline: usize,
-) -> Option<Temporal> {
+) -> Option<BestOnMesh> {
     let mut sequences: Vec<(f64, ToleranceSequence)> = schemes
         .iter()
-        .map(|&scheme| ToleranceSequence::of(trials, cells, scheme))
+        .map(|&scheme| ToleranceSequence::select(trials, cells, scheme))
         .filter(|sequence| !sequence.runs.is_empty())
         .map(|sequence| (sequence.last_error(headline).map_or(f64::INFINITY, |e| e.max), sequence))
         .collect();
@@ -82,7 +82,7 @@ pub fn temporal(
             believed(by_tolerance[k], by_order[k], expected)
         })
         .collect();
-    Some(Temporal {
+    Some(BestOnMesh {
         cells,
         scheme: best.setting.scheme,
         rtol: best.setting.rtol,
@@ -155,7 +155,7 @@ impl MeshLimit {
 }
 
 /// Computes the limit of signal `k` from the references of the meshes, coarse to fine; `None` without references.
-pub fn limit(meshes: &[Temporal], signal: &ComparedSignal, k: usize, size: Norms) -> Option<MeshLimit> {
+pub fn limit(meshes: &[BestOnMesh], signal: &ComparedSignal, k: usize, size: Norms) -> Option<MeshLimit> {
     let finest = meshes.last()?;
     let mut limit = MeshLimit {
         name: signal.name.clone(),
@@ -170,7 +170,7 @@ pub fn limit(meshes: &[Temporal], signal: &ComparedSignal, k: usize, size: Norms
         values: finest.values[k].clone(),
     };
     let [.., coarse, fine] = meshes else { return Some(limit) };
-    let between = |a: &Temporal, b: &Temporal| Norms::between(&a.values[k], &b.values[k]).over(size);
+    let between = |a: &BestOnMesh, b: &BestOnMesh| Norms::between(&a.values[k], &b.values[k]).over(size);
     let ratio = fine.cells as f64 / coarse.cells as f64;
     let near = between(fine, coarse);
     // With two meshes the order is unknown; first order is the cautious assumption.

@@ -81,14 +81,14 @@ const LOOK: u64 = 64;
 
 /// Recorder of the compared signals.
 #[derive(Debug)]
-pub struct Keep {
+pub struct SignalRecorder {
     limit: StopLimit,
     stride: usize,
     columns: Vec<(usize, ComparedSignal)>,
     fields: Vec<(usize, ComparedSignal)>,
 }
 
-impl Keep {
+impl SignalRecorder {
     /// Creates a recorder for a mesh of `cells` beam cells per segment.
     pub fn new(cells: usize, limit: StopLimit) -> Self {
         Self {
@@ -134,7 +134,7 @@ fn empty(name: &str, unit: &str, kind: SignalKind) -> ComparedSignal {
     }
 }
 
-impl Recorder for Keep {
+impl Recorder for SignalRecorder {
     fn begin(&mut self, header: &Header) -> Result<()> {
         let wanted = header
             .columns

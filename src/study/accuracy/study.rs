@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::errors::{self, BETTER, SignalErrors};
-use super::front::{self, CheapestPoint, CostMark, CostMinimum, ErrorBalance};
 use super::norms::Norms;
+use super::pareto_front::{self, CheapestPoint, CostMark, CostMinimum, ErrorBalance};
 use super::plan::StudyPlan;
-use super::reference::{self, MeshLimit, Temporal};
+use super::reference::{self, BestOnMesh, MeshLimit};
 use super::scheme::Scheme;
 use super::signals::{self, ComparedSignal, SignalKind};
 use super::sweep::{self, StudyWatch};
@@ -61,7 +61,7 @@ pub struct Study {
     /// Index of the measure shown by picture, table and sentence, in the maximum norm.
     pub headline: usize,
     /// The best run on each mesh.
-    pub references: Vec<Temporal>,
+    pub references: Vec<BestOnMesh>,
     /// All runs, references included.
     pub points: Vec<StudyPoint>,
     /// Points of the Pareto front, by falling error.
@@ -130,7 +130,7 @@ pub fn study(
     let mut schemes: Vec<Scheme> = plan.schemes.iter().copied().chain(plan.reference_schemes()).collect();
     schemes.sort_unstable();
     schemes.dedup();
-    let references: Vec<Temporal> = plan
+    let references: Vec<BestOnMesh> = plan
         .reference_cells()
         .into_iter()
         .filter_map(|k| reference::temporal(&trials, k, &schemes, &sizes, headline))
@@ -215,7 +215,10 @@ fn agree(trials: &mut [StudyTrial], prescribed: &[&str]) -> (Vec<String>, Vec<No
     let Some(best) = best(trials) else {
         return (vec![], vec![]);
     };
-    let size = |s: &ComparedSignal| s.scale.map_or_else(|| Norms::of(s.values.iter().copied()), Norms::both);
+    let size = |s: &ComparedSignal| {
+        s.scale
+            .map_or_else(|| Norms::from_values(s.values.iter().copied()), Norms::both)
+    };
     let largest = |unit: &str| {
         let alike = best.iter().filter(|s| s.unit == unit && s.kind != SignalKind::Quantity);
         alike.map(|s| size(s).max).fold(0.0, f64::max)
@@ -283,8 +286,8 @@ fn conclude(study: &mut Study) {
         (0..study.points.len()).map(mark).collect()
     };
     let (totals, bounds) = (marks(|e| e.total.max), marks(|e| e.bound.max));
-    let (of_totals, of_bounds) = (front::front(&totals), front::front(&bounds));
-    study.answers = front::answers(&bounds, &of_bounds, &ACCURACIES);
+    let (of_totals, of_bounds) = (pareto_front::front(&totals), pareto_front::front(&bounds));
+    study.answers = pareto_front::answers(&bounds, &of_bounds, &ACCURACIES);
     // exclude a setting that misses the loosest accuracy, however cheap it is
     study.front = of_totals;
     study.front.retain(|&k| totals[k].error <= ACCURACIES[0]);
@@ -300,7 +303,7 @@ fn conclude(study: &mut Study) {
             .flat_map(|&c| study.plan.schemes.iter().map(move |&o| (c, o)))
     };
     study.feet = lines()
-        .filter_map(|(c, o)| front::cost_minimum(&study.line(c, o), &cost, &work))
+        .filter_map(|(c, o)| pareto_front::cost_minimum(&study.line(c, o), &cost, &work))
         .collect();
     study.balances = lines()
         .filter_map(|(cells, scheme)| {
@@ -315,7 +318,7 @@ fn conclude(study: &mut Study) {
                 ))
             });
             let spatial = study.error(*line.first()?)?.spatial?.max;
-            let at = front::balance(&along.collect::<Vec<_>>(), spatial)?;
+            let at = pareto_front::balance(&along.collect::<Vec<_>>(), spatial)?;
             Some(LineBalance { cells, scheme, at })
         })
         .collect();

@@ -3,11 +3,11 @@
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
+use super::cost_prediction;
 use super::plan::{Budget, StudyPlan, StudySetting};
-use super::price;
 use super::scheme::Scheme;
 use super::tolerances::ToleranceSequence;
-use super::trial::{self, Allowance, RunPurpose, StudyTrial};
+use super::trial::{self, CostLimits, RunPurpose, StudyTrial};
 use crate::case::Case;
 use crate::error::Result;
 use crate::study::evaluations::Evaluations;
@@ -133,8 +133,8 @@ impl Sweep<'_> {
             let left = (POINTS * budget.size() - self.spent(&state)).min(*room);
             (
                 left,
-                price::expected(&state.trials, setting),
-                price::hopeless(&state.trials, setting),
+                cost_prediction::expected(&state.trials, setting),
+                cost_prediction::hopeless(&state.trials, setting),
             )
         };
         let cap = left.min(POINT * budget.size());
@@ -143,8 +143,8 @@ impl Sweep<'_> {
             _ if hopeless => Some("looser tolerances were too slow already".to_string()),
             Some(cost) if cost > cap => Some(format!(
                 "expected cost {}, but only {} remain",
-                budget.words(cost),
-                budget.words(cap)
+                budget.describe(cost),
+                budget.describe(cap)
             )),
             _ => None,
         };
@@ -155,7 +155,7 @@ impl Sweep<'_> {
             return Ok(());
         }
         let repeats = (REPEATS * budget.size()).min(left - cap).max(0.0);
-        let allowed = Allowance {
+        let allowed = CostLimits {
             run: cap,
             repeats,
             wanted: if self.plan.repeats > 1 { self.plan.repeats } else { 0 },
@@ -166,7 +166,7 @@ impl Sweep<'_> {
     }
 
     /// Runs a setting and returns its cost.
-    fn run(&self, setting: StudySetting, role: RunPurpose, expected: Option<f64>, allowed: Allowance) -> Result<f64> {
+    fn run(&self, setting: StudySetting, role: RunPurpose, expected: Option<f64>, allowed: CostLimits) -> Result<f64> {
         let most = allowed.run + allowed.repeats;
         let event = {
             let mut state = self.lock();
@@ -223,7 +223,7 @@ impl Sweep<'_> {
         loop {
             let (next, expected, first) = {
                 let state = self.lock();
-                let sequence = ToleranceSequence::of(&state.trials, cells, scheme);
+                let sequence = ToleranceSequence::select(&state.trials, cells, scheme);
                 let last = sequence.last().map(|t| t.setting.rtol);
                 let tighter = |rtol: &f64| *rtol > too_tight && last.is_none_or(|last| *rtol < last);
                 let mut candidates = self.plan.reference_rtols();
@@ -235,7 +235,7 @@ impl Sweep<'_> {
                 let setting = |rtol| StudySetting { cells, scheme, rtol };
                 let priced = candidates.into_iter().filter(tighter).map(|rtol| {
                     let setting = setting(rtol);
-                    (setting, price::expected(&state.trials, setting))
+                    (setting, cost_prediction::expected(&state.trials, setting))
                 });
                 let affordable = |expected: &Option<f64>| expected.is_none_or(|cost| cost <= 0.8 * left);
                 let Some((next, expected)) = priced.into_iter().find(|(_, expected)| affordable(expected)) else {
@@ -243,7 +243,7 @@ impl Sweep<'_> {
                 };
                 (next, expected, last.is_none())
             };
-            let allowed = Allowance {
+            let allowed = CostLimits {
                 run: left,
                 repeats: 0.0,
                 wanted: 0,

@@ -15,7 +15,7 @@ pub struct ToleranceSequence<'a> {
 
 impl<'a> ToleranceSequence<'a> {
     /// Collects the runs of a mesh and a scheme.
-    pub fn of(trials: &'a [StudyTrial], cells: usize, scheme: Scheme) -> Self {
+    pub fn select(trials: &'a [StudyTrial], cells: usize, scheme: Scheme) -> Self {
         let mut runs: Vec<&StudyTrial> = trials
             .iter()
             .filter(|t| t.finished() && t.line() == (cells, scheme))

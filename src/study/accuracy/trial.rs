@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 
 use super::plan::{Budget, StudySetting};
 use super::scheme::Scheme;
-use super::signals::{ComparedSignal, Keep, StopLimit};
+use super::signals::{ComparedSignal, SignalRecorder, StopLimit};
 use crate::case::Case;
 use crate::error::Result;
 use crate::integrate::halt;
 use crate::run::dynamics;
-use crate::run::null;
+use crate::run::json_null;
 use crate::run::summary::{Counters, Status};
 use crate::study::evaluations::Evaluations;
 
@@ -28,7 +28,7 @@ pub enum RunPurpose {
 /// Outcome of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Ending {
+pub enum TrialOutcome {
     /// Reached the end of the simulated time.
     Finished,
     /// Stopped at its limit, or by the model.
@@ -47,7 +47,7 @@ pub struct StudyTrial {
     /// Purpose.
     pub role: RunPurpose,
     /// Outcome.
-    pub ending: Ending,
+    pub ending: TrialOutcome,
     /// Reason why it did not finish.
     pub reason: Option<String>,
     /// Number of unknowns.
@@ -55,15 +55,15 @@ pub struct StudyTrial {
     /// Work of one run.
     pub counters: Counters,
     /// Least wall time of the timed runs [s].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub wall_min_s: f64,
     /// Median wall time of the timed runs [s].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub wall_median_s: f64,
     /// Number of timed runs.
     pub repeats: usize,
     /// Cost of one run, in seconds or steps as in the budget.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub cost: f64,
     /// Compared signals; finished runs only.
     #[serde(skip)]
@@ -76,7 +76,7 @@ impl StudyTrial {
         Self {
             setting,
             role,
-            ending: Ending::Skipped,
+            ending: TrialOutcome::Skipped,
             reason: Some(reason),
             unknowns: 0,
             counters: Counters::default(),
@@ -90,7 +90,7 @@ impl StudyTrial {
 
     /// True if the run finished, so that it can be compared.
     pub fn finished(&self) -> bool {
-        self.ending == Ending::Finished
+        self.ending == TrialOutcome::Finished
     }
 
     /// Mesh and scheme: one line of the picture.
@@ -101,7 +101,7 @@ impl StudyTrial {
 
 /// Cost limits of one setting.
 #[derive(Clone, Copy, Debug)]
-pub struct Allowance {
+pub struct CostLimits {
     /// Limit of one run, which is stopped there.
     pub run: f64,
     /// Limit of all further runs together.
@@ -117,7 +117,7 @@ pub fn run(
     case: &Case,
     (setting, role): (StudySetting, RunPurpose),
     budget: Budget,
-    allowed: Allowance,
+    allowed: CostLimits,
     evaluations: &Evaluations,
 ) -> Result<(StudyTrial, f64)> {
     if halt::asked() {
@@ -137,7 +137,7 @@ fn computed(
     setting: StudySetting,
     role: RunPurpose,
     budget: Budget,
-    allowed: Allowance,
+    allowed: CostLimits,
 ) -> Result<(StudyTrial, f64)> {
     let variant = setting.case(case);
     let once = |most: f64| -> Result<(StudyTrial, f64)> {
@@ -146,16 +146,16 @@ fn computed(
             Budget::Wall(_) => StopLimit::Wall(begin + Duration::from_secs_f64(most.clamp(0.0, 1e9))),
             Budget::Steps(_) => StopLimit::Steps(most.max(1.0) as u64),
         };
-        let mut keep = Keep::new(setting.cells, limit);
+        let mut keep = SignalRecorder::new(setting.cells, limit);
         let outcome = dynamics::run(&variant, &mut keep)?;
         let wall = begin.elapsed().as_secs_f64();
         let summary = outcome.summary;
         let ending = match summary.status {
-            Status::Finished => Ending::Finished,
-            Status::Stopped => Ending::Stopped,
-            Status::OutOfRange | Status::Failed => Ending::Failed,
+            Status::Finished => TrialOutcome::Finished,
+            Status::Stopped => TrialOutcome::Stopped,
+            Status::OutOfRange | Status::Failed => TrialOutcome::Failed,
         };
-        let signals = (ending == Ending::Finished).then(|| keep.signals(&summary));
+        let signals = (ending == TrialOutcome::Finished).then(|| keep.signals(&summary));
         // Non-finite values make every comparison meaningless: the run has failed.
         let broken = signals
             .iter()
@@ -163,7 +163,7 @@ fn computed(
             .any(|s| s.values.iter().any(|x| !x.is_finite()));
         let (ending, reason) = if broken {
             (
-                Ending::Failed,
+                TrialOutcome::Failed,
                 Some("the result contains numbers that are not finite".to_string()),
             )
         } else {

@@ -31,8 +31,8 @@ pub fn alike_or_own(case: &Case, alike: Option<&System>) -> Result<System> {
 }
 
 /// Derivatives of the figures of a summary; empty if the run did not finish.
-pub(super) fn of_summary(summary: &Summary, parameters: &[Parameter]) -> Gathered {
-    let mut all = Gathered::new(parameters.len());
+pub(super) fn of_summary(summary: &Summary, parameters: &[Parameter]) -> GatheredDerivatives {
+    let mut all = GatheredDerivatives::new(parameters.len());
     if summary.status != Status::Finished {
         return all;
     }
@@ -50,12 +50,12 @@ pub(super) fn of_summary(summary: &Summary, parameters: &[Parameter]) -> Gathere
 }
 
 /// Derivatives by figure, possibly incomplete.
-pub struct Gathered {
+pub struct GatheredDerivatives {
     count: usize,
     all: BTreeMap<String, Vec<Option<f64>>>,
 }
 
-impl Gathered {
+impl GatheredDerivatives {
     /// Creates an empty collection for `count` numbers.
     pub fn new(count: usize) -> Self {
         Self {

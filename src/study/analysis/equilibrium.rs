@@ -1,6 +1,6 @@
 //! Equilibria under the loads at the end of a case.
 
-use super::derivatives::{FigureSlopes, Gathered, until};
+use super::derivatives::{FigureSlopes, GatheredDerivatives, until};
 use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, accurate, errors};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
@@ -9,7 +9,7 @@ use crate::error::{Code, Error, Result};
 use crate::run::equilibrium::{self, EquilibriumOptions, Path};
 use crate::run::record::HistoryColumn;
 use crate::run::summary::Status;
-use crate::run::{known, slow};
+use crate::run::{early_warnings, slow_fluid};
 use crate::study::refine::{self, meshes, numbers};
 
 /// Least number of points on a path of equilibria, as in the command.
@@ -53,7 +53,7 @@ impl Analysis for EquilibriumAnalysis {
         }
         let columns = equilibrium::columns(&equilibrium::system(case, options.at_s)?);
         let slopes = equilibrium::differentiate(case, &options, &path, parameters)?;
-        let mut all = Gathered::new(parameters.len());
+        let mut all = GatheredDerivatives::new(parameters.len());
         for (k, one) in slopes.iter().enumerate() {
             for (column, slope) in columns.iter().zip(&one.row) {
                 all.put(k, column.key(), *slope);
@@ -103,8 +103,8 @@ fn at_rest(case: &Case, ask: AnalysisRequest, stop: &dyn Fn() -> bool) -> Result
         let by_mesh = meshes::judge(case, &here, &mut of)?.with_effects(case, &here, &mut of)?;
         errors(&mut found, &by_mesh, &key);
     }
-    found.warn(&known::at_rest(case, &system));
-    found.warn(slow::warning(case, &system, options.at_s).as_slice());
+    found.warn(&early_warnings::at_rest(case, &system));
+    found.warn(slow_fluid::warning(case, &system, options.at_s).as_slice());
     found.warn(&path.warnings());
     Ok(found)
 }

@@ -7,7 +7,7 @@
 //! cycle        steady cycles                         slcbeam periodic
 //! multipliers  stability of cycles                   slcbeam floquet
 //!
-//! found        figures of a case, and the outcome of its computation
+//! outcome      figures of a case, and the outcome of its computation
 //! derivatives  derivatives of figures with respect to numbers of the case
 //! power        energies and mean powers of a cycle
 //! ```
@@ -18,9 +18,9 @@
 mod cycle;
 pub mod derivatives;
 mod equilibrium;
-mod found;
 pub mod modes;
 mod multipliers;
+mod outcome;
 pub mod power;
 mod run;
 
@@ -39,7 +39,7 @@ use crate::study::evaluations::Evaluations;
 use crate::study::refine::{self, meshes};
 use crate::study::{companion, target};
 use derivatives::FigureSlopes;
-pub use found::{AnalysisOutcome, word};
+pub use outcome::{AnalysisOutcome, word};
 
 /// Name of the figure that is 1 if the requested accuracy is reached, otherwise 0.
 pub const ACCURACY: &str = "accuracy_reached";

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use super::derivatives::{FigureSlopes, Gathered};
+use super::derivatives::{FigureSlopes, GatheredDerivatives};
 use super::{Analysis, AnalysisOutcome, AnalysisRequest, RunCase, reached};
 use crate::case::Case;
 use crate::case::parameter::Parameter;
 use crate::discrete::System;
 use crate::error::{Code, Result};
-use crate::run::{known, modes};
+use crate::run::{early_warnings, modes};
 use crate::study::refine::{self, numbers};
 
 /// Number of modes with figures, those of lowest frequency.
@@ -45,7 +45,7 @@ impl Analysis for ModesAnalysis {
     ) -> Result<(AnalysisOutcome, FigureSlopes)> {
         let (found, _) = swinging(case)?;
         let slopes = modes::differentiate(case, None, &found.about, &found.modes, parameters)?;
-        let mut all = Gathered::new(parameters.len());
+        let mut all = GatheredDerivatives::new(parameters.len());
         for (rank, place) in lowest(&found.modes).into_iter().enumerate() {
             let name = format!("mode_{}", rank + 1);
             let s = found.modes[place].s;
@@ -123,7 +123,7 @@ fn small(case: &Case, ask: AnalysisRequest) -> Result<AnalysisOutcome> {
         let worst = accuracy.quantities.values().filter_map(|estimate| estimate.total);
         found.put("largest_error", worst.reduce(f64::max));
     }
-    found.warn(&known::at_rest(case, &System::new(case)?));
+    found.warn(&early_warnings::at_rest(case, &System::new(case)?));
     // warn only about modes that are reported
     all.modes = lowest(&all.modes)
         .into_iter()

@@ -52,7 +52,7 @@ pub(super) fn names(case: &Case, motion: &[&str], sums: &[&str]) -> Result<Vec<S
     let network = system.model.wet.as_ref().map(|wet| &wet.network);
     let turbines = network.is_some_and(|network| !network.turbines.is_empty());
     let mut all = vec![];
-    for one in Interest::of([network.is_some(), turbines]) {
+    for one in Interest::recorded([network.is_some(), turbines]) {
         let figures = match one.source() {
             InterestSource::Motion(_) => motion,
             _ => sums,

@@ -15,8 +15,8 @@ use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::run::record::Recorder;
 use crate::run::summary::{Figures, Status, Summary, largest_error};
-use crate::study::counted::Floors;
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
+use crate::study::significant::RoundingScales;
 
 /// Relative error that is large.
 pub const LIMIT: f64 = 0.05;
@@ -71,7 +71,7 @@ pub(super) fn attribute(
     accuracy: Option<&Accurate>,
     recorder: &mut dyn Recorder,
 ) -> Result<()> {
-    let floors = &Floors::of(case)?;
+    let floors = &RoundingScales::from_case(case)?;
     let least = least(accuracy);
     let cells = summary.companion.as_ref().map_or([0; 2], |companion| {
         [companion.cells_per_segment, companion.cells_per_bladder]
@@ -122,7 +122,7 @@ pub(super) fn attribute(
     let Some(causes) = causes else { return Ok(()) };
     let large = large(summary, floors, least);
     if accuracy.is_none() && !large.is_empty() {
-        let warning = words(case, &large, &causes, &shares(summary, causes.known()));
+        let warning = describe(case, &large, &causes, &shares(summary, causes.known()));
         summary.warnings.insert(0, warning);
     }
     if let (Some(companion), Some(known)) = (&mut summary.companion, causes.known()) {
@@ -138,7 +138,7 @@ fn least(accuracy: Option<&Accurate>) -> f64 {
 }
 
 /// Expected errors by cause that the companion does not contradict and that need not be known better.
-fn believed(accuracy: &Accurate, summary: &Summary, floors: &Floors) -> BTreeMap<ErrorCause, Figures> {
+fn believed(accuracy: &Accurate, summary: &Summary, floors: &RoundingScales) -> BTreeMap<ErrorCause, Figures> {
     let (asked, mut expected) = (accuracy.asked, accuracy.expected.clone());
     let with = |part: f64| {
         let mut errors = summary.errors.clone();
@@ -169,7 +169,7 @@ fn tolerance_binds(summary: &Summary) -> bool {
 }
 
 /// Quantities whose error is above a limit, the largest first.
-fn large(summary: &Summary, floors: &Floors, least: f64) -> Vec<(String, f64)> {
+fn large(summary: &Summary, floors: &RoundingScales, least: f64) -> Vec<(String, f64)> {
     let mut large: Vec<(String, f64)> = error::relative(summary, &summary.errors, floors).into_iter().collect();
     large.retain(|(_, error)| *error > least);
     large.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -195,7 +195,7 @@ fn added(of_companion: &Figures, causes: &BTreeMap<ErrorCause, Figures>, most: f
 fn measure(
     case: &Case,
     summary: &Summary,
-    floors: &Floors,
+    floors: &RoundingScales,
     cells: [usize; 2],
     accuracy: Option<&Accurate>,
     mut found: BTreeMap<ErrorCause, Figures>,
@@ -255,7 +255,7 @@ fn shares(
     summary.errors.keys().map(of).collect()
 }
 
-fn words(
+fn describe(
     case: &Case,
     large: &[(String, f64)],
     measured: &Causes,

@@ -51,7 +51,7 @@ pub fn changes(
                 let now = wait(task, limits, &progress(summary), recorder);
                 stopped = stopped.and_then(|before: Option<String>| Ok(before.or(now?)));
             }
-            let ended: Vec<_> = tasks.into_iter().map(threads::Begun::join).collect();
+            let ended: Vec<_> = tasks.into_iter().map(threads::StartedTask::join).collect();
             (ended, stopped)
         });
         if stopped?.is_some() || halt::asked() {

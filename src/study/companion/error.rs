@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::run::summary::{Figures, Quantity, Summary, has_unit_of_quantity, largest_error};
-use crate::study::counted::{Floors, counted, counted_of_ports, counted_of_probes};
+use crate::study::significant::{RoundingScales, counted, counted_of_ports, counted_of_probes};
 
 /// Errors by the name of a quantity, probe or port, relative to its largest figure.
 pub type Relative = BTreeMap<String, f64>;
@@ -31,7 +31,7 @@ pub fn errors(run: &Summary, companion: &Summary) -> Figures {
 
 /// Raises errors of energies that count to the residual of the energy balance, which is an error of the time steps: the discrete equations
 /// conserve energy.
-pub fn raise_to_balance(summary: &Summary, errors: &mut Figures, floors: &Floors) {
+pub fn raise_to_balance(summary: &Summary, errors: &mut Figures, floors: &RoundingScales) {
     let counted = relative(summary, errors, floors);
     for (name, quantity) in summary
         .quantities
@@ -106,7 +106,7 @@ fn with_errors_added(summary: &Summary, errors: &Figures) -> Summary {
 }
 
 /// Largest error of each quantity, probe and port that is more than rounding, relative to its largest figure.
-pub fn relative(summary: &Summary, errors: &Figures, floors: &Floors) -> Relative {
+pub fn relative(summary: &Summary, errors: &Figures, floors: &RoundingScales) -> Relative {
     let added = &with_errors_added(summary, errors);
     let quantities = counted(added, floors).map(|(name, _)| (name, summary.quantities[name].size()));
     let probes = counted_of_probes(added, floors).map(|(name, _)| (name, summary.probes[name].size()));
@@ -116,7 +116,7 @@ pub fn relative(summary: &Summary, errors: &Figures, floors: &Floors) -> Relativ
 }
 
 /// Errors of a run by their cause, the JSON pointer of a setting, as [`relative`] gives them; empty where no cause is measured.
-pub fn relative_by_cause<'a>(summary: &'a Summary, floors: &Floors) -> BTreeMap<&'a str, Relative> {
+pub fn relative_by_cause<'a>(summary: &'a Summary, floors: &RoundingScales) -> BTreeMap<&'a str, Relative> {
     let causes = summary.companion.iter().flat_map(|companion| &companion.causes);
     let relative = causes.map(|(pointer, errors)| (pointer.as_str(), relative(summary, errors, floors)));
     relative.collect()

@@ -38,7 +38,7 @@ use crate::case::schema::Companion;
 use crate::discrete::{System, resolution};
 use crate::error::{Code, Error, Result};
 use crate::integrate::halt;
-use crate::numerics::threads::{self, Begun};
+use crate::numerics::threads::{self, StartedTask};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::{Control, Progress, Recorder, Unrecorded};
@@ -222,13 +222,13 @@ fn accompany(
 
 /// Waits until a task ends; the reason of the recorder where that does not want to wait.
 fn wait<T>(
-    task: &Begun<'_, T>,
+    task: &StartedTask<'_, T>,
     limits: &Limits,
     progress: &Progress,
     recorder: &mut dyn Recorder,
 ) -> Result<Option<String>> {
     let mut stopped = None;
-    if let Begun::Thread(thread) = task {
+    if let StartedTask::Thread(thread) = task {
         while !thread.is_finished() {
             thread::sleep(PATIENCE);
             match recorder.progress(progress) {

@@ -8,7 +8,7 @@ use crate::run::summary::{CompanionRun, Summary};
 use crate::study::accuracy::plan::unrecorded;
 use crate::study::companion::error;
 use crate::study::effects::choices::with;
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
 use crate::study::refine::has_cells_along_bladders;
 
 /// Loosest and tightest tolerance of a variant.

@@ -29,7 +29,7 @@ pub struct FieldPositions {
 
 impl FieldPositions {
     /// Returns the positions of a field in a recording; `None` if its coordinate is missing.
-    pub fn of(recording: &Recording, field: &Array) -> Option<Self> {
+    pub fn find(recording: &Recording, field: &Array) -> Option<Self> {
         let axis = axis_of(&field.name);
         let raw = recording.axis(axis.name()).filter(|x| x.len() == field.len)?;
         let rough = axis == FieldAxis::Network;

@@ -8,7 +8,7 @@ use super::interpolate::cubic;
 use super::recording::{Array, Recording, Series};
 use crate::discrete::quantities::Observable;
 use crate::error::numbers::rounded;
-use crate::run::null;
+use crate::run::json_null;
 use crate::run::schedule::SAME;
 use crate::study::accuracy::Norms;
 
@@ -24,12 +24,12 @@ pub struct Difference {
     /// Size to which the norms refer.
     pub size: Norms,
     /// Time of the largest difference [s].
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub at_s: f64,
     /// Position of the largest difference, a share of the beam's length or of the network; fields only.
     pub place: Option<f64>,
     /// Estimated error of interpolation in time, relative as the largest difference; 0 if the times coincide.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub interpolation: f64,
     /// Number of instants compared.
     pub instants: usize,
@@ -295,7 +295,7 @@ fn field((a, of_a): (&Recording, &Array), (b, of_b): (&Recording, &Array)) -> Re
     if times.is_empty() {
         return Err("no common times");
     }
-    let places = |r, f| FieldPositions::of(r, f).ok_or("its coordinate is missing");
+    let places = |r, f| FieldPositions::find(r, f).ok_or("its coordinate is missing");
     let (at_a, at_b) = (places(a, of_a)?, places(b, of_b)?);
     if !at_a.alike(&at_b) {
         return Err("the networks differ");

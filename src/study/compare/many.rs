@@ -29,7 +29,7 @@ pub struct ComparedFigure {
 
 impl ManyComparison {
     /// Compares all other recordings with the reference, given by its index.
-    pub fn of(all: &[Recording], reference: usize) -> Self {
+    pub fn new(all: &[Recording], reference: usize) -> Self {
         let others = all.iter().enumerate().filter(|(k, _)| *k != reference);
         Self {
             reference: all[reference].label.clone(),

@@ -49,7 +49,7 @@ impl Match {
     }
 
     /// Formats the assignment as on the command line.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         let place = self.place.as_ref().map_or(String::new(), |place| format!("@{place}"));
         format!("{}={}{place}", self.column, self.quantity)
     }
@@ -63,7 +63,7 @@ impl Match {
         let Some(place) = &self.place else {
             return Ok(self.quantity.clone());
         };
-        let placed = places::of(case, &self.quantity, place)?;
+        let placed = places::parse_place(case, &self.quantity, place)?;
         case.probes.extend(placed.probe);
         Ok(placed.name)
     }
@@ -110,7 +110,7 @@ pub fn resolve(table: &DataTable, matches: &[Match], names: &[String], columns: 
     }
     let mut found: Vec<Matched> = vec![];
     for (asked, name) in matches.iter().zip(names) {
-        let wrong = |what: String| Error::Usage(format!("--match {}: {what}", asked.words()));
+        let wrong = |what: String| Error::Usage(format!("--match {}: {what}", asked.describe()));
         let column = table.wanted(&asked.column, "--match")?;
         let index = find(columns, name).ok_or_else(|| {
             let known = columns.iter().map(|(name, _)| name.as_str());

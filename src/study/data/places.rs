@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 
 /// Name of a column at a position, and the probe that it requires.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Placed {
+pub struct QuantityAtPlace {
     /// Name of the column, with its unit if that was given.
     pub name: String,
     /// Probe that the case lacks.
@@ -21,9 +21,9 @@ const WANTED: &str = "a share of the length from 0 to 1, tip, the name of a prob
 ///
 /// # Errors
 /// [`Error::Usage`]: the case has no such position, or the quantity does not exist there.
-pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
+pub fn parse_place(case: &Case, quantity: &str, place: &str) -> Result<QuantityAtPlace> {
     let wrong = |what: String| Error::Usage(format!("--match ..={quantity}@{place}: {what}"));
-    let placed = |begin: &str, probe| Placed {
+    let placed = |begin: &str, probe| QuantityAtPlace {
         name: format!("{begin}_{quantity}"),
         probe,
     };
@@ -56,7 +56,7 @@ pub fn of(case: &Case, quantity: &str, place: &str) -> Result<Placed> {
 }
 
 /// Returns the column of the pressure of a bladder, which is the pressure at its middle.
-fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<Placed, String> {
+fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<QuantityAtPlace, String> {
     let Some(bladders) = &case.bladders else {
         return Err("the case has no bladders".into());
     };
@@ -74,7 +74,7 @@ fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<P
     };
     let at = (number.unsigned_abs() as f64 - 0.5) / count as f64;
     let probe = at_place(case, at);
-    Ok(Placed {
+    Ok(QuantityAtPlace {
         name: format!("{}_{end}", probe.name),
         probe: missing(case, probe),
     })

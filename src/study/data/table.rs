@@ -50,7 +50,7 @@ impl DataTable {
     /// [`Error::Case`] with the position of every fault: no headings, duplicate headings, no rows, rows of another
     /// length.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let source = CaseSource::of(path, text);
+        let source = CaseSource::new(path, text);
         let mut lines = lines(text);
         let Some(header) = lines.next() else {
             let what = "no headings. The first line must name the columns, such as t_s, angle_deg";
@@ -76,7 +76,7 @@ impl DataTable {
             let what = "numbers instead of headings. The first line must name the columns, such as t_s, angle_deg";
             faults.push(fault(span, what.into()));
         }
-        let columns = headings.iter().map(|(heading, _)| Heading::of(heading)).collect();
+        let columns = headings.iter().map(|(heading, _)| Heading::parse(heading)).collect();
         let mut rows = vec![];
         for line in lines {
             let all = cells(&line, separator);

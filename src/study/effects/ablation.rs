@@ -3,16 +3,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::change::{Changes, Judged, ModelMeasure, Reference, Size, judge, largest};
-use super::choices::{Out, candidates, effects, guards, whole, with, without};
+use super::choices::{OmissionKind, candidates, effects, guards, whole, with, without};
+use super::figure_change::{Changes, ComparedFigures, ModelMeasure, Reference, Size, judge, largest};
 use super::recommend::{Recommendation, recommend};
 use super::trial::{ModelTrial, Runs, TrialPlan, TrialWatch};
 use crate::case::Case;
 use crate::case::schema::{Effect, Effects};
 use crate::error::{Error, Result};
-use crate::run::null;
-use crate::study::counted::Floors;
+use crate::run::json_null;
 use crate::study::evaluations::Evaluations;
+use crate::study::significant::RoundingScales;
 
 /// Tightest tolerance that is allowed.
 const TIGHTEST: f64 = 1e-13;
@@ -52,20 +52,20 @@ pub struct ComparedRun {
     /// Model with which it is compared.
     pub against: String,
     /// Relative change by quantity.
-    #[serde(deserialize_with = "null::by_name")]
+    #[serde(deserialize_with = "json_null::by_name")]
     pub changes: Changes,
     /// Name and change of the quantity that changes most.
-    #[serde(deserialize_with = "null::named")]
+    #[serde(deserialize_with = "json_null::named")]
     pub largest: Option<(String, f64)>,
     /// True if that change is above the integrator's own error.
     pub above_own_error: bool,
     /// Difference of the numbers of unknowns.
     pub unknowns: i64,
     /// Ratio of the work.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub work: f64,
     /// Ratio of the least wall times.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub wall: f64,
 }
 
@@ -102,7 +102,7 @@ pub struct Ablation {
     /// Relative tolerance of the integrator.
     pub rtol: f64,
     /// Figures that are compared: only those over the window if the motion cannot be followed.
-    pub judged_by: Judged,
+    pub judged_by: ComparedFigures,
     /// Quantities of the full model.
     pub measures: Vec<ModelMeasure>,
     /// The full model.
@@ -122,14 +122,14 @@ pub struct Ablation {
 }
 
 /// Criteria of comparisons, from the full model.
-pub struct Judge {
+pub struct Criteria {
     reference: Reference,
     measures: Vec<ModelMeasure>,
     tolerance: f64,
     timed: bool,
 }
 
-impl Judge {
+impl Criteria {
     /// Compares the run `other` with the run `base`; `None` if only the latter did not finish.
     pub fn compare(&self, runs: &Runs, base: usize, other: usize) -> Option<ComparedRun> {
         let (base, trial) = (runs.trial(base), runs.trial(other));
@@ -194,7 +194,7 @@ pub fn ablate(
         plan,
         tolerance: case.effects_tolerance(),
         rtol: case.solver.rtol,
-        judged_by: Judged::Figures,
+        judged_by: ComparedFigures::Figures,
         measures: vec![],
         full: ModelTrial::skipped("full"),
         tighter: ModelTrial::skipped("full, a tenth of the tolerance"),
@@ -209,7 +209,7 @@ pub fn ablate(
     let full_case = whole(case)?;
     let full = runs.run("full", full_case.clone())?;
     found.full = runs.trial(full).clone();
-    let row = |name: Effect, out: &Out| AblationRow {
+    let row = |name: Effect, out: &OmissionKind| AblationRow {
         name,
         verdict: EffectVerdict::Failed,
         reason: None,
@@ -223,7 +223,7 @@ pub fn ablate(
         found.spent_s = runs.spent_s();
         return Ok(found);
     };
-    let floors = Floors::of(case)?;
+    let floors = RoundingScales::from_case(case)?;
     known(measure, &Reference::new(summary, &floors).measures(None))?;
     let mut tight_case = full_case;
     tight_case.solver.rtol = (0.1 * tight_case.solver.rtol).max(TIGHTEST);
@@ -282,7 +282,7 @@ pub fn ablate(
                         EffectVerdict::Absent
                     },
                     reason: kept.map(|k| k.why.clone()),
-                    ..row(candidate.effect, &Out::default())
+                    ..row(candidate.effect, &OmissionKind::default())
                 }
             }
         });
@@ -313,17 +313,17 @@ fn known(measure: Option<&str>, measures: &[ModelMeasure]) -> Result<()> {
 
 /// Returns the criteria of comparisons: every figure, or only those over the window if the integrator cannot follow the
 /// motion.
-fn judged(found: &mut Ablation, plan: TrialPlan, floors: &Floors) -> Option<Judge> {
+fn judged(found: &mut Ablation, plan: TrialPlan, floors: &RoundingScales) -> Option<Criteria> {
     let full = found.full.summary.as_ref()?;
     let mut reference = Reference::new(full, floors);
     let own = |reference: &Reference| Some(reference.changes(full, found.tighter.summary.as_ref()?));
     let lost = own(&reference).is_some_and(|own| own.values().any(|error| *error > LOST));
     if lost {
-        reference.judged_by = Judged::WindowStatistics;
+        reference.judged_by = ComparedFigures::WindowStatistics;
     }
     found.judged_by = reference.judged_by;
     found.measures = reference.measures(own(&reference).as_ref());
-    Some(Judge {
+    Some(Criteria {
         measures: found.measures.clone(),
         reference,
         tolerance: found.tolerance,

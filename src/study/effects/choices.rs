@@ -12,12 +12,12 @@ pub struct EffectCandidate {
     /// The effect.
     pub effect: Effect,
     /// Way to leave it out, or the reason to keep it.
-    pub out: Result<Out, KeepReason>,
+    pub out: Result<OmissionKind, KeepReason>,
 }
 
 /// Way to leave an effect out.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Out {
+pub struct OmissionKind {
     /// Effects that must be left out first; neither of the compared models has them.
     pub without: Vec<Effect>,
     /// Effects that have no meaning without it.
@@ -55,14 +55,16 @@ pub fn whole(case: &Case) -> error::Result<Case> {
 /// Those of [`Network::of`].
 pub fn without(case: &Case, off: &[Effect]) -> error::Result<Case> {
     let named = case.effects.choices();
-    let full = EffectSet::whole(&with(case, Effects::Full), ResolvedNetwork::of(case)?.as_ref());
+    let full = EffectSet::whole(&with(case, Effects::Full), ResolvedNetwork::from_case(case)?.as_ref());
     let mut choices = EffectChoices::default();
     for &effect in Effect::CHOSEN {
         // effects that need an omitted effect are omitted, too
-        let along = needs(effect).iter().any(|needed| choices.of(*needed) == Choice::Off);
+        let along = needs(effect)
+            .iter()
+            .any(|needed| choices.choice(*needed) == Choice::Off);
         let choice = match along || off.contains(&effect) {
             true => Choice::Off,
-            false if full.has(effect) || named.of(effect) == Choice::On => Choice::On,
+            false if full.has(effect) || named.choice(effect) == Choice::On => Choice::On,
             false => Choice::Off,
         };
         choices.set(effect, choice);
@@ -77,7 +79,7 @@ pub fn effects(case: &Case) -> error::Result<EffectSet> {
 
 /// Returns the effects that the program always keeps because an instability might not show without them. A run need not
 /// show the instability either: an undisturbed beam stays straight.
-pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
+pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<RequiredEffects>> {
     let full = whole(case)?;
     let model = Model::new(&full)?;
     let why = EffectScene::new(&full, &model.section, model.wet.as_ref()).unstable();
@@ -85,7 +87,7 @@ pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
         .decisions
         .iter()
         .filter(|d| matches!(d.cause, DecisionCause::Unstable(_)));
-    Ok(why.map(|why| Guard {
+    Ok(why.map(|why| RequiredEffects {
         effects: guarded.map(|d| d.effect).collect(),
         why,
     }))
@@ -93,7 +95,7 @@ pub fn guards(case: &Case, auto: &EffectSet) -> error::Result<Option<Guard>> {
 
 /// Effects that must not be left out, and the reason.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Guard {
+pub struct RequiredEffects {
     /// The effects.
     pub effects: Vec<Effect>,
     /// Reason, one clause.
@@ -119,10 +121,10 @@ pub fn candidates(case: &Case) -> error::Result<Vec<EffectCandidate>> {
 }
 
 /// Leaves an effect out alone if possible, otherwise together with one other effect that neither compared model has.
-fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Result<Out, String>> {
+fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Result<OmissionKind, String>> {
     let alone = effects(&without(case, &[effect])?)?;
     if alone.refusals.is_empty() {
-        return Ok(Ok(Out {
+        return Ok(Ok(OmissionKind {
             without: vec![],
             takes: taken(full, &alone, effect),
         }));
@@ -134,7 +136,7 @@ fn leave_out(case: &Case, effect: Effect, full: &EffectSet) -> error::Result<Res
         let base = effects(&without(case, &[other])?)?;
         let both = effects(&without(case, &[other, effect])?)?;
         if base.refusals.is_empty() && base.has(effect) && both.refusals.is_empty() && !both.has(effect) {
-            return Ok(Ok(Out {
+            return Ok(Ok(OmissionKind {
                 without: vec![other],
                 takes: taken(&base, &both, effect),
             }));

@@ -4,8 +4,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::ablation::{AblationRow, ComparedRun, EffectVerdict, Judge};
-use super::choices::{Guard, effects, with, without};
+use super::ablation::{AblationRow, ComparedRun, Criteria, EffectVerdict};
+use super::choices::{RequiredEffects, effects, with, without};
 use super::trial::Runs;
 use crate::case::Case;
 use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
@@ -32,8 +32,8 @@ pub struct Recommendation {
 pub fn recommend(
     case: &Case,
     rows: &[AblationRow],
-    guard: Option<&Guard>,
-    judge: &Judge,
+    guard: Option<&RequiredEffects>,
+    judge: &Criteria,
     runs: &mut Runs,
 ) -> Result<Recommendation> {
     let row = |name: Effect| rows.iter().find(|r| r.name == name);
@@ -115,7 +115,7 @@ fn naming(case: &Case, wanted: &EffectSet) -> Result<EffectChoices> {
     let mut named = EffectChoices::default();
     loop {
         let chosen = effects(&with(case, Effects::Chosen(named.clone())))?;
-        let differs = |e: &&Effect| chosen.has(**e) != wanted.has(**e) && named.of(**e) == Choice::Auto;
+        let differs = |e: &&Effect| chosen.has(**e) != wanted.has(**e) && named.choice(**e) == Choice::Auto;
         let Some(&effect) = Effect::CHOSEN.iter().find(differs) else {
             return Ok(named);
         };
@@ -129,6 +129,6 @@ fn value(choices: &EffectChoices) -> Value {
     if *choices == EffectChoices::default() {
         return "auto".into();
     }
-    let named = Effect::CHOSEN.iter().filter(|e| choices.of(**e) != Choice::Auto);
-    Value::Object(named.map(|e| (e.to_string(), json!(choices.of(*e)))).collect())
+    let named = Effect::CHOSEN.iter().filter(|e| choices.choice(**e) != Choice::Auto);
+    Value::Object(named.map(|e| (e.to_string(), json!(choices.choice(*e)))).collect())
 }

@@ -12,10 +12,10 @@ use crate::error::{Error, Result};
 use crate::integrate::halt;
 use crate::model::effects::EffectSet;
 use crate::run::dynamics;
-use crate::run::null;
+use crate::run::json_null;
 use crate::run::record::{Control, Progress, Unrecorded};
 use crate::run::summary::{Counters, Status, Summary};
-use crate::study::accuracy::trial::Ending;
+use crate::study::accuracy::trial::TrialOutcome;
 use crate::study::evaluations::Evaluations;
 
 /// Steps between two checks of the clock.
@@ -52,7 +52,7 @@ pub struct ModelTrial {
     /// Name of the model.
     pub what: String,
     /// Outcome.
-    pub ending: Ending,
+    pub ending: TrialOutcome,
     /// Reason why it did not finish.
     pub reason: Option<String>,
     /// Number of unknowns.
@@ -60,7 +60,7 @@ pub struct ModelTrial {
     /// Work of one run.
     pub counters: Counters,
     /// Residual evaluations times unknowns.
-    #[serde(deserialize_with = "null::number")]
+    #[serde(deserialize_with = "json_null::number")]
     pub work: f64,
     /// Wall times of the timed runs in ascending order [s]; that of the first run if there are no others.
     pub walls_s: Vec<f64>,
@@ -76,7 +76,7 @@ impl ModelTrial {
     pub fn skipped(what: &str) -> Self {
         Self {
             what: what.to_string(),
-            ending: Ending::Skipped,
+            ending: TrialOutcome::Skipped,
             reason: None,
             unknowns: 0,
             counters: Counters::default(),
@@ -172,15 +172,15 @@ impl<'a> Runs<'a> {
         let (summary, wall) = match self.once(case, set, 0, left) {
             Ok(ran) => ran,
             Err(e) => {
-                trial.ending = Ending::Failed;
+                trial.ending = TrialOutcome::Failed;
                 trial.reason = Some(e.to_string());
                 return trial;
             }
         };
         trial.ending = match summary.status {
-            Status::Finished => Ending::Finished,
-            Status::Stopped => Ending::Stopped,
-            Status::OutOfRange | Status::Failed => Ending::Failed,
+            Status::Finished => TrialOutcome::Finished,
+            Status::Stopped => TrialOutcome::Stopped,
+            Status::OutOfRange | Status::Failed => TrialOutcome::Failed,
         };
         trial.reason.clone_from(&summary.reason);
         trial.unknowns = summary.unknowns;
@@ -192,10 +192,10 @@ impl<'a> Runs<'a> {
             .values()
             .any(|q| q.figures().any(|f| !f.1.is_finite()));
         if broken {
-            trial.ending = Ending::Failed;
+            trial.ending = TrialOutcome::Failed;
             trial.reason = Some("the result contains numbers that are not finite".into());
         }
-        trial.summary = (trial.ending == Ending::Finished).then_some(summary);
+        trial.summary = (trial.ending == TrialOutcome::Finished).then_some(summary);
         trial
     }
 

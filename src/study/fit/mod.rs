@@ -2,19 +2,19 @@
 //! identifiability.
 //!
 //! ```text
-//! problem     case, numbers to be fitted, measured values; rejects inconsistent input
-//! simulate    simulated value for each measured one, with derivatives
-//! robust      loss functions, and estimates of noise that is not given
-//! search      search from the starts to the minimum
-//! identify    directions that the data do not determine
-//! statistics  errors and intervals
-//! found       the result
-//! beside      comparison of an existing run with data
+//! problem          case, numbers to be fitted, measured values; rejects inconsistent input
+//! simulate         simulated value for each measured one, with derivatives
+//! robust           loss functions, and estimates of noise that is not given
+//! search           search from the starts to the minimum
+//! identifiability  directions that the data do not determine
+//! statistics       errors and intervals
+//! outcome          the result
+//! comparison       comparison of an existing run with data
 //! ```
 
-pub mod beside;
-pub mod found;
-pub mod identify;
+pub mod comparison;
+pub mod identifiability;
+pub mod outcome;
 pub mod problem;
 pub mod robust;
 mod search;
@@ -30,9 +30,9 @@ use crate::error::{Code, Result};
 use crate::numerics::levenberg::{self, LevenbergStatus, ResidualEvaluation};
 use crate::study::analysis::{self, AnalysisRequest};
 use crate::study::data::DataTable;
-use crate::study::span::ParameterBounds;
-use found::{Bound, Fit, FittedColumn, FittedNumber, Left, SimulatorError};
-use identify::{IdentificationInput, unseen};
+use crate::study::search_bounds::ParameterBounds;
+use identifiability::{IdentificationInput, unseen};
+use outcome::{Bound, ColumnResiduals, Fit, FittedColumn, FittedNumber, SimulatorError};
 use problem::{DrivenNumber, FitAnalysis, FitProblem, FitRequest};
 use search::{FitOutcome, FitSearch};
 use statistics::CovarianceInput;
@@ -99,7 +99,7 @@ pub fn fit(
     let (residuals, jacobian) = reached.plain(problem);
     let freedom = count.saturating_sub(free.len()) as f64;
     let known = reached.given.iter().all(|given| *given);
-    let plain = asked.loss == robust::Loss::Squares;
+    let plain = asked.loss == robust::LossFunction::Squares;
     let variance = match (plain, known) {
         (true, true) => 1.0,
         (true, false) => residuals.norm_squared() / freedom.max(1.0),
@@ -206,13 +206,16 @@ fn bound(place: f64, free: bool) -> Option<Bound> {
 /// Deviations of each column.
 fn columns(problem: &FitProblem, reached: &FitOutcome) -> Vec<FittedColumn> {
     let of = |(k, one): (usize, &crate::study::data::Matched)| {
-        let model: Vec<f64> = problem.of(k).map(|(i, _)| reached.simulated.values[i]).collect();
-        let data: Vec<f64> = problem.of(k).map(|(_, one)| one.value).collect();
+        let model: Vec<f64> = problem
+            .observations(k)
+            .map(|(i, _)| reached.simulated.values[i])
+            .collect();
+        let data: Vec<f64> = problem.observations(k).map(|(_, one)| one.value).collect();
         FittedColumn {
             matched: one.asked.clone(),
             quantity: one.key(),
-            left: Left::of(&model, &data),
-            noise: problem.of(k).map(|(i, _)| reached.sigmas[i]).sum::<f64>() / data.len().max(1) as f64,
+            left: ColumnResiduals::compare(&model, &data),
+            noise: problem.observations(k).map(|(i, _)| reached.sigmas[i]).sum::<f64>() / data.len().max(1) as f64,
             noise_given: reached.given[k],
         }
     };
@@ -308,7 +311,7 @@ fn warnings(fit: &Fit, ended: LevenbergStatus, known: bool) -> Vec<String> {
         ));
     }
     for column in &fit.columns {
-        let Left { count, lag_1, .. } = column.left;
+        let ColumnResiduals { count, lag_1, .. } = column.left;
         if count >= 8 && lag_1 * (count as f64).sqrt() > TOGETHER {
             let wider = ((1.0 + lag_1) / (1.0 - lag_1)).sqrt();
             say(format!(

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::robust::Loss;
+use super::robust::LossFunction;
 use crate::case::heading::Heading;
 use crate::case::parameter::{Parameter, with};
 use crate::case::schema::{Case, Thinning};
@@ -17,7 +17,7 @@ use crate::study::analysis::AnalysisKind;
 use crate::study::data::matching::Named;
 use crate::study::data::{DataTable, Match, Matched, matching};
 use crate::study::evaluations::Evaluations;
-use crate::study::span::{self, ParameterBounds};
+use crate::study::search_bounds::{self, ParameterBounds};
 
 /// Analysis of the case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,7 +84,7 @@ pub struct FitRequest {
     /// Standard deviations of columns in their own units.
     pub noise: Vec<(String, f64)>,
     /// Loss function.
-    pub loss: Loss,
+    pub loss: LossFunction,
     /// Number of searches, each from another start.
     pub starts: usize,
     /// Number of parallel simulations.
@@ -143,7 +143,7 @@ impl FitProblem {
             return Err(Error::Usage(what.into()));
         }
         let set = asked.drives.iter().map(|drive| drive.pointer.as_str());
-        let start = span::begin(case, &asked.spans, set)?;
+        let start = search_bounds::begin(case, &asked.spans, set)?;
         let mut case = case.clone();
         case.time.history = Thinning::All;
         let names = asked.matches.iter().map(|one| one.placed(&mut case));
@@ -159,7 +159,7 @@ impl FitProblem {
             let aside = ["t", "load_factor"].contains(&one.name.as_str());
             if aside || Observable::named(&one.name).is_some_and(|one| !one.has_derivative()) {
                 let what = "it does not depend on numbers of the case, so it cannot be fitted";
-                return Err(Error::Usage(format!("--match {}: {what}", one.asked.words())));
+                return Err(Error::Usage(format!("--match {}: {what}", one.asked.describe())));
             }
         }
         let sigmas = sigmas(table, &matched, asked)?;
@@ -204,12 +204,12 @@ impl FitProblem {
         };
         let begin = problem.with(&problem.start)?;
         let what = through.command();
-        span::check(&begin, &problem.spans, true, &|case| what.analysis().check(case))?;
+        search_bounds::check(&begin, &problem.spans, true, &|case| what.analysis().check(case))?;
         Ok(problem)
     }
 
     /// Measured values of a column, with their indices.
-    pub fn of(&self, column: usize) -> impl Iterator<Item = (usize, &Observation)> {
+    pub fn observations(&self, column: usize) -> impl Iterator<Item = (usize, &Observation)> {
         self.observations
             .iter()
             .enumerate()
@@ -259,7 +259,7 @@ impl FitProblem {
 
     /// Converts positions between the bounds to values.
     pub fn values(&self, places: &[f64]) -> Vec<f64> {
-        span::values(&self.spans, places)
+        search_bounds::values(&self.spans, places)
     }
 }
 

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// Loss function of a residual.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Loss {
+pub enum LossFunction {
     /// Square of the residual.
     #[default]
     Squares,
@@ -29,7 +29,7 @@ pub enum Loss {
 const HUBER: f64 = 1.345;
 const CAUCHY: f64 = 2.385;
 
-impl Loss {
+impl LossFunction {
     /// Weight of a residual of `u` standard deviations.
     pub fn weight(self, u: f64) -> f64 {
         match self {

@@ -6,14 +6,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use nalgebra::{DMatrix, DVector};
 
 use super::evaluation;
-use super::found::FitStart;
+use super::outcome::FitStart;
 use super::problem::{FitProblem, FitRequest};
-use super::robust::Loss;
+use super::robust::LossFunction;
 use super::simulate::{Simulated, simulate};
 use crate::error::{Error, Result};
 use crate::numerics::levenberg::{LevenbergMinimum, LevenbergStatus, minimise};
 use crate::run::stop::INTERRUPTED;
-use crate::study::span;
+use crate::study::search_bounds;
 use crate::study::sweep::pool;
 
 /// Largest number of steps of a search.
@@ -99,7 +99,7 @@ impl<'a> FitSearch<'a> {
     /// # Errors
     /// The case cannot be simulated at any start, or the search was stopped before the first simulation.
     pub fn go(&self) -> Result<FitOutcome> {
-        let places = span::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
+        let places = search_bounds::places(&self.problem.spans, &self.problem.start, self.asked.starts)?;
         let (mut sigmas, given) = self.first_noise();
         let mut weights = vec![1.0; sigmas.len()];
         let (many, within) = match places.len() {
@@ -130,7 +130,7 @@ impl<'a> FitSearch<'a> {
             return Err(self.fault(|| "the simulation fails at every starting point".into()));
         };
         let unknown = given.iter().filter(|given| !**given).count();
-        let again = self.asked.loss != Loss::Squares || unknown > 1;
+        let again = self.asked.loss != LossFunction::Squares || unknown > 1;
         for round in 0..ROUNDS {
             let change = self.weigh(&best.simulated, &given, &mut sigmas, &mut weights);
             let settled = change < SAME || round + 1 == ROUNDS;
@@ -229,13 +229,13 @@ impl<'a> FitSearch<'a> {
         let all = &self.problem.observations;
         let sizes: Vec<f64> = (0..self.problem.matched.len()).map(|k| self.size(k)).collect();
         let sigmas = all.iter().map(|one| one.sigma.unwrap_or(sizes[one.of])).collect();
-        let given = |k| self.problem.of(k).all(|(_, one)| one.sigma.is_some());
+        let given = |k| self.problem.observations(k).all(|(_, one)| one.sigma.is_some());
         (sigmas, (0..sizes.len()).map(given).collect())
     }
 
     /// Largest value of a column; 1 if all are 0.
     fn size(&self, column: usize) -> f64 {
-        let own = self.problem.of(column);
+        let own = self.problem.observations(column);
         let largest = own.map(|(_, one)| one.value.abs()).fold(0.0, f64::max);
         if largest > 0.0 { largest } else { 1.0 }
     }
@@ -245,7 +245,7 @@ impl<'a> FitSearch<'a> {
         let (all, loss) = (&self.problem.observations, self.asked.loss);
         let mut change = 0.0_f64;
         for (column, _) in given.iter().enumerate().filter(|(_, given)| !**given) {
-            let own = || self.problem.of(column);
+            let own = || self.problem.observations(column);
             let errors: Vec<f64> = own().map(|(i, one)| simulated.values[i] - one.value).collect();
             let lost = self.problem.spans.len() as f64 * errors.len() as f64 / all.len() as f64;
             let sigma = loss.deviation(&errors, lost).max(LEAST * self.size(column));

@@ -10,10 +10,10 @@ use crate::error::{Error, Result};
 use crate::run::dynamics;
 use crate::run::equilibrium::{self, EquilibriumOptions};
 use crate::run::record::Control;
-use crate::run::sensitivity::forward::By;
+use crate::run::sensitivity::forward::DerivativeParameters;
 use crate::run::stop::INTERRUPTED;
 use crate::study::analysis::derivatives;
-use crate::study::followed::{Followed, FollowedRow};
+use crate::study::followed::{ColumnRecorder, FollowedRow};
 use crate::study::sweep::pool;
 
 /// Result of a simulation.
@@ -72,9 +72,15 @@ fn run(
     let parameters = problem.parameters(values);
     let names: Vec<String> = problem.matched.iter().map(|one| one.name.clone()).collect();
     let by: Vec<&str> = parameters.iter().map(|parameter| parameter.pointer.as_str()).collect();
-    let mut recorder = Followed::new(&names, &by, problem.rows(), stop);
-    let outcome = dynamics::run_at(&case, system, By::pointers(&parameters), instants, &mut recorder)?;
-    recorder.of(outcome)
+    let mut recorder = ColumnRecorder::new(&names, &by, problem.rows(), stop);
+    let outcome = dynamics::run_at(
+        &case,
+        system,
+        DerivativeParameters::pointers(&parameters),
+        instants,
+        &mut recorder,
+    )?;
+    recorder.rows(outcome)
 }
 
 /// Computes an equilibrium for every row, up to `jobs` in parallel.

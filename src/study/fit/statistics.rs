@@ -11,9 +11,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::identify::Unseen;
-use crate::numerics::{normal, student};
-use crate::study::span::ParameterBounds;
+use super::identifiability::UndeterminedDirection;
+use crate::numerics::{normal, student_t};
+use crate::study::search_bounds::ParameterBounds;
 
 /// Errors of estimates.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub struct CovarianceInput<'a> {
     /// Indices of the numbers that are not at a bound.
     pub free: &'a [usize],
     /// Directions that the data do not determine.
-    pub unseen: &'a [Unseen],
+    pub unseen: &'a [UndeterminedDirection],
     /// Derivatives of the values over their standard deviations, with respect to positions between the bounds.
     pub jacobian: &'a DMatrix<f64>,
     /// `v` of the equations above.
@@ -51,7 +51,7 @@ impl CovarianceInput<'_> {
     pub fn errors(&self) -> EstimateErrors {
         let m = self.spans.len();
         let lost = |k: &usize| {
-            let at_bound = |one: &Unseen| one.numbers.iter().any(|other| !self.free.contains(other));
+            let at_bound = |one: &UndeterminedDirection| one.numbers.iter().any(|other| !self.free.contains(other));
             let own = self.unseen.iter().filter(|one| one.numbers.contains(k));
             own.into_iter().any(|one| one.entirely || at_bound(one))
         };
@@ -63,7 +63,7 @@ impl CovarianceInput<'_> {
         };
         let slope = |k: usize| self.spans[k].slope(self.values[k]);
         let q = match self.freedom {
-            Some(freedom) => student::quantile(0.05, freedom.max(1.0)),
+            Some(freedom) => student_t::quantile(0.05, freedom.max(1.0)),
             None => normal::quantile(0.975),
         };
         let interval = |k: usize| {
@@ -111,7 +111,7 @@ impl CovarianceInput<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::fit::identify::{IdentificationInput, unseen};
+    use crate::study::fit::identifiability::{IdentificationInput, unseen};
 
     /// Goal: if the data determine only a product and one factor ends at its bound, the other factor has no interval.
     #[test]

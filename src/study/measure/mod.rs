@@ -105,7 +105,7 @@ pub struct MeasuredNumber {
 }
 
 impl MeasuredNumber {
-    fn of(fit: &Regression, weights: &[f64]) -> Self {
+    fn from_fit(fit: &Regression, weights: &[f64]) -> Self {
         let (value, half) = (fit.value(weights), fit.half_width(weights));
         Self {
             value,
@@ -222,8 +222,8 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Mea
             .map(|j| f64::from(u8::from(j == k)))
             .collect::<Vec<_>>()
     };
-    let slope = MeasuredNumber::of(&fit, &unit(0));
-    let offset = (!options.through_zero).then(|| MeasuredNumber::of(&fit, &unit(1)));
+    let slope = MeasuredNumber::from_fit(&fit, &unit(0));
+    let offset = (!options.through_zero).then(|| MeasuredNumber::from_fit(&fit, &unit(1)));
     let with = |extra: fn(f64) -> f64| {
         let of = |x: f64| {
             let mut row = regressors(
@@ -254,7 +254,7 @@ pub fn measure(experiment: Experiment, points: Points, case: &Case, options: Mea
                     }
                 })
                 .collect();
-            MeasuredNumber::of(&fit, &weights)
+            MeasuredNumber::from_fit(&fit, &weights)
         };
         Sides {
             chance: fit.chance(last),

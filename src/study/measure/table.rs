@@ -72,7 +72,7 @@ pub(in crate::study) const MOST: usize = 20;
 /// # Errors
 /// [`crate::error::Error::Case`] with the position of every header and row that cannot be read.
 pub fn read(path: &Path, text: &str, x: MeasuredQuantity, y: MeasuredQuantity) -> Result<Points> {
-    let source = CaseSource::of(path, text);
+    let source = CaseSource::new(path, text);
     let mut lines = lines(text);
     let Some(header) = lines.next() else {
         let what = format!(
@@ -170,7 +170,7 @@ pub(in crate::study) fn fault(span: Range<usize>, what: String) -> Violation {
 /// Index and scale of the column of a quantity.
 fn column(names: &[(&str, Range<usize>)], header: &Line, quantity: MeasuredQuantity) -> Read<(usize, f64)> {
     let (name, unit) = (quantity.name(), quantity.unit());
-    let headings: Vec<Heading> = names.iter().map(|(cell, _)| Heading::of(cell)).collect();
+    let headings: Vec<Heading> = names.iter().map(|(cell, _)| Heading::parse(cell)).collect();
     let mut of_name = (0..headings.len()).filter(|k| headings[*k].name.to_lowercase() == name);
     let Some(at) = of_name.next() else {
         let there: Vec<String> = headings.iter().map(|heading| heading.name.to_lowercase()).collect();

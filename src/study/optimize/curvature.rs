@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::found::Curvature;
+use super::outcome::Curvature;
 use super::problem::OptimizationProblem;
 use super::search::{OptimizationOutcome, OptimizationSearch};
 

@@ -1,14 +1,14 @@
 //! Warnings about an optimum.
 
 use super::REACHED;
-use super::found::{ComputedDesign, DerivativeSource, Held, Optimum};
+use super::outcome::{ComputedDesign, DerivativeSource, LimitAtOptimum, Optimum};
 use super::problem::{FigureLimit, OptimizationProblem};
 use crate::case::numbers::plain;
 use crate::error::Code;
 use crate::error::numbers::{counted, rounded};
 use crate::numerics::sqp::SqpStatus;
 use crate::study::analysis::AnalysisOutcome;
-use crate::study::span::ParameterBounds;
+use crate::study::search_bounds::ParameterBounds;
 
 /// Largest relative difference from the plain command without a warning.
 const SAME: f64 = 1e-3;
@@ -52,7 +52,7 @@ pub(super) fn ended(ended: SqpStatus, stopped: bool) -> &'static str {
 pub(super) fn warnings(problem: &OptimizationProblem, found: &Optimum, ended: SqpStatus, stopped: bool) -> Vec<String> {
     let mut all = vec![];
     let mut say = |what: String| all.push(Code::Optimum.warning(what));
-    let beyond: Vec<&Held> = found.limits.iter().filter(|held| held.beyond()).collect();
+    let beyond: Vec<&LimitAtOptimum> = found.limits.iter().filter(|held| held.beyond()).collect();
     match ended {
         _ if stopped => say("interrupted. The reported design is the best so far".into()),
         _ if !beyond.is_empty() => {

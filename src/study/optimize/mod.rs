@@ -4,21 +4,21 @@
 //! ```text
 //! names        figures by name
 //! problem      case, numbers to be optimized, goal and limits; rejects inconsistent input
-//! look         figures of one design, with derivatives
+//! evaluate     figures of one design, with derivatives
 //! search       search from the starts to the optimum
 //! exchanged    modes that differ at the optimum
 //! curvature    second derivatives at the optimum
 //! wiring       alternatives to choose from, in all combinations
-//! found        the result
+//! outcome      the result
 //! diagnostics  warnings about the result
 //! ```
 
 mod curvature;
 mod diagnostics;
+mod evaluate;
 mod exchanged;
-pub mod found;
-mod look;
 pub mod names;
+pub mod outcome;
 pub mod problem;
 mod search;
 pub mod wiring;
@@ -32,10 +32,10 @@ use crate::error::{Code, Result};
 use crate::numerics::sqp::{HELD, SqpStatus};
 use crate::study::analysis::AnalysisOutcome;
 use crate::study::analysis::{self, AnalysisRequest};
-use crate::study::span::Bound;
+use crate::study::search_bounds::Bound;
 use crate::study::sweep::pool;
 use diagnostics::{broken, warnings};
-use found::{ComparedAlternative, ComputedDesign, DerivativeSource, Held, Optimum, Variable};
+use outcome::{ComparedAlternative, ComputedDesign, DerivativeSource, LimitAtOptimum, Optimum, Variable};
 use problem::{FigureLimit, OptimizationProblem, OptimizationRequest};
 use search::{OptimizationOutcome, OptimizationSearch, better};
 use wiring::Alternative;
@@ -54,7 +54,7 @@ pub struct Candidate {
 
 /// Optimum, with the additional data of its files.
 #[derive(Clone, Debug)]
-pub struct Optimised {
+pub struct OptimizedCase {
     /// The result.
     pub optimum: Optimum,
     /// Problem with the best alternative.
@@ -75,7 +75,7 @@ pub fn optimise(
     asked: &OptimizationRequest,
     stop: &(dyn Fn() -> bool + Sync),
     report: &(dyn Fn(usize, Option<f64>) + Sync),
-) -> Result<Optimised> {
+) -> Result<OptimizedCase> {
     let begin = Instant::now();
     let report_all = together(asked, report);
     let searches = candidates.iter().map(|one| &one.problem).enumerate();
@@ -94,7 +94,7 @@ pub fn optimise(
         [_] => vec![],
         _ => {
             let each = candidates.iter().zip(&all);
-            each.map(|(one, reached)| ComparedAlternative::of(&one.alternative, reached))
+            each.map(|(one, reached)| ComparedAlternative::new(&one.alternative, reached))
                 .collect()
         }
     };
@@ -133,7 +133,7 @@ fn finish(
     alternatives: Vec<ComparedAlternative>,
     stop: &(dyn Fn() -> bool + Sync),
     begin: Instant,
-) -> Result<Optimised> {
+) -> Result<OptimizedCase> {
     let (problem, search) = (&candidates[chosen].problem, &searches[chosen]);
     let minimum = &reached.minimum;
     let case = problem.with(&reached.values)?;
@@ -204,7 +204,7 @@ fn finish(
     }
     optimum.warnings.extend(flat);
     optimum.wall_s = begin.elapsed().as_secs_f64();
-    Ok(Optimised {
+    Ok(OptimizedCase {
         optimum,
         problem: problem.clone(),
         case,
@@ -261,9 +261,9 @@ fn variable(
     }
 }
 
-fn held(problem: &OptimizationProblem, reached: &OptimizationOutcome, i: usize) -> Held {
+fn held(problem: &OptimizationProblem, reached: &OptimizationOutcome, i: usize) -> LimitAtOptimum {
     let limit: &FigureLimit = &problem.limits[i];
-    Held {
+    LimitAtOptimum {
         limit: limit.clone(),
         value: reached.figures[i + 1],
         reached: reached.minimum.at.inequalities[i] > -REACHED,

@@ -9,7 +9,7 @@ use crate::discrete::System;
 use crate::error::{Error, Result};
 use crate::study::analysis::AnalysisKind;
 use crate::study::evaluations::Evaluations;
-use crate::study::span::{self, ParameterBounds};
+use crate::study::search_bounds::{self, ParameterBounds};
 
 /// Figure to be maximized or minimized.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,7 +30,7 @@ impl Goal {
 /// Side of a limit on which a figure must stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Side {
+pub enum LimitSide {
     /// It is at most the limit.
     AtMost,
     /// It is at least the limit.
@@ -43,7 +43,7 @@ pub struct FigureLimit {
     /// The figure.
     pub figure: String,
     /// Side of the bound.
-    pub side: Side,
+    pub side: LimitSide,
     /// Bound, in the unit of the figure.
     pub bound: f64,
 }
@@ -54,7 +54,7 @@ impl FigureLimit {
     /// # Errors
     /// [`Error::Usage`] with the expected form.
     pub fn parse(text: &str) -> Result<Self> {
-        let sides = [("<=", Side::AtMost), (">=", Side::AtLeast)];
+        let sides = [("<=", LimitSide::AtMost), (">=", LimitSide::AtLeast)];
         let parts = sides.iter().find_map(|(sign, side)| {
             let (figure, bound) = text.split_once(sign)?;
             Some((figure.trim(), *side, bound.trim().parse::<f64>().ok()?))
@@ -75,8 +75,8 @@ impl FigureLimit {
     /// Returns the sign as on the command line.
     pub fn sign(&self) -> &'static str {
         match self.side {
-            Side::AtMost => "<=",
-            Side::AtLeast => ">=",
+            LimitSide::AtMost => "<=",
+            LimitSide::AtLeast => ">=",
         }
     }
 
@@ -88,8 +88,8 @@ impl FigureLimit {
     /// Returns 1 for an upper limit, -1 for a lower limit.
     pub fn sense(&self) -> f64 {
         match self.side {
-            Side::AtMost => 1.0,
-            Side::AtLeast => -1.0,
+            LimitSide::AtMost => 1.0,
+            LimitSide::AtLeast => -1.0,
         }
     }
 }
@@ -140,7 +140,7 @@ impl OptimizationProblem {
     /// # Errors
     /// Inconsistent input, found before anything is computed.
     pub fn new(case: &Case, asked: &OptimizationRequest) -> Result<Self> {
-        let start = span::begin(case, &asked.spans, std::iter::empty())?;
+        let start = search_bounds::begin(case, &asked.spans, std::iter::empty())?;
         asked.what.analysis().check(case)?;
         let names = asked.what.analysis().names(case)?;
         let option = if asked.goal.largest { "--maximize" } else { "--minimize" };
@@ -169,7 +169,7 @@ impl OptimizationProblem {
             evaluations: Evaluations::default(),
         };
         let begin = problem.with(&problem.start)?;
-        span::check(&begin, &problem.spans, false, &|case| {
+        search_bounds::check(&begin, &problem.spans, false, &|case| {
             problem.what.analysis().check(case)
         })?;
         let found = problem
@@ -207,10 +207,10 @@ impl OptimizationProblem {
 
 /// Rejects limits of one figure that contradict each other.
 fn contradictions(limits: &[FigureLimit]) -> Result<()> {
-    for low in limits.iter().filter(|one| one.side == Side::AtLeast) {
+    for low in limits.iter().filter(|one| one.side == LimitSide::AtLeast) {
         let high = limits
             .iter()
-            .find(|one| one.side == Side::AtMost && one.figure == low.figure && one.bound < low.bound);
+            .find(|one| one.side == LimitSide::AtMost && one.figure == low.figure && one.bound < low.bound);
         if let Some(high) = high {
             return Err(Error::Usage(format!(
                 "--subject-to: {} cannot be at least {} and at most {}",

@@ -6,12 +6,12 @@ use std::sync::{Mutex, PoisonError};
 
 use nalgebra::{DMatrix, DVector};
 
-use super::found::{ComputedDesign, DerivativeSource, OptimizationStart};
-use super::look::{EvaluatedDesign, look};
+use super::evaluate::{EvaluatedDesign, look};
+use super::outcome::{ComputedDesign, DerivativeSource, OptimizationStart};
 use super::problem::{OptimizationProblem, OptimizationRequest};
-use crate::error::{At, Error, Result, SolverError};
+use crate::error::{Error, Result, SolverError, StopPoint};
 use crate::numerics::sqp::{HELD, SqpMinimum, SqpOptions, SqpPoint, SqpStatus, minimise};
-use crate::study::span;
+use crate::study::search_bounds;
 use crate::study::sweep::pool;
 
 /// Largest number of steps of a search.
@@ -99,7 +99,7 @@ impl<'a> OptimizationSearch<'a> {
         } else {
             self.asked.starts
         };
-        let places = span::places(&self.problem.spans, &self.problem.start, starts)?;
+        let places = search_bounds::places(&self.problem.spans, &self.problem.start, starts)?;
         let one = |k: usize| (!(self.stop)()).then(|| self.minimise(k, &places[k]));
         let found = pool::all(places.len(), jobs, &one);
         let found: Vec<Option<(SqpMinimum, Vec<f64>)>> = found.into_iter().map(Option::flatten).collect();
@@ -108,10 +108,10 @@ impl<'a> OptimizationSearch<'a> {
                 .as_ref()
                 .map(|(minimum, sizes)| (minimum, self.figures(minimum, sizes)));
             OptimizationStart {
-                from: span::values(&self.problem.spans, from),
+                from: search_bounds::values(&self.problem.spans, from),
                 to: at
                     .as_ref()
-                    .map(|(minimum, _)| span::values(&self.problem.spans, &minimum.x)),
+                    .map(|(minimum, _)| search_bounds::values(&self.problem.spans, &minimum.x)),
                 value: at.as_ref().map(|(_, figures)| figures[0]),
                 held: at.as_ref().is_some_and(|(minimum, _)| minimum.at.violation() <= HELD),
                 steps: at.as_ref().map_or(0, |(minimum, _)| minimum.steps),
@@ -130,7 +130,7 @@ impl<'a> OptimizationSearch<'a> {
             let why = why.map_or(String::new(), |why| format!(": {why}"));
             return Err(Error::Solver(Box::new(SolverError {
                 code: self.problem.what.analysis().fault(),
-                at: At::Time(0.0),
+                at: StopPoint::Time(0.0),
                 what: format!("the designs at all starts fail{why}"),
                 unknown: None,
                 cause: None,
@@ -142,7 +142,7 @@ impl<'a> OptimizationSearch<'a> {
             })));
         };
         Ok(OptimizationOutcome {
-            values: span::values(&self.problem.spans, &minimum.x),
+            values: search_bounds::values(&self.problem.spans, &minimum.x),
             figures: self.figures(&minimum, &sizes),
             minimum,
             sizes,

@@ -18,7 +18,7 @@ use crate::case::Case;
 use crate::discrete::resolution::LIMIT as LARGE;
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Error, Result};
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
 
 /// Errors of one number due to meshes and effects, relative to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -147,7 +147,7 @@ impl Meshes {
     }
 
     /// Describes the largest error in one line.
-    pub fn words(&self) -> Option<String> {
+    pub fn describe(&self) -> Option<String> {
         let (name, share) = self.worst()?;
         Some(format!(
             "largest estimated error: about {} of {name}{}",

@@ -23,7 +23,7 @@ use crate::discrete::{BeamMesh, System};
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::model::Model;
-use crate::run::summary::{Accuracy, ErrorEstimate, Pilot};
+use crate::run::summary::{Accuracy, ErrorEstimate, PilotRun};
 
 /// Finest meshes and tightest tolerance: cells per segment, cells per bladder, decades.
 const FINEST: usize = 64;
@@ -230,7 +230,7 @@ struct Search<'a> {
     runs: BTreeMap<At, RefinedNumbers>,
     /// Errors of every axis, in the order of `axes`.
     known: Vec<Errors>,
-    pilots: Vec<Pilot>,
+    pilots: Vec<PilotRun>,
 }
 
 impl Search<'_> {
@@ -303,7 +303,7 @@ impl Search<'_> {
         let (case, begin) = (self.variant(at), Instant::now());
         let numbers = compute(&case)?;
         self.runs.insert(at, numbers);
-        self.pilots.push(Pilot {
+        self.pilots.push(PilotRun {
             unknowns: 0,
             cells_per_segment: at.cells,
             cells_per_bladder: case.mesh.cells_per_bladder,

@@ -15,7 +15,7 @@ use crate::run::periodic::{Cycle, PeriodicScene, record, shoot, subharmonic};
 use crate::run::record::{Control, HistoryColumn, Unrecorded};
 use crate::run::stop::StopFlag;
 use crate::run::summary::{Status, Summary};
-use crate::study::counted::{Floors, counted};
+use crate::study::significant::{RoundingScales, counted};
 
 /// Share of the largest number of a unit below which others are rounding errors.
 const NOTHING: f64 = 1e-6;
@@ -58,7 +58,7 @@ pub fn of_path(case: &Case, columns: &[HistoryColumn], path: &Path) -> Result<Re
         same.map(|((_, factor), x)| factor * x.abs()).fold(0.0, f64::max)
     };
     // displacements and pressures below these floors are rounding errors, and so is everything computed from them
-    let (floors, model) = (Floors::of(case)?, Model::new(case)?);
+    let (floors, model) = (RoundingScales::from_case(case)?, Model::new(case)?);
     // smaller differences of pressure are zero and drive no flow
     let even = (NOTHING * largest("Pa")).max(floors.pressure);
     let conductance = model.wet.as_ref().map_or(0.0, |wet| {
@@ -110,7 +110,7 @@ pub fn of_modes(case: &Case, at_rest_under: Option<f64>, plan: &ModeOptions) -> 
         None => modes::linearise(case, 0.0, None)?,
     };
     let plan = ModeOptions { limits: false, ..*plan };
-    let found = modes::of(about, &plan)?;
+    let found = modes::compute(about, &plan)?;
     let mut counts = BTreeMap::new();
     let mut all = RefinedNumbers::new();
     for mode in found.modes.iter().filter(|mode| !mode.kind.stays()) {
@@ -172,7 +172,7 @@ fn recorded(case: &Case, scene: &PeriodicScene, cycle: &Cycle) -> Result<Refined
 /// Figures over a recorded cycle.
 pub fn of_summary(case: &Case, summary: &Summary) -> Result<RefinedNumbers> {
     let mut all = RefinedNumbers::new();
-    for (name, quantity) in counted(summary, &Floors::of(case)?) {
+    for (name, quantity) in counted(summary, &RoundingScales::from_case(case)?) {
         let largest = quantity.figures().fold(0.0_f64, |s, (_, x)| s.max(x.abs()));
         for (figure, value) in quantity.figures().filter(|(figure, _)| figure.starts_with("window")) {
             all.insert(format!("{name}.{figure}"), ReferencedNumber { value, size: largest });

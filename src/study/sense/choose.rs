@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::numerics::inverse::{Observability, Posterior, ReducedProblem};
+use crate::numerics::bayesian_least_squares::{Observability, Posterior, ReducedProblem};
 
 /// Criterion for a set of sensors.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,7 +49,7 @@ pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion
         if count >= least {
             let mut chosen = sensors.clone();
             chosen.sort_unstable();
-            let alone = Observability::of(&rows_of(&chosen, matrix, before)).alone;
+            let alone = Observability::from_matrix(&rows_of(&chosen, matrix, before)).alone;
             let spread = posterior(&chosen, matrix, before).spread;
             let error = |k: usize| alone[k].then(|| spread[(k, k)].max(0.0).sqrt());
             all.push(SensorSet {

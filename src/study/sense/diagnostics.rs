@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::basis::Amplitude;
 use super::estimate::{Amplitudes, LoadEstimates, SenseProblem};
-use super::find::SenseOptions;
+use super::estimate_at_rest::SenseOptions;
 use super::pressures::PressureTable;
 use super::sensed::{Banded, Noise, NoiseFrom, Sensed};
 use crate::case::wiring::bladder_label;
@@ -66,7 +66,7 @@ pub(super) fn noise(asked: &SenseOptions, measured: &PressureTable, estimate: &L
 
 /// Residual of one measured pressure over its deviation.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Left {
+pub(super) struct PressureResidual {
     /// Index of the bladder among all.
     pub bladder: usize,
     pub over_noise: f64,
@@ -79,11 +79,11 @@ pub(super) fn left<'a>(
     problem: &'a SenseProblem,
     found: &'a Amplitudes,
     bladders: &'a [usize],
-) -> impl Iterator<Item = Left> + 'a {
+) -> impl Iterator<Item = PressureResidual> + 'a {
     let data = problem.data.iter().zip(&problem.deviation).enumerate();
     data.filter_map(move |(k, (value, deviation))| {
         let value = (*value)?;
-        Some(Left {
+        Some(PressureResidual {
             bladder: bladders[k % bladders.len()],
             over_noise: (value - found.predicted[k]) / deviation,
             measured: value / deviation,
@@ -97,12 +97,17 @@ const NO_NUMBERS: &str =
 
 /// Warnings that put the result in doubt: a misfit beyond known noise, with the worst bladder; a misfit so far below it that the given
 /// noise seems wrong; unexplained pressures taken for noise; implausibly large loads.
-pub(super) fn doubts(found: &Sensed, left: &[Left], bladders: usize, estimate: &LoadEstimates) -> Vec<String> {
+pub(super) fn doubts(
+    found: &Sensed,
+    left: &[PressureResidual],
+    bladders: usize,
+    estimate: &LoadEstimates,
+) -> Vec<String> {
     let mut all = vec![];
     let sizes = estimate.found.iter().map(|one| one.mean.amax());
     let times = sizes.fold(0.0, f64::max);
     let from = found.noise.as_ref().map_or(NoiseFrom::Estimated, |noise| noise.from);
-    let square = |of: &dyn Fn(&Left) -> f64| left.iter().map(|one| of(one).powi(2)).sum::<f64>();
+    let square = |of: &dyn Fn(&PressureResidual) -> f64| left.iter().map(|one| of(one).powi(2)).sum::<f64>();
     let measured = square(&|one| one.measured).max(f64::MIN_POSITIVE);
     let share = (square(&|one| one.over_noise) / measured).sqrt();
     if let (NoiseFrom::Given | NoiseFrom::Table, Some(factor)) = (from, estimate.misfit.beyond_chance()) {

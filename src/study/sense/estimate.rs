@@ -7,8 +7,8 @@ use super::misfit::Misfit;
 use super::weight::{choose, heaviest};
 use crate::error::numbers::counted;
 use crate::error::{Error, Result};
-use crate::numerics::inverse::{Observability, Posterior, ReducedProblem};
-use crate::numerics::{normal, student};
+use crate::numerics::bayesian_least_squares::{Observability, Posterior, ReducedProblem};
+use crate::numerics::{normal, student_t};
 
 /// Forward model: values as a function of amplitudes.
 pub trait ForwardModel {
@@ -158,9 +158,9 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
         0 => DMatrix::zeros(0, ask.differences.ncols()),
         _ => ask.differences * weight,
     };
-    let mut states: Vec<State> = problems.iter().map(State::of).collect();
+    let mut states: Vec<State> = problems.iter().map(State::new).collect();
     // if loads alone can reproduce every pressure, a weight chosen by the data would make the noise vanish
-    let alone = |state: &State| state.measured.len() - Observability::of(&state.weighted()).values.len();
+    let alone = |state: &State| state.measured.len() - Observability::from_matrix(&state.weighted()).values.len();
     if !ask.noise_known && chosen && states.iter().map(alone).sum::<usize>() == 0 {
         return Err(few(&states));
     }
@@ -178,7 +178,7 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
             let found = state.descend(problem, &before(own));
             posteriors.push(found.map_err(|error| problem.named(error))?);
         }
-        let sums = Sums::of(&posteriors, rank, &states);
+        let sums = Sums::collect(&posteriors, rank, &states);
         if !ask.noise_known {
             if sums.freedom < 0.5 {
                 return Err(few(&states));
@@ -208,7 +208,7 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
     for (problem, state) in problems.iter_mut().zip(&mut states) {
         posteriors.push(state.descend(problem, &before(own))?);
     }
-    let sums = Sums::of(&posteriors, rank, &states);
+    let sums = Sums::collect(&posteriors, rank, &states);
     if !ask.noise_known {
         noise = (sums.left() / sums.freedom).sqrt();
     }
@@ -220,7 +220,7 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
         by_discrepancy: rank > 0 && ask.smoothing == Smoothing::Discrepancy,
     };
     let found = states.into_iter().zip(posteriors).map(|(state, posterior)| Amplitudes {
-        seen: Observability::of(&stacked(&state.weighted(), &before(own))),
+        seen: Observability::from_matrix(&stacked(&state.weighted(), &before(own))),
         mean: state.at,
         covariance: posterior.spread * (noise * noise),
         predicted: state.values,
@@ -235,7 +235,7 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
         misfit,
         quantile: match ask.noise_known {
             true => normal::quantile(0.975),
-            false => student::quantile(0.05, sums.freedom),
+            false => student_t::quantile(0.05, sums.freedom),
         },
         deviation_of_differences: (rank > 0).then(|| noise / own),
     })
@@ -245,7 +245,7 @@ pub fn estimate(problems: &mut [SenseProblem], ask: &EstimateOptions) -> Result<
 fn rank(differences: &DMatrix<f64>) -> usize {
     match differences.is_empty() {
         true => 0,
-        false => Observability::of(differences).values.len(),
+        false => Observability::from_matrix(differences).values.len(),
     }
 }
 
@@ -288,7 +288,7 @@ impl Sums {
         self.misfit + self.rough
     }
 
-    fn of(posteriors: &[Posterior], rank: usize, states: &[State]) -> Self {
+    fn collect(posteriors: &[Posterior], rank: usize, states: &[State]) -> Self {
         let freedom = posteriors.iter().zip(states).map(|(posterior, state)| {
             let free = posterior.rank.saturating_sub(rank);
             state.measured.len() as f64 - free as f64
@@ -313,7 +313,7 @@ struct State {
 }
 
 impl State {
-    fn of(problem: &SenseProblem) -> Self {
+    fn new(problem: &SenseProblem) -> Self {
         let measured = problem.data.iter().zip(&problem.deviation).enumerate();
         let measured = measured.filter_map(|(k, (value, deviation))| Some((k, (*value)?, *deviation)));
         let (values, jacobian) = problem.first.clone();

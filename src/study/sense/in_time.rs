@@ -11,9 +11,9 @@ use crate::error::{Error, Result};
 use crate::functions::signals::Table;
 use crate::functions::{Interpolation, Signal};
 use crate::run::dynamics;
-use crate::run::sensitivity::forward::By;
+use crate::run::sensitivity::forward::DerivativeParameters;
 use crate::study::analysis::derivatives;
-use crate::study::followed::Followed;
+use crate::study::followed::ColumnRecorder;
 
 /// Equally spaced knots of natural cubic splines. One lies before the start and one after the end: a natural spline has zero curvature at
 /// its ends, a load need not.
@@ -151,17 +151,17 @@ impl ForwardModel for InTime<'_> {
             Ok(self.loaded(&there))
         };
         let names: Vec<&str> = parameters.iter().map(|one| one.pointer.as_str()).collect();
-        let mut recorder = Followed::new(&self.names, &names, self.instants.len(), self.stop);
-        let by = By {
+        let mut recorder = ColumnRecorder::new(&self.names, &names, self.instants.len(), self.stop);
+        let by = DerivativeParameters {
             changed: Some(&changed),
             states_only: true,
-            ..By::pointers(&parameters)
+            ..DerivativeParameters::pointers(&parameters)
         };
         let outcome = dynamics::run_at(&case, self.system(&case)?, by, self.instants, &mut recorder)?;
         if (self.stop)() {
             return Err(interrupted());
         }
-        let rows = recorder.of(outcome)?;
+        let rows = recorder.rows(outcome)?;
         let each = self.names.len();
         let size = rows.len() * each;
         let pressures = DVector::from_fn(size, |k, _| rows[k / each].0[k % each]);

@@ -1,7 +1,7 @@
 //! Goodness of fit: compares the residuals of measured pressures with their noise.
 
 use crate::numerics::normal;
-use crate::numerics::student::log_gamma;
+use crate::numerics::student_t::log_gamma;
 
 /// Significance level of the upper and lower chi-square tests.
 const UNLIKELY: f64 = 1e-3;
@@ -68,7 +68,7 @@ impl Misfit {
 mod tests {
     use super::*;
 
-    fn of(data: f64, rough: f64, by_discrepancy: bool) -> Misfit {
+    fn misfit(data: f64, rough: f64, by_discrepancy: bool) -> Misfit {
         Misfit {
             data,
             rough,
@@ -82,21 +82,21 @@ mod tests {
     /// approximation, 1 %.
     #[test]
     fn one_in_a_thousand_is_beyond_chance() {
-        assert!(of(16.0, 0.0, false).beyond_chance().is_none());
-        let beyond = of(10.0, 6.6, false).beyond_chance();
+        assert!(misfit(16.0, 0.0, false).beyond_chance().is_none());
+        let beyond = misfit(10.0, 6.6, false).beyond_chance();
         assert_eq!(beyond, Some((16.6_f64 / 3.0).sqrt()));
         // by discrepancy the residuals remain as large as the noise, at any roughness
-        assert!(of(5.0, 40.0, true).beyond_chance().is_none());
-        assert!(of(20.8, 0.0, true).beyond_chance().is_some());
+        assert!(misfit(5.0, 40.0, true).beyond_chance().is_none());
+        assert!(misfit(20.8, 0.0, true).beyond_chance().is_some());
     }
 
     /// Source: tables of chi-square: 0.1 % lie below 0.0243 on 3 degrees of freedom. Goal: detects noise given in kilopascals instead of
     /// pascals, but neither half of the noise nor exact data.
     #[test]
     fn far_less_than_the_noise_is_told() {
-        assert!(of(0.0247, 0.0, false).below_chance().is_none());
-        assert_eq!(of(0.024, 0.0, false).below_chance(), Some((0.024_f64 / 3.0).sqrt()));
-        assert!(of(3e-6, 0.0, false).below_chance().is_some());
-        assert!(of(0.75, 0.0, false).below_chance().is_none() && of(0.0, 0.0, false).below_chance().is_none());
+        assert!(misfit(0.0247, 0.0, false).below_chance().is_none());
+        assert_eq!(misfit(0.024, 0.0, false).below_chance(), Some((0.024_f64 / 3.0).sqrt()));
+        assert!(misfit(3e-6, 0.0, false).below_chance().is_some());
+        assert!(misfit(0.75, 0.0, false).below_chance().is_none() && misfit(0.0, 0.0, false).below_chance().is_none());
     }
 }

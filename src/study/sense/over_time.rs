@@ -12,22 +12,22 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{self, Amplitude};
-use super::diagnostics::{self, Left, alone, banded, doubts, left};
+use super::diagnostics::{self, PressureResidual, alone, banded, doubts, left};
 use super::estimate::{
     Amplitudes, EstimateOptions, ForwardModel as _, LoadEstimates, SenseProblem, Smoothing, estimate,
 };
-use super::find::{SenseOptions, differences as along_the_beam, unobservable};
+use super::estimate_at_rest::{SenseOptions, differences as along_the_beam, unobservable};
 use super::in_time::{InTime, Knots};
+use super::observability::{over_sizes, sight};
 use super::pressures::PressureTable;
-use super::rest::{labels, probed};
+use super::pressures_at_rest::{labels, probed};
 use super::sensed::{BandKind, MeasurementRow, OverTime, Sensed, Smoothed};
-use super::sight::{over_sizes, sight};
 use crate::case::schema::Case;
 use crate::error::numbers::counted;
 use crate::error::{Code, Error, Result};
 use crate::model::characteristic;
-use crate::numerics::inverse::{Observability, second_differences};
-use crate::run::known;
+use crate::numerics::bayesian_least_squares::{Observability, second_differences};
+use crate::run::early_warnings;
 
 /// Largest number of knots at which a warning still suggests more.
 const MOST: usize = 200;
@@ -76,7 +76,7 @@ pub(super) fn find(
         ..Sensed::default()
     };
     let lasting = constant(&first.1, amplitudes.len());
-    if Observability::of(&lasting).values.is_empty() {
+    if Observability::from_matrix(&lasting).values.is_empty() {
         return Err(unobservable());
     }
     sight(&mut found, &amplitudes, &lasting);
@@ -86,7 +86,7 @@ pub(super) fn find(
         None => vec![asked.noise_pa.unwrap_or(1.0); measured.bladders.len()],
     });
     let system = model.system(&model.loaded(&zeros))?;
-    let warnings = known::lasting(case, &system, &characteristic::numbers(case, &system.model));
+    let warnings = early_warnings::lasting(case, &system, &characteristic::numbers(case, &system.model));
     let mut problems = [SenseProblem {
         line: None,
         forward: Box::new(model),
@@ -110,7 +110,7 @@ pub(super) fn find(
         deviation_n_m: None,
         load_deviation_n_m: None,
     });
-    let left: Vec<Left> = left(&problems[0], one, &measured.bladders).collect();
+    let left: Vec<PressureResidual> = left(&problems[0], one, &measured.bladders).collect();
     let correlation = correlation(&left);
     found.over_time = Some(OverTime {
         knots: knots.at.len(),
@@ -254,7 +254,7 @@ fn resolved(one: &Amplitudes, problem: &SenseProblem, estimate: &LoadEstimates, 
 }
 
 /// Lag-1 autocorrelation of the residuals of each pressure.
-fn correlation(left: &[Left]) -> f64 {
+fn correlation(left: &[PressureResidual]) -> f64 {
     let (mut products, mut squares) = (0.0, 0.0);
     let mut last = std::collections::BTreeMap::new();
     for one in left {

@@ -37,14 +37,14 @@ impl PressureTable {
     /// # Errors
     /// The file cannot be read; a bladder does not exist or has two columns; a unit is not one of pressure; there is no pressure.
     pub fn read(path: &Path, case: &Case) -> Result<Self> {
-        Self::of(&DataTable::read(path)?, path, case)
+        Self::from_table(&DataTable::read(path)?, path, case)
     }
 
     /// Reads measurements from a table.
     ///
     /// # Errors
     /// As [`Measured::read`].
-    pub fn of(table: &DataTable, path: &Path, case: &Case) -> Result<Self> {
+    pub fn from_table(table: &DataTable, path: &Path, case: &Case) -> Result<Self> {
         let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
         let wrong = |what: String| Error::Usage(format!("{}: {what}", path.display()));
         let time = table
@@ -203,7 +203,7 @@ mod tests {
     fn read(text: &str) -> Result<PressureTable> {
         let sets = ["/probes=[{\"name\": \"mid-2\", \"at\": 0.45}]".to_owned()];
         let case = crate::case::load("cases/tour-sensor.json".as_ref(), &sets)?;
-        PressureTable::of(&DataTable::parse("p.csv".as_ref(), text)?, "p.csv".as_ref(), &case)
+        PressureTable::from_table(&DataTable::parse("p.csv".as_ref(), text)?, "p.csv".as_ref(), &case)
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub struct Sensed {
     /// Labels of the measured bladders, upper row first; all without measurements.
     pub bladders: Vec<i64>,
     /// Observability of the amplitudes by these bladders, independent of the measured values.
-    pub seen: Sight,
+    pub seen: ObservableAmplitudes,
     /// Noise of the pressures.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<Noise>,
@@ -73,7 +73,7 @@ pub struct Unknown {
 
 /// Observability of the amplitudes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sight {
+pub struct ObservableAmplitudes {
     /// Ratio of the largest to the smallest nonzero singular value, for amplitudes in sizes that bend the beam by about its length.
     pub condition: f64,
     /// Combinations of amplitudes that are determined together, but not each by itself.

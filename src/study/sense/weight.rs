@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::estimate::{EstimateOptions, Smoothing};
-use crate::numerics::inverse::{Posterior, ReducedProblem};
+use crate::numerics::bayesian_least_squares::{Posterior, ReducedProblem};
 
 /// Largest ratio of prior rows to measured rows.
 const HEAVIEST: f64 = 1e6;

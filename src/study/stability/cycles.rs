@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::case::schema::Case;
 use crate::error::{Code, Result};
+use crate::run::early_warnings;
 use crate::run::floquet::{self, Floquet};
-use crate::run::known;
-use crate::run::periodic::settle::Refined;
+use crate::run::periodic::balanced_cycle::TighterCycle;
 use crate::run::periodic::{PeriodicScene, Settled, ShootingRecord, record, settle, shoot};
 use crate::run::record::{Control, Unrecorded};
 use crate::run::stop::{INTERRUPTED, StopFlag};
@@ -33,7 +33,7 @@ pub struct CycleMember {
     pub quantities: std::collections::BTreeMap<String, Quantity>,
     /// Reason why the tolerance of the cycle is not the case's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub refined: Option<Refined>,
+    pub refined: Option<TighterCycle>,
     /// Wall time of search and stability [s].
     pub wall_s: f64,
 }
@@ -85,7 +85,7 @@ pub fn along(
         members: vec![],
         missing: vec![],
         warnings: match cases.first() {
-            Some((_, case)) => known::without_outputs(case, &crate::run::periodic::scene::system(case)?),
+            Some((_, case)) => early_warnings::without_outputs(case, &crate::run::periodic::scene::system(case)?),
             None => vec![],
         },
     };

@@ -11,8 +11,8 @@ use crate::functions::Signal;
 use crate::model::Model;
 use crate::model::characteristic::{MATHIEU_COUPLING, mathieu};
 use crate::run::drive::{PeriodicDrive, settled, settled_opening};
+use crate::run::early_warnings;
 use crate::run::floquet::{self, CycleStability};
-use crate::run::known;
 use crate::run::periodic::scene::whole;
 use crate::run::periodic::{PeriodicScene, shoot};
 use crate::run::stop::{INTERRUPTED, StopFlag};
@@ -163,7 +163,7 @@ pub fn map(
         amplitudes_m: plan.amplitudes_m.clone(),
         sheets,
         mathieu: prediction(case, &plan.frequencies_hz)?,
-        warnings: known::without_outputs(case, &crate::run::periodic::scene::system(case)?),
+        warnings: early_warnings::without_outputs(case, &crate::run::periodic::scene::system(case)?),
     })
 }
 
@@ -190,7 +190,7 @@ fn column(
                     ..MapPoint::default()
                 });
             }
-            let scene = PeriodicScene::of(
+            let scene = PeriodicScene::with_model(
                 &case,
                 shaken(&case, frequency_hz, amplitude)?,
                 PeriodicDrive {

@@ -4,10 +4,10 @@ use serde_json::Value;
 
 use super::table::DesignTable;
 use super::vary;
-use super::vary::{Draw, Values, Vary};
+use super::vary::{Draw, VariedNumber, VariedValues};
 use crate::case::is_below;
 use crate::error::{Error, Result};
-use crate::numerics::chance::Chance;
+use crate::numerics::rng::Rng;
 use crate::numerics::sobol::{self, Sobol};
 
 /// Largest number of designs.
@@ -34,7 +34,7 @@ impl Design {
     }
 
     /// Describes the design: `/a = 1, /b = 2`.
-    pub fn words(&self, pointers: &[String]) -> String {
+    pub fn describe(&self, pointers: &[String]) -> String {
         pairs(pointers, &self.values)
     }
 }
@@ -59,13 +59,13 @@ pub struct Designs {
 enum Made {
     Table(Vec<Vec<Value>>),
     /// Values of each axis, with samples if they are drawn; and the number of samples.
-    Crossed(Vec<(Values, Samples)>, usize),
+    Crossed(Vec<(VariedValues, Samples)>, usize),
 }
 
 #[derive(Clone, Debug)]
 enum Samples {
     None,
-    Latin(Vec<u32>, Chance),
+    Latin(Vec<u32>, Rng),
     Sobol(Sobol, u32),
 }
 
@@ -97,7 +97,7 @@ impl Designs {
     /// # Errors
     /// [`Error::Usage`] if distributions and draw do not match, for numbers that contain each other, for too many
     /// designs.
-    pub fn crossed(cases: usize, varied: &[Vary], draw: Draw, seed: Option<u64>) -> Result<Self> {
+    pub fn crossed(cases: usize, varied: &[VariedNumber], draw: Draw, seed: Option<u64>) -> Result<Self> {
         let pointers: Vec<String> = varied.iter().map(|vary| vary.pointer.clone()).collect();
         apart("--vary", &pointers)?;
         let drawn = varied.iter().filter(|vary| vary.drawn()).count();
@@ -114,21 +114,21 @@ impl Designs {
                 return Err(Error::Usage(format!(
                     "--design {}: no number has a distribution. Use --vary POINTER=uniform:LOW:HIGH or \
                      normal:MEAN:SD, or omit --design",
-                    draw.words()
+                    draw.describe()
                 )));
             }
             Draw::Sobol(_) if drawn > sobol::MOST => {
                 return Err(Error::Usage(format!(
                     "--design {}: the Sobol sequence has at most {} dimensions, but {drawn} numbers are drawn. Use \
                      latin:N",
-                    draw.words(),
+                    draw.describe(),
                     sobol::MOST
                 )));
             }
             _ => {}
         }
         let lengths = varied.iter().filter_map(|vary| match &vary.values {
-            Values::Listed(values) => Some(values.len()),
+            VariedValues::Listed(values) => Some(values.len()),
             _ => None,
         });
         let count = bounded(cases, lengths.chain([draw.count()]))?;
@@ -139,11 +139,11 @@ impl Designs {
                 Draw::Grid => Samples::None,
                 Draw::Latin(n) => {
                     let stream = 2 * direction as u64;
-                    let order = Chance::new(seed.unwrap_or(1), stream).order(n as u32);
-                    Samples::Latin(order, Chance::new(seed.unwrap_or(1), stream + 1))
+                    let order = Rng::new(seed.unwrap_or(1), stream).order(n as u32);
+                    Samples::Latin(order, Rng::new(seed.unwrap_or(1), stream + 1))
                 }
                 Draw::Sobol(_) => {
-                    let shift = seed.map_or(0, |seed| Chance::new(seed, direction as u64).bits());
+                    let shift = seed.map_or(0, |seed| Rng::new(seed, direction as u64).bits());
                     Samples::Sobol(Sobol::along(direction), shift)
                 }
             };
@@ -182,7 +182,7 @@ impl Designs {
                     .iter()
                     .rev()
                     .map(|(values, samples)| match values {
-                        Values::Listed(all) => {
+                        VariedValues::Listed(all) => {
                             let value = all[left % all.len()].clone();
                             left /= all.len();
                             value
@@ -243,8 +243,10 @@ mod tests {
     use super::*;
     use crate::numerics::normal::quantile;
 
-    fn varied(all: &[&str]) -> Vec<Vary> {
-        all.iter().map(|text| Vary::parse(text).expect("values")).collect()
+    fn varied(all: &[&str]) -> Vec<VariedNumber> {
+        all.iter()
+            .map(|text| VariedNumber::parse(text).expect("values"))
+            .collect()
     }
 
     fn column(designs: &Designs, k: usize) -> Vec<f64> {
@@ -259,7 +261,7 @@ mod tests {
         assert_eq!(column(&designs, 0)[..6], [1.0, 1.0, 1.0, 2.0, 2.0, 2.0]);
         assert_eq!(column(&designs, 1)[..6], [0.0, 0.5, 1.0, 0.0, 0.5, 1.0]);
         assert_eq!((designs.design(5).case, designs.design(6).case), (0, 1));
-        assert_eq!(designs.design(1).words(designs.pointers()), "/a = 1, /b = 0.5");
+        assert_eq!(designs.design(1).describe(designs.pointers()), "/a = 1, /b = 0.5");
     }
 
     #[test]
@@ -341,7 +343,7 @@ mod tests {
             ("a=1", "starts with `/`"),
             ("/a", "pointer and its values"),
         ] {
-            let why = Vary::parse(text).expect_err("refused").to_string();
+            let why = VariedNumber::parse(text).expect_err("refused").to_string();
             assert!(why.contains(word), "{text}: {why}");
         }
     }

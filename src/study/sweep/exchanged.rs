@@ -26,7 +26,7 @@ pub const MOST: usize = 2000;
 
 /// Modes of a design.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Swinging {
+pub struct DesignModes {
     number: usize,
     case: usize,
     values: Vec<Value>,
@@ -34,9 +34,9 @@ pub struct Swinging {
     s: Vec<Complex<f64>>,
 }
 
-impl Swinging {
+impl DesignModes {
     /// Reads the modes of a row; `None` if it has none, as for other commands.
-    pub fn of(row: &SweepRow) -> Option<Self> {
+    pub fn from_row(row: &SweepRow) -> Option<Self> {
         let mode = |k: usize| {
             let figure = |name: &str| row.found.figure(&format!("mode_{k}.{name}"));
             let frequency = figure("frequency_hz")?;
@@ -68,10 +68,10 @@ pub struct Exchange {
 }
 
 /// Finds exchanges between neighboring designs along each listed axis.
-pub fn exchanges(plan: &SweepPlan, designs: &[Swinging]) -> Vec<Exchange> {
+pub fn exchanges(plan: &SweepPlan, designs: &[DesignModes]) -> Vec<Exchange> {
     let mut all = vec![];
     for (axis, varied) in plan.axes.iter().enumerate().filter(|(k, _)| plan.listed(*k)) {
-        let mut lines: BTreeMap<(usize, String), Vec<(f64, &Swinging)>> = BTreeMap::new();
+        let mut lines: BTreeMap<(usize, String), Vec<(f64, &DesignModes)>> = BTreeMap::new();
         for one in designs {
             let Some(value) = one.values.get(axis).and_then(Value::as_f64) else {
                 continue;

@@ -34,14 +34,14 @@ impl Shard {
     }
 
     /// Formats the shard as typed.
-    pub fn words(self) -> String {
+    pub fn describe(self) -> String {
         format!("{}/{}", self.index, self.of)
     }
 }
 
 /// A case of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Listed {
+pub struct SweptCase {
     /// Its name.
     pub name: String,
     /// Its file, as typed.
@@ -67,7 +67,7 @@ pub struct SweepPlan {
     /// Analysis of each design.
     pub command: AnalysisKind,
     /// The cases.
-    pub cases: Vec<Listed>,
+    pub cases: Vec<SweptCase>,
     /// Changes to all cases.
     pub sets: Vec<String>,
     /// Varied numbers.
@@ -148,7 +148,7 @@ impl SweepPlan {
         differ("--command", self.command.word().into(), other.command.word().into())
             .or_else(|| differ("the list of cases", cases(self), cases(other)))
             .or_else(|| differ("--vary", axes(self), axes(other)))
-            .or_else(|| differ("--design", self.design.words(), other.design.words()))
+            .or_else(|| differ("--design", self.design.describe(), other.design.describe()))
             .or_else(|| {
                 let seed = |plan: &Self| optional(plan.seed.map(|seed| seed.to_string()));
                 differ("--seed", seed(self), seed(other))
@@ -162,7 +162,7 @@ impl SweepPlan {
                 (self.mesh_errors != other.mesh_errors).then(|| "--no-mesh-errors is given for only one of them".into())
             })
             .or_else(|| {
-                let shard = |plan: &Self| optional(plan.shard.map(Shard::words));
+                let shard = |plan: &Self| optional(plan.shard.map(Shard::describe));
                 differ("--shard", shard(self), shard(other))
             })
             .or_else(|| {
@@ -193,7 +193,7 @@ impl SweepPlan {
         }
         put("--command", self.command.word().into());
         if self.design != Draw::Grid {
-            put("--design", self.design.words());
+            put("--design", self.design.describe());
         }
         if let Some(seed) = self.seed {
             put("--seed", seed.to_string());

@@ -24,7 +24,7 @@ pub struct SweepRow {
 
 impl SweepRow {
     /// Creates the row of a design.
-    pub fn of(design: Design, found: AnalysisOutcome, wall_s: f64) -> Self {
+    pub fn new(design: Design, found: AnalysisOutcome, wall_s: f64) -> Self {
         Self {
             number: design.number,
             case: design.case,

@@ -12,18 +12,18 @@ pub const MOST_VALUES: usize = 1_000_000;
 
 /// Varied number, and its values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Vary {
+pub struct VariedNumber {
     /// JSON pointer into the case.
     pub pointer: String,
     /// Specification, as typed.
     pub spec: String,
     /// Its values.
-    pub values: Values,
+    pub values: VariedValues,
 }
 
 /// Values of one number.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values {
+pub enum VariedValues {
     /// Listed values, in their order.
     Listed(Vec<Value>),
     /// Uniform distribution between two bounds.
@@ -71,7 +71,7 @@ impl Draw {
     }
 
     /// Formats the option as typed.
-    pub fn words(self) -> String {
+    pub fn describe(self) -> String {
         match self {
             Self::Grid => "grid".into(),
             Self::Latin(n) => format!("latin:{n}"),
@@ -88,7 +88,7 @@ impl Draw {
     }
 }
 
-impl Vary {
+impl VariedNumber {
     /// Parses `POINTER=SPEC`.
     ///
     /// # Errors
@@ -110,7 +110,7 @@ impl Vary {
         Ok(Self {
             pointer: pointer.into(),
             spec: spec.into(),
-            values: Values::parse(spec)
+            values: VariedValues::parse(spec)
                 .map_err(|why| amounts::rewritten(option, pointer, spec).unwrap_or(why))
                 .map_err(wrong)?,
         })
@@ -118,7 +118,7 @@ impl Vary {
 
     /// True if its values are drawn, not listed.
     pub fn drawn(&self) -> bool {
-        !matches!(self.values, Values::Listed(_))
+        !matches!(self.values, VariedValues::Listed(_))
     }
 }
 
@@ -149,7 +149,7 @@ pub fn check_pointer(pointer: &str) -> std::result::Result<(), String> {
     }
 }
 
-impl Values {
+impl VariedValues {
     /// Value below which a share of the distribution lies; `None` for a list.
     pub fn at(&self, share: f64) -> Option<f64> {
         match self {

@@ -8,20 +8,20 @@ use crate::discrete::System;
 use crate::error::Result;
 use crate::error::numbers::error_percent;
 use crate::run::dynamics::Outcome;
-use crate::run::floors::Floors;
 use crate::run::record::Recorder;
+use crate::run::rounding_scales::RoundingScales;
 use crate::run::summary::{EarlierRun, Status, Summary};
 use crate::study::companion;
 use crate::study::companion::error::{figures, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
 use crate::study::effects::choices::with;
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
 
 /// Most repeated runs.
 const REPEATS: usize = 2;
 
 /// A case with more effects.
-pub struct Needed {
+pub struct CaseWithEffects {
     /// The case.
     pub case: Case,
     /// Effects that it has more, each with the quantity that it changes most, and by how much.
@@ -75,12 +75,12 @@ pub fn settle(
 ///
 /// # Errors
 /// As [`System::new`].
-pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Needed>> {
+pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<CaseWithEffects>> {
     let mut causes = summary.companion.iter().flat_map(|companion| companion.causes.keys());
     if !causes.any(|pointer| ErrorCause::is_effect(pointer)) {
         return Ok(None);
     }
-    let errors = relative_by_cause(summary, &Floors::of(case)?);
+    let errors = relative_by_cause(summary, &RoundingScales::from_case(case)?);
     let Some(full) = full(case)? else {
         return Ok(None);
     };
@@ -94,7 +94,7 @@ pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Neede
     let all = |worst: &(String, f64)| full.left_out.iter().map(|effect| (*effect, worst.clone())).collect();
     if let Some(worst) = most(ErrorCause::Effects) {
         let added = all(&worst);
-        return Ok(Some(Needed { case: full.case, added }));
+        return Ok(Some(CaseWithEffects { case: full.case, added }));
     }
     let each = full
         .left_out
@@ -110,16 +110,16 @@ pub fn needed(case: &Case, summary: &Summary, limit: f64) -> Result<Option<Neede
     // one may have no meaning without another
     let has_all = |system: System| added.keys().all(|effect| system.model.effects.has(*effect));
     Ok(Some(match System::new(&some).is_ok_and(has_all) {
-        true => Needed { case: some, added },
+        true => CaseWithEffects { case: some, added },
         false => {
             let added = all(worst);
-            Needed { case: full.case, added }
+            CaseWithEffects { case: full.case, added }
         }
     }))
 }
 
 /// Adds to the summary of a repeated run the runs before, and the reasons of effects that were turned on.
-fn add_earlier_runs(summary: &mut Summary, needed: &Needed, before: &Summary) {
+fn add_earlier_runs(summary: &mut Summary, needed: &CaseWithEffects, before: &Summary) {
     for (effect, (quantity, error)) in &needed.added {
         if let Some(chosen) = summary.effects.get_mut(&effect.to_string()) {
             chosen.reason = format!("measured: without it {quantity} changes by {}", error_percent(*error));

@@ -7,7 +7,7 @@ use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::error::Result;
 use crate::error::numbers::rounded;
-use crate::run::floors::Floors;
+use crate::run::rounding_scales::RoundingScales;
 use crate::run::summary::Summary;
 use crate::study::companion::error::{relative, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
@@ -57,7 +57,7 @@ pub struct Levers {
 }
 
 /// A finer case.
-pub struct Finer {
+pub struct FinerCase {
     /// The case.
     pub case: Case,
     /// Effects that it has more.
@@ -80,7 +80,7 @@ impl Levers {
     ///
     /// # Errors
     /// As [`System::new`](crate::discrete::System::new).
-    pub fn next(&mut self, case: &Case, summary: &Summary, floors: &Floors) -> Result<Option<Finer>> {
+    pub fn next(&mut self, case: &Case, summary: &Summary, floors: &RoundingScales) -> Result<Option<FinerCase>> {
         let work = work(summary) as f64;
         let first = *self.first.get_or_insert(work);
         let mut large = relative(summary, &summary.errors, floors);
@@ -111,7 +111,7 @@ impl Levers {
         let idle = if decades > 0 && steady { IDLE } else { 0 };
         let tighter = case.solver.rtol * 10_f64.powi(-decades - idle);
         finer.solver.rtol = rounded(tighter, 4).max(10_f64.powi(-TIGHTEST));
-        Ok(Some(Finer { case: finer, added }))
+        Ok(Some(FinerCase { case: finer, added }))
     }
 
     /// True if the error of a quantity is no longer worth the work; stores its best error. If a finer run shows a much larger error, that error
@@ -162,7 +162,7 @@ impl Levers {
 }
 
 /// Parts of the errors of quantities by cause: beam mesh, fluid mesh and time steps, scaled so that all causes add up to the error.
-fn parts(summary: &Summary, floors: &Floors, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
+fn parts(summary: &Summary, floors: &RoundingScales, errors: &BTreeMap<String, f64>) -> Vec<[f64; 3]> {
     let causes = relative_by_cause(summary, floors);
     let of = |(name, error): (&String, &f64)| {
         let part = |errors: &BTreeMap<String, f64>| errors.get(name).copied().unwrap_or(0.0);

@@ -1,10 +1,10 @@
 //! The cheapest run that has an accuracy: mesh, tolerance and effects are refined where measured errors require it.
 //!
 //! ```text
-//! first     the setting to begin with, which sees every load
-//! effects   effects that are left out and measured to matter
-//! levers    next refinement, by the causes of errors
-//! verdict   accuracy reached
+//! initial_mesh  the setting to begin with, which sees every load
+//! effects       effects that are left out and measured to matter
+//! levers        next refinement, by the causes of errors
+//! verdict       accuracy reached
 //! ```
 //!
 //! Every run has a companion ([`companion`](super::companion)). Where that shows errors above the accuracy, each cause is measured by a
@@ -12,7 +12,7 @@
 //! errors are small enough, where a refinement does not make them smaller, or where the next one is too expensive.
 
 pub mod effects;
-pub mod first;
+pub mod initial_mesh;
 pub mod levers;
 mod verdict;
 
@@ -22,10 +22,10 @@ use crate::discrete::System;
 use crate::error::{Code, Result};
 use crate::integrate::halt;
 use crate::run::dynamics::Outcome;
-use crate::run::floors::Floors;
-use crate::run::summary::{Accuracy, Pilot, Status, Summary};
+use crate::run::rounding_scales::RoundingScales;
+use crate::run::summary::{Accuracy, PilotRun, Status, Summary};
 use crate::study::companion::Accurate;
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
 use levers::Levers;
 
 /// Part of the accuracy asked that leaving out an effect may take by its number, unless the case sets it.
@@ -46,9 +46,9 @@ pub type Record<'a> = &'a mut dyn FnMut(&Case, &Accurate) -> Result<Outcome>;
 pub fn reach(case: &Case, asked: f64, from: Option<&ReachedSetting>, record: Record) -> Result<Outcome> {
     let mut case = case.clone();
     case.effects_tolerance.get_or_insert(EFFECTS * asked);
-    let mut case = first::setting(&case, asked)?;
+    let mut case = initial_mesh::setting(&case, asked)?;
     if let Some(from) = from {
-        case = from.of(&case).unwrap_or(case);
+        case = from.refined_case(&case).unwrap_or(case);
     }
     let mut wanted = Accurate::new(asked);
     let mut outcome = record(&case, &wanted)?;
@@ -64,7 +64,7 @@ pub fn reach(case: &Case, asked: f64, from: Option<&ReachedSetting>, record: Rec
         outcome.summary.warnings.push(Code::Accuracy.warning(why));
         return Ok(outcome);
     }
-    let floors = Floors::of(&case)?;
+    let floors = RoundingScales::from_case(&case)?;
     let mut levers = Levers::new(asked);
     let (mut pilots, mut cut_short) = (vec![], None);
     while pilots.len() + 1 < RUNS {
@@ -109,7 +109,7 @@ impl ReachedSetting {
     }
 
     /// A case so computed; nothing where it cannot be.
-    fn of(&self, case: &Case) -> Option<Case> {
+    fn refined_case(&self, case: &Case) -> Option<Case> {
         let mut case = case.clone();
         case.mesh.cells_per_segment = self.cells_per_segment;
         case.mesh.cells_per_bladder = self.cells_per_bladder;
@@ -119,8 +119,8 @@ impl ReachedSetting {
     }
 }
 
-fn pilot(case: &Case, summary: &Summary) -> Pilot {
-    Pilot {
+fn pilot(case: &Case, summary: &Summary) -> PilotRun {
+    PilotRun {
         cells_per_segment: case.mesh.cells_per_segment,
         cells_per_bladder: case.mesh.cells_per_bladder,
         rtol: case.solver.rtol,

@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 use crate::case::Case;
 use crate::case::schema::Effect;
 use crate::error::Code;
-use crate::run::floors::Floors;
-use crate::run::summary::{Accuracy, ErrorEstimate, Pilot, Summary};
+use crate::run::rounding_scales::RoundingScales;
+use crate::run::summary::{Accuracy, ErrorEstimate, PilotRun, Summary};
 use crate::study::companion::error::{relative, relative_by_cause};
 use crate::study::companion::variant::ErrorCause;
-use crate::study::effects::full::full;
+use crate::study::effects::full_model::full;
 use crate::study::refine;
 
 /// Writes into the summary of the result what its errors are beside an accuracy.
 pub fn conclude(
     case: &Case,
     asked: f64,
-    floors: &Floors,
-    pilots: Vec<Pilot>,
+    floors: &RoundingScales,
+    pilots: Vec<PilotRun>,
     added: &[Effect],
     cut_short: Option<String>,
     summary: &mut Summary,

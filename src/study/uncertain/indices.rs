@@ -9,7 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::chance::Chance;
+use crate::numerics::rng::Rng;
 
 /// Number of bootstrap repetitions.
 const AGAIN: usize = 200;
@@ -37,7 +37,7 @@ pub fn indices(rows: &[Vec<f64>], inputs: usize, seed: u64) -> Option<Vec<Index>
     }
     let all: Vec<usize> = (0..rows.len()).collect();
     let found = estimate(rows, &all, inputs)?;
-    let mut chance = Chance::new(seed, u64::MAX);
+    let mut chance = Rng::new(seed, u64::MAX);
     let mut moments = vec![[[0.0; 2]; 2]; inputs];
     let mut times = 0.0;
     for _ in 0..AGAIN {
@@ -92,14 +92,14 @@ fn estimate(rows: &[Vec<f64>], which: &[usize], inputs: usize) -> Option<Vec<[f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::sweep::vary::Vary;
+    use crate::study::sweep::vary::VariedNumber;
     use crate::study::uncertain::SamplePlan;
     use std::f64::consts::PI;
 
     /// Source: the function of Ishigami & Homma (1990) with 7 and 0.1: S = 0.3139, 0.4424, 0, ST = 0.5576, 0.4424, 0.2437, exact.
     #[test]
     fn indices_of_ishigami_are_exact_within_their_errors() {
-        let inputs = (1..=3).map(|k| Vary::parse(&format!("/x{k}=uniform:{}:{PI}", -PI)).expect("values"));
+        let inputs = (1..=3).map(|k| VariedNumber::parse(&format!("/x{k}=uniform:{}:{PI}", -PI)).expect("values"));
         let plan = SamplePlan::new(inputs.collect(), 4096, 3, true).expect("a plan");
         let q = |n: usize| {
             let x = plan.values(n);

@@ -1,32 +1,32 @@
 //! Uncertainty of figures due to uncertain numbers of a case: to first order, and by samples.
 //!
 //! ```text
-//! samples  values of each sample, by its number
-//! first    derivatives of the figures at the means
-//! nothing  figures that are rounding errors
-//! spread   statistics of the figures of all samples
-//! indices  share of each number in a variance (Sobol)
+//! samples           values of each sample, by its number
+//! mean_derivatives  derivatives of the figures at the means
+//! rounding_errors   figures that are rounding errors
+//! statistics        statistics of the figures of all samples
+//! indices           share of each number in a variance (Sobol)
 //! ```
 //!
 //! Numbers are assumed to be independent of each other. Samples are points of Sobol's sequence, whose bits the seed
 //! shifts: the same seed gives the same spread on every machine.
 
-pub mod first;
 pub mod indices;
-mod nothing;
+pub mod mean_derivatives;
+mod rounding_errors;
 pub mod samples;
-pub mod spread;
+pub mod statistics;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use first::{FirstOrderSlopes, slopes};
 pub use indices::Index;
+pub use mean_derivatives::{FirstOrderSlopes, slopes};
 pub use samples::SamplePlan;
-pub use spread::judge;
+pub use statistics::judge;
 
-use crate::run::band::{Band, Bands};
+use crate::run::uncertainty_band::{Band, Bands};
 
 /// Uncertainty of the figures of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub struct Uncertainty {
     /// Seed.
     pub seed: u64,
     /// Figures by name, unit included, as in the table of `slcbeam sweep`.
-    pub figures: BTreeMap<String, Spread>,
+    pub figures: BTreeMap<String, FigureSpread>,
     /// Reason why there are no derivatives; `None` if there are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_first_order: Option<String>,
@@ -57,7 +57,7 @@ pub struct Uncertainty {
 impl Uncertainty {
     /// Returns every figure with its band, as in a result.
     pub fn bands(&self) -> Bands {
-        let band = |one: &Spread| Band {
+        let band = |one: &FigureSpread| Band {
             value: one.value,
             numerical_error: one.numerical_error,
             sd: one.sd,
@@ -86,7 +86,7 @@ pub struct UncertainInput {
 
 /// Spread of a figure, in its unit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct FigureSpread {
     /// Figure of the case itself.
     pub value: f64,
     /// Estimated absolute error due to steps, mesh and omitted effects.

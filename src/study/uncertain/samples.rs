@@ -7,10 +7,10 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::numerics::chance::Chance;
+use crate::numerics::rng::Rng;
 use crate::numerics::sobol::{self, Sobol};
 use crate::study::sweep::designs::Designs;
-use crate::study::sweep::vary::{Draw, Vary};
+use crate::study::sweep::vary::{Draw, VariedNumber};
 
 /// Least number of samples: with fewer, there is no quantile of 2.5 %.
 const FEWEST: usize = 16;
@@ -20,7 +20,7 @@ const MOST: usize = 100_000;
 /// Samples to be drawn.
 #[derive(Clone, Debug)]
 pub struct SamplePlan {
-    inputs: Vec<Vary>,
+    inputs: Vec<VariedNumber>,
     samples: usize,
     seed: u64,
     indices: bool,
@@ -34,7 +34,7 @@ impl SamplePlan {
     /// # Errors
     /// [`Error::Usage`]: lists of values, numbers that contain each other, too many numbers, too few or too many
     /// samples.
-    pub fn new(inputs: Vec<Vary>, samples: usize, seed: u64, indices: bool) -> Result<Self> {
+    pub fn new(inputs: Vec<VariedNumber>, samples: usize, seed: u64, indices: bool) -> Result<Self> {
         let usage = |what: String| Err(Error::Usage(what));
         if let Some(listed) = inputs.iter().find(|one| !one.drawn()) {
             return usage(format!(
@@ -56,7 +56,7 @@ impl SamplePlan {
         }
         // rejects two of the same number, or one within another
         Designs::crossed(1, &inputs, Draw::Latin(1), None)?;
-        let direction = |k: usize| (Sobol::along(k), Chance::new(seed, k as u64).bits());
+        let direction = |k: usize| (Sobol::along(k), Rng::new(seed, k as u64).bits());
         Ok(Self {
             directions: (0..wanted).map(direction).collect(),
             inputs,
@@ -67,7 +67,7 @@ impl SamplePlan {
     }
 
     /// Uncertain numbers.
-    pub fn inputs(&self) -> &[Vary] {
+    pub fn inputs(&self) -> &[VariedNumber] {
         &self.inputs
     }
 
@@ -143,7 +143,9 @@ mod tests {
 
     fn plan(all: &[&str], samples: usize, indices: bool) -> Result<SamplePlan> {
         SamplePlan::new(
-            all.iter().map(|text| Vary::parse(text).expect("values")).collect(),
+            all.iter()
+                .map(|text| VariedNumber::parse(text).expect("values"))
+                .collect(),
             samples,
             1,
             indices,

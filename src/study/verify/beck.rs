@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::figure::ExactFigure;
 use super::fit::growth_of_spans;
 use super::frequencies::free_shape;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::scene::{SMALL, motion, unit_beam};
 use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;

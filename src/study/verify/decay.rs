@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
-use super::solve::{Solved, modes, solve};
+use super::problem::SolvedProblem;
+use super::solve::{SolvedRun, modes, solve};
 use super::wet::{BLADDER, COMPLIANCE, TUBE, TUBE_LENGTH, case, pressures};
 use crate::error::Result;
 use crate::run::modes::TimeBehavior;
@@ -107,7 +107,7 @@ fn rates(network: Value, angles: impl Iterator<Item = f64>) -> Result<Vec<ExactF
 }
 
 /// Pressures of the upper row at the end of a run [Pa].
-fn upper_pressures(solved: &Solved, count: usize) -> impl Iterator<Item = f64> {
+fn upper_pressures(solved: &SolvedRun, count: usize) -> impl Iterator<Item = f64> {
     solved
         .field("pressure_pa")
         .last()

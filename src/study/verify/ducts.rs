@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::solve::solve;
 use super::wet::{TUBE_LENGTH, VISCOSITY, case};
 use crate::error::Result;

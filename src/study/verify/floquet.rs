@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::scene::unit_beam;
 use super::solve::on_three_meshes;
 use crate::case;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
 use super::fit::oscillation;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::scene::motion;
 use super::solve::{modes, on_three_meshes, solve};
 use crate::error::Result;

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::figure::ExactFigure;
 use super::floquet::bending;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::solve::on_three_meshes;
 use crate::case;
 use crate::error::Result;

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::solve::solve;
 use super::wet::{BLADDER, TUBE, case};
 use crate::error::Result;

@@ -7,7 +7,7 @@ use serde_json::json;
 use super::figure::ExactFigure;
 use super::fit::growth_of_spans;
 use super::frequencies::free_shape;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::scene::motion;
 use super::solve::solve;
 use crate::error::Result;

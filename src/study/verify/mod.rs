@@ -1,7 +1,7 @@
 //! Exact results of beam and network theory, compared with the results of ordinary cases.
 //!
 //! ```text
-//! row          a problem with its source, goal and tolerance; selection by name
+//! problem      a problem with its source, goal and tolerance; selection by name
 //! figure       one number of a row: computed, exact, error, observed order, verdict
 //! solve        a case from JSON to its samples
 //! scene        the beam of unit length, bending stiffness and mass that most problems use
@@ -32,7 +32,7 @@ mod frequencies;
 mod hill;
 mod kirchhoff;
 mod mathieu;
-mod row;
+mod problem;
 mod scene;
 mod section;
 mod solve;
@@ -41,7 +41,7 @@ mod statics;
 mod wet;
 
 pub use figure::{ErrorMeasure, ExactFigure};
-pub use row::{SolvedProblem, choose};
+pub use problem::{SolvedProblem, choose};
 
 /// Every row, in the order of the report.
 pub fn rows() -> Vec<SolvedProblem> {

@@ -3,7 +3,7 @@
 use slcbeam_section::verify::{self, Compare, Comparison, LEAST_ORDER, ROUND_OFF};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use crate::error::Error;
 
 const APPROACHED: &str = "a thousandth on the third of three coarse meshes, the goal of every coefficient; quadratic elements \

@@ -11,7 +11,7 @@ use crate::run::record::{Control, HistoryColumn, Memory};
 use crate::run::{dynamics, equilibrium};
 
 /// Recorded data of a run.
-pub struct Solved {
+pub struct SolvedRun {
     memory: Memory,
 }
 
@@ -19,13 +19,13 @@ pub struct Solved {
 ///
 /// # Errors
 /// A case that is not valid, a solver that fails.
-pub fn solve(case: &Value) -> Result<Solved> {
+pub fn solve(case: &Value) -> Result<SolvedRun> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let mut memory = Memory::default();
     let outcome = dynamics::run(&case, &mut memory)?;
     match outcome.fault {
         Some(fault) => Err(Error::Solver(Box::new(fault))),
-        None => Ok(Solved { memory }),
+        None => Ok(SolvedRun { memory }),
     }
 }
 
@@ -43,7 +43,7 @@ pub fn modes(case: &Value, count: usize) -> Result<Modes> {
     modes::modes(&case, &plan)
 }
 
-impl Solved {
+impl SolvedRun {
     /// Returns a column of the history; empty if there is none of that name.
     pub fn column(&self, name: &str) -> Vec<f64> {
         self.memory.column(name).unwrap_or_default()
@@ -61,7 +61,7 @@ impl Solved {
 }
 
 /// A load path of equilibria.
-pub struct Balanced {
+pub struct SolvedPath {
     columns: Vec<HistoryColumn>,
     path: equilibrium::Path,
 }
@@ -70,7 +70,7 @@ pub struct Balanced {
 ///
 /// # Errors
 /// A case that is not valid, a path that ends early.
-pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
+pub fn balance(case: &Value, share: f64) -> Result<SolvedPath> {
     let case = case::parse(&case.to_string(), Path::new("verify.json"), Path::new(""), &[])?;
     let at_s = case.time.end_s;
     let options = equilibrium::EquilibriumOptions {
@@ -80,14 +80,14 @@ pub fn balance(case: &Value, share: f64) -> Result<Balanced> {
     let path = equilibrium::follow(&case, &options, &mut |_| Control::Continue)?;
     match path.fault {
         Some(fault) => Err(Error::Solver(Box::new(fault))),
-        None => Ok(Balanced {
+        None => Ok(SolvedPath {
             columns: equilibrium::columns(&equilibrium::system(&case, at_s)?),
             path,
         }),
     }
 }
 
-impl Balanced {
+impl SolvedPath {
     /// Returns a quantity in the last state; NaN if there is none of that name.
     pub fn last(&self, name: &str) -> f64 {
         let column = self.columns.iter().position(|c| c.name == name);

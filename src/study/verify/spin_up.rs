@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
 use super::fit::{minimum, smooth_mean};
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::solve::{on_three_meshes, solve};
 use crate::error::Result;
-use crate::functions::{Clock, Signal};
+use crate::functions::{Signal, SmoothTime};
 
 /// Length [m], stiffnesses [N], [N m^2], mass [kg/m], final speed [1/s], time of acceleration [s].
 const LENGTH: f64 = 10.0;
@@ -78,7 +78,7 @@ fn spin_up(cells: usize) -> Result<[f64; 2]> {
         .zip(solved.column("tip_u1"))
         .zip(solved.column("tip_u3"))
         .map(|((&t, u1), u3)| {
-            let (sine, cosine) = signal.jet(Clock { t, within: t }).value.sin_cos();
+            let (sine, cosine) = signal.jet(SmoothTime { t, within: t }).value.sin_cos();
             u1 * cosine - (LENGTH + u3) * sine
         })
         .collect();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde_json::{Value, json};
 
 use super::figure::ExactFigure;
-use super::row::SolvedProblem;
+use super::problem::SolvedProblem;
 use super::scene::{growing, load_path, unit_beam};
 use super::solve::{balance, on_three_meshes};
 use crate::error::Result;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use slcbeam::output::sweep::Survey;
+use slcbeam::output::sweep::JournalSummary;
 use slcbeam::results::{self, sweep::SweepPlan};
 use tempfile::TempDir;
 
@@ -239,7 +239,7 @@ fn changed_rows_are_not_used() {
     for trial in 0..60 {
         let (bytes, same, at) = changed(&sound, &mut random);
         fs::write(&journal, &bytes).expect("written");
-        let survey = Survey::of(&journal, &plan).expect("a survey");
+        let survey = JournalSummary::read(&journal, &plan).expect("a survey");
         assert!(
             survey.damage().is_some() && survey.count() == same,
             "{trial}: byte {at}"

@@ -7,7 +7,7 @@ use slcbeam::discrete::quantities::{Observable, ObservableRow};
 use slcbeam::run::dynamics;
 use slcbeam::run::energies::EnergyAccumulator;
 use slcbeam::run::record::Memory;
-use slcbeam::run::summary::{Absence, Quantity};
+use slcbeam::run::summary::{MissingRatio, Quantity};
 
 const COLUMNS: [Observable; 8] = [
     Observable::Time,
@@ -110,7 +110,10 @@ fn an_idle_turbine_has_no_efficiency() {
     );
     assert_eq!(
         (q.final_absent, q.window_absent),
-        (Some(Absence::BelowNumericalError), Some(Absence::BelowNumericalError))
+        (
+            Some(MissingRatio::BelowNumericalError),
+            Some(MissingRatio::BelowNumericalError)
+        )
     );
     assert!(
         !summary.warnings.iter().any(|warning| warning.starts_with("W020")),

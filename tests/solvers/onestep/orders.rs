@@ -1,7 +1,7 @@
 //! Orders of convergence, stiff problems, problems with published answers.
 
 use slcbeam::dae::Dae;
-use slcbeam::integrate::Absolute;
+use slcbeam::integrate::AbsoluteTolerances;
 use slcbeam::onestep::{OneStep, OneStepOptions, TableauMethod};
 
 use crate::problems::{Plain, TRANSISTOR, beam, robertson, transistor, transistor_start, transistor_voltages};
@@ -11,7 +11,7 @@ pub fn fixed(method: TableauMethod, step: f64) -> OneStepOptions {
     OneStepOptions {
         method,
         relative: 1.0,
-        absolute: Absolute::Same(1.0),
+        absolute: AbsoluteTolerances::Same(1.0),
         newton_tolerance: Some(1e-13),
         initial_step: Some(step),
         max_step: Some(step),
@@ -19,7 +19,7 @@ pub fn fixed(method: TableauMethod, step: f64) -> OneStepOptions {
     }
 }
 
-fn adaptive(method: TableauMethod, relative: f64, absolute: Absolute) -> OneStepOptions {
+fn adaptive(method: TableauMethod, relative: f64, absolute: AbsoluteTolerances) -> OneStepOptions {
     OneStepOptions {
         method,
         relative,
@@ -106,7 +106,7 @@ fn stiff_transients_are_forgotten() {
 #[test]
 fn robertson_reaches_published_values() {
     for method in TableauMethod::ALL {
-        let options = adaptive(method, 1e-7, Absolute::Each(vec![1e-12, 1e-16, 1e-10]));
+        let options = adaptive(method, 1e-7, AbsoluteTolerances::Each(vec![1e-12, 1e-16, 1e-10]));
         let mut one = OneStep::new(robertson(), 0.0, &[1.0, 0.0, 0.0], &[-0.04, 0.04, 0.0], &options).unwrap();
         run(&mut one, 1e11);
         let exact = [2.083340149701255e-8, 8.333360770334713e-14, 0.999999979166505];
@@ -122,7 +122,7 @@ fn robertson_reaches_published_values() {
 fn transistor_amplifier_reaches_published_values() {
     let error = |method, tolerance: f64| {
         let (y, yp) = transistor_start();
-        let options = adaptive(method, tolerance, Absolute::Same(tolerance));
+        let options = adaptive(method, tolerance, AbsoluteTolerances::Same(tolerance));
         let mut one = OneStep::new(transistor(), 0.0, &y, &yp, &options).unwrap();
         run(&mut one, 0.2);
         let voltages = transistor_voltages(one.y());
@@ -141,7 +141,7 @@ fn transistor_amplifier_reaches_published_values() {
 fn beam_is_not_held_down_by_its_waves() {
     let angles = [-0.5792366591285007e-2, -0.1483595472463012, -0.1767201761075488];
     for method in [TableauMethod::Esdirk34, TableauMethod::Esdirk46] {
-        let options = adaptive(method, 1e-5, Absolute::Same(1e-5));
+        let options = adaptive(method, 1e-5, AbsoluteTolerances::Same(1e-5));
         let mut one = OneStep::new(beam(), 0.0, &[0.0; 80], &[0.0; 80], &options).unwrap();
         run(&mut one, std::f64::consts::PI);
         run(&mut one, 5.0);

@@ -1,7 +1,7 @@
 //! Steps, stops, interpolation, restarts, and impossible requests.
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
-use slcbeam::integrate::Absolute;
+use slcbeam::integrate::AbsoluteTolerances;
 use slcbeam::onestep::{OneStep, OneStepOptions, TableauMethod};
 use slcbeam::sparse::Pattern;
 
@@ -16,7 +16,7 @@ fn tight(method: TableauMethod) -> OneStepOptions {
     OneStepOptions {
         method,
         relative: 1e-8,
-        absolute: Absolute::Same(1e-8),
+        absolute: AbsoluteTolerances::Same(1e-8),
         ..OneStepOptions::default()
     }
 }
@@ -218,7 +218,7 @@ fn options_are_obeyed_or_refused() {
     refuse(&[f64::NAN; 3], usual(), "error weight");
     let relative = 0.0;
     refuse(&[0.0; 3], OneStepOptions { relative, ..usual() }, "relative tolerance");
-    let absolute = Absolute::Each(vec![1.0]);
+    let absolute = AbsoluteTolerances::Each(vec![1.0]);
     refuse(&[0.0; 3], OneStepOptions { absolute, ..usual() }, "1 absolute");
     let max_step = Some(-1.0);
     refuse(&[0.0; 3], OneStepOptions { max_step, ..usual() }, "largest step");

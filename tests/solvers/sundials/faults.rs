@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
-use slcbeam::integrate::{Absolute, IntegrationError};
+use slcbeam::integrate::{AbsoluteTolerances, IntegrationError};
 use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
@@ -23,7 +23,7 @@ where
 {
     let options = IdaOptions {
         relative: 1e-5,
-        absolute: Absolute::Same(1e-8),
+        absolute: AbsoluteTolerances::Same(1e-8),
         ..IdaOptions::default()
     };
     let dae = Decay {

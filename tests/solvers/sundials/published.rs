@@ -1,7 +1,7 @@
 //! Problems of the IVP test set (Mazzia & Magherini, Bari) and of SUNDIALS' examples, against their published answers.
 
 use slcbeam::dae::Dae;
-use slcbeam::integrate::Absolute;
+use slcbeam::integrate::AbsoluteTolerances;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
 
@@ -31,7 +31,7 @@ fn assert_close(values: &[f64], exact: &[f64], relative: f64) {
 fn robertson_reaches_published_values() {
     let options = IdaOptions {
         relative: 1e-9,
-        absolute: Absolute::Each(vec![1e-16, 1e-20, 1e-12]),
+        absolute: AbsoluteTolerances::Each(vec![1e-16, 1e-20, 1e-12]),
         max_order: 5,
         ..IdaOptions::default()
     };
@@ -62,7 +62,7 @@ fn robertson_reaches_published_values() {
 fn transistor_amplifier_reaches_published_values() {
     let options = IdaOptions {
         relative: 5e-9,
-        absolute: Absolute::Same(1e-9),
+        absolute: AbsoluteTolerances::Same(1e-9),
         max_order: 5,
         suppress_algebraic: true,
         ..IdaOptions::default()
@@ -87,7 +87,7 @@ fn beam_needs_few_steps_of_order_two() {
     let solve = |tolerance: f64| {
         let options = IdaOptions {
             relative: tolerance,
-            absolute: Absolute::Same(tolerance),
+            absolute: AbsoluteTolerances::Same(tolerance),
             ..IdaOptions::default()
         };
         let mut ida = Ida::new(beam(), 0.0, &[0.0; 80], &[0.0; 80], &options).unwrap();

@@ -1,7 +1,7 @@
 //! Steps, stops, interpolation, restarts and impossible requests.
 
 use slcbeam::dae::{Dae, EvaluationError, Seeds};
-use slcbeam::integrate::Absolute;
+use slcbeam::integrate::AbsoluteTolerances;
 use slcbeam::sparse::Pattern;
 use slcbeam::sundials::Ida;
 use slcbeam::sundials::IdaOptions;
@@ -58,7 +58,7 @@ fn pendulum(options: &IdaOptions) -> Ida<Pendulum> {
 fn tight() -> IdaOptions {
     IdaOptions {
         relative: 1e-8,
-        absolute: Absolute::Same(1e-8),
+        absolute: AbsoluteTolerances::Same(1e-8),
         max_order: 5,
         ..IdaOptions::default()
     }
@@ -176,7 +176,7 @@ fn options_are_obeyed() {
     let all = IdaOptions {
         suppress_algebraic: false,
         relative: 1e-6,
-        absolute: Absolute::Each(vec![1e-4, 1e-4, 1e-12]),
+        absolute: AbsoluteTolerances::Each(vec![1e-4, 1e-4, 1e-12]),
         ..tight()
     };
     let some = IdaOptions {
@@ -222,7 +222,7 @@ fn impossible_requests_are_refused() {
     refuse(
         &[0.0; 3],
         &IdaOptions {
-            absolute: Absolute::Each(vec![1.0]),
+            absolute: AbsoluteTolerances::Each(vec![1.0]),
             ..options()
         },
         "1 absolute tolerances",

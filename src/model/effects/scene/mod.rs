@@ -1,11 +1,11 @@
 //! Estimates of the relative error caused by omitting each effect, from the loads and motions of a case (its scene).
 
 mod compression;
-mod least;
+mod free_flow;
 mod pace;
+mod response_bounds;
 mod sections;
 mod stability;
-mod stored;
 mod tubes;
 
 use std::cell::OnceCell;
@@ -19,8 +19,8 @@ use crate::model::network::{Link, NetworkNode};
 use crate::model::scales::DriveScales;
 use crate::model::{AmbientFluid, AttachedBody, DistributedLoad, ResolvedNetwork, Scales, Section, Wet, each_signal};
 
-use least::Least;
-use pace::Pace;
+use pace::SignalExcitation;
+use response_bounds::ResponseBounds;
 use stability::SAFE_COMPRESSION;
 use tubes::Tubes;
 
@@ -44,11 +44,11 @@ pub struct EffectScene<'a> {
     /// Lowest buckling load of the ends, with shear by Engesser [N].
     buckling: f64,
     /// Paces of axial motions prescribed at ends.
-    driven_along: Vec<Pace>,
+    driven_along: Vec<SignalExcitation>,
     /// Paces of all other signals.
-    others: Vec<Pace>,
+    others: Vec<SignalExcitation>,
     instability: OnceCell<Option<String>>,
-    least: OnceCell<Least>,
+    least: OnceCell<ResponseBounds>,
     tubes: OnceCell<Tubes>,
 }
 
@@ -58,7 +58,7 @@ impl<'a> EffectScene<'a> {
         let ends = [case.ends.root.resolve(), case.ends.tip.resolve()];
         let mass = section.mass_per_length;
         let length = case.beam.length_m;
-        let drive = DriveScales::of(case, section, &ends);
+        let drive = DriveScales::from_case(case, section, &ends);
         let held = |e: &ResolvedEnd| matches!(e.axial, Translation::Displacement(_));
         let quarter = if held(&ends[0]) == held(&ends[1]) {
             PI
@@ -75,13 +75,17 @@ impl<'a> EffectScene<'a> {
         let mut driven_along = vec![];
         for end in &mut undriven {
             if let Translation::Displacement(signal) = &mut end.axial {
-                driven_along.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+                driven_along.extend(SignalExcitation::from_signal(
+                    signal,
+                    case.time.end_s,
+                    case.held_at_start(signal),
+                ));
                 *signal = Signal::Constant(0.0);
             }
         }
         let mut others = vec![];
         let attachments = AttachedBody::all(case);
-        let around = AmbientFluid::of(case);
+        let around = AmbientFluid::from_case(case);
         each_signal(
             &undriven,
             &loads,
@@ -89,7 +93,11 @@ impl<'a> EffectScene<'a> {
             around.as_ref(),
             wet.map(|wet| &wet.network),
             |signal| {
-                others.extend(Pace::of(signal, case.time.end_s, case.held_at_start(signal)));
+                others.extend(SignalExcitation::from_signal(
+                    signal,
+                    case.time.end_s,
+                    case.held_at_start(signal),
+                ));
             },
         );
         let unsheared = beta * beta * (section.bending_stiffness / mass).sqrt();
@@ -149,12 +157,12 @@ impl<'a> EffectScene<'a> {
         self.ends.iter().any(driven)
     }
 
-    /// Sum of [`Pace::inertia_ratio`] over all signals; 1 where the beam starts displaced.
+    /// Sum of [`SignalExcitation::inertia_ratio`] over all signals; 1 where the beam starts displaced.
     fn inertia_ratio(&self, omega: f64) -> f64 {
         self.inertia_ratio_of(self.others.iter().chain(&self.driven_along), omega)
     }
 
-    fn inertia_ratio_of<'p>(&self, paces: impl Iterator<Item = &'p Pace>, omega: f64) -> f64 {
+    fn inertia_ratio_of<'p>(&self, paces: impl Iterator<Item = &'p SignalExcitation>, omega: f64) -> f64 {
         if self.begins_displaced() {
             return 1.0;
         }
@@ -201,8 +209,8 @@ impl<'a> EffectScene<'a> {
     }
 
     /// Lower bounds of the response to loads.
-    fn least(&self) -> &Least {
-        self.least.get_or_init(|| Least::of(self))
+    fn least(&self) -> &ResponseBounds {
+        self.least.get_or_init(|| ResponseBounds::from_scene(self))
     }
 
     /// True if the initial pressure varies along a bladder.
@@ -343,7 +351,7 @@ impl<'a> EffectScene<'a> {
         let moment = self.section.bending_stiffness * wet.coupling.curvature(&wet.area, 0.0, p, 0.0).abs();
         let force = self.section.axial_stiffness * wet.coupling.stretch(&wet.area, 0.0, p, p).abs();
         let swings = 1.0 + self.bending * self.case.time.end_s;
-        let Least {
+        let ResponseBounds {
             moment: by_loads,
             force: along,
             ..

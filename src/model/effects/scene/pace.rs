@@ -4,17 +4,17 @@ use crate::functions::Signal;
 use crate::functions::bounds::Excitation;
 
 /// Excitation of vibrations by a signal over the run, relative to its size.
-pub struct Pace {
+pub struct SignalExcitation {
     /// Lower bounds of the largest value and the largest acceleration, for use in denominators.
     size: f64,
     acceleration: f64,
     excitation: Excitation,
 }
 
-impl Pace {
+impl SignalExcitation {
     /// Pace of a signal until `end` [s]; `held` is its value while the beam is at rest before the run. None for a
     /// signal that is always zero.
-    pub fn of(signal: &Signal, end: f64, held: f64) -> Option<Self> {
+    pub fn from_signal(signal: &Signal, end: f64, held: f64) -> Option<Self> {
         let reached = signal.reaches(end);
         let size = reached.value.max(held.abs());
         if size == 0.0 {

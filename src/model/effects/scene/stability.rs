@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::EffectScene;
-use super::pace::Pace;
+use super::pace::SignalExcitation;
 use crate::case::Translation;
 use crate::error::numbers::significant;
 use crate::functions::Signal;
@@ -138,7 +138,7 @@ impl EffectScene<'_> {
         let end = self.case.time.end_s;
         let mut swing = 0.0;
         let mut hear = |signal: &Signal, part: f64| {
-            if let Some(pace) = Pace::of(signal, end, self.case.held_at_start(signal))
+            if let Some(pace) = SignalExcitation::from_signal(signal, end, self.case.held_at_start(signal))
                 && pace.resonates(self.bending)
             {
                 let values = signal.range(0.0, end);

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::EffectScene;
-use super::stored::Circuit;
+use super::free_flow::Circuit;
 use crate::case::schema::BladderEnd;
 use crate::model::Wet;
 use crate::model::network::{Link, LinkKind, NetworkNode};
@@ -163,12 +163,18 @@ impl EffectScene<'_> {
                 component.map_or(Circuit::BETWEEN_PORTS, |component| circuits[component])
             };
             let links = wet.network.links.iter();
-            let all = links.map(|link| self.of(wet, (link, circuit(link)), [fastest, pumped], tolerance));
+            let all = links.map(|link| self.assess_tube(wet, (link, circuit(link)), [fastest, pumped], tolerance));
             all.fold(Tubes::default(), Tubes::larger)
         })
     }
 
-    fn of(&self, wet: &Wet, (link, circuit): (&Link, Circuit), [fastest, pumped]: [f64; 2], tolerance: f64) -> Tubes {
+    fn assess_tube(
+        &self,
+        wet: &Wet,
+        (link, circuit): (&Link, Circuit),
+        [fastest, pumped]: [f64; 2],
+        tolerance: f64,
+    ) -> Tubes {
         let Some(tube) = &link.tube else {
             return Tubes::default();
         };

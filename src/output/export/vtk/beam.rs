@@ -1,6 +1,6 @@
 //! Surface of the beam: its rectangular section swept along the deformed curve, with windows that show the bladders.
 
-use super::curve::{Curve, Section};
+use super::curve::{Curve, SectionPosition};
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 
@@ -19,7 +19,7 @@ pub(super) struct Fields<'a> {
 }
 
 /// Surface of the beam. Points have the data of their section's center, quadrilaterals those of their beam cell.
-pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fields: &Fields) -> Surface {
+pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[SectionPosition], fields: &Fields) -> Surface {
     let heights = cutout.heights();
     let m = heights.len();
     let mut out = Surface::default();
@@ -96,7 +96,7 @@ pub(super) fn surface(cutout: &Cutout, curve: &Curve, sections: &[Section], fiel
 fn reveals(
     out: &mut Surface,
     cutout: &Cutout,
-    sections: &[Section],
+    sections: &[SectionPosition],
     stations: &mut Vec<usize>,
     mut owned: impl FnMut(f64, f64),
 ) {

@@ -1,6 +1,6 @@
 //! The bladders as boxes that move with their segments, divided across the width into their fluid cells.
 
-use super::curve::Section;
+use super::curve::SectionPosition;
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
 use crate::case::wiring::bladder_index;
@@ -21,14 +21,14 @@ pub(super) struct Bladder {
 
 /// All bladders in the order of the recorded fields.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Layout {
+pub(super) struct CutoutLayout {
     /// The bladders.
     pub bladders: Vec<Bladder>,
     /// Fluid cells in each.
     pub cells: usize,
 }
 
-impl Layout {
+impl CutoutLayout {
     /// Arranges the bladders; `labels` is the bladder of each recorded cell. Inlets alternate sides along a chain: tubes join neighbors.
     pub fn new(wet: &Wet, labels: &[f64]) -> Self {
         let cells = labels.iter().take_while(|l| **l == labels[0]).count().max(1);
@@ -57,8 +57,8 @@ impl Layout {
 /// The boxes, with pressure [Pa] and area change [m^2] of each fluid cell.
 pub(super) fn surface(
     cutout: &Cutout,
-    layout: &Layout,
-    sections: &[Section],
+    layout: &CutoutLayout,
+    sections: &[SectionPosition],
     pressure: &[f64],
     area: &[f64],
 ) -> Surface {
@@ -67,8 +67,8 @@ pub(super) fn surface(
     for (number, bladder) in layout.bladders.iter().enumerate() {
         let window = cutout.windows[bladder.label.unsigned_abs() as usize - 1];
         let apart = 1e-9 * cutout.length;
-        let within = |s: &&Section| s.theta >= window[0] - apart && s.theta <= window[1] + apart;
-        let along: Vec<&Section> = sections.iter().filter(within).collect();
+        let within = |s: &&SectionPosition| s.theta >= window[0] - apart && s.theta <= window[1] + apart;
+        let along: Vec<&SectionPosition> = sections.iter().filter(within).collect();
         shape(&mut out, cutout, bladder, &along, layout.cells, |cell| {
             owners.push((number, cell))
         });
@@ -95,7 +95,7 @@ fn shape(
     out: &mut Surface,
     cutout: &Cutout,
     bladder: &Bladder,
-    along: &[&Section],
+    along: &[&SectionPosition],
     cells: usize,
     mut owned: impl FnMut(usize),
 ) {

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A cross-section: position of its center (x, z) [m] and slope angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Section {
+pub(super) struct SectionPosition {
     /// Material coordinate [m].
     pub theta: f64,
     /// Transverse position [m].
@@ -15,7 +15,7 @@ pub(super) struct Section {
     pub angle: f64,
 }
 
-impl Section {
+impl SectionPosition {
     /// A point of the section in VTK's axes: `height` towards +x, `across` along the width [m].
     pub fn point(&self, height: f64, across: f64) -> [f64; 3] {
         let (sin, cos) = self.angle.sin_cos();
@@ -26,17 +26,17 @@ impl Section {
 /// Sections at the nodes, root to tip.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
-    nodes: Vec<Section>,
+    nodes: Vec<SectionPosition>,
 }
 
 impl Curve {
     /// Computes the curve from displacements [m], curvature [1/m] at the nodes, and section angles of cells with shear (`sections`, else
     /// empty). The angle of an inner node is the mean over its two cells. At an end it follows from the curvature there, `kappa = -phi'`.
     pub fn new(theta: &[f64], u1: &[f64], u3: &[f64], curvature: &[f64], sections: &[f64]) -> Self {
-        let mut nodes: Vec<Section> = theta
+        let mut nodes: Vec<SectionPosition> = theta
             .iter()
             .zip(u1.iter().zip(u3))
-            .map(|(&theta, (&u1, &u3))| Section {
+            .map(|(&theta, (&u1, &u3))| SectionPosition {
                 theta,
                 x: u1,
                 z: theta + u3,
@@ -65,17 +65,17 @@ impl Curve {
     }
 
     /// Sections at material coordinates [m], linear between nodes.
-    pub fn sections(&self, theta: &[f64]) -> Vec<Section> {
+    pub fn sections(&self, theta: &[f64]) -> Vec<SectionPosition> {
         theta.iter().map(|&t| self.at(t)).collect()
     }
 
     /// Section at a material coordinate [m].
-    pub fn at(&self, theta: f64) -> Section {
-        let mix = |f: fn(&Section) -> f64| {
+    pub fn at(&self, theta: f64) -> SectionPosition {
+        let mix = |f: fn(&SectionPosition) -> f64| {
             let values: Vec<f64> = self.nodes.iter().map(f).collect();
             self.interpolate(theta, &values)
         };
-        Section {
+        SectionPosition {
             theta,
             x: mix(|s| s.x),
             z: mix(|s| s.z),

@@ -23,7 +23,7 @@ use std::fs;
 use std::path::Path;
 
 use super::ExportedFiles;
-use super::staged::Staged;
+use super::staged_folder::StagedFolder;
 use crate::case::Case;
 use crate::discrete::System;
 use crate::error::Result;
@@ -47,7 +47,7 @@ const SAME: f64 = 1e-9;
 /// Writes `dir/vtk` in place of older files of the same kind. Returns the files written, with the path of the `.pvd`.
 pub fn write(dir: &Path, case: &Case, from: &Recording, instants: &[usize]) -> Result<ExportedFiles> {
     fits(case, from)?;
-    let staged = Staged::new(dir, VTK)?;
+    let staged = StagedFolder::new(dir, VTK)?;
     let scene = Scene::new(case, from)?;
     let digits = from.field_times.len().to_string().len();
     let collection = format!("{}.pvd", case.name);
@@ -117,7 +117,7 @@ struct Scene<'a> {
     from: &'a Recording,
     cutout: Cutout,
     stations: Vec<f64>,
-    wet: Option<(bladders::Layout, Vec<tubes::Tube>)>,
+    wet: Option<(bladders::CutoutLayout, Vec<tubes::TubeArc>)>,
 }
 
 impl<'a> Scene<'a> {
@@ -126,7 +126,7 @@ impl<'a> Scene<'a> {
         let stations = cutout.stations(from.axis("theta_node_m").unwrap_or_default());
         let model = Model::new(case)?;
         let wet = model.wet.as_ref().zip(from.axis("bladder")).map(|(wet, labels)| {
-            let layout = bladders::Layout::new(wet, labels);
+            let layout = bladders::CutoutLayout::new(wet, labels);
             let tubes = tubes::all(case, wet, &cutout, &layout);
             (layout, tubes)
         });

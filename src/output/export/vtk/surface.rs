@@ -9,7 +9,7 @@ use crate::output::numbers::shortest;
 
 /// Numbers of an array.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Values {
+pub(super) enum SurfaceValues {
     /// Doubles.
     Double(Vec<f64>),
     /// Integers.
@@ -24,7 +24,7 @@ pub(super) struct Data {
     /// Names of the components of a vector.
     pub components: &'static [&'static str],
     /// The numbers.
-    pub values: Values,
+    pub values: SurfaceValues,
 }
 
 impl Data {
@@ -33,7 +33,7 @@ impl Data {
         Self {
             name,
             components: &[],
-            values: Values::Double(values),
+            values: SurfaceValues::Double(values),
         }
     }
 
@@ -42,7 +42,7 @@ impl Data {
         Self {
             name,
             components: &[],
-            values: Values::Whole(values),
+            values: SurfaceValues::Whole(values),
         }
     }
 
@@ -51,7 +51,7 @@ impl Data {
         Self {
             name,
             components: &["axial", "transverse", "across"],
-            values: Values::Double(values),
+            values: SurfaceValues::Double(values),
         }
     }
 }
@@ -78,10 +78,10 @@ struct Appended {
 }
 
 impl Appended {
-    fn array(&mut self, name: &str, components: &[&str], values: &Values) -> String {
+    fn array(&mut self, name: &str, components: &[&str], values: &SurfaceValues) -> String {
         let (kind, bytes): (&str, Vec<u8>) = match values {
-            Values::Double(all) => ("Float64", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
-            Values::Whole(all) => ("Int32", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+            SurfaceValues::Double(all) => ("Float64", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
+            SurfaceValues::Whole(all) => ("Int32", all.iter().flat_map(|x| x.to_le_bytes()).collect()),
         };
         let mut tag = format!("<DataArray type=\"{kind}\" Name=\"{name}\"");
         if !components.is_empty() {
@@ -119,7 +119,7 @@ impl Surface {
     /// Content of the file for the time `t` [s].
     pub fn file(&self, t: f64) -> Vec<u8> {
         let mut appended = Appended::default();
-        let points = Values::Double(self.points.iter().flatten().copied().collect());
+        let points = SurfaceValues::Double(self.points.iter().flatten().copied().collect());
         let pieces = [
             appended.group("PointData", &self.of_points),
             appended.group("CellData", &self.of_cells),

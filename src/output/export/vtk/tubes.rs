@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::bladders::Layout;
+use super::bladders::CutoutLayout;
 use super::curve::Curve;
 use super::cutout::Cutout;
 use super::surface::{Data, Surface};
@@ -20,7 +20,7 @@ type Place = [f64; 3];
 
 /// A line between two places.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tube {
+pub(super) struct TubeArc {
     line: Vec<Place>,
     /// Recorded fluid cells at its ends; none at a junction or port.
     cells: Vec<usize>,
@@ -29,7 +29,7 @@ pub(super) struct Tube {
 }
 
 /// All tubes and turbines of a network, including rectified ones. Omits a link with an end that is neither at a bladder nor joined to one.
-pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Vec<Tube> {
+pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &CutoutLayout) -> Vec<TubeArc> {
     let network = &wet.network;
     let drawn = |kind: &LinkKind| !matches!(kind, LinkKind::Opening);
     let links = network.links.iter().map(|l| (l.from, l.to, l.kind));
@@ -54,7 +54,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
     };
     let tube = |(from, to, kind): &(NetworkNode, NetworkNode, LinkKind)| {
         let ends = [*from, *to];
-        Some(Tube {
+        Some(TubeArc {
             line: arc(place(*from)?, place(*to)?, length),
             cells: ends.into_iter().filter_map(mouth).map(|m| m.1).collect(),
             network: ends.into_iter().find_map(|n| network.component_of(n)).unwrap_or(0) as i32 + 1,
@@ -65,7 +65,7 @@ pub(super) fn all(case: &Case, wet: &Wet, cutout: &Cutout, layout: &Layout) -> V
 }
 
 /// Place at which a bladder's end meets the beam's side, and the outermost fluid cell there.
-fn mouth(node: NetworkNode, wet: &Wet, cutout: &Cutout, layout: &Layout) -> Option<(Place, usize)> {
+fn mouth(node: NetworkNode, wet: &Wet, cutout: &Cutout, layout: &CutoutLayout) -> Option<(Place, usize)> {
     let NetworkNode::Cell { bladder, end } = node else {
         return None;
     };
@@ -106,7 +106,7 @@ fn arc(from: Place, to: Place, length: f64) -> Vec<Place> {
 }
 
 /// Lines of the tubes. The pressure of a line is the mean over the fluid cells that it joins [Pa].
-pub(super) fn lines(tubes: &[Tube], curve: &Curve, pressure: &[f64]) -> Surface {
+pub(super) fn lines(tubes: &[TubeArc], curve: &Curve, pressure: &[f64]) -> Surface {
     let mut out = Surface::default();
     for tube in tubes {
         let first = out.points.len();
@@ -114,7 +114,7 @@ pub(super) fn lines(tubes: &[Tube], curve: &Curve, pressure: &[f64]) -> Surface 
             .extend(tube.line.iter().map(|p| curve.at(p[0]).point(p[1], p[2])));
         out.lines.push((first..out.points.len()).collect());
     }
-    let mean = |t: &Tube| t.cells.iter().map(|&c| pressure[c]).sum::<f64>() / t.cells.len() as f64;
+    let mean = |t: &TubeArc| t.cells.iter().map(|&c| pressure[c]).sum::<f64>() / t.cells.len() as f64;
     out.of_cells = vec![
         Data::scalar("pressure_pa", tubes.iter().map(mean).collect()),
         Data::number("network", tubes.iter().map(|t| t.network).collect()),

@@ -4,7 +4,7 @@ mod map;
 
 use std::slice;
 
-use super::canvas::{Anchor, FAINT_INK, Stroke, Words};
+use super::canvas::{FAINT_INK, LineStyle, TextAnchor, TextStyle};
 use super::colour::PALETTE;
 use super::extent;
 use super::picture::{Glyph, Panel, Picture, PictureAxis, PictureSeries};
@@ -138,7 +138,7 @@ pub fn along(data: &Drawn) -> Option<String> {
             let ring = PictureSeries::marks([(*x, *y)], Glyph::Ring(3.0, 1.3), PALETTE[curve % PALETTE.len()]);
             series.push(data.linked(n, slice::from_ref(figure), ring));
             if k == 0 {
-                let words = Words::new(9.0, Anchor::Centre).coloured(FAINT_INK);
+                let words = TextStyle::new(9.0, TextAnchor::Centre).coloured(FAINT_INK);
                 let number = data.designs[n].to_string();
                 series.push(PictureSeries::label((*x, *y), (0.0, -9.0), number, words));
             }
@@ -153,7 +153,7 @@ pub fn along(data: &Drawn) -> Option<String> {
 fn curves(data: &Drawn, along: &DesignNumbers, figure: &DesignNumbers) -> Vec<PictureSeries> {
     let mut series = vec![];
     for (curve, name) in data.curves.iter().enumerate() {
-        let stroke = Stroke::solid(PALETTE[curve % PALETTE.len()], 1.2);
+        let stroke = LineStyle::solid(PALETTE[curve % PALETTE.len()], 1.2);
         if data.curves.len() > 1 && curve <= LISTED {
             series.push(match curve < LISTED {
                 true => PictureSeries::line([], stroke).named(&**name),

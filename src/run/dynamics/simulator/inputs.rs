@@ -2,7 +2,7 @@
 
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 
-use super::swings::Swings;
+use super::oscillations::InputOscillations;
 use crate::case::schema::Method;
 use crate::case::{self, Case};
 use crate::discrete::System;
@@ -23,7 +23,7 @@ pub struct SimulatorInput {
 
 /// An input and its present value.
 #[derive(Clone, Debug)]
-pub(super) struct Held {
+pub(super) struct HeldInput {
     /// The input.
     pub input: SimulatorInput,
     /// Value of the input.
@@ -33,7 +33,7 @@ pub(super) struct Held {
     /// True if it is the opening of valves.
     pub opens: bool,
     /// Record of its oscillations.
-    pub swings: Swings,
+    pub swings: InputOscillations,
 }
 
 /// Hash that identifies a case and its inputs.
@@ -51,9 +51,9 @@ pub(super) fn mark(case: &Case, inputs: &[SimulatorInput]) -> String {
 
 /// Returns the case with signals that span the whole ranges of its inputs in their place, by which the model is chosen. Also returns
 /// its system, and the inputs with the places at which they act.
-pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, System, Vec<Held>)> {
+pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, System, Vec<HeldInput>)> {
     let all = case::controls(case);
-    let mut held: Vec<Held> = vec![];
+    let mut held: Vec<HeldInput> = vec![];
     let mut sets = vec![];
     for (k, input) in inputs.iter().enumerate() {
         let usage = |what: String| Error::Usage(format!("input {}: {what}", input.pointer));
@@ -95,14 +95,14 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
             r#"{pointer}={{"table": {{"times_s": {times:?}, "values": {:?}, "interpolation": "linear"}}}}"#,
             [value, low, high, value]
         ));
-        held.push(Held {
+        held.push(HeldInput {
             input: SimulatorInput {
                 pointer: pointer.clone(),
                 range: input.range,
             },
             value,
             places: vec![],
-            swings: Swings::of(value),
+            swings: InputOscillations::new(value),
             opens: pointer.contains("/opening"),
         });
     }
@@ -127,7 +127,7 @@ pub(super) fn taken(case: &Case, inputs: &[SimulatorInput]) -> Result<(Case, Sys
 }
 
 /// Converts an error about values of a substituted signal to one about the range of its input, which the user gave.
-fn of_range(error: Error, held: &[Held]) -> Error {
+fn of_range(error: Error, held: &[HeldInput]) -> Error {
     let Error::Case(fault) = &error else { return error };
     let text = fault.violations.iter().find_map(|violation| {
         let input = held.iter().map(|one| &one.input);
@@ -163,7 +163,7 @@ pub(super) fn options(case: &Case, system: &System, max_step: f64) -> Result<One
 }
 
 /// Checks that there is one value for each input, within its range.
-pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
+pub(super) fn admit(held: &[HeldInput], values: &[f64]) -> Result<()> {
     if values.len() != held.len() {
         return Err(Error::Usage(format!(
             "{} for {}: give one value for each input, in the order of the inputs",
@@ -171,7 +171,7 @@ pub(super) fn admit(held: &[Held], values: &[f64]) -> Result<()> {
             counted(held.len() as u64, "input")
         )));
     }
-    for (Held { input, .. }, value) in held.iter().zip(values) {
+    for (HeldInput { input, .. }, value) in held.iter().zip(values) {
         let [low, high] = input.range;
         if !(low..=high).contains(value) {
             return Err(Error::Usage(format!(

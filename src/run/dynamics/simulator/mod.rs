@@ -1,21 +1,21 @@
 //! Simulation from one control instant to the next, with constant inputs in between: for learning and control.
 
 mod inputs;
+mod observer;
+mod oscillations;
 mod snapshot;
-mod spent;
-mod swings;
-mod watch;
+mod wall_time;
 
 use std::time::Instant;
 
-use inputs::Held;
+use inputs::HeldInput;
 pub use inputs::SimulatorInput;
 pub use snapshot::Snapshot;
-pub use spent::SimulatorWallTimes;
+pub use wall_time::SimulatorWallTimes;
 
 use super::faults::{beyond, fault, inconsistent, stalled, too_many_steps};
 use super::follow::narrow;
-use super::pace::Pace;
+use super::stall::StallDetector;
 use super::switch::switch;
 use crate::case::Case;
 use crate::dae::{BeamDae, Dae};
@@ -24,12 +24,12 @@ use crate::error::{Error, Result, SolverError};
 use crate::functions::{Ramp, RampShape, Signal};
 use crate::integrate::{StartOptions, Starter};
 use crate::onestep::OneStep;
+use crate::run::early_warnings;
 use crate::run::equilibrium;
-use crate::run::known;
+use crate::run::max_step::StepLimits;
 use crate::run::observe::Observer;
 use crate::run::record::{Control, HistoryColumn, Unrecorded};
 use crate::run::schedule::{self, ScheduledStop};
-use crate::run::strides::Strides;
 
 /// Tolerance of consistent values after a jump of inputs, over the relative tolerance; rates count times the length of a step.
 const CONSISTENT: f64 = 0.1;
@@ -41,7 +41,7 @@ pub struct Simulator {
     case: Box<Case>,
     /// Warnings of the case that are valid on any mesh.
     known: Vec<String>,
-    held: Vec<Held>,
+    held: Vec<HeldInput>,
     solver: OneStep<BeamDae>,
     starter: Starter,
     consistent: StartOptions,
@@ -49,7 +49,7 @@ pub struct Simulator {
     columns: Vec<HistoryColumn>,
     stops: Vec<ScheduledStop>,
     next: usize,
-    strides: Strides,
+    strides: StepLimits,
     end: f64,
     max_steps: u64,
     state: Vec<f64>,
@@ -69,12 +69,12 @@ impl Simulator {
     pub fn new(case: &Case, inputs: &[SimulatorInput]) -> Result<Self> {
         let of = inputs::mark(case, inputs);
         let (case, mut system, held) = inputs::taken(case, inputs)?;
-        let known = known::on_any_mesh(&case, &system);
+        let known = early_warnings::on_any_mesh(&case, &system);
         for one in &held {
             system.put_signal(&one.places, &Signal::Constant(one.value));
         }
         let stops = schedule::stops(&case, &system.model);
-        let strides = Strides::new(&case, &system);
+        let strides = StepLimits::new(&case, &system);
         let options = inputs::options(&case, &system, strides.least())?;
         let observer = Observer::new(&case, &system, case.time.output_interval());
         let columns = Observer::header(&case, &system).columns;
@@ -287,7 +287,7 @@ impl Simulator {
 
     /// Steps until time `until` [s], past all switches of the case on the way.
     fn advance(&mut self, until: f64, ask: &mut dyn FnMut() -> Control) -> Result<()> {
-        let (mut pace, mut steps) = (Pace::new(self.time()), 0);
+        let (mut pace, mut steps) = (StallDetector::new(self.time()), 0);
         let mut clock = Instant::now();
         while self.time() < until {
             if self.stands_at_stop() {

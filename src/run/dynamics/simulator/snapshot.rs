@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::swings::Swings;
+use super::oscillations::InputOscillations;
 use super::{Simulator, fault, inputs, solver};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
@@ -26,7 +26,7 @@ pub struct Snapshot {
     integrals: Vec<f64>,
     observed: Observed,
     #[serde(default)]
-    swings: Vec<Swings>,
+    swings: Vec<InputOscillations>,
 }
 
 impl Snapshot {
@@ -108,7 +108,7 @@ impl Simulator {
         let dae = self.solver.dae_mut();
         for (one, value) in self.held.iter_mut().zip(&snapshot.values) {
             one.value = *value;
-            one.swings = Swings::of(*value);
+            one.swings = InputOscillations::new(*value);
             dae.put_signal(&one.places, &Signal::Constant(*value));
         }
         dae.enter_smooth_interval(inside);

@@ -1,0 +1,248 @@
+//! Monitored values of a run, which may have extrema between two samples, each with its rate.
+
+use serde::{Deserialize, Serialize};
+
+use super::angle_unwrapping::tip_angle;
+use super::quantities::evaluate;
+use super::workspace::Motion;
+use super::{CompleteState, System, TimeData, Workspace, contact_points, crossing, ledger};
+use crate::discrete::residual::solid::node_stretch;
+use crate::discrete::residual::{nonlinear, relaxation};
+use crate::model::Kinematics;
+use crate::numerics::Planar;
+
+/// A value and its rate in time.
+pub type Moving = [f64; 2];
+
+/// Monitored values with their rates at an instant, signed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MonitoredValues {
+    /// Time [s].
+    pub t: f64,
+    /// Values, in the order of [`MonitoredQuantity`].
+    pub moving: [Moving; MonitoredQuantity::COUNT],
+    /// Node of the largest strain.
+    pub strained: usize,
+    /// Tube of the largest Reynolds number.
+    pub tube: usize,
+    /// Tube of the largest Mach number.
+    pub fast: usize,
+    /// Lowest pressure in junctions, accumulators and at pumped ports [Pa].
+    pub thinnest: f64,
+    /// Location of this pressure: index of a junction, or, after these, of a port that prescribes flow or volume.
+    #[serde(default)]
+    pub thinnest_at: usize,
+    /// Bladder with the lowest pressure.
+    #[serde(default)]
+    pub lowest: usize,
+    /// Self-crossing of the beam: both places along the undeformed beam [m].
+    #[serde(default)]
+    pub crossing: Option<[f64; 2]>,
+    /// Largest `|u1 - u1(root)|` [m].
+    pub deflection: f64,
+    /// Largest displacement of a node relative to the root [m].
+    pub moved: f64,
+}
+
+/// Names of the values in a [`MonitoredValues`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MonitoredQuantity {
+    /// `u1` of the tip [m].
+    Tip1,
+    /// `u3` of the tip [m].
+    Tip3,
+    /// Slope angle of the tip [rad].
+    Angle,
+    /// `u1` at the middle [m].
+    Middle1,
+    /// `u1` of largest magnitude [m].
+    Largest1,
+    /// `u3` of largest magnitude [m].
+    Largest3,
+    /// Highest pressure of a cell [Pa].
+    High,
+    /// Lowest pressure of a cell [Pa].
+    Low,
+    /// Smallest cross-section of a bladder relative to that at rest.
+    Opening,
+    /// Largest area change of a bladder [m^2].
+    Swelling,
+    /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`.
+    Strain,
+    /// Largest flow through a tube over its radius [m^2/s]; times `2 ρ_0/(π μ)` its Reynolds number.
+    Flow,
+    /// Largest `p_u + p_d` of a segment [Pa].
+    Pressed,
+    /// Largest distance of a section from the origin in its strain ellipsoid, relative to the limit of its energy at
+    /// finite strain.
+    Outermost,
+    /// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` at its minimum [m/(s Pa^(1/2))]. Times `√ρ_0` it is the Mach number.
+    Mach,
+    /// Largest depth behind the face of a wall [m].
+    Depth,
+}
+
+impl MonitoredQuantity {
+    /// Number of monitored values.
+    pub const COUNT: usize = 16;
+}
+
+impl MonitoredValues {
+    /// A value and its rate.
+    pub fn value_and_rate(&self, which: MonitoredQuantity) -> Moving {
+        self.moving[which as usize]
+    }
+
+    /// Evaluates the monitored values of a state.
+    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: CompleteState) -> Self {
+        let w = &*w;
+        let mut g = Self { t, ..Self::default() };
+        let last = system.mesh.nodes - 1;
+        let mut set = |which: MonitoredQuantity, moving: Moving| g.moving[which as usize] = moving;
+        set(MonitoredQuantity::Tip1, [w.motion.u[last].x, w.motion.v[last].x]);
+        set(MonitoredQuantity::Tip3, [w.motion.u[last].z, w.motion.v[last].z]);
+        set(
+            MonitoredQuantity::Angle,
+            [tip_angle(system, now, w), tip_angle_rate(system, now, w)],
+        );
+        let (a, b) = (last / 2, last.div_ceil(2));
+        set(
+            MonitoredQuantity::Middle1,
+            [
+                0.5 * (w.motion.u[a].x + w.motion.u[b].x),
+                0.5 * (w.motion.v[a].x + w.motion.v[b].x),
+            ],
+        );
+        set(MonitoredQuantity::Largest1, largest(&w.motion, 0));
+        set(MonitoredQuantity::Largest3, largest(&w.motion, 1));
+        (g.deflection, g.moved) = moved(w);
+        let (strain, node) = evaluate::largest_strain(system, now, half_height, w);
+        g.strained = node;
+        g.moving[MonitoredQuantity::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
+        g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
+        g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
+        (g.thinnest, g.thinnest_at) = evaluate::thinnest(system, now, w);
+        g.crossing = crossing::first(system, w);
+        g.fluid(system, now, w);
+        g
+    }
+
+    fn fluid(&mut self, system: &System, now: &TimeData, w: &Workspace<f64>) {
+        let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
+            self.moving[MonitoredQuantity::Opening as usize] = [1.0, 0.0];
+            return;
+        };
+        let mut set = |which: MonitoredQuantity, moving: Moving| self.moving[which as usize] = moving;
+        let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
+        let (low, high) = extremes(&w.fluid.pressure);
+        self.lowest = low / fluid.cells_per_bladder;
+        set(MonitoredQuantity::High, [w.fluid.pressure[high], rate(high)]);
+        set(MonitoredQuantity::Low, [w.fluid.pressure[low], rate(low)]);
+        let areas = w.fluid.area_changes();
+        let area_rate = |cell: usize| ledger::area_rate(wet, fluid, w, cell);
+        let (least, most) = extremes(areas);
+        set(
+            MonitoredQuantity::Opening,
+            [
+                1.0 + areas[least] / wet.area_at_rest,
+                area_rate(least) / wet.area_at_rest,
+            ],
+        );
+        set(MonitoredQuantity::Swelling, [areas[most], area_rate(most)]);
+        let pressed = (0..wet.per_row)
+            .map(|j| (wet.pair(j).map(|b| w.fluid.mean_pressure[b]).iter().sum::<f64>(), j))
+            .reduce(|a, b| if b.0 > a.0 { b } else { a });
+        if let Some((sum, j)) = pressed {
+            let mean = |bladder: usize| {
+                let cells = fluid.cells_of(bladder);
+                let count = cells.len() as f64;
+                cells.map(rate).sum::<f64>() / count
+            };
+            set(MonitoredQuantity::Pressed, [sum, wet.pair(j).map(mean).iter().sum()]);
+        }
+        if let Some((flow, tube)) = evaluate::largest_flow(system, now, w) {
+            set(MonitoredQuantity::Flow, flow);
+            self.tube = tube;
+        }
+        if let Some((fast, tube)) = evaluate::largest_mach(system, now, w) {
+            self.moving[MonitoredQuantity::Mach as usize] = fast;
+            self.fast = tube;
+        }
+    }
+}
+
+/// Indices of the smallest and the largest value.
+fn extremes(values: &[f64]) -> (usize, usize) {
+    let (mut low, mut high) = (0, 0);
+    for (i, &value) in values.iter().enumerate() {
+        if value < values[low] {
+            low = i;
+        }
+        if value > values[high] {
+            high = i;
+        }
+    }
+    (low, high)
+}
+
+/// Displacement of largest magnitude, with its rate, from the parabola through the largest nodal value and its neighbors. The parabola
+/// reduces differences between meshes of different size.
+fn largest(motion: &Motion<f64>, axis: usize) -> Moving {
+    let mut most = 0;
+    for (i, u) in motion.u.iter().enumerate() {
+        if u[axis].abs() > motion.u[most][axis].abs() {
+            most = i;
+        }
+    }
+    if most == 0 || most + 1 == motion.u.len() {
+        return [motion.u[most][axis], motion.v[most][axis]];
+    }
+    let parabola = |field: &[Planar<f64>]| {
+        let [a, b, c] = [most - 1, most, most + 1].map(|node| field[node][axis]);
+        [b, 0.5 * (c - a), a - 2.0 * b + c]
+    };
+    let (u, v) = (parabola(&motion.u), parabola(&motion.v));
+    let top = if u[2] == 0.0 {
+        0.0
+    } else {
+        (-u[1] / u[2]).clamp(-0.5, 0.5)
+    };
+    [u, v].map(|[value, slope, bent]| value + top * (slope + 0.5 * top * bent))
+}
+
+/// Largest transverse deflection and largest displacement of a node relative to the root [m].
+fn moved(w: &Workspace<f64>) -> (f64, f64) {
+    let (mut across, mut squared) = (0.0_f64, 0.0_f64);
+    for u in &w.motion.u {
+        let way = *u - w.motion.u[0];
+        across = across.max(way.x.abs());
+        squared = squared.max(way.squared());
+    }
+    (across, squared.sqrt())
+}
+
+/// Rate of the tip's angle [rad/s], from its last cell and half a cell of the end's curvature.
+fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+    let last = system.mesh.nodes - 1;
+    if system.model.kinematics == Kinematics::Bar {
+        return 0.0;
+    }
+    let curvature_rate = match now.ends[1].slope {
+        Some(_) => w.shape.kappa_rate[last],
+        None => {
+            let given = now.ends[1].moment.rate / system.model.section.bending_stiffness;
+            relaxation::curvature_rate(system, now, w, last, given + now.rest_curvature_rate(last), 1.0)
+        }
+    };
+    w.shape.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
+}
+
+/// Rate of the largest fibre strain at its node [1/s].
+fn strain_rate(now: &TimeData, node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
+    let (a, b) = (node.saturating_sub(1), node.min(last - 1));
+    let stretch_rate = 0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]);
+    (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
+        + (w.shape.kappa[node] - now.rest_curvature(node)).signum()
+            * (w.shape.kappa_rate[node] - now.rest_curvature_rate(node))
+            * half_height
+}

@@ -1,0 +1,66 @@
+//! Effects that a case leaves out by itself, and the case that includes them.
+
+use super::choices::{effects, with};
+use crate::case::Case;
+use crate::case::schema::{Choice, Effect, EffectChoices, Effects};
+use crate::discrete::System;
+use crate::error::Result;
+use crate::model::effects::EffectSet;
+
+/// Case with the effects that another case leaves out.
+#[derive(Clone, Debug)]
+pub struct Full {
+    /// The case.
+    pub case: Case,
+    /// Additional effects.
+    pub left_out: Vec<Effect>,
+}
+
+/// Returns the case with all effects that it leaves to the program. Effects that the case switches off stay off, and so
+/// do effects that are active by name only. Transverse motion stays off if nothing deflects the beam, which is exact.
+/// `None` if the case leaves nothing out.
+pub fn full(case: &Case) -> Result<Option<Full>> {
+    let auto = effects(case)?;
+    let mut choices = named(case, &auto);
+    let open: Vec<Effect> = Effect::CHOSEN
+        .iter()
+        .copied()
+        .filter(|effect| {
+            choices.choice(*effect) == Choice::Auto && !effect.by_name(case.formulation) && !straight(&auto, *effect)
+        })
+        .collect();
+    for effect in open {
+        let mut more = choices.clone();
+        more.set(effect, Choice::On);
+        let case = with(case, Effects::Chosen(more.clone()));
+        if System::new(&case).is_ok_and(|system| system.model.effects.has(effect)) {
+            choices = more;
+        }
+    }
+    let case = with(case, Effects::Chosen(choices));
+    let left_out = more(&auto, &effects(&case)?);
+    Ok((!left_out.is_empty()).then_some(Full { case, left_out }))
+}
+
+/// Effects of `many` that `few` lacks.
+fn more(few: &EffectSet, many: &EffectSet) -> Vec<Effect> {
+    let more = |effect: &Effect| many.has(*effect) && !few.has(*effect);
+    Effect::ALL.iter().copied().filter(more).collect()
+}
+
+/// Choices of the case, with present effects switched on.
+fn named(case: &Case, auto: &EffectSet) -> EffectChoices {
+    let mut choices = case.effects.choices();
+    for &effect in Effect::CHOSEN {
+        let there = (case.effects == Effects::Full && !effect.by_name(case.formulation)) || auto.has(effect);
+        if choices.choice(effect) == Choice::Auto && there {
+            choices.set(effect, Choice::On);
+        }
+    }
+    choices
+}
+
+/// True if the effect is transverse motion and nothing deflects the beam.
+fn straight(auto: &EffectSet, effect: Effect) -> bool {
+    effect == Effect::TransverseMotion && !auto.has(effect)
+}
