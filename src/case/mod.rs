@@ -35,6 +35,7 @@ mod schema_words;
 pub mod section;
 mod separated;
 mod sets;
+pub mod spans;
 pub mod synonyms;
 mod tables;
 mod unit_mistakes;

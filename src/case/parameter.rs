@@ -12,10 +12,11 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe the physical model, not the computation.
-const PARTS: [&str; 11] = [
+const PARTS: [&str; 12] = [
     "beam",
     "fluid",
     "bladders",
+    "spans",
     "tubes",
     "network",
     "loads",

@@ -254,8 +254,8 @@ const INSTEAD: &[(&[&str], &str)] = &[
             "sections",
             "stations",
         ],
-        "a beam is uniform, with one section and one material: use mean values; /attachments add masses and springs \
-         at places, and a load may vary along the beam by its profile",
+        "/spans give parts of the beam their own sizes, material and bladders: \"spans\": [{\"length_m\": 0.02, \"beam\": \
+         {\"young_modulus_pa\": 1e7}}, {}]",
     ),
     (
         &["atol", "abstol", "absolute_tolerance"],

@@ -11,15 +11,15 @@ const LONGEST: usize = 160;
 /// Largest number of bladders in a written-out range.
 const MOST: i64 = 40;
 
-/// Parts of a case whose values are uniform along the beam.
+/// Parts of a case whose values are uniform along the beam unless a span has others.
 const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
 
 /// Remedy for a value in place of one number.
 fn one_number(pointer: &str) -> String {
     let part = pointer.split('/').nth(1).unwrap_or_default();
     match UNIFORM.contains(&part) {
-        true => "expected one number: beam, bladders and fluid are uniform along the beam, so use a mean value; a \
-                 load may vary along the beam by its \"profile\""
+        true => "expected one number: values that vary along the beam are in /spans, as {\"polynomial\": \
+                 {\"coefficients\": [0.02, -0.008]}} over a span; a load varies by its \"profile\""
             .to_owned(),
         false => "expected one number, without brackets".to_owned(),
     }

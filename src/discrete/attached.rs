@@ -2,8 +2,8 @@
 
 use super::angle_unwrapping::nearest;
 use super::residual::momentum;
-use super::{BeamMesh, System, TimeData, Workspace};
-use crate::model::{AttachedBody, Kinematics, Section};
+use super::{BeamMesh, MeshSections, System, TimeData, Workspace};
+use crate::model::{AttachedBody, Kinematics};
 use crate::numerics::{Planar, Scalar};
 
 /// An attachment, at a place between nodes and between midpoints of cells.
@@ -55,15 +55,19 @@ impl MeshedAttachment {
     /// attachments.
     pub fn all(
         attachments: &[AttachedBody],
-        section: &Section,
+        sections: &MeshSections,
         mesh: &BeamMesh,
         lengths: &[f64],
     ) -> (Vec<Self>, Vec<f64>) {
         let mut all: Vec<_> = (0..attachments.len())
-            .map(|number| Self::new(number, &attachments[number], section, mesh))
+            .map(|number| Self::new(number, &attachments[number], sections, mesh))
             .collect();
         all.sort_by_key(|attached| attached.node);
-        let mut masses: Vec<f64> = lengths.iter().map(|length| section.mass_per_length * length).collect();
+        let mut masses: Vec<f64> = lengths
+            .iter()
+            .zip(&sections.mass)
+            .map(|(length, mass)| mass * length)
+            .collect();
         for attached in &all {
             for (k, weight) in attached.weights.into_iter().enumerate() {
                 masses[attached.node + k] += weight * attachments[attached.number].mass;
@@ -72,7 +76,7 @@ impl MeshedAttachment {
         (all, masses)
     }
 
-    fn new(number: usize, attachment: &AttachedBody, section: &Section, mesh: &BeamMesh) -> Self {
+    fn new(number: usize, attachment: &AttachedBody, sections: &MeshSections, mesh: &BeamMesh) -> Self {
         let place = attachment.at * mesh.cells as f64;
         let (node, weights) = share(place, mesh.cells);
         let (first, last) = (0.5, mesh.cells as f64 - 0.5);
@@ -96,7 +100,7 @@ impl MeshedAttachment {
             stiffness: attachment.stiffness,
             damping: attachment.damping,
             cells,
-            turning_stiffness: k / (1.0 + k * in_series * mesh.h / section.bending_stiffness),
+            turning_stiffness: k / (1.0 + k * in_series * mesh.h / sections.bending[node]),
         }
     }
 

@@ -94,7 +94,7 @@ impl MonitoredValues {
     }
 
     /// Evaluates the monitored values of a state.
-    pub fn new(system: &System, now: &TimeData, t: f64, half_height: f64, w: CompleteState) -> Self {
+    pub fn new(system: &System, now: &TimeData, t: f64, w: CompleteState) -> Self {
         let w = &*w;
         let mut g = Self { t, ..Self::default() };
         let last = system.mesh.nodes - 1;
@@ -116,9 +116,12 @@ impl MonitoredValues {
         set(MonitoredQuantity::Largest1, largest(&w.motion, 0));
         set(MonitoredQuantity::Largest3, largest(&w.motion, 1));
         (g.deflection, g.moved) = moved(w);
-        let (strain, node) = evaluate::largest_strain(system, now, half_height, w);
+        let (strain, node) = evaluate::largest_strain(system, now, w);
         g.strained = node;
-        g.moving[MonitoredQuantity::Strain as usize] = [strain, strain_rate(now, node, last, half_height, w)];
+        g.moving[MonitoredQuantity::Strain as usize] = [
+            strain,
+            strain_rate(now, node, last, system.sections.half_height[node], w),
+        ];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
         (g.thinnest, g.thinnest_at) = evaluate::thinnest(system, now, w);
@@ -134,19 +137,19 @@ impl MonitoredValues {
         };
         let mut set = |which: MonitoredQuantity, moving: Moving| self.moving[which as usize] = moving;
         let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
-        let (low, high) = extremes(&w.fluid.pressure);
+        let there = |cell: usize| system.has_cell(cell);
+        let (low, high) = extremes(&w.fluid.pressure, there);
         self.lowest = low / fluid.cells_per_bladder;
         set(MonitoredQuantity::High, [w.fluid.pressure[high], rate(high)]);
         set(MonitoredQuantity::Low, [w.fluid.pressure[low], rate(low)]);
         let areas = w.fluid.area_changes();
         let area_rate = |cell: usize| ledger::area_rate(wet, fluid, w, cell);
-        let (least, most) = extremes(areas);
+        let (_, most) = extremes(areas, there);
+        let least = system.most_closed(areas);
+        let at_rest = system.area_at_rest(least);
         set(
             MonitoredQuantity::Opening,
-            [
-                1.0 + areas[least] / wet.area_at_rest,
-                area_rate(least) / wet.area_at_rest,
-            ],
+            [1.0 + areas[least] / at_rest, area_rate(least) / at_rest],
         );
         set(MonitoredQuantity::Swelling, [areas[most], area_rate(most)]);
         let pressed = (0..wet.per_row)
@@ -171,10 +174,11 @@ impl MonitoredValues {
     }
 }
 
-/// Indices of the smallest and the largest value.
-fn extremes(values: &[f64]) -> (usize, usize) {
-    let (mut low, mut high) = (0, 0);
-    for (i, &value) in values.iter().enumerate() {
+/// Indices of the smallest and the largest value, of those that count.
+fn extremes(values: &[f64], counts: impl Fn(usize) -> bool) -> (usize, usize) {
+    let first = (0..values.len()).find(|i| counts(*i)).unwrap_or(0);
+    let (mut low, mut high) = (first, first);
+    for (i, &value) in values.iter().enumerate().filter(|(i, _)| counts(*i)) {
         if value < values[low] {
             low = i;
         }
@@ -230,7 +234,7 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let curvature_rate = match now.ends[1].slope {
         Some(_) => w.shape.kappa_rate[last],
         None => {
-            let given = now.ends[1].moment.rate / system.model.section.bending_stiffness;
+            let given = now.ends[1].moment.rate / system.sections.bending[last];
             relaxation::curvature_rate(system, now, w, last, given + now.rest_curvature_rate(last), 1.0)
         }
     };

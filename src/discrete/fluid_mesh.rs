@@ -113,7 +113,7 @@ pub struct FluidMesh {
     pub cells: usize,
     /// Length of a cell `ds` [m].
     pub ds: f64,
-    /// Conductance between neighboring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)].
+    /// Conductance between neighboring cells of a bladder, `q1b/(mu ds)` [m^3/(s Pa)]; with spans, of most bladders.
     pub conductance: f64,
     /// True if flow between cells is creeping and given by their pressures; otherwise the faces are links.
     pub creeping: bool,
@@ -157,7 +157,7 @@ impl FluidMesh {
         let bladders = 2 * wet.per_row;
         let ds = wet.bladder_length / cells_per_bladder as f64;
         let conductance = network.bladder_mobility / ds;
-        let half = 0.5 / conductance;
+        let half = |cell: usize| 0.5 / (conductance * wet.mobility_ratio(cell / cells_per_bladder));
         let flows = |bladder: usize| wet.storage[bladder] == Storage::Flowing;
         let pooled = |component: usize| wet.lumped.iter().any(|lumped| lumped.component == component);
         let flowing: Vec<usize> = (0..bladders).filter(|&b| flows(b)).collect();
@@ -174,7 +174,7 @@ impl FluidMesh {
             NetworkNode::Junction(j) => junctions.binary_search(&j).ok().map(LinkEnd::Junction),
             NetworkNode::Port(p) => wet.flows.then_some(LinkEnd::Port(p)),
         };
-        let half_of = |p: LinkEnd| if let LinkEnd::Cell(_) = p { half } else { 0.0 };
+        let half_of = |p: LinkEnd| if let LinkEnd::Cell(cell) = p { half(cell) } else { 0.0 };
         let (mut count, mut branches) = (0, 0);
         let mut flow = |law: FlowLaw| {
             let (number, branch) = (count, branches);
@@ -223,7 +223,7 @@ impl FluidMesh {
                 number: None,
                 from: LinkEnd::Cell(from),
                 to: LinkEnd::Cell(to),
-                half_cells: 1.0 / conductance,
+                half_cells: 2.0 * half(from),
                 resistance: 0.0,
                 of_pump: 0.0,
                 pump: None,
@@ -340,6 +340,15 @@ impl FluidMesh {
         });
         let (sum, count) = known.fold((0.0, 0), |(sum, count), pressure| (sum + pressure, count + 1));
         sum / f64::from(count.max(1))
+    }
+
+    /// Conductance between neighboring cells of a bladder [m^3/(s Pa)].
+    #[inline]
+    pub fn conductance_of(&self, wet: &Wet, bladder: usize) -> f64 {
+        match wet.segments.is_empty() {
+            true => self.conductance,
+            false => self.conductance * wet.mobility_ratio(bladder),
+        }
     }
 
     /// Faces between cells of bladders, as pairs of adjacent cells.

@@ -68,27 +68,27 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
 /// `h kGA δ_c + EI/h (2 δ_c - δ_{c-1} - δ_{c+1})` by Thomas' algorithm. On a fourth-order mesh, whose short waves are up to 5/3 as stiff,
 /// stiffnesses are increased by 4/3.
 fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
-    let (section, h) = (&system.model.section, system.mesh.h);
+    let (sections, h) = (&system.sections, system.mesh.h);
     let stiffer = if system.mesh.fourth { 4.0 / 3.0 } else { 1.0 };
-    let bends = stiffer * section.bending_stiffness / h;
+    let bends = |node: usize| stiffer * sections.bending[node] / h;
     let mut above = Vec::with_capacity(moments.len());
     let mut values: Vec<f64> = Vec::with_capacity(moments.len());
     for (c, moment) in moments.iter().enumerate() {
         let last = c + 1 == moments.len();
         // a given slope constrains the end's half cell, a given moment does not
-        let beside = |end: usize| match system.model.ends[end].rotation {
-            Rotation::Slope(_) => 2.0 * bends,
+        let beside = |end: usize, node: usize| match system.model.ends[end].rotation {
+            Rotation::Slope(_) => 2.0 * bends(node),
             Rotation::Moment(_) => 0.0,
         };
-        let left = if c == 0 { beside(0) } else { bends };
-        let right = if last { beside(1) } else { bends };
+        let left = if c == 0 { beside(0, 0) } else { bends(c) };
+        let right = if last { beside(1, c + 1) } else { bends(c + 1) };
         let (before, coupled) = match (values.last(), above.last()) {
-            (Some(value), Some(above)) => (bends * value, bends * above),
+            (Some(value), Some(above)) => (left * value, left * above),
             _ => (0.0, 0.0),
         };
-        let pivot = stiffer * h * section.shear_stiffness + left + right - coupled;
+        let pivot = stiffer * h * sections.shear[c] + left + right - coupled;
         values.push((moment + before) / pivot);
-        above.push(if last { 0.0 } else { bends / pivot });
+        above.push(if last { 0.0 } else { right / pivot });
     }
     for c in (0..moments.len().saturating_sub(1)).rev() {
         values[c] += above[c] * values[c + 1];

@@ -18,6 +18,7 @@ pub mod quantities;
 pub mod readings;
 pub mod residual;
 pub mod resolution;
+pub mod sections;
 pub mod shapes;
 pub mod sorted_links;
 pub mod start;
@@ -41,6 +42,7 @@ pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::BeamMesh;
 pub use quantities::MeshProbe;
+pub use sections::MeshSections;
 pub use statics::Statics;
 pub use time_data::{SampledLoad, TimeData};
 pub use valve_tangents::ValveTangents;
@@ -57,6 +59,8 @@ pub struct System {
     pub fluid: Option<FluidMesh>,
     /// Unknowns and equations.
     pub layout: Layout,
+    /// Sections of cells and nodes.
+    pub sections: MeshSections,
     /// Distributed loads, sampled.
     pub loads: Vec<SampledLoad>,
     /// Attachments of the beam, ordered by place.
@@ -182,6 +186,37 @@ impl System {
         self.model.effects.has(Effect::RotaryInertia) && !self.model.effects.has(Effect::Shear)
     }
 
+    /// True if a cell of the fluid belongs to a bladder that exists.
+    #[inline]
+    pub fn has_cell(&self, cell: usize) -> bool {
+        let wet = self.model.wet.as_ref().filter(|wet| !wet.segments.is_empty());
+        let both = wet.zip(self.fluid.as_ref());
+        both.is_none_or(|(wet, fluid)| wet.has(cell / fluid.cells_per_bladder))
+    }
+
+    /// Cross-section of a cell of the fluid at rest [m^2].
+    pub fn area_at_rest(&self, cell: usize) -> f64 {
+        let both = self.model.wet.as_ref().zip(self.fluid.as_ref());
+        both.map_or(1.0, |(wet, fluid)| {
+            wet.area_at_rest_of(wet.place(cell / fluid.cells_per_bladder).0)
+        })
+    }
+
+    /// Cell whose cross-section is the smallest relative to that at rest.
+    pub fn most_closed(&self, areas: &[f64]) -> usize {
+        let (mut least, mut cell) = (f64::INFINITY, 0);
+        for (k, area) in areas.iter().enumerate().filter(|(k, _)| self.has_cell(*k)) {
+            let relative = match self.model.wet.as_ref().is_some_and(|wet| wet.segments.is_empty()) {
+                true => *area,
+                false => area / self.area_at_rest(k),
+            };
+            if relative < least {
+                (least, cell) = (relative, k);
+            }
+        }
+        cell
+    }
+
     /// Error if an unsupported beam should start in equilibrium.
     fn unheld_start(&self, case: &Case) -> Option<Violation> {
         let directions = self.model.unheld();
@@ -222,7 +257,7 @@ impl System {
     fn areas_at_start(case: &Case, mut model: Model) -> Vec<f64> {
         if let Some(wet) = &mut model.wet {
             wet.flows = true;
-            wet.storage.fill(Storage::Flowing);
+            wet.flow_everywhere();
             wet.lumped.clear();
         }
         start::areas(&Self::from_model(case, model), case)
@@ -236,13 +271,18 @@ impl System {
             .as_ref()
             .map(|wet| FluidMesh::new(wet, model.cells_per_bladder(case)));
         let layout = Layout::new(&model, &mesh, fluid.as_ref());
-        let loads: Vec<_> = model.loads.iter().map(|load| SampledLoad::new(load, &mesh)).collect();
+        let sections = MeshSections::new(&model, &mesh);
+        let loads: Vec<_> = model
+            .loads
+            .iter()
+            .map(|load| SampledLoad::new(load, &model, &sections, &mesh))
+            .collect();
         let has_moments = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
         let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
         mesh.lump(&mut lengths);
-        let (attached, masses) = MeshedAttachment::all(&model.attachments, &model.section, &mesh, &lengths);
+        let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
         let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = ContactPoint::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
@@ -254,6 +294,7 @@ impl System {
             mesh,
             fluid,
             layout,
+            sections,
             loads,
             attached,
             bodies,

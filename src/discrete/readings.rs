@@ -100,17 +100,16 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
             _ => 1.0 / 12.0,
         };
         readings.moment[i] = moment[i] + share * bend;
-        let alpha = readings.moment[i] / system.model.section.bending_stiffness
-            + pressure_curvature(system, w, i)
-            + now.rest_curvature(i);
+        let alpha =
+            readings.moment[i] / system.sections.bending[i] + pressure_curvature(system, w, i) + now.rest_curvature(i);
         let published = system.model.published();
         readings.curvature[i] = alpha / if published { node_stretch(w, i, last) } else { 1.0 };
     }
     if !w.shape.sections.angle.is_empty() {
         let section = &system.model.section;
         let strains = w.shape.sections.shear.iter().zip(&w.shape.sections.shear_rate);
-        for (shear, (strain, rate)) in readings.shear.iter_mut().zip(strains) {
-            *shear = section.shear_stiffness * (strain + section.bending_damping_time * rate);
+        for ((shear, (strain, rate)), kga) in readings.shear.iter_mut().zip(strains).zip(&system.sections.shear) {
+            *shear = kga * (strain + section.bending_damping_time * rate);
         }
         return;
     }
@@ -129,7 +128,7 @@ fn stretch(system: &System, w: &Workspace<f64>, normal: &mut [f64]) {
     let last = normal.len() - 1;
     if system.model.effects.has(Effect::AxialStretch) {
         for (c, normal) in normal.iter_mut().enumerate() {
-            *normal = system.model.section.axial_stiffness * fourth_order::elastic_stretch(system, w, c);
+            *normal = system.sections.axial[c] * fourth_order::elastic_stretch(system, w, c);
         }
         if system.model.kinematics == Kinematics::FiniteRotation && w.shape.sections.angle.is_empty() {
             let (n, tangent) = (&w.forces.section, &w.shape.tangent);

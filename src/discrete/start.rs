@@ -75,12 +75,20 @@ fn velocities(system: &System, given: &Profile) -> Vec<f64> {
 /// wave.
 const SMOOTH: f64 = 0.1;
 
-/// Area change of every cell at the start [m^2], for a system in which all of them are unknowns.
+/// Area change of every cell at the start [m^2], for a system in which those of all bladders are unknowns.
 pub fn areas(system: &System, case: &Case) -> Vec<f64> {
     let mut now = TimeData::new(system);
     now.update(system, SmoothTime { t: 0.0, within: 0.0 });
     let (l, y) = (&system.layout, state(system, case, &now));
-    l.network.area.clone().map(|k| y[k] * l.scales[k]).collect()
+    let mut areas = vec![0.0; system.fluid.as_ref().map_or(0, |fluid| fluid.cells)];
+    let cells = system
+        .fluid
+        .iter()
+        .flat_map(|fluid| fluid.runs.iter().cloned().flatten());
+    for (cell, unknown) in cells.zip(l.network.area.clone()) {
+        areas[cell] = y[unknown] * l.scales[unknown];
+    }
+    areas
 }
 
 /// Computes areas from the prescribed pressures, and the resulting means: a fixed-point iteration, exact after one
@@ -121,11 +129,12 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
                     .clone()
                     .nth(bladder)
                     .map_or(0.0, |unknown| y[unknown]);
-                let imposed = wet.area.of_moment(moment, row) + wet.area.of_force(force) + excess;
+                let law = wet.area_of(j);
+                let imposed = law.of_moment(moment, row) + law.of_force(force) + excess;
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
                     for (k, cell) in fluid.cells_of(bladder).enumerate() {
                         y[l.network.area.start + slot * fluid.cells_per_bladder + k] =
-                            wet.content(pressure[cell], imposed);
+                            wet.content(law, pressure[cell], imposed);
                     }
                 }
             }

@@ -1,14 +1,14 @@
 //! Data that depend only on time, evaluated once per instant.
 
 use super::angle_unwrapping::AngleUnwrapping;
-use super::{Statics, System, ValveTangents, shapes};
+use super::{MeshSections, Statics, System, ValveTangents, shapes};
 use crate::case::{Rotation, Translation};
 use crate::functions::profile::Profile;
 use crate::functions::signals::{Jet, Signal, SmoothTime};
-use crate::model::DistributedLoad;
 use crate::model::attachments::ForceDirection;
-use crate::model::loads::LoadKind;
+use crate::model::loads::{LoadKind, LoadMeasure};
 use crate::model::network::Feed;
+use crate::model::{DistributedLoad, Model};
 use crate::numerics::Planar;
 
 /// Opening of a closed valve on a tube whose flow is an unknown.
@@ -36,13 +36,24 @@ pub struct SampledLoad {
 
 impl SampledLoad {
     /// Discretizes a load on a mesh.
-    pub fn new(load: &DistributedLoad, mesh: &super::BeamMesh) -> Self {
+    pub fn new(load: &DistributedLoad, model: &Model, sections: &MeshSections, mesh: &super::BeamMesh) -> Self {
         let mut shape = match load.kind {
             LoadKind::ForceX | LoadKind::ForceZ => forces_at_nodes(&load.profile, mesh),
             LoadKind::RestCurvature => shapes::at_nodes(&load.profile, mesh.cells),
             LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
         };
-        shape.iter_mut().for_each(|value| *value *= load.factor);
+        let graded = match load.per {
+            LoadMeasure::Mass(acceleration) => Some((&sections.mass, acceleration)),
+            LoadMeasure::Weight(acceleration) => Some((&sections.weighing, acceleration)),
+            LoadMeasure::Length => None,
+        };
+        match graded.filter(|_| !model.sections.is_empty()) {
+            Some((masses, acceleration)) => {
+                let nodes = shape.iter_mut().zip(masses);
+                nodes.for_each(|(value, mass)| *value *= mass * acceleration);
+            }
+            None => shape.iter_mut().for_each(|value| *value *= load.factor),
+        }
         Self {
             kind: load.kind,
             signal: load.signal.clone(),

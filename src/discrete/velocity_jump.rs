@@ -155,11 +155,10 @@ fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
 
 /// `J/h n nᵀ` of a cell.
 fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
-    let section = &system.model.section;
     if !system.turns_with_its_line() || system.model.kinematics == Kinematics::Bar {
         return Matrix2::zeros();
     }
-    let mut inertia = section.mass_per_length * section.gyration_radius_squared / system.mesh.h;
+    let mut inertia = system.sections.rotary[c] / system.mesh.h;
     let turned = system.model.kinematics == Kinematics::FiniteRotation && system.layout.lines[1].v.is_some();
     let n = if turned {
         -vector(w.shape.tangent[c].normal())

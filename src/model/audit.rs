@@ -6,7 +6,7 @@ use super::{CouplingLaw, Model, Wet, water_hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Case, Coupling as Choice};
-use crate::case::{inherited, overshoots};
+use crate::case::{inherited, overshoots, spans};
 use crate::error::numbers::{quantity, significant};
 use crate::error::{Code, Violation};
 
@@ -39,6 +39,10 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
     let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
         return vec![];
     };
+    if !model.sections.is_empty() {
+        let parts = model.uniform_parts();
+        return worst(parts.flat_map(|(j, part)| coupling(&spans::uniform_case(case, j), &part)));
+    }
     let (m, n) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let (am, an) = (0.5 * (m.opening + m.closing), 0.5 * (n.tension + n.compression));
     let (ea, ei) = (model.section.axial_stiffness, model.section.bending_stiffness);
@@ -97,6 +101,19 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
         found.extend(convexity(model, bladders, wet));
     }
     found
+}
+
+/// One finding of each name: the first that is not good, or the first.
+fn worst(findings: impl Iterator<Item = AuditFinding>) -> Vec<AuditFinding> {
+    let mut all: Vec<AuditFinding> = vec![];
+    for one in findings {
+        match all.iter_mut().find(|other| other.name == one.name) {
+            Some(other) if other.good && !one.good => *other = one,
+            Some(_) => {}
+            None => all.push(one),
+        }
+    }
+    all
 }
 
 fn reciprocity(name: &'static str, value: f64, what: &str) -> AuditFinding {
@@ -166,6 +183,11 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
 
 /// Largest sum of pressures `p_u + p_d` at which the kinked potential is convex, in bending and in stretch [Pa].
 pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
+    if !model.sections.is_empty() {
+        let parts = model.uniform_parts();
+        let limits = parts.filter_map(|(_, part)| Some(convex_up_to(&part, part.wet.as_ref()?)));
+        return limits.fold((f64::INFINITY, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.min(b.1)));
+    }
     let CouplingLaw::Reciprocal { length_ratio } = wet.coupling else {
         return (f64::INFINITY, f64::INFINITY);
     };

@@ -1,7 +1,8 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
 use super::surroundings::displaced;
-use crate::case::schema::{Case, Viscoelasticity};
+use crate::case::schema::{Beam, Bladders, Case, Viscoelasticity};
+use crate::case::spans::SegmentValues;
 
 /// Constants of the cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +11,8 @@ pub struct Section {
     pub mass_factor: f64,
     /// `m = rho_s w_s h_s f_m` [kg/m].
     pub mass_per_length: f64,
+    /// `h_s/2` [m].
+    pub half_height: f64,
     /// `EA = E h_s w_s f_e` [N] (A.37).
     pub axial_stiffness: f64,
     /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
@@ -51,11 +54,48 @@ impl Section {
     /// m = ρ_s w_s h_s f_m    EA = E h_s w_s f_e    EI = E (w_s h_s³/12) f_i    y11 = (ρ_s/m) (w_s h_s³/12) f_i
     /// ```
     pub fn new(case: &Case) -> Self {
-        let beam = &case.beam;
+        Self::with_values(case, &case.beam, case.bladders.as_ref(), 2.0)
+    }
+
+    /// Sections of the segments of a beam with spans.
+    pub fn of_segments(case: &Case, values: &[SegmentValues]) -> Vec<Self> {
+        let of = |one: &SegmentValues| {
+            let rows = one.rows.iter().filter(|row| **row).count() as f64;
+            Self::with_values(case, &one.beam, one.bladders.as_ref(), rows)
+        };
+        values.iter().map(of).collect()
+    }
+
+    /// Section with the mean mass and the mean compliances of some segments, and the largest height: it has their extension by a constant
+    /// force, and their deflection by a constant moment.
+    pub fn mean(of: &[Self]) -> Option<Self> {
+        let first = of.first()?;
+        let mean = |value: &dyn Fn(&Self) -> f64| of.iter().map(value).sum::<f64>() / of.len() as f64;
+        let mass = mean(&|one| one.mass_per_length);
+        Some(Self {
+            mass_factor: mean(&|one| one.mass_factor),
+            mass_per_length: mass,
+            half_height: of.iter().map(|one| one.half_height).fold(0.0, f64::max),
+            axial_stiffness: 1.0 / mean(&|one| 1.0 / one.axial_stiffness),
+            bending_stiffness: 1.0 / mean(&|one| 1.0 / one.bending_stiffness),
+            shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
+            weighing_per_length: mean(&|one| one.weighing_per_length),
+            gyration_radius_squared: mean(&Self::rotary_inertia) / mass,
+            ..*first
+        })
+    }
+
+    /// `m y11` [kg m].
+    pub fn rotary_inertia(&self) -> f64 {
+        self.mass_per_length * self.gyration_radius_squared
+    }
+
+    /// Section of a beam, with the mass of the cavities of `rows` rows of bladders.
+    fn with_values(case: &Case, beam: &Beam, bladders: Option<&Bladders>, rows: f64) -> Self {
         let solid = beam.length_m * beam.width_m * beam.height_m;
-        let (cavities, fluid_density) = match (&case.bladders, &case.fluid) {
+        let (cavities, fluid_density) = match (bladders, &case.fluid) {
             (Some(b), Some(f)) => (
-                2.0 * b.per_row as f64 * b.width_m * b.height_m * b.length_m,
+                rows * b.per_row as f64 * b.width_m * b.height_m * b.length_m,
                 f.density_kg_m3,
             ),
             _ => (0.0, 0.0),
@@ -70,6 +110,7 @@ impl Section {
         Self {
             mass_factor,
             mass_per_length,
+            half_height: 0.5 * beam.height_m,
             axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
             bending_stiffness: beam.young_modulus_pa * second_moment,
             shear_stiffness: beam.shear_stiffness_n.unwrap_or(f64::INFINITY),

@@ -56,7 +56,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
         put("shear_stiffness_n", s.shear_stiffness);
         put("shear_flexibility", ei / (s.shear_stiffness * l * l));
     }
-    put("slenderness", l / case.beam.height_m);
+    put("slenderness", l / (2.0 * s.half_height));
     let solid_time = (m * l.powi(4) / ei).sqrt();
     put("t_s_s", solid_time);
     let first = first_wave_number(&model.ends);
@@ -180,7 +180,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
     }
     put("force_scale_n", model.scales.force);
     put("largest_strain_estimate", {
-        let bending = model.scales.moment / ei * 0.5 * case.beam.height_m;
+        let bending = model.scales.moment / ei * model.section.half_height;
         model.scales.force / ea + bending
     });
     all

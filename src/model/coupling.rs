@@ -1,7 +1,7 @@
 //! Strains of the beam caused by pressure.
 
 use super::AreaLaw;
-use crate::case::schema::{Bladders, Case, Coupling as Choice};
+use crate::case::schema::{Beam, Bladders, Coupling as Choice};
 use crate::numerics::Scalar;
 
 /// `[E3]` Stretch and curvature caused by pressure (A.22-A.26). `p_u` and `p_d` are mean pressures of upper and lower
@@ -30,13 +30,13 @@ pub enum CouplingLaw {
 }
 
 impl CouplingLaw {
-    /// Coupling of the case's bladders.
-    pub fn new(case: &Case, bladders: &Bladders) -> Self {
-        let density = bladders.per_row as f64 / case.beam.length_m;
+    /// Coupling of bladders in a beam.
+    pub fn new(beam: &Beam, bladders: &Bladders) -> Self {
+        let density = bladders.per_row as f64 / beam.length_m;
         match &bladders.coupling {
             Choice::Published(c) => Self::Published {
-                stretch_per_pressure: density * c.length_per_pressure_m / case.beam.young_modulus_pa,
-                curvature_per_pressure: density * c.slope_per_pressure_rad / case.beam.young_modulus_pa,
+                stretch_per_pressure: density * c.length_per_pressure_m / beam.young_modulus_pa,
+                curvature_per_pressure: density * c.slope_per_pressure_rad / beam.young_modulus_pa,
             },
             Choice::Reciprocal | Choice::ReciprocalKinked => Self::Reciprocal {
                 length_ratio: density * bladders.length_m,

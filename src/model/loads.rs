@@ -20,13 +20,26 @@ pub enum LoadKind {
     RestCurvature,
 }
 
-/// `factor signal(t) profile(θ/l_s)`.
+/// Quantity of the beam to which a load is proportional along it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadMeasure {
+    /// Length.
+    Length,
+    /// Mass, with an acceleration [m/s^2].
+    Mass(f64),
+    /// Mass less that of the displaced ambient fluid, with an acceleration [m/s^2].
+    Weight(f64),
+}
+
+/// `factor signal(t) profile(θ/l_s)`; on a beam with spans the factor is that of the mean section.
 #[derive(Clone, Debug)]
 pub struct DistributedLoad {
     /// Prescribed quantity.
     pub kind: LoadKind,
     /// Constant factor: 1 for contact loads, `m` for body forces.
     pub factor: f64,
+    /// Quantity of the beam in the factor.
+    pub per: LoadMeasure,
     /// Time function.
     pub signal: Signal,
     /// Shape along the beam.
@@ -42,28 +55,31 @@ impl DistributedLoad {
 
     /// Loads on a mass, or a mass per length; `weighing` is its part subject to gravity.
     pub fn on(written: &Written, [mass, weighing]: [f64; 2]) -> Vec<Self> {
-        let one = |kind, factor, d: &Distributed| {
+        let given = |kind, factor, per, d: &Distributed| {
             vec![Self {
                 kind,
                 factor,
+                per,
                 signal: d.signal.clone(),
                 profile: d.profile.clone(),
             }]
         };
+        let one = |kind, d| given(kind, 1.0, LoadMeasure::Length, d);
         match written {
-            Written::ForceXNM(d) => one(LoadKind::ForceX, 1.0, d),
-            Written::ForceZNM(d) => one(LoadKind::ForceZ, 1.0, d),
-            Written::MomentXN(d) => one(LoadKind::MomentX, 1.0, d),
-            Written::MomentZN(d) => one(LoadKind::MomentZ, 1.0, d),
-            Written::BodyXMS2(d) => one(LoadKind::ForceX, mass, d),
-            Written::BodyZMS2(d) => one(LoadKind::ForceZ, mass, d),
-            Written::RestCurvature(d) => one(LoadKind::RestCurvature, 1.0, d),
+            Written::ForceXNM(d) => one(LoadKind::ForceX, d),
+            Written::ForceZNM(d) => one(LoadKind::ForceZ, d),
+            Written::MomentXN(d) => one(LoadKind::MomentX, d),
+            Written::MomentZN(d) => one(LoadKind::MomentZ, d),
+            Written::BodyXMS2(d) => given(LoadKind::ForceX, mass, LoadMeasure::Mass(1.0), d),
+            Written::BodyZMS2(d) => given(LoadKind::ForceZ, mass, LoadMeasure::Mass(1.0), d),
+            Written::RestCurvature(d) => one(LoadKind::RestCurvature, d),
             Written::Gravity { x_m_s2, z_m_s2 } => [(LoadKind::ForceX, *x_m_s2), (LoadKind::ForceZ, *z_m_s2)]
                 .into_iter()
                 .filter(|(_, g)| *g != 0.0)
                 .map(|(kind, g)| Self {
                     kind,
                     factor: weighing * g,
+                    per: LoadMeasure::Weight(g),
                     signal: Signal::one(),
                     profile: Profile::one(),
                 })

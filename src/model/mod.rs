@@ -33,6 +33,7 @@ pub mod water_hammer;
 use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Branch, Case, Effects, Formulation, Viscoelasticity};
+use crate::case::spans::{self, SegmentValues};
 use crate::error::Result;
 use crate::numerics::Scalar;
 
@@ -53,6 +54,35 @@ pub use storage::{LumpedKind, LumpedNetwork, Storage};
 pub use strain_energy::StrainPotential;
 pub use surroundings::AmbientFluid;
 
+/// Laws of the bladders of one segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentLaw {
+    /// Area change of a bladder cell; slopes of omitted effects are zero.
+    pub area: AreaLaw,
+    /// Slopes by which pressure strains the beam; those of omitted effects are zero.
+    pub strains: AreaLaw,
+    /// Strains caused by pressure.
+    pub coupling: CouplingLaw,
+    /// Cross-section of a bladder at rest [m^2].
+    pub area_at_rest: f64,
+    /// Permeability of a bladder over that of [`ResolvedNetwork::bladder_mobility`].
+    pub mobility_ratio: f64,
+}
+
+impl SegmentLaw {
+    fn new(case: &Case, values: &SegmentValues, bladders: &Bladders, section: &Section, asymmetry: bool) -> Self {
+        let area = AreaLaw::new(case, bladders, section, asymmetry);
+        let usual = case.bladders.as_ref().map_or(1.0, network::bladder_permeability);
+        Self {
+            area,
+            strains: area,
+            coupling: CouplingLaw::new(&values.beam, bladders),
+            area_at_rest: bladders.height_m * bladders.width_m,
+            mobility_ratio: network::bladder_permeability(bladders) / usual,
+        }
+    }
+}
+
 /// Bladders with their fluid and network.
 #[derive(Clone, Debug)]
 pub struct Wet {
@@ -72,6 +102,9 @@ pub struct Wet {
     pub strains: AreaLaw,
     /// Strains caused by pressure.
     pub coupling: CouplingLaw,
+    /// Laws of the segments of a beam with spans, of which `area`, `strains` and `coupling` are those of the case; empty for a uniform
+    /// beam.
+    pub segments: Vec<SegmentLaw>,
     /// Tubes, junctions, ports, turbines.
     pub network: ResolvedNetwork,
     /// True if fluid flows.
@@ -108,6 +141,44 @@ impl Wet {
         self.bladder_length * self.per_row as f64 / length
     }
 
+    /// Area law of a segment.
+    #[inline]
+    pub fn area_of(&self, segment: usize) -> &AreaLaw {
+        self.segments.get(segment).map_or(&self.area, |law| &law.area)
+    }
+
+    /// Strains of a segment by pressure, and their slopes.
+    #[inline]
+    pub fn strains_of(&self, segment: usize) -> (&CouplingLaw, &AreaLaw) {
+        let own = self.segments.get(segment);
+        own.map_or((&self.coupling, &self.strains), |law| (&law.coupling, &law.strains))
+    }
+
+    /// Cross-section of the bladders of a segment at rest [m^2].
+    pub fn area_at_rest_of(&self, segment: usize) -> f64 {
+        self.segments
+            .get(segment)
+            .map_or(self.area_at_rest, |law| law.area_at_rest)
+    }
+
+    /// Permeability of a bladder over that of most.
+    pub fn mobility_ratio(&self, bladder: usize) -> f64 {
+        self.segments
+            .get(self.place(bladder).0)
+            .map_or(1.0, |law| law.mobility_ratio)
+    }
+
+    /// Makes the areas of all bladders unknowns.
+    pub fn flow_everywhere(&mut self) {
+        let there = self.storage.iter_mut().filter(|storage| **storage != Storage::Absent);
+        there.for_each(|storage| *storage = Storage::Flowing);
+    }
+
+    /// True if a bladder exists.
+    pub fn has(&self, bladder: usize) -> bool {
+        self.storage[bladder] != Storage::Absent
+    }
+
     /// Area stored per pressure at ambient pressure [m^2/Pa], with compression.
     pub fn compliance(&self) -> f64 {
         self.compliance_at(0.0)
@@ -121,21 +192,21 @@ impl Wet {
         }
     }
 
-    /// Content of a cell at a pressure [m^2]; `imposed` is the area change by bending and force.
+    /// Content of a cell with an area law at a pressure [m^2]; `imposed` is the area change by bending and force.
     #[inline]
-    pub fn content<T: Scalar>(&self, pressure: T, imposed: T) -> T {
+    pub fn content<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
         match &self.compression {
-            None => self.swelling(pressure, imposed),
-            Some(compression) => compression.content(pressure, self.swelling(pressure, imposed)),
+            None => self.swelling(law, pressure, imposed),
+            Some(compression) => compression.content(pressure, self.swelling(law, pressure, imposed)),
         }
     }
 
-    /// Area change of a cell at a pressure [m^2]; `imposed` is the part by bending and force.
+    /// Area change of a cell with an area law at a pressure [m^2]; `imposed` is the part by bending and force.
     #[inline]
-    pub fn swelling<T: Scalar>(&self, pressure: T, imposed: T) -> T {
+    pub fn swelling<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
         match &self.closing {
-            None => pressure * self.area.per_pressure + imposed,
-            Some(closing) => closing.swelling(&self.area, pressure, imposed),
+            None => pressure * law.per_pressure + imposed,
+            Some(closing) => closing.swelling(law, pressure, imposed),
         }
     }
 
@@ -159,6 +230,13 @@ impl Wet {
         let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);
+        let values = spans::segments(case);
+        let sections = Section::of_segments(case, &values);
+        let segments = values.iter().zip(&sections).map(|(values, section)| {
+            let own = values.bladders.as_ref().unwrap_or(bladders);
+            SegmentLaw::new(case, values, own, section, effects.has(Effect::Asymmetry))
+        });
+        let segments = segments.collect();
         Self {
             per_row: bladders.per_row,
             bladder_length: bladders.length_m,
@@ -170,7 +248,8 @@ impl Wet {
                 .map(|written| WallClosing::new(written, area_at_rest)),
             compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
             strains: area,
-            coupling: CouplingLaw::new(case, bladders),
+            coupling: CouplingLaw::new(&case.beam, bladders),
+            segments,
             network,
             flows: effects.has(Effect::Flow),
             storage,
@@ -194,30 +273,35 @@ impl Wet {
             .take()
             .filter(|_| effects.has(Effect::NonlinearSection));
         self.takes_forces = effects.has(Effect::AxialStretch) && (effects.has(Effect::ForceToArea) || stretches);
-        self.area = self
-            .area
-            .without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
+        let areas = self.segments.iter_mut().map(|law| &mut law.area);
+        for area in areas.chain([&mut self.area]) {
+            *area = area.without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
+        }
         for link in &mut self.network.links {
             link.tube = link.tube.and_then(|tube| tube.reduced(effects));
         }
         let along = &mut self.network.along_bladders;
         *along = along.and_then(|along| along.reduced(effects));
-        self.strains = self.strains.without(
-            !effects.has(Effect::PressureToCurvature),
-            !effects.has(Effect::PressureToStretch),
-        );
-        self.coupling = self.coupling.without(
-            !effects.has(Effect::PressureToCurvature),
-            !effects.has(Effect::PressureToStretch),
-        );
+        let [bends, stretches] =
+            [Effect::PressureToCurvature, Effect::PressureToStretch].map(|effect| effects.has(effect));
+        let laws = self
+            .segments
+            .iter_mut()
+            .map(|law| (&mut law.coupling, &mut law.strains));
+        for (coupling, strains) in laws.chain([(&mut self.coupling, &mut self.strains)]) {
+            *coupling = coupling.without(!bends, !stretches);
+            *strains = strains.without(!bends, !stretches);
+        }
     }
 }
 
 /// A case resolved into physics.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Cross-section of the beam.
+    /// Cross-section of the beam; with spans, the mean of their sections.
     pub section: Section,
+    /// Sections of the segments of a beam with spans; empty for a uniform beam.
+    pub sections: Vec<Section>,
     /// Length `l_s` [m].
     pub length: f64,
     /// Form of the momentum balance.
@@ -247,13 +331,19 @@ pub struct Model {
     pub still: bool,
 }
 
+/// Section of a case; with spans, the mean of their sections.
+fn mean_section(case: &Case) -> Section {
+    let sections = Section::of_segments(case, &spans::segments(case));
+    Section::mean(&sections).unwrap_or_else(|| Section::new(case))
+}
+
 impl Model {
     /// Model of a checked case, with effects chosen as its settings require.
     ///
     /// # Errors
     /// Returns the errors of [`Network::of`]: a name in the network that does not exist.
     pub fn new(case: &Case) -> Result<Self> {
-        let section = Section::new(case);
+        let section = mean_section(case);
         let network = ResolvedNetwork::from_case(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full {
@@ -274,7 +364,7 @@ impl Model {
         let network = ResolvedNetwork::from_case(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
         let effects = if inertia { effects } else { effects.at_rest() };
-        Ok(Self::from_parts(case, Section::new(case), network, effects))
+        Ok(Self::from_parts(case, mean_section(case), network, effects))
     }
 
     /// Model for a modal analysis: all effects, with inertia. Unsteady friction is omitted unless switched on by name,
@@ -283,7 +373,7 @@ impl Model {
     pub fn of_modes(case: &Case) -> Result<Self> {
         let network = ResolvedNetwork::from_case(case)?;
         let effects = EffectSet::whole(case, network.as_ref());
-        let whole = Self::from_parts(case, Section::new(case), network.clone(), effects);
+        let whole = Self::from_parts(case, mean_section(case), network.clone(), effects);
         if whole.wet.as_ref().is_some_and(Wet::swings_fast) {
             return Ok(whole);
         }
@@ -301,7 +391,7 @@ impl Model {
         let network = ResolvedNetwork::from_case(case)?.map(|network| ResolvedNetwork { paced, ..network });
         Ok(Self {
             scales: self.scales,
-            ..Self::from_parts(case, Section::new(case), network, self.effects.clone())
+            ..Self::from_parts(case, mean_section(case), network, self.effects.clone())
         })
     }
 
@@ -336,6 +426,7 @@ impl Model {
         let kinematics = Kinematics::from_effects(&effects);
         Self {
             section,
+            sections: Section::of_segments(case, &spans::segments(case)),
             length: case.beam.length_m,
             formulation: case.formulation,
             kinematics,
@@ -352,6 +443,34 @@ impl Model {
             scales,
             still: false,
         }
+    }
+
+    /// For a beam with spans, the uniform beam of each segment with bladders; of equal neighbors one.
+    pub fn uniform_parts(&self) -> impl Iterator<Item = (usize, Self)> + '_ {
+        let wet = self.wet.as_ref().filter(|_| !self.sections.is_empty());
+        let there = move |j: &usize| wet.is_some_and(|wet| wet.pair(*j).into_iter().any(|bladder| wet.has(bladder)));
+        let differs = move |j: &usize| {
+            let same = |wet: &Wet| wet.segments[*j] == wet.segments[j - 1] && self.sections[*j] == self.sections[j - 1];
+            *j == 0 || !there(&(j - 1)) || wet.is_none_or(|wet| !same(wet))
+        };
+        (0..self.sections.len())
+            .filter(there)
+            .filter(differs)
+            .map(|j| (j, self.uniform_part(j)))
+    }
+
+    /// Uniform beam with the section and the bladders of one segment.
+    fn uniform_part(&self, segment: usize) -> Self {
+        let mut model = self.clone();
+        model.section = self.sections[segment];
+        model.sections.clear();
+        if let Some(wet) = &mut model.wet {
+            let law = wet.segments[segment];
+            (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
+            wet.area_at_rest = law.area_at_rest;
+            wet.segments.clear();
+        }
+        model
     }
 
     /// Finite volumes per bladder: the mesh setting, or one without flow along bladders.

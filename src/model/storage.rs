@@ -4,6 +4,7 @@ use super::network::{Component, LinkKind, NetworkNode};
 use super::{EffectSet, ResolvedNetwork};
 use crate::case::schema::Case;
 use crate::case::schema::Effect;
+use crate::case::spans;
 use crate::case::wiring::bladder_index;
 
 /// `[E23]` Storage laws of a bladder's area and pressure:
@@ -24,6 +25,8 @@ pub enum Storage {
     Kept,
     /// Its pressure is that of a lumped network, given by its index.
     Shared(usize),
+    /// There is no bladder: no unknown, no pressure and no area.
+    Absent,
 }
 
 /// `[E25]` Bladders with a common pressure p:
@@ -119,7 +122,9 @@ pub fn of_bladders(case: &Case, network: &ResolvedNetwork, effects: &EffectSet) 
         .sealed()
         .enumerate()
         .map(|(bladder, sealed)| {
-            if !effects.has(Effect::Flow) || (sealed && !uneven(bladder)) {
+            if !spans::has_bladder(case, bladder) {
+                Storage::Absent
+            } else if !effects.has(Effect::Flow) || (sealed && !uneven(bladder)) {
                 Storage::Kept
             } else {
                 Storage::Flowing

@@ -81,4 +81,5 @@ pub mod sweep;
 pub mod uncertainty;
 
 pub use folder::ResultFolder;
-pub use recorder::{FolderRecorder, Hook, Labels};
+pub use pictures::Labels;
+pub use recorder::{FolderRecorder, Hook};

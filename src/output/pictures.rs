@@ -3,13 +3,37 @@
 use super::arrays::ArraysWriter;
 use super::envelope::Envelope;
 use super::plot::{self, Deflection, Energy, HistoryPlot, PlottedCurve, Pressure};
+use crate::case::{Case, CaseText};
 use crate::discrete::quantities::{BeamField, FieldAxis, Observable};
 use crate::error::Result;
+use crate::model::characteristic;
 
 /// Number of curves in a picture over space.
 const CURVES: usize = 24;
 /// Number of stretches of time kept of a history; more than the pixels across.
 pub const STRETCHES: usize = 1200;
+
+/// Data recorded in addition to the run itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Labels {
+    /// Name of the case, for the pictures.
+    pub case_name: String,
+    /// The resolved case.
+    pub case: CaseText,
+    /// Frequency of the drive [Hz]; pictures over space then show its last cycle.
+    pub frequency_hz: Option<f64>,
+}
+
+impl Labels {
+    /// Labels of a case.
+    pub fn from_case(case: &Case) -> Self {
+        Self {
+            case_name: case.name.clone(),
+            case: case.written(),
+            frequency_hz: characteristic::forcing_period(case).map(|period| 1.0 / period),
+        }
+    }
+}
 
 /// Name of a picture, and its SVG.
 pub type NamedSvg = (&'static str, String);

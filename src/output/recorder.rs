@@ -15,13 +15,11 @@ use super::folder::{
     SENSITIVITIES, SUMMARY, Wait, at_once,
 };
 use super::history::{HistoryWriter, headings};
-use super::pictures::{self, NamedSvg, STRETCHES};
+use super::pictures::{self, Labels, NamedSvg, STRETCHES};
 use super::stream::Stream;
 use super::{report, summary};
-use crate::case::{Case, CaseText};
 use crate::error::Result;
 use crate::integrate::halt;
-use crate::model::characteristic;
 use crate::numerics::threads::{StartedTask, begin};
 use crate::run::checkpoint::Checkpoint;
 use crate::run::record::{Control, Header, Progress, Recorder};
@@ -30,28 +28,6 @@ use crate::run::wall_time::Stopwatch;
 
 /// Called after every step; decides whether the run continues.
 pub type Hook = Box<dyn FnMut(&Progress) -> Control>;
-
-/// Data recorded in addition to the run itself.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Labels {
-    /// Name of the case, for the pictures.
-    pub case_name: String,
-    /// The resolved case.
-    pub case: CaseText,
-    /// Frequency of the drive [Hz]; pictures over space then show its last cycle.
-    pub frequency_hz: Option<f64>,
-}
-
-impl Labels {
-    /// Labels of a case.
-    pub fn from_case(case: &Case) -> Self {
-        Self {
-            case_name: case.name.clone(),
-            case: case.written(),
-            frequency_hz: characteristic::forcing_period(case).map(|period| 1.0 / period),
-        }
-    }
-}
 
 /// Streams a run into a folder.
 ///
@@ -88,26 +64,25 @@ impl FolderRecorder {
     /// any.
     ///
     /// # Errors
-    ///
     /// A file is damaged or missing; then the folder is unchanged.
     pub fn resume(
         folder: ResultFolder,
         labels: Labels,
         hook: Hook,
-        saved: &SavedCheckpoint,
+        at: &SavedCheckpoint,
         header: &Header,
     ) -> Result<Self> {
         let (history, raw) = (folder.path(HISTORY), folder.path(RAW_FIELDS));
-        Stream::verify(&history, saved.history)?;
-        ArraysWriter::verify(&raw, header, &saved.fields)?;
-        let besides = [(ENVELOPE, saved.envelope), (SENSITIVITIES, saved.sensitivities)];
+        Stream::verify(&history, at.history)?;
+        ArraysWriter::verify(&raw, header, &at.fields)?;
+        let besides = [(ENVELOPE, at.envelope), (SENSITIVITIES, at.sensitivities)];
         for (name, mark) in besides {
             mark.map_or(Ok(()), |mark| Stream::verify(&folder.path(name), mark))?;
         }
         folder.remove(SUMMARY)?;
         folder.remove_exports()?;
-        let history = HistoryWriter::reopen(&history, saved.history)?;
-        let arrays = ArraysWriter::reopen(&raw, header, &saved.fields)?;
+        let history = HistoryWriter::reopen(&history, at.history)?;
+        let arrays = ArraysWriter::reopen(&raw, header, &at.fields)?;
         let [envelope, sensitivities] = besides.map(|(name, mark)| {
             let path = folder.path(name);
             mark.map(|mark| HistoryWriter::reopen(&path, mark)).transpose()
@@ -132,7 +107,6 @@ impl FolderRecorder {
     /// A run that failed before it began leaves case and summary, and moves an older result aside.
     ///
     /// # Errors
-    ///
     /// A file cannot be written. If it is a table or an array, the summary has the status `failed` and the reason.
     pub fn finish(mut self, summary: &Summary) -> Result<Finished> {
         let (mut laps, mut spent) = (Stopwatch::since(Instant::now()), WriteTimes::default());
@@ -316,7 +290,6 @@ impl Finished {
     /// Writes the page of the result.
     ///
     /// # Errors
-    ///
     /// The page cannot be written. Then do not close the folder, so that the completion can be repeated.
     pub fn page(&self) -> Result<()> {
         report::lay(&self.folder, self.history.as_ref())

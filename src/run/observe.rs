@@ -165,9 +165,8 @@ impl Observer {
 
     /// Begins a smooth interval: at the start of a run, and after every switch. Returns the validity limit that is exceeded, if any.
     pub fn enter(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = MonitoredValues::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, w);
         self.readings.arrive(t, true, system, now, w);
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
@@ -179,9 +178,8 @@ impl Observer {
     /// Observes the end of an accepted step, and finds the times of possible extrema within it: see [`Observer::turning`].
     /// Returns the validity limit that is exceeded, if any; nothing of such a step is stored.
     pub fn arrive(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.limits.half_height;
         let (system, now, w) = dae.accepted(t, y, yp);
-        let glance = MonitoredValues::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, w);
         self.turning.clear();
         let beyond = self.limits.beyond(&glance);
         if beyond.is_some() {
@@ -207,9 +205,8 @@ impl Observer {
 
     /// Observes a state inside the step. Returns the validity limit that is exceeded, if any.
     pub fn look(&mut self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64], integrals: &[f64]) -> Option<String> {
-        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = MonitoredValues::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, w);
         let beyond = self.limits.beyond(&glance);
         if beyond.is_none() {
             self.watch(system, now, w, &glance, integrals);
@@ -251,7 +248,7 @@ impl Observer {
     /// Returns the validity limit that a state exceeds, if any; stores nothing.
     pub fn beyond(&self, dae: &mut BeamDae, t: f64, y: &[f64], yp: &[f64]) -> Option<String> {
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = MonitoredValues::new(system, now, t, self.limits.half_height, w);
+        let glance = MonitoredValues::new(system, now, t, w);
         self.limits.beyond(&glance)
     }
 
@@ -318,9 +315,8 @@ impl Observer {
         last: bool,
         recorder: &mut dyn Recorder,
     ) -> Result<Sampled> {
-        let half_height = self.limits.half_height;
         let (system, now, w) = dae.evaluate(t, y, yp);
-        let glance = MonitoredValues::new(system, now, t, half_height, w);
+        let glance = MonitoredValues::new(system, now, t, w);
         if let Some(what) = self.limits.beyond(&glance).filter(|_| !last) {
             return Ok(Sampled::Beyond(what));
         }

@@ -9,7 +9,7 @@ use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
-use crate::model::audit;
+use crate::model::{Wet, audit};
 
 /// Fiber strain above which a run warns.
 pub const STRAIN: f64 = 0.5;
@@ -124,12 +124,21 @@ impl Limits {
             let (bending, stretch) = audit::convex_up_to(&system.model, wet);
             bending.min(stretch)
         });
-        let half_section = 0.5 * system.mesh.segment_length * case.beam.height_m;
+        let pitch = system.mesh.segment_length;
+        let room = |j: usize, wet: &Wet| {
+            let section = system.model.sections.get(j).unwrap_or(&system.model.section);
+            let there = wet.pair(j).into_iter().any(|bladder| wet.has(bladder));
+            there.then(|| pitch * section.half_height - wet.area_at_rest_of(j))
+        };
         Self {
             half_height: 0.5 * case.beam.height_m,
             length: system.model.length,
             modulus: case.beam.young_modulus_pa,
-            swelling: wet.map_or(f64::INFINITY, |wet| half_section - wet.area_at_rest),
+            swelling: wet.map_or(f64::INFINITY, |wet| {
+                (0..wet.per_row)
+                    .filter_map(|j| room(j, wet))
+                    .fold(f64::INFINITY, f64::min)
+            }),
             convex_up_to,
             reynolds_per_flow: match &case.fluid {
                 Some(f) if !system.model.effects.has(Effect::TubeLosses) => {

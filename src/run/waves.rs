@@ -289,8 +289,10 @@ fn published(model: &Model) -> bool {
 
 /// True if areas and strains share one potential.
 fn reciprocal(model: &Model) -> bool {
-    let shared =
-        |wet: &crate::model::Wet| matches!(wet.coupling, CouplingLaw::Reciprocal { .. }) && wet.strains == wet.area;
+    let shared = |wet: &crate::model::Wet| {
+        let shared = wet.segments.iter().all(|law| law.strains == law.area);
+        matches!(wet.coupling, CouplingLaw::Reciprocal { .. }) && wet.strains == wet.area && shared
+    };
     model.wet.as_ref().is_none_or(shared)
 }
 
@@ -304,5 +306,9 @@ fn make_reciprocal(model: &mut Model) {
         let length_ratio = wet.length_ratio(length);
         wet.coupling = CouplingLaw::Reciprocal { length_ratio };
         wet.strains = wet.area;
+        for law in &mut wet.segments {
+            law.coupling = wet.coupling;
+            law.strains = law.area;
+        }
     }
 }

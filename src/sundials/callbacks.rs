@@ -1,6 +1,6 @@
 //! Functions called by SUNDIALS: residual, Jacobian and error weights of a [`Dae`].
 //!
-//! Return codes: 0 success, +1 try a shorter step, -1 stop. The first fatal error or panic is stored in the [`Bridge`].
+//! Return codes: 0 success, +1 try a shorter step, -1 stop. The first fatal error or panic is stored in the [`CallbackData`].
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
@@ -26,7 +26,7 @@ pub(super) enum Stop {
 }
 
 /// System of equations that C accesses via `user_data`.
-pub(super) struct Bridge<D> {
+pub(super) struct CallbackData<D> {
     /// The equations.
     pub dae: D,
     /// Relative tolerance.
@@ -53,7 +53,7 @@ pub(super) struct Bridge<D> {
     pub slopes: Slopes,
 }
 
-impl<D: Dae> Bridge<D> {
+impl<D: Dae> CallbackData<D> {
     /// Creates a bridge for equations with tolerances.
     pub(super) fn new(dae: D, relative: f64, absolute: Vec<f64>) -> Self {
         Self {
@@ -101,12 +101,12 @@ pub(super) unsafe fn seen<'v, D>(
     data: *mut c_void,
     y: N_Vector,
     yp: N_Vector,
-) -> (&'v mut Bridge<D>, &'v [f64], &'v [f64]) {
+) -> (&'v mut CallbackData<D>, &'v [f64], &'v [f64]) {
     // SAFETY: by contract.
-    unsafe { (&mut *data.cast::<Bridge<D>>(), entries(y), entries(yp)) }
+    unsafe { (&mut *data.cast::<CallbackData<D>>(), entries(y), entries(yp)) }
 }
 
-/// `IDAResFn` with a [`Bridge`] as user data.
+/// `IDAResFn` with a [`CallbackData`] as user data.
 pub(super) unsafe extern "C" fn residual<D: Dae>(
     t: f64,
     y: N_Vector,
@@ -138,7 +138,7 @@ pub(super) unsafe extern "C" fn residual<D: Dae>(
     code
 }
 
-/// `IDALsJacFn` with a [`Bridge`] as user data; writes into the system behind the matrix.
+/// `IDALsJacFn` with a [`CallbackData`] as user data; writes into the system behind the matrix.
 #[allow(clippy::too_many_arguments)] // SUNDIALS' signature
 pub(super) unsafe extern "C" fn jacobian<D: Dae>(
     t: f64,
@@ -168,10 +168,10 @@ pub(super) unsafe extern "C" fn jacobian<D: Dae>(
     code
 }
 
-/// `IDAEwtFn` with a [`Bridge`] as user data: `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`.
+/// `IDAEwtFn` with a [`CallbackData`] as user data: `wᵢ = 1 / (relative |yᵢ| + absoluteᵢ)`.
 pub(super) unsafe extern "C" fn weights<D: Dae>(y: N_Vector, w: N_Vector, data: *mut c_void) -> c_int {
     // SAFETY: user data is the bridge, which nobody else borrows while C runs; w is another vector than y.
-    let (bridge, y, w) = unsafe { (&*data.cast::<Bridge<D>>(), entries(y), entries_mut(w)) };
+    let (bridge, y, w) = unsafe { (&*data.cast::<CallbackData<D>>(), entries(y), entries_mut(w)) };
     if kernels::error_weights(y, bridge.relative, &bridge.absolute, w) {
         0
     } else {

@@ -4,7 +4,7 @@ use std::ffi::{c_int, c_long, c_void};
 
 use sundials_sys as s;
 
-use super::callbacks::{self, Bridge};
+use super::callbacks::{self, CallbackData};
 use super::context::{Context, Messages, keep};
 use super::diagnosis::meaning;
 use super::integrals::{self, Correction};
@@ -56,7 +56,7 @@ pub struct Ida<D: Dae> {
     pub(super) correction: Correction,
     pub(super) sensitivities: Option<SensitivityVectors>,
     pub(super) messages: Shared<Messages>,
-    pub(super) bridge: Shared<Bridge<D>>,
+    pub(super) bridge: Shared<CallbackData<D>>,
     pub(super) context: Context,
     pub(super) time: f64,
     pub(super) stepped: bool,
@@ -87,7 +87,7 @@ impl<D: Dae> Ida<D> {
             Some(vector(&vec![0.0; integrals])?)
         };
         let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
-        let mut bridge = Shared::new(Bridge::new(dae, options.relative, options.absolute.each(n)));
+        let mut bridge = Shared::new(CallbackData::new(dae, options.relative, options.absolute.each(n)));
         let messages = Shared::new(Messages::default());
         // SAFETY: the context is alive; null is checked.
         let raw = unsafe { s::IDACreate(context.raw()) };

@@ -24,7 +24,7 @@ use super::vector::{Vector, entries_mut};
 use crate::dae::Dae;
 use crate::integrate::IntegrationError;
 
-/// `IDAQuadRhsFn` with a [`Bridge`] as user data.
+/// `IDAQuadRhsFn` with a [`CallbackData`] as user data.
 pub(super) unsafe extern "C" fn integrands<D: Dae>(
     t: f64,
     y: s::N_Vector,

@@ -6,7 +6,7 @@ use std::fmt;
 use sundials_sys as s;
 use sundials_sys::{N_Vector, SUNMatrix};
 
-use super::callbacks::{Bridge, Stop};
+use super::callbacks::{CallbackData, Stop};
 use super::context::{Context, Messages, keep};
 use super::linear_solver::{LinearSolver, system_of};
 use super::shared::Shared;
@@ -105,7 +105,7 @@ impl Drop for KinsolMemory {
 
 /// User data: the equations and the time at which they are solved.
 struct Fixed<D> {
-    bridge: Bridge<D>,
+    bridge: CallbackData<D>,
     t: f64,
     zeros: Vec<f64>,
 }
@@ -139,7 +139,7 @@ impl<D: Dae> Kinsol<D> {
         let ones = Vector::new(&vec![1.0; n], context.raw()).map_err(refuse)?;
         let solver = LinearSolver::new(lu, context.raw()).map_err(refuse)?;
         let fixed = Shared::new(Fixed {
-            bridge: Bridge::new(dae, 0.0, vec![]),
+            bridge: CallbackData::new(dae, 0.0, vec![]),
             t: 0.0,
             zeros,
         });

@@ -76,7 +76,7 @@ unsafe fn slices_mut<'v>(array: *mut s::N_Vector, count: usize) -> Vec<&'v mut [
     (0..count).map(|k| unsafe { entries_mut(*array.add(k)) }).collect()
 }
 
-/// `IDASensResFn` with a [`Bridge`] as user data.
+/// `IDASensResFn` with a [`CallbackData`] as user data.
 #[allow(clippy::too_many_arguments)] // SUNDIALS' signature
 unsafe extern "C" fn residuals<D: Dae>(
     count: c_int,
@@ -119,7 +119,7 @@ unsafe extern "C" fn residuals<D: Dae>(
     code
 }
 
-/// `IDAQuadSensRhsFn` with a [`Bridge`] as user data.
+/// `IDAQuadSensRhsFn` with a [`CallbackData`] as user data.
 #[allow(clippy::too_many_arguments)] // SUNDIALS' signature
 unsafe extern "C" fn integrands<D: Dae>(
     count: c_int,

@@ -19,5 +19,6 @@ mod scene;
 #[path = "../common/secant.rs"]
 mod secant;
 mod sloshing;
+mod spans;
 mod surroundings;
 mod tubes;

@@ -4,7 +4,9 @@ use slcbeam_section::finite::energy::monomials;
 
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
-use crate::case::schema::{Bladders, Case, Coupling, Formulation, StrainEnergy};
+use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, StrainEnergy};
+use crate::case::spans;
+use crate::case::wiring::bladder_index;
 use crate::error::numbers::counted;
 use crate::error::{Code, Violation};
 
@@ -41,6 +43,55 @@ fn dry(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(Code::Together, *pointer, format!("\"{key}\" without bladders"));
         faults.push_at_key(fault.hint("add \"bladders\", or remove this for a dry beam"));
     }
+}
+
+/// Index of a bladder by its number; reports a fault if there is none.
+pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Violations) -> Option<usize> {
+    let per_row = case.segments();
+    let index = bladder_index(number, per_row);
+    if index.is_some_and(|index| !spans::has_bladder(case, index)) {
+        let segment = number.unsigned_abs() as usize - 1;
+        let span = spans::places(case).get(segment).map_or(0, |place| place.0);
+        let what = format!("there is no bladder {number}: span {} has none in this row", span + 1);
+        let fault = Violation::new(Code::Wiring, pointer, what);
+        faults.push(fault.hint(format!(
+            "change /spans/{span}/rows, or name another bladder; numbers count segments"
+        )));
+        return None;
+    }
+    if index.is_none() {
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
+        let allowed = format!("1 to {per_row} (upper row) and -1 to -{per_row} (lower row)");
+        faults.push(fault.allowed(allowed));
+    }
+    index
+}
+
+/// Why bladders do not fit into a segment of this length [m] with these rows; none if they fit.
+pub(super) fn too_large(beam: &Beam, bladders: &Bladders, segment: f64, rows: [bool; 2]) -> Option<String> {
+    let stacked = rows.iter().filter(|row| **row).count() as f64;
+    let sizes = [
+        (
+            "the width of a bladder",
+            bladders.width_m,
+            "the length of a segment",
+            segment,
+        ),
+        (
+            "the height of the bladders",
+            stacked * bladders.height_m,
+            "the height of the beam",
+            beam.height_m,
+        ),
+        (
+            "the length of a bladder",
+            bladders.length_m,
+            "the width of the beam",
+            beam.width_m,
+        ),
+    ];
+    let large = sizes.into_iter().find(|(_, size, _, room)| *size > room * (1.0 + 1e-9));
+    large.map(|(what, size, of, room)| format!("{what} is {} m in this span, {of} {} m", rounded(size), rounded(room)))
 }
 
 /// Pointer of the number of bladders per row.

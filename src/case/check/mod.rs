@@ -14,6 +14,7 @@ mod probes;
 pub mod rarely_intended;
 mod relaxation;
 mod size;
+mod spans;
 mod start;
 mod strength;
 mod time;
@@ -27,7 +28,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 17] = [
+const RULES: [(Rule, &[&str]); 18] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -51,6 +52,10 @@ const RULES: [(Rule, &[&str]); 17] = [
         &["beam", "bladders", "network", "loads", "ends", "start", "time"],
     ),
     (coefficients::check, &["beam", "bladders", "tubes"]),
+    (
+        spans::check,
+        &["beam", "bladders", "fluid", "tubes", "mesh", "spans", "surroundings"],
+    ),
 ];
 
 /// Applies all rules to a case, except those that compare a broken section with others.

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-use super::bladders::{PER_ROW, two_permeabilities};
+use super::bladders::{PER_ROW, existing, two_permeabilities};
 use super::junctions;
 use super::tubes::{loss_coefficient, radius, roughness, size};
 use crate::case::faults::Violations;
@@ -48,6 +48,7 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Conn
     };
     let per_row = bladders.per_row;
     let mut rules = Rules {
+        case,
         network,
         usual: case.tubes.as_ref(),
         per_row,
@@ -68,17 +69,6 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Conn
     (wiring, rules.joined)
 }
 
-/// Index of a bladder by its number; reports a fault if there is none.
-pub(super) fn bladder(number: i64, per_row: usize, pointer: &str, faults: &mut Violations) -> Option<usize> {
-    let index = bladder_index(number, per_row);
-    if index.is_none() {
-        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}"));
-        let allowed = format!("1 to {per_row} (upper row) and -1 to -{per_row} (lower row)");
-        faults.push(fault.allowed(allowed));
-    }
-    index
-}
-
 /// Number of the bladder at the first (0) or second (1) end of a chain, and which of its ends.
 fn chain_end(chain: &schema::Chain, k: usize) -> Option<(i64, BladderEnd)> {
     match k {
@@ -88,6 +78,7 @@ fn chain_end(chain: &schema::Chain, k: usize) -> Option<(i64, BladderEnd)> {
 }
 
 struct Rules<'a, 'f> {
+    case: &'a Case,
     network: &'a Network,
     usual: Option<&'a TubeDefaults>,
     per_row: usize,
@@ -134,7 +125,7 @@ impl<'a> Rules<'a, '_> {
     fn named(&mut self, endpoint: &Endpoint, pointer: &str) -> Option<WiringPoint> {
         let what = match (endpoint.bladder, endpoint.end, &endpoint.junction) {
             (Some(number), Some(end), None) => {
-                let index = bladder(number, self.per_row, &format!("{pointer}/bladder"), self.faults);
+                let index = existing(number, self.case, &format!("{pointer}/bladder"), self.faults);
                 return index.map(|index| WiringPoint::Bladder(index, end));
             }
             (None, None, Some(name)) => {
@@ -326,7 +317,7 @@ impl<'a> Rules<'a, '_> {
             let mut row = vec![];
             for (k, &number) in chain.bladders.iter().enumerate() {
                 let pointer = format!("/network/chains/{i}/bladders/{k}");
-                let Some(index) = bladder(number, self.per_row, &pointer, self.faults) else {
+                let Some(index) = existing(number, self.case, &pointer, self.faults) else {
                     continue;
                 };
                 row.push(index);

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::bladders::PER_ROW;
+use super::bladders::{PER_ROW, existing};
 use super::strength::inlets;
 use super::time::END;
 use crate::case::ends::{Rotation, Translation};
@@ -22,14 +22,14 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 }
 
 fn pressures(case: &Case, faults: &mut Violations) {
-    let Some(bladders) = case.bladders.as_ref().filter(|_| faults.are_sound(&[PER_ROW])) else {
+    if case.bladders.is_none() || !faults.are_sound(&[PER_ROW]) {
         return;
-    };
+    }
     let mut known = HashMap::new();
     for (i, some) in case.start.pressures.iter().enumerate() {
         for (k, &index) in some.bladders.iter().enumerate() {
             let pointer = format!("/start/pressures/{i}/bladders/{k}");
-            if super::network::bladder(index, bladders.per_row, &pointer, faults).is_some()
+            if existing(index, case, &pointer, faults).is_some()
                 && let Some(first) = known.insert(index, pointer.clone())
             {
                 let what = format!("the pressure of bladder {index} is given twice, first at {first}");

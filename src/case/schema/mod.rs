@@ -22,6 +22,7 @@ mod loads;
 mod network;
 mod numerics;
 mod probes;
+mod spans;
 mod surroundings;
 mod viscoelasticity;
 
@@ -34,6 +35,7 @@ pub use loads::*;
 pub use network::*;
 pub use numerics::*;
 pub use probes::*;
+pub use spans::*;
 pub use surroundings::*;
 pub use viscoelasticity::*;
 
@@ -67,6 +69,10 @@ pub struct Case {
     /// The two rows of bladders. Absent: a dry beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bladders: Option<Bladders>,
+    /// Parts of the beam, root to tip, with values of their own. Absent: a uniform beam.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(length(max = 1000))]
+    pub spans: Vec<Span>,
     /// Default properties of tubes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tubes: Option<TubeDefaults>,

@@ -4,11 +4,16 @@ use std::ops::Range;
 
 use super::fluid::imposed_rate;
 use crate::discrete::{FluidMesh, System, Workspace};
-use crate::model::{Compression, Storage, Wet};
+use crate::model::{AreaLaw, Compression, Storage, Wet};
+
+/// Area law of a bladder.
+fn law_of(wet: &Wet, bladder: usize) -> &AreaLaw {
+    wet.area_of(wet.place(bladder).0)
+}
 
 /// Rates of a cell's pressure [Pa/s], of the pressure on its walls, and of its area [m^2/s], from the rate of its content.
-fn rates(wet: &Wet, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) -> [f64; 3] {
-    let (law, closing) = (&wet.area, wet.closing.as_ref());
+fn rates(wet: &Wet, law: &AreaLaw, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) -> [f64; 3] {
+    let closing = wet.closing.as_ref();
     let contact = |area: f64, rate: f64| closing.map_or(0.0, |closing| closing.at(area).1 * rate);
     match (&wet.compression, closing) {
         (Some(compression), None) => {
@@ -34,8 +39,15 @@ fn rates(wet: &Wet, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) 
 
 /// Rates of a cell in a bladder of a lumped network, from the rate of its pressure: of the pressure on its walls [Pa/s], and of its
 /// content [m^2/s].
-pub fn shared_rates(wet: &Wet, w: &Workspace<f64>, cell: usize, pressure: f64, imposed: f64) -> [f64; 2] {
-    let a_p = wet.area.per_pressure;
+pub fn shared_rates(
+    wet: &Wet,
+    law: &AreaLaw,
+    w: &Workspace<f64>,
+    cell: usize,
+    pressure: f64,
+    imposed: f64,
+) -> [f64; 2] {
+    let a_p = law.per_pressure;
     let area = w.fluid.area_changes()[cell];
     let slope = wet.closing.as_ref().map_or(0.0, |closing| closing.at(area).1);
     let rate = (a_p * pressure + imposed) / (1.0 - a_p * slope);
@@ -54,7 +66,7 @@ pub fn lumped_slopes<'a>(system: &'a System, w: &'a Workspace<f64>) -> impl Iter
         let unknowns = system.layout.network.lumped_pressure.iter().zip(&wet.lumped);
         unknowns.filter_map(move |(unknown, lumped)| {
             let taken = lumped.bladders.iter().map(|&bladder| {
-                let [_, stored] = shared_rates(wet, w, fluid.cells_of(bladder).start, 1.0, 0.0);
+                let [_, stored] = shared_rates(wet, law_of(wet, bladder), w, fluid.cells_of(bladder).start, 1.0, 0.0);
                 stored * wet.bladder_length
             });
             unknown.map(|unknown| (unknown, taken.sum()))
@@ -68,18 +80,24 @@ pub fn pressure_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usi
     match wet.storage[bladder] {
         Storage::Shared(lumped) => w.fluid.lumped_rate[lumped],
         Storage::Flowing | Storage::Kept => {
-            rates(wet, w, cell, w.fluid.area_rate[cell], imposed_rate(wet, w, bladder))[0]
+            let imposed = imposed_rate(wet, w, bladder);
+            rates(wet, law_of(wet, bladder), w, cell, w.fluid.area_rate[cell], imposed)[0]
         }
+        Storage::Absent => 0.0,
     }
 }
 
 /// Mean rate of the pressure on the walls of a bladder.
 pub fn mean_pressure_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize, cells: Range<usize>) -> f64 {
-    let (count, imposed) = (cells.len() as f64, imposed_rate(wet, w, bladder));
-    if let Storage::Shared(lumped) = wet.storage[bladder] {
-        return shared_rates(wet, w, cells.start, w.fluid.lumped_rate[lumped], imposed)[0];
+    if !wet.has(bladder) {
+        return 0.0;
     }
-    let each = cells.map(|cell| rates(wet, w, cell, w.fluid.area_rate[cell], imposed)[1]);
+    let (count, imposed) = (cells.len() as f64, imposed_rate(wet, w, bladder));
+    let law = law_of(wet, bladder);
+    if let Storage::Shared(lumped) = wet.storage[bladder] {
+        return shared_rates(wet, law, w, cells.start, w.fluid.lumped_rate[lumped], imposed)[0];
+    }
+    let each = cells.map(|cell| rates(wet, law, w, cell, w.fluid.area_rate[cell], imposed)[1]);
     each.sum::<f64>() / count
 }
 
@@ -88,8 +106,9 @@ pub fn area_rate(wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>, cell: usize) 
     if wet.compression.is_none() {
         return w.fluid.area_rate[cell];
     }
-    let imposed = imposed_rate(wet, w, cell / fluid.cells_per_bladder);
-    rates(wet, w, cell, w.fluid.area_rate[cell], imposed)[2]
+    let bladder = cell / fluid.cells_per_bladder;
+    let imposed = imposed_rate(wet, w, bladder);
+    rates(wet, law_of(wet, bladder), w, cell, w.fluid.area_rate[cell], imposed)[2]
 }
 
 /// Dissipation between two neighboring cells [W].

@@ -51,7 +51,14 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
         for &bladder in &lumped.bladders {
             let rate = imposed_rate(wet, w, bladder);
             let cell = fluid.cells_of(bladder).start;
-            let [_, stored] = compressed::shared_rates(wet, w, cell, w.fluid.lumped_rate[k], rate);
+            let [_, stored] = compressed::shared_rates(
+                wet,
+                wet.area_of(wet.place(bladder).0),
+                w,
+                cell,
+                w.fluid.lumped_rate[k],
+                rate,
+            );
             w.fluid.area_rate[fluid.cells_of(bladder)].fill(stored);
         }
     }
@@ -61,8 +68,9 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
 /// Rate of a bladder's area by moment, force and finite strain.
 pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
-    wet.area.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
-        + wet.area.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
+    let law = wet.area_of(j);
+    law.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
+        + law.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
         + w.coupling.excess_area_rate.get(bladder).copied().unwrap_or(0.0)
 }
 
@@ -73,16 +81,13 @@ pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     {
         for j in 0..wet.per_row {
             let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
-            w.coupling.pressure_stretch[j] = wet
-                .coupling
-                .stretch(&wet.strains, w.coupling.mean_force[j], upper, lower);
+            let (coupling, strains) = wet.strains_of(j);
+            w.coupling.pressure_stretch[j] = coupling.stretch(strains, w.coupling.mean_force[j], upper, lower);
         }
     }
     let stretch_rate = |w: &Workspace<f64>, j| {
         system.model.wet.as_ref().map_or(0.0, |wet| {
-            SegmentRates::new(system, wet, w, j)
-                .strain_rates(&wet.coupling, &wet.strains)
-                .0
+            SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j)).0
         })
     };
     von_karman::foreshorten(system, now, stretch_rate, w);
@@ -104,8 +109,8 @@ pub fn rates<'a>(
         for j in 0..wet.per_row {
             let s = SegmentRates::new(system, wet, w, j);
             let reciprocal = CouplingLaw::Reciprocal { length_ratio: ratio };
-            let (stretch, curvature) = s.strain_rates(&wet.coupling, &wet.strains);
-            let (stretch_0, curvature_0) = s.strain_rates(&reciprocal, &wet.area);
+            let (stretch, curvature) = s.strain_rates(wet.strains_of(j));
+            let (stretch_0, curvature_0) = s.strain_rates((&reciprocal, wet.area_of(j)));
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
             add(out, EnergyRate::Reciprocity, system.mesh.segment_length * power);
         }
@@ -113,7 +118,7 @@ pub fn rates<'a>(
     move |w, node| {
         let Some(wet) = &system.model.wet else { return 0.0 };
         let j = system.mesh.segments_of_node(node).0;
-        let (_, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(&wet.coupling, &wet.strains);
+        let (_, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j));
         curvature + nonlinear::end_rate(system, w, node)
     }
 }
@@ -155,7 +160,7 @@ impl SegmentRates {
     }
 
     /// Rates of `lambda_p` and `alpha_p` for a coupling.
-    fn strain_rates(&self, coupling: &CouplingLaw, law: &AreaLaw) -> (f64, f64) {
+    fn strain_rates(&self, (coupling, law): (&CouplingLaw, &AreaLaw)) -> (f64, f64) {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
         match *coupling {
@@ -191,7 +196,12 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
     };
     let network = &wet.network;
     for face in fluid.creeping_faces() {
-        let lost = compressed::lost_between(wet, w, fluid.conductance, face);
+        let lost = compressed::lost_between(
+            wet,
+            w,
+            fluid.conductance_of(wet, face[0] / fluid.cells_per_bladder),
+            face,
+        );
         add(out, EnergyRate::Bladders, lost);
     }
     let component = |place: LinkEnd| component(network, fluid, place);

@@ -45,7 +45,7 @@ pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
             if end.u[axis].is_none() || !moves {
                 continue;
             }
-            let inertia = if l.inertia { section.mass_per_length } else { 0.0 };
+            let inertia = if l.inertia { system.sections.mass[node] } else { 0.0 };
             let carried = (w.motion.a[node] * inertia + w.motion.v[node] * section.drag) * system.lengths[node];
             let half_cell = carried - now.force[node] * length;
             let n = &w.forces.section;

@@ -109,7 +109,7 @@ fn bending(
     i: usize,
     out: &mut Rates,
 ) {
-    let (mesh, section) = (&system.mesh, &system.model.section);
+    let mesh = &system.mesh;
     let last = mesh.nodes - 1;
     let length = mesh.node_length(i);
     let published = system.model.published();
@@ -130,7 +130,7 @@ fn bending(
     let kappa_rate = match end {
         Some(e) if e.slope.is_none() => {
             let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
-            let mut elastic_rate = e.moment.rate / section.bending_stiffness;
+            let mut elastic_rate = e.moment.rate / system.sections.bending[i];
             if mesh.fourth {
                 let beside = fourth_order::neighbour(system, i);
                 let (left, right) = mesh.segments_of_node(beside);
@@ -177,8 +177,8 @@ fn bending(
 /// Contributions of the cells: distributed moments, viscous forces, and the published rotary term.
 fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut Rates) {
     let (h, section) = (system.mesh.h, &system.model.section);
-    let rotary = section.mass_per_length * section.gyration_radius_squared;
     for c in 0..system.mesh.cells {
+        let rotary = system.sections.rotary[c];
         if system.has_moments {
             let couple = couple(system, now, w, c);
             add(out, EnergyRate::Loads, -h * couple * w.shape.angle_rate[c]);
@@ -190,7 +190,7 @@ fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, o
             h * w.forces.viscous_normal[c] * w.shape.stretch_rate[c],
         );
         if let Some(rate) = w.shape.sections.shear_rate.get(c) {
-            let viscous = section.shear_stiffness * section.bending_damping_time;
+            let viscous = system.sections.shear[c] * section.bending_damping_time;
             let loss = match w.forces.viscous_shear.get(c) {
                 Some(force) => h * force * rate,
                 None => h * viscous * rate * rate,
@@ -233,7 +233,7 @@ fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
 
 /// Kinetic and elastic energies; the energy of shear is included in that of bending.
 pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEnergies {
-    let (mesh, section) = (&system.mesh, &system.model.section);
+    let mesh = &system.mesh;
     let sheared = system.model.effects.has(Effect::Shear);
     let mut e = StoredEnergies::default();
     for i in 0..mesh.nodes {
@@ -245,7 +245,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         e.bending += if mesh.fourth {
             fourth_order::of_bending(system, now, w, i)
         } else {
-            0.5 * length * w.forces.moment[i] * w.forces.moment[i] / section.bending_stiffness
+            0.5 * length * w.forces.moment[i] * w.forces.moment[i] / system.sections.bending[i]
         };
     }
     if system.layout.inertia {
@@ -260,23 +260,23 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             e.axial += if mesh.fourth {
                 fourth_order::of_stretch(system, w, c)
             } else {
-                0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / section.axial_stiffness
+                0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / system.sections.axial[c]
             };
         }
         if mesh.fourth && sheared {
             continue;
         }
         if let Some(shear) = w.shape.sections.shear.get(c) {
-            e.bending += 0.5 * mesh.h * section.shear_stiffness * shear * shear;
+            e.bending += 0.5 * mesh.h * system.sections.shear[c] * shear * shear;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
             e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
         }
     }
     if mesh.fourth && sheared {
-        e.bending += 0.5 * mesh.h * section.shear_stiffness * fourth_order::squares(&w.shape.sections.shear);
+        e.bending += 0.5 * mesh.h * system.sections.shear[0] * fourth_order::squares(&w.shape.sections.shear);
         if system.model.effects.has(Effect::RotaryInertia) {
-            let inertia = section.mass_per_length * section.gyration_radius_squared;
+            let inertia = system.sections.rotary[0];
             e.rotary += 0.5 * mesh.h * inertia * fourth_order::squares(&w.shape.angle_rate);
         }
     }
@@ -285,13 +285,12 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
 
 /// Angular momentum of a cell's rotation per length: `m y11 φ_t`, published `m y11 λ² φ_t`.
 fn spin(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
-    let section = &system.model.section;
     let factor = if system.model.published() && system.layout.lines[1].v.is_some() {
         w.shape.stretch[c] * w.shape.stretch[c]
     } else {
         1.0
     };
-    section.mass_per_length * section.gyration_radius_squared * factor * turning_rate(system, w, c)
+    system.sections.rotary[c] * factor * turning_rate(system, w, c)
 }
 
 /// Moment arms (x, z) of a node's momentum and force about the origin, i.e. its position, and their rates. A small

@@ -26,9 +26,10 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
                 }
                 squares += in_walls * in_walls;
             }
-            let mixed = w.coupling.mean_force[j] * wet.area.force_slope(w.coupling.mean_force[j])
-                + w.coupling.mean_moment[j] * wet.area.moment_slope(w.coupling.mean_moment[j], row);
-            let in_walls = 0.5 * wet.area.per_pressure * squares + closed;
+            let law = wet.area_of(j);
+            let mixed = w.coupling.mean_force[j] * law.force_slope(w.coupling.mean_force[j])
+                + w.coupling.mean_moment[j] * law.moment_slope(w.coupling.mean_moment[j], row);
+            let in_walls = 0.5 * law.per_pressure * squares + closed;
             sum += in_walls / cells.len() as f64 + w.fluid.mean_pressure[bladder] * mixed;
         }
     }

@@ -21,15 +21,16 @@ pub struct Extremes {
 impl Extremes {
     /// Extremes of the state in the workspace.
     pub fn new(system: &System, now: &TimeData, w: &Workspace<f64>) -> Self {
+        let there = |cell: &usize| system.has_cell(*cell);
         let place = |values: &[f64], sign: f64| {
-            let all = values.iter().enumerate();
+            let all = values.iter().enumerate().filter(|(cell, _)| there(cell));
             all.max_by(|a, b| (sign * a.1).total_cmp(&(sign * b.1)))
                 .map_or(0, |(i, _)| i)
         };
         Self {
             high: place(&w.fluid.pressure, 1.0),
             low: place(&w.fluid.pressure, -1.0),
-            closed: place(w.fluid.area_changes(), -1.0),
+            closed: system.most_closed(w.fluid.area_changes()),
             angle: tip_angle(system, now, w),
         }
     }
@@ -92,10 +93,11 @@ impl StateView<'_> {
 
     /// Least relative opening of a bladder, `(h_b w_b + a1)/(h_b w_b)`.
     pub(super) fn least_opening(&self) -> f64 {
-        let at_rest = self.system.model.wet.as_ref().map(|wet| wet.area_at_rest);
-        at_rest.map_or(1.0, |at_rest| {
-            1.0 + self.w.fluid.area_changes()[self.at.closed] / at_rest
-        })
+        let cell = self.at.closed;
+        let areas = self.w.fluid.area_changes();
+        areas
+            .get(cell)
+            .map_or(1.0, |area| 1.0 + area / self.system.area_at_rest(cell))
     }
 
     /// Turbine power: `Σ R q²` of turbines between bladders, `Σ g Δp²` of those in bridges.
@@ -179,12 +181,13 @@ fn largest_in_tubes(
 }
 
 /// Largest strain of a fibre, `|λ - 1| + |κ| h_s/2`, κ relative to the rest curvature, and its node.
-pub fn largest_strain(system: &System, now: &TimeData, half_height: f64, w: &Workspace<f64>) -> (f64, usize) {
+pub fn largest_strain(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
     let last = system.mesh.nodes - 1;
     (0..=last)
         .map(|i| {
             (
-                (node_stretch(w, i, last) - 1.0).abs() + (w.curvature()[i] - now.rest_curvature(i)).abs() * half_height,
+                (node_stretch(w, i, last) - 1.0).abs()
+                    + (w.curvature()[i] - now.rest_curvature(i)).abs() * system.sections.half_height[i],
                 i,
             )
         })

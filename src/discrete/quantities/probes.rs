@@ -3,6 +3,7 @@
 use super::Observable;
 use super::evaluate::StateView;
 use crate::case::schema::{Case, Probe as Written};
+use crate::case::spans;
 use crate::discrete::angle_unwrapping::{first_angle, tip_angle};
 use crate::discrete::{BeamMesh, System};
 
@@ -139,12 +140,17 @@ fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
 impl MeshProbe {
     /// Probes of a case.
     pub fn all(case: &Case, mesh: &BeamMesh) -> Vec<Self> {
-        let solid = (0.5 * case.beam.height_m, case.beam.young_modulus_pa);
-        let probe = |probe: &Written| Self::new(&probe.name, probe.at, solid, mesh);
+        let segments = spans::segments(case);
+        let probe = |probe: &Written| {
+            let mut one = Self::new(&probe.name, probe.at, mesh);
+            let beam = segments.get(one.segment).map_or(&case.beam, |values| &values.beam);
+            (one.half_height, one.young_modulus) = (0.5 * beam.height_m, beam.young_modulus_pa);
+            one
+        };
         case.probes.iter().map(probe).collect()
     }
 
-    fn new(name: &str, at: f64, (half_height, young_modulus): (f64, f64), mesh: &BeamMesh) -> Self {
+    fn new(name: &str, at: f64, mesh: &BeamMesh) -> Self {
         let place = at * mesh.cells as f64;
         let node = (place as usize).min(mesh.cells - 1);
         let cell = ((place - 0.5).max(0.0) as usize).min(mesh.cells.saturating_sub(2));
@@ -155,8 +161,8 @@ impl MeshProbe {
             node: (node, place - node as f64),
             cell: (cell, beyond),
             segment: node / mesh.cells_per_segment,
-            half_height,
-            young_modulus,
+            half_height: 0.0,
+            young_modulus: 0.0,
         }
     }
 
@@ -201,11 +207,12 @@ impl MeshProbe {
     /// σ = E (λ - 1 ± κ h_s/2 + N_r/EA ± M_r h_s/(2 EI))        N_r, M_r: forces of the branches
     /// ```
     fn stress(&self, look: &StateView, side: f64) -> f64 {
-        let (section, forces) = (&look.system.model.section, &look.w.forces);
-        let normal = |c: usize| forces.relaxing_normal.get(c).copied().unwrap_or(0.0);
-        let moment = |i: usize| forces.relaxing_moment.get(i).copied().unwrap_or(0.0);
-        let relaxing = self.of_cells(normal) / section.axial_stiffness
-            + side * self.half_height * self.of_nodes(moment) / section.bending_stiffness;
+        let (sections, forces) = (&look.system.sections, &look.w.forces);
+        let part =
+            |forces: &[f64], stiffness: &[f64], k: usize| forces.get(k).map_or(0.0, |force| force / stiffness[k]);
+        let normal = |c: usize| part(&forces.relaxing_normal, &sections.axial, c);
+        let moment = |i: usize| part(&forces.relaxing_moment, &sections.bending, i);
+        let relaxing = self.of_cells(normal) + side * self.half_height * self.of_nodes(moment);
         self.young_modulus * (self.surface(look, side) + relaxing)
     }
 

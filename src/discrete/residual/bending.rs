@@ -15,7 +15,7 @@ use crate::numerics::Scalar;
 /// ```
 pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let ei = section.bending_stiffness;
+    let ei = &system.sections.bending;
     let last = system.mesh.nodes - 1;
     let published = system.model.published();
     let forces = &mut w.forces;
@@ -45,8 +45,8 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     for (moment, rest) in moment.iter_mut().zip(&now.rest_curvature[0]) {
         *moment -= T::constant(*rest);
     }
-    for moment in moment {
-        *moment = *moment * ei;
+    for (moment, ei) in moment.iter_mut().zip(ei) {
+        *moment = *moment * *ei;
     }
     for node in [0, last] {
         given_moment(system, now, node, w);
@@ -63,7 +63,7 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
             if let Some(rest) = now.rest_curvature[1].get(i) {
                 rate -= T::constant(*rest);
             }
-            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
+            w.forces.viscous_moment[i] = rate * (ei[i] * section.bending_damping_time);
         }
         if system.mesh.fourth {
             fourth_order::moments(&system.mesh, now, &mut w.forces.viscous_moment);
@@ -76,7 +76,7 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     let Some(end) = now.end(node).filter(|end| end.slope.is_none()) else {
         return;
     };
-    let ei = system.model.section.bending_stiffness;
+    let ei = system.sections.bending[node];
     let mut free_curvature = pressure_curvature(system, w, node);
     if let Some(rest) = now.rest_curvature[0].get(node) {
         free_curvature += T::constant(*rest);

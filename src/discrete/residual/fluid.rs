@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge, MeshLink, MeshSource};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
-use crate::model::{Compression, Storage, Wet};
+use crate::model::{AreaLaw, Compression, Storage, Wet};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its area, and the mean of each bladder (A.15, A.16 solved for p):
@@ -19,15 +19,18 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
         return;
     };
-    let law = &wet.area;
     let share = 1.0 / fluid.cells_per_bladder as f64;
     for j in 0..wet.per_row {
+        let law = wet.area_of(j);
         let of_force = law.of_force(w.coupling.mean_force[j]);
         let of_moments = law.of_moments(w.coupling.mean_moment[j]);
         for (bladder, of_moment) in wet.pair(j).into_iter().zip(of_moments) {
             let mut imposed = of_force + of_moment;
             if let Some(excess) = w.coupling.excess_area.get(bladder) {
                 imposed += *excess;
+            }
+            if !wet.has(bladder) {
+                continue;
             }
             let cells = fluid.cells_of(bladder);
             if let Some(compression) = &wet.compression {
@@ -52,11 +55,12 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                 }
                 Storage::Shared(lumped) => {
                     let p = w.fluid.lumped[lumped];
-                    let area = wet.swelling(p, imposed);
+                    let area = wet.swelling(law, p, imposed);
                     w.fluid.area[cells.clone()].fill(area);
                     w.fluid.pressure[cells].fill(p);
                     straining(wet, p, area)
                 }
+                Storage::Absent => T::zero(),
             };
         }
     }
@@ -73,12 +77,13 @@ fn compressed<T: Scalar>(
     w: &mut Workspace<T>,
 ) -> T {
     let own = &mut w.fluid;
+    let law = wet.area_of(wet.place(bladder).0);
     let (p, in_walls, area) = match wet.storage[bladder] {
         Storage::Flowing => {
             let share = 1.0 / cells.len() as f64;
             let mut sum = T::zero();
             for cell in cells {
-                let (p, in_walls, area) = of_content(wet, compression, own.area[cell], imposed);
+                let (p, in_walls, area) = of_content(wet, law, compression, own.area[cell], imposed);
                 own.pressure[cell] = p;
                 own.swelling[cell] = area;
                 own.potential[cell] = compression.potential(p);
@@ -86,13 +91,14 @@ fn compressed<T: Scalar>(
             }
             return sum * share;
         }
-        Storage::Kept => of_content(wet, compression, own.area[cells.start], imposed),
+        Storage::Kept => of_content(wet, law, compression, own.area[cells.start], imposed),
         Storage::Shared(lumped) => {
             let p = own.lumped[lumped];
-            let area = wet.swelling(p, imposed);
+            let area = wet.swelling(law, p, imposed);
             own.area[cells.clone()].fill(compression.content(p, area));
             (p, straining(wet, p, area), area)
         }
+        Storage::Absent => return T::zero(),
     };
     own.pressure[cells.clone()].fill(p);
     own.swelling[cells].fill(area);
@@ -101,8 +107,7 @@ fn compressed<T: Scalar>(
 
 /// Pressure of the fluid, pressure on the walls, and area change of a cell, from its content.
 #[inline]
-fn of_content<T: Scalar>(wet: &Wet, compression: &Compression, content: T, imposed: T) -> (T, T, T) {
-    let law = &wet.area;
+fn of_content<T: Scalar>(wet: &Wet, law: &AreaLaw, compression: &Compression, content: T, imposed: T) -> (T, T, T) {
     match &wet.closing {
         None => {
             let p = compression.pressure(law, content, imposed);
@@ -140,15 +145,12 @@ pub fn pressure_strains<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let effects = &system.model.effects;
     for j in 0..wet.per_row {
         let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
+        let (coupling, strains) = wet.strains_of(j);
         if effects.has(Effect::PressureToStretch) && effects.has(Effect::AxialStretch) {
-            w.coupling.pressure_stretch[j] = wet
-                .coupling
-                .stretch(&wet.strains, w.coupling.mean_force[j], upper, lower);
+            w.coupling.pressure_stretch[j] = coupling.stretch(strains, w.coupling.mean_force[j], upper, lower);
         }
         if effects.has(Effect::PressureToCurvature) {
-            w.coupling.pressure_curvature[j] =
-                wet.coupling
-                    .curvature(&wet.strains, w.coupling.mean_moment[j], upper, lower);
+            w.coupling.pressure_curvature[j] = coupling.curvature(strains, w.coupling.mean_moment[j], upper, lower);
         }
     }
 }
@@ -181,7 +183,7 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let compressed = wet.compression.is_some();
     let driven_by = if compressed { &own.potential } else { &own.pressure };
     for [from, to] in fluid.creeping_faces() {
-        let q = (driven_by[from] - driven_by[to]) * fluid.conductance;
+        let q = (driven_by[from] - driven_by[to]) * fluid.conductance_of(wet, from / fluid.cells_per_bladder);
         own.inflow[from] -= q;
         own.inflow[to] += q;
     }

@@ -165,7 +165,7 @@ pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace
 
 /// Elastic curvature of the node beside an end, from moments before the correction by [`moments`].
 pub fn beside<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
-    w.forces.moment[neighbour(system, node)] * (1.0 / system.model.section.bending_stiffness)
+    w.forces.moment[neighbour(system, node)] * (1.0 / system.sections.bending[node])
 }
 
 /// Index of the node beside an end.
@@ -207,6 +207,8 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
+    } else if !model.sections.is_empty() {
+        "a beam with spans needs a mesh of second order"
     } else if !model.relaxation.is_empty() {
         "a viscoelastic solid needs a mesh of second order"
     } else if model.strain_energy().is_some() {

@@ -227,9 +227,9 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
         let excess = |i: usize| w.shape.kappa[i] - fourth_order::elastic_curvature(system, now, w, i);
         wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     } else {
-        let softness = 1.0 / system.model.section.bending_stiffness;
+        let ei = &system.sections.bending[..added.len()];
         let (kappa, moment) = (&w.shape.kappa[..added.len()], &forces.moment[..added.len()]);
-        let excess = |i: usize| kappa[i] - moment[i] * softness;
+        let excess = |i: usize| kappa[i] - moment[i] * (1.0 / ei[i]);
         wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     }
     w.forces.formulation = added;

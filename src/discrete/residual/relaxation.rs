@@ -41,7 +41,7 @@ pub fn rows<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, r: &mu
 
 /// Relaxing parts of normal forces.
 pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let stiffness = system.model.section.axial_stiffness;
+    let stiffness = &system.sections.axial;
     relaxing(
         system,
         stiffness,
@@ -53,7 +53,7 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// Relaxing parts of shear forces.
 pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let stiffness = system.model.section.shear_stiffness;
+    let stiffness = &system.sections.shear;
     relaxing(
         system,
         stiffness,
@@ -65,7 +65,7 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// Relaxing parts of moments.
 pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let stiffness = system.model.section.bending_stiffness;
+    let stiffness = &system.sections.bending;
     relaxing(
         system,
         stiffness,
@@ -84,11 +84,11 @@ fn beyond<T: Scalar>(strain: &[T], rest: &[f64], place: usize) -> T {
     }
 }
 
-fn relaxing<T: Scalar>(system: &System, stiffness: f64, (strain, rest): (&[T], &[f64]), kept: &[T], out: &mut [T]) {
+fn relaxing<T: Scalar>(system: &System, stiffness: &[f64], (strain, rest): (&[T], &[f64]), kept: &[T], out: &mut [T]) {
     out.fill(T::zero());
     for (branch, kept) in system.model.relaxation.iter().zip(kept.chunks_exact(out.len().max(1))) {
-        for (place, (out, kept)) in out.iter_mut().zip(kept).enumerate() {
-            *out += (beyond(strain, rest, place) - *kept) * (stiffness * branch.modulus_ratio);
+        for (place, ((out, kept), stiffness)) in out.iter_mut().zip(kept).zip(stiffness).enumerate() {
+            *out += (beyond(strain, rest, place) - *kept) * (*stiffness * branch.modulus_ratio);
         }
     }
 }
@@ -126,7 +126,7 @@ fn remembered<T: Scalar>(system: &System, kept: &[T], rest: f64, node: usize) ->
 
 /// Energy stored in the branches [J], and their dissipation [W].
 pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [f64; 2] {
-    let (mesh, section, relaxed) = (&system.mesh, &system.model.section, &w.relaxed);
+    let (mesh, sections, relaxed) = (&system.mesh, &system.sections, &w.relaxed);
     let mut sums = [0.0; 2];
     let mut add = |strain: &[f64], rest: &[f64], [kept, rate]: [&[f64]; 2], stiffness: &dyn Fn(usize) -> f64| {
         let count = strain.len().max(1);
@@ -140,17 +140,17 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
             }
         }
     };
-    let of_curvature = |node| mesh.node_length(node) * section.bending_stiffness;
+    let of_curvature = |node: usize| mesh.node_length(node) * sections.bending[node];
     let curvatures = [&relaxed.curvature[..], &relaxed.curvature_rate];
     add(&w.shape.kappa, &now.rest_curvature[0], curvatures, &of_curvature);
-    let of_stretch = |_| mesh.h * section.axial_stiffness;
+    let of_stretch = |cell: usize| mesh.h * sections.axial[cell];
     add(
         &w.shape.strain,
         &[],
         [&relaxed.stretch, &relaxed.stretch_rate],
         &of_stretch,
     );
-    let of_shear = |_| mesh.h * section.shear_stiffness;
+    let of_shear = |cell: usize| mesh.h * sections.shear[cell];
     add(
         &w.shape.sections.shear,
         &[],
@@ -180,7 +180,7 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
             } else {
                 1.0
             };
-            curvature += relaxing / (system.model.section.bending_stiffness * stretch);
+            curvature += relaxing / (system.sections.bending[node] * stretch);
         }
         y[unknown] = curvature - now.rest_curvature(node);
     }

@@ -165,23 +165,24 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Works
 /// At an end with given moment, M is this moment and determines the curvature.
 pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let section = &system.model.section;
-    let ea = section.axial_stiffness;
+    let ea = &system.sections.axial;
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
     let strains = w.shape.strain.iter();
-    for (force, strain) in w.forces.normal.iter_mut().zip(strains) {
-        *force = *strain * ea;
+    for ((force, strain), ea) in w.forces.normal.iter_mut().zip(strains).zip(ea) {
+        *force = *strain * *ea;
     }
     if pressed {
-        let segments = w.forces.normal.chunks_exact_mut(system.mesh.cells_per_segment);
-        for (forces, stretch) in segments.zip(&w.coupling.pressure_stretch) {
-            let free = *stretch * ea;
+        let k = system.mesh.cells_per_segment;
+        let segments = w.forces.normal.chunks_exact_mut(k).zip(ea.chunks_exact(k));
+        for ((forces, ea), stretch) in segments.zip(&w.coupling.pressure_stretch) {
+            let free = *stretch * ea[0];
             forces.iter_mut().for_each(|force| *force -= free);
         }
     }
     if section.axial_damping_time > 0.0 {
         let viscous = w.forces.viscous_normal.iter_mut();
-        for (force, rate) in viscous.zip(&w.shape.stretch_rate) {
-            *force = *rate * (ea * section.axial_damping_time);
+        for ((force, rate), ea) in viscous.zip(&w.shape.stretch_rate).zip(ea) {
+            *force = *rate * (*ea * section.axial_damping_time);
         }
     }
     if system.mesh.fourth {
@@ -284,15 +285,14 @@ fn turned<T: Scalar>(tangent: &[Planar<T>], [normal, shear]: [&[T]; 2], force: &
 
 /// Adds the rotary inertia of sections in [`section_forces`].
 fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let section = &system.model.section;
-    let inertia = section.mass_per_length * section.gyration_radius_squared;
     let inverse = 1.0 / system.mesh.h;
     let cells = system.mesh.cells;
+    let rotary = &system.sections.rotary[..cells];
     let (a, shape) = (&w.motion.a[..=cells], &w.shape);
     let (tangent, section) = (&shape.tangent[..cells], &mut w.forces.section[..cells]);
     if system.layout.lines[1].v.is_none() {
         for c in 0..cells {
-            section[c].x += (a[c + 1].x - a[c].x) * (inverse * inertia);
+            section[c].x += (a[c + 1].x - a[c].x) * (inverse * rotary[c]);
         }
         return;
     }
@@ -300,7 +300,7 @@ fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let across = |c: usize| tangent[c].cross((a[c + 1] - a[c]) * inverse);
     if system.model.published() {
         for c in 0..cells {
-            section[c] -= tangent[c].normal().times(across(c) * inertia);
+            section[c] -= tangent[c].normal().times(across(c) * rotary[c]);
         }
         return;
     }
@@ -308,7 +308,7 @@ fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     let per_stretch = &shape.per_stretch[..cells];
     for c in 0..cells {
         let turning = (across(c) - stretch_rate[c] * angle_rate[c] * 2.0) * per_stretch[c].squared();
-        section[c] -= tangent[c].normal().times(turning * inertia);
+        section[c] -= tangent[c].normal().times(turning * rotary[c]);
     }
 }
 

@@ -90,28 +90,29 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
 
 /// Shear forces with their viscous and relaxing parts.
 fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let section = &system.model.section;
-    let viscous = section.shear_stiffness * section.bending_damping_time;
+    let time = system.model.section.bending_damping_time;
     let sections = &w.shape.sections;
-    for (force, shear) in w.forces.shear.iter_mut().zip(&sections.shear) {
-        *force = *shear * section.shear_stiffness;
+    let stiffness = &system.sections.shear;
+    for ((force, shear), kga) in w.forces.shear.iter_mut().zip(&sections.shear).zip(stiffness) {
+        *force = *shear * *kga;
     }
     if system.mesh.fourth {
         fourth_order::of_cells(&mut w.forces.shear);
         arcs::forces(system, now, w);
-        if viscous > 0.0 {
-            for (force, rate) in w.forces.viscous_shear.iter_mut().zip(&w.shape.sections.shear_rate) {
-                *force = *rate * viscous;
+        if time > 0.0 {
+            let rates = w.shape.sections.shear_rate.iter().zip(stiffness);
+            for (force, (rate, kga)) in w.forces.viscous_shear.iter_mut().zip(rates) {
+                *force = *rate * (*kga * time);
             }
             fourth_order::of_cells(&mut w.forces.viscous_shear);
             for (force, viscous) in w.forces.shear.iter_mut().zip(&w.forces.viscous_shear) {
                 *force += *viscous;
             }
         }
-    } else if viscous > 0.0 {
-        let sections = &w.shape.sections;
-        for (force, rate) in w.forces.shear.iter_mut().zip(&sections.shear_rate) {
-            *force += *rate * viscous;
+    } else if time > 0.0 {
+        let rates = w.shape.sections.shear_rate.iter().zip(stiffness);
+        for (force, (rate, kga)) in w.forces.shear.iter_mut().zip(rates) {
+            *force += *rate * (*kga * time);
         }
     }
     relaxation::shears(system, w);
@@ -171,20 +172,19 @@ impl<T: Scalar> Sections<T> {
 
 /// Balance of moments of each section.
 pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
-    let section = &system.model.section;
     let resists = system.model.effects.has(Effect::RotaryInertia);
-    let inertia = section.mass_per_length * section.gyration_radius_squared * system.mesh.h;
+    let inertia = |c: usize| system.sections.rotary[c] * system.mesh.h;
     for (c, row) in system.layout.turning.moments().enumerate() {
         r[row] = -w.forces.turning[c];
         if resists {
-            r[row] += w.shape.sections.acceleration[c] * inertia;
+            r[row] += w.shape.sections.acceleration[c] * inertia(c);
         }
     }
     if resists && system.mesh.fourth {
         let first = system.layout.turning.moments().start;
         let last = system.mesh.cells - 1;
         for (c, pair) in w.shape.sections.acceleration.windows(2).enumerate() {
-            let step = (pair[1] - pair[0]) * (inertia * fourth_order::cell_weight(c, last));
+            let step = (pair[1] - pair[0]) * (inertia(c) * fourth_order::cell_weight(c, last));
             r[first + c] -= step;
             r[first + c + 1] += step;
         }

@@ -133,7 +133,6 @@ pub fn foreshorten(
 
 /// Section forces in lab axes.
 pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let section = &system.model.section;
     let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     for c in 0..system.mesh.cells {
@@ -150,8 +149,7 @@ pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             w.forces.section[c].x += turning;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
-            let inertia = section.mass_per_length * section.gyration_radius_squared;
-            w.forces.section[c].x += (w.motion.a[c + 1].x - w.motion.a[c].x) * (inverse * inertia);
+            w.forces.section[c].x += (w.motion.a[c + 1].x - w.motion.a[c].x) * (inverse * system.sections.rotary[c]);
         }
     }
     attached::turning(system, now, w, |couple, c, w| w.forces.section[c].x += couple);

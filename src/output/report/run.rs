@@ -165,7 +165,7 @@ fn answer(summary: &Summary) -> Option<String> {
     let (last, largest) = (settled(found.last?), settled(found.largest()?));
     let at = found.max_abs_at_s.map(|t| format!(", at t = {}", time(t)));
     Some(format!(
-        "At the end the tip stands at u₁ = {}; its largest deflection is {}{}.",
+        "Final tip deflection u₁ = {}; largest {}{}.",
         quantity(last, "m", 3),
         quantity(largest, "m", 3),
         at.unwrap_or_default()

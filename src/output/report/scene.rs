@@ -3,7 +3,8 @@
 use serde_json::{Value, json};
 
 use super::signals::{describe, is_zero, peak};
-use crate::case::schema::{AccumulatorKind, BladderEnd, ChainEnd, Load, Rectifier};
+use crate::case::schema::{AccumulatorKind, BladderEnd, Bladders, ChainEnd, Load, Rectifier};
+use crate::case::spans;
 use crate::case::wiring::{PortQuantity, Wiring, WiringPoint, WiringTube};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
@@ -20,20 +21,32 @@ pub fn to_json(case: &Case) -> Option<Value> {
         return None;
     }
     let end_s = case.time.end_s;
+    let segments = spans::segments(case);
+    let heights: Option<Vec<f64>> =
+        (!segments.is_empty()).then(|| segments.iter().map(|one| one.beam.height_m).collect());
+    let highest = heights.iter().flatten().copied().fold(0.0, f64::max);
+    let height = if heights.is_some() { highest } else { beam.height_m };
+    let in_bladders = |one: &spans::SegmentValues| one.bladders.as_ref().map_or(0.0, |b| b.height_m);
+    let volume = |b: &Bladders| format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3));
+    let of_bladders: Option<Vec<f64>> = heights.as_ref().map(|_| segments.iter().map(in_bladders).collect());
     Some(json!({
         "length": beam.length_m,
-        "height": beam.height_m,
+        "height": height,
+        "heights": heights,
         "width": beam.width_m,
         "size": format!(
             "{} long, {} high, {} wide",
-            q(beam.length_m, "m"), q(beam.height_m, "m"), q(beam.width_m, "m")
+            q(beam.length_m, "m"), q(height, "m"), q(beam.width_m, "m")
         ),
         "bladders": case.bladders.as_ref().zip(ResolvedNetwork::from_case(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
+            "present": (0..2 * b.per_row).map(|bladder| spans::has_bladder(case, bladder)).collect::<Vec<_>>(),
+            "heights": of_bladders,
             "length": b.length_m,
             "height": b.height_m,
             "width": b.width_m,
-            "volume": format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3)),
+            "volume": volume(b),
+            "volumes": heights.as_ref().map(|_| segments.iter().map(|one| one.bladders.as_ref().map(volume)).collect::<Vec<_>>()),
             "network": network.component_of_bladder,
             "outlines": case.section.as_ref().and_then(super::cell::outlines),
         })),

@@ -14,8 +14,8 @@ use crate::discrete::{System, TimeData, start};
 use crate::error::{self, SolverError};
 use crate::functions::signals::Polynomial;
 use crate::functions::{Signal, SmoothTime};
+use crate::model::Model;
 use crate::model::network::Feed;
-use crate::model::{Model, Storage};
 use crate::run::range::Limits;
 use crate::run::record::Control;
 use crate::sundials::Kinsol;
@@ -151,11 +151,12 @@ pub(super) fn growing(case: &Case, mut model: Model, stage: &Stage) -> error::Re
     }
     model.still = true;
     model.relaxation.clear();
-    let section = &mut model.section;
-    (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
+    for section in model.sections.iter_mut().chain([&mut model.section]) {
+        (section.drag, section.axial_damping_time, section.bending_damping_time) = (0.0, 0.0, 0.0);
+    }
     if let Some(wet) = model.wet.as_mut().filter(|wet| wet.flows) {
         (wet.network.still, wet.network.paced) = (true, false);
-        wet.storage.fill(Storage::Flowing);
+        wet.flow_everywhere();
         wet.lumped.clear();
     }
     let system = System::with(case, model)?;

@@ -103,7 +103,7 @@ impl EquilibriumState {
 pub fn within(statics: &mut StaticBeam, x: &[f64], limits: &Limits, factor: f64) -> (Option<String>, MonitoredValues) {
     let (y, share) = (&x[..x.len() - 1], x[x.len() - 1]);
     let (system, now, w) = statics.beam().evaluate(share, y, &vec![0.0; y.len()]);
-    let glance = MonitoredValues::new(system, now, share, limits.half_height, w);
+    let glance = MonitoredValues::new(system, now, share, w);
     let beyond = limits.beyond_at(&glance, &format!("load factor {factor:.4}"));
     (beyond, glance)
 }

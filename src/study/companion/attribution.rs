@@ -266,8 +266,8 @@ fn describe(
         .map(|(name, e)| format!("{name} ± {}", percent(*e)))
         .collect();
     let found = format!(
-        "errors may exceed {} of the largest value: {}.",
-        percent(LIMIT),
+        "estimated errors above {} of the largest value: {}.",
+        percent(NAMED_FROM),
         names.join(", ")
     );
     let of = |name: &str| shares.get(name).map_or(&[][..], Vec::as_slice);

@@ -268,14 +268,14 @@ pub const OF_TEXT: [(&str, &str, &str, &str, &str); 53] = [
         "\"beam\": {\"height_m\": {\"taper\": [0.01, 0.005]}}, \"ends\": {",
         "/beam/height_m",
         "{\"taper\": [0.01, 0.005]}",
-        "expected one number: beam, bladders and fluid are uniform along the beam",
+        "expected one number: values that vary along the beam are in /spans",
     ),
     (
         "\"ends\": {",
         "\"beam\": {\"height_m\": [0.01, 0.005]}, \"ends\": {",
         "/beam/height_m",
         "[0.01, 0.005]",
-        "expected one number: beam, bladders and fluid are uniform along the beam",
+        "expected one number: values that vary along the beam are in /spans",
     ),
     (
         "0.5,",

@@ -230,7 +230,7 @@ fn inputs_stand_beside_outputs() {
     // the end beside the largest, numbers held to their units
     let answer = browser.text("document.querySelector('.answer').textContent");
     assert!(
-        answer.contains("At the end the tip stands at u₁ = −2.07\u{a0}mm; its largest deflection is"),
+        answer.contains("Final tip deflection u₁ = −2.07\u{a0}mm; largest "),
         "{answer}"
     );
     // what is lost is less than nothing, and no sign stands before a sign

@@ -34,7 +34,7 @@ impl CutoutLayout {
         let cells = labels.iter().take_while(|l| **l == labels[0]).count().max(1);
         let bladders = labels.iter().enumerate().step_by(cells).filter_map(|(first, &label)| {
             let label = label.round() as i64;
-            let index = bladder_index(label, wet.per_row)?;
+            let index = bladder_index(label, wet.per_row).filter(|index| wet.has(*index))?;
             let place = wet
                 .network
                 .chains

@@ -45,8 +45,8 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
     });
   };
   const sides = [];
-  for (let k = 0; k < curve.n; k++) sides.push([curve.theta[k], half]);
-  for (let k = curve.n - 1; k >= 0; k--) sides.push([curve.theta[k], -half]);
+  for (let k = 0; k < curve.n; k++) sides.push([curve.theta[k], halfHeight(scene, curve.theta[k])]);
+  for (let k = curve.n - 1; k >= 0; k--) sides.push([curve.theta[k], -halfHeight(scene, curve.theta[k])]);
   outline(sides);
   ctx.closePath();
   ctx.fillStyle = css("--solid");
@@ -55,9 +55,10 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
   ctx.lineWidth = 1;
   ctx.stroke();
   if (layout.bladders.length) {
-    const [w, h] = layout.size;
+    const [w] = layout.size;
     const rim = w * view.scale > 6 ? css("--solid-line") : null;
-    for (const b of layout.bladders) {
+    for (const b of layout.shown) {
+      const h = b.size[1];
       const [l, r] = [b.a - w / 2, b.a + w / 2];
       if (b.outline) outline(b.outline.map(([z, x]) => [b.a + z, b.e + x]));
       else outline([[l, b.e - h / 2], [b.a, b.e - h / 2], [r, b.e - h / 2], [r, b.e + h / 2], [b.a, b.e + h / 2], [l, b.e + h / 2]]);
@@ -103,11 +104,11 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
 
 /** The outline of a shape filled with the present colour, for what is shown behind. */
 function paintShade(ctx, view, curve, scene) {
-  const half = scene.height / 2;
+  const half = (k) => halfHeight(scene, curve.theta[k]);
   const edge = (k, e) => ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
   ctx.beginPath();
-  for (let k = 0; k < curve.n; k++) edge(k, half);
-  for (let k = curve.n - 1; k >= 0; k--) edge(k, -half);
+  for (let k = 0; k < curve.n; k++) edge(k, half(k));
+  for (let k = curve.n - 1; k >= 0; k--) edge(k, -half(k));
   ctx.fill();
 }
 

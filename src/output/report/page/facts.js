@@ -69,7 +69,7 @@ function showWarnings(main) {
   const shown = groups.length > 4 ? 3 : groups.length;
   const rest = groups.slice(shown);
   main.append(el("div", { class: "notice", role: "note", id: "warnings" },
-    el("h2", { text: groups.length === 1 ? "One thing to know before trusting this" : `${groups.length} things to know before trusting this` }),
+    el("h2", { text: groups.length === 1 ? "One warning" : `${groups.length} warnings` }),
     el("ul", {}, groups.slice(0, shown).map(item)),
     rest.length ? el("details", {}, el("summary", { text: `${rest.length} more` }), el("ul", {}, rest.map(item))) : null));
 }
@@ -91,7 +91,7 @@ function showRemarks(main) {
 
 function showEffects() {
   if (!data.effects?.length) return;
-  const body = section("effects", "What was included, what was left out", "Each effect can be simulated or left out; the program decides by a number, unless the case does. On: simulated. Off: left out.");
+  const body = section("effects", "Simulated effects", "Each effect can be simulated or left out; the program decides by a number, unless the case does. On: simulated. Off: left out.");
   const on = data.effects.filter((e) => e.value !== "off").length;
   const rows = data.effects.map((e) => [e.name.replace(/_/g, " "), e.value, e.about, e.reason]);
   body.append(figure(null, `${on} of ${data.effects.length} are on.`, sortable(["effect", "choice", "what it is", "why"], rows, { label: "Effects", dim: (r) => r[1] === "off" })));
@@ -100,7 +100,7 @@ function showEffects() {
 function showWork() {
   const work = data.work;
   if (!work) return;
-  const body = section("work", "How it was computed", null);
+  const body = section("work", "Solver and cost", null);
   work.sentences.forEach((text) => body.append(el("p", { class: "lead", text })));
   const strip = el("div", { class: "shares", role: "img", "aria-label": work.parts.map((p) => `${p.words} ${Math.round(100 * p.share)} %`).join(", ") });
   const list = el("ul", { class: "legend" });

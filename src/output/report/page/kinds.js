@@ -22,7 +22,7 @@ function showScene(describe) {
   if (!scene) return null;
   const half = scene.bladders?.per_row;
   const size = half ? `${half} bladder${half === 1 ? "" : "s"} in each of two rows` : "no bladders";
-  const body = section("scene", "What was simulated", `A beam ${scene.size}, seen from the side, with ${size}.`);
+  const body = section("scene", "Structure", `A beam ${scene.size}, seen from the side, with ${size}.`);
   const host = el("div");
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: half ? "Point at a bladder or a tube, or move among bladders with the arrow keys." : "" });
   const legend = el("ul", { class: "legend" });
@@ -41,7 +41,8 @@ function showScene(describe) {
 function bladderWords(b, layout, scene) {
   const k = layout.colourOf(b.network);
   const where = k >= 0 ? `network ${k + 1}` : "joined to no other bladder";
-  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volume} at rest.`;
+  if (b.absent) return `No bladder ${String(b.label).replace("-", "−")}.`;
+  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volumes ? scene.bladders.volumes[b.index % scene.bladders.per_row] : scene.bladders.volume} at rest.`;
 }
 
 /** Rows of the legend: mark, strong words, words. */
@@ -60,7 +61,7 @@ function sceneWords(scene, layout) {
       const both = ends[0] === ends[1] ? `both ends ${ends[0]}` : `first end ${ends[0]}, last end ${ends[1]}`;
       out.push([line(wireColour(layout.colourOf(layout.bladders[chain.bladders[0]].network))), `Chain ${c + 1}`, `bladders ${list(chain.bladders)}; ${both}${chain.valve ? `; ${chain.valve}` : ""}`]);
     });
-    const single = layout.bladders.filter((b) => layout.colourOf(b.network) < 0).map((b) => b.index);
+    const single = layout.shown.filter((b) => layout.colourOf(b.network) < 0).map((b) => b.index);
     if (single.length) out.push([line(wireColour(-1)), "Single bladders", list(single)]);
     for (const wire of layout.wires.filter((w) => w.free).slice(0, 10)) out.push([line(wireColour(wire.colour)), "Tube", wire.words.replace(/^Tube /, "")]);
     for (const wire of layout.wires.filter((w) => w.turbine).slice(0, 10)) out.push([line(wireColour(-2), "2 5"), "Turbine", wire.words.replace(/^Turbine /, "")]);
@@ -106,7 +107,7 @@ function showRun() {
   };
   const drawn = showScene(describe);
   if (clock) {
-    const body = section("motion", "How it moves", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
+    const body = section("motion", "Motion", "Press play, drag the slider, or use the space bar and the arrow keys (with Shift: ten steps). Everything below follows the same time.");
     const notes = [];
     if (motion.frames < motion.recorded) notes.push(`${count(motion.recorded)} instants were recorded; ${count(motion.frames)} of them are shown.`);
     if (motion.nodes < motion.nodes_recorded) notes.push(`Of ${count(motion.nodes_recorded)} nodes ${count(motion.nodes)} are shown.`);
@@ -139,7 +140,7 @@ function showRun() {
     showHistories(part, history, clock);
   }
   if (data.ledger) {
-    const part = section("energy", "Where the energy went", "The equations conserve energy, so the balance must close.", within);
+    const part = section("energy", "Energy balance", "The equations conserve energy, so the balance must close.", within);
     showLedger(part, data.ledger, history, clock);
   }
   for (const part of data.sections || []) {

@@ -63,9 +63,13 @@ function sceneDrawing(scene, layout, width, chosen) {
   const height = above + thick + below;
   const X = (a) => side + a * scale;
   const Y = (e) => above + thick / 2 - e * scale * thicker;
-  const node = svg("svg", { class: "fig", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Side view of the beam: ${scene.size}. ${layout.bladders.length} bladders.` });
+  const node = svg("svg", { class: "fig", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Side view of the beam: ${scene.size}. ${layout.shown.length} bladders.` });
   const add = (...parts) => node.append(...parts);
-  add(svg("rect", { x: X(0), y: Y(scene.height / 2), width: scene.length * scale, height: thick, rx: 2, style: `fill:${css("--solid")};stroke:${css("--solid-line")}` }));
+  const parts = scene.heights || [scene.height];
+  const step = scene.length / parts.length;
+  const edge = (sign) => parts.flatMap((h, k) => [[k * step, (sign * h) / 2], [(k + 1) * step, (sign * h) / 2]]);
+  const around = [...edge(1), ...edge(-1).reverse()].map(([a, e]) => `${X(a).toFixed(1)} ${Y(e).toFixed(1)}`);
+  add(svg("path", { d: `M${around.join("L")}Z`, "stroke-linejoin": "round", style: `fill:${css("--solid")};stroke:${css("--solid-line")}` }));
   drawEnds(add, scene, X, Y, thick);
   if (layout.bladders.length) drawBladders(add, layout, X, Y, scale, thicker);
   drawWires(add, layout, X, Y, scale);
@@ -76,7 +80,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   node.thicker = thicker;
   node.nearest = (x, y) => {
     let best = [22 ** 2 + (layout.size[0] * scale) ** 2, -1];
-    for (const b of layout.bladders) {
+    for (const b of layout.shown) {
       const d = (X(b.a) - x) ** 2 + (Y(b.e) - y) ** 2;
       if (d < best[0]) best = [d, b.index];
     }
@@ -92,8 +96,9 @@ function sceneDrawing(scene, layout, width, chosen) {
 }
 
 function drawBladders(add, layout, X, Y, scale, thicker) {
-  const [w, h] = [layout.size[0] * scale, layout.size[1] * scale * thicker];
-  for (const b of layout.bladders) {
+  const w = layout.size[0] * scale;
+  for (const b of layout.shown) {
+    const h = b.size[1] * scale * thicker;
     const colour = wireColour(layout.colourOf(b.network));
     const style = `fill:${css("--card")};stroke:${colour};stroke-width:${w > 8 ? 1.5 : 0.6}`;
     if (b.outline) add(svg("path", { d: `M${b.outline.map(([z, x]) => `${X(b.a + z).toFixed(1)} ${Y(b.e + x).toFixed(1)}`).join("L")}Z`, style }));
@@ -103,10 +108,11 @@ function drawBladders(add, layout, X, Y, scale, thicker) {
 
 /** Numbers of bladders, over whatever crosses them. */
 function drawNumbers(add, layout, X, Y, scale, thicker) {
-  const [w, h] = [layout.size[0] * scale, layout.size[1] * scale * thicker];
+  const w = layout.size[0] * scale;
   if (w < 17) return;
   const style = `font-size:${Math.min(11, w / 2.2)}px;paint-order:stroke;stroke:${css("--card")};stroke-width:3.5px;stroke-linejoin:round;pointer-events:none`;
-  for (const b of layout.bladders) {
+  for (const b of layout.shown) {
+    const h = b.size[1] * scale * thicker;
     const y = b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3;
     add(svg("text", { x: X(b.a), y, "text-anchor": "middle", style, text: String(b.label).replace("-", "−") }));
   }

@@ -111,12 +111,12 @@ function showEvents() {
   const events = data.events || [];
   const slopes = Object.entries(data.derivatives || {});
   if (events.length) {
-    const body = section("events", "What happens on the way", null);
+    const body = section("events", "Events", null);
     body.append(figure(null, null, el("ul", {}, events.map((e) => el("li", { text: `At ${significant(100 * e.load_factor, 4)} % of the loads: ${e.what}` })))));
   }
   if (!slopes.length) return;
   const rows = slopes.flatMap(([pointer, s]) => Object.entries(s.derivatives).map(([name, d]) => [pointer, name, d, 0.01 * d * s.value]));
-  section("derivatives", "What one per cent more would change", null).append(tableCard({ headings: ["number of the case", "quantity", "derivative", "change for 1 % more"], rows, about: "Derivatives of the last state." }));
+  section("derivatives", "Sensitivities: change of the figure per 1 %", null).append(tableCard({ headings: ["number of the case", "quantity", "derivative", "change for 1 % more"], rows, about: "Derivatives of the last state." }));
 }
 
 /** Shapes of small motions, moving. */
@@ -133,7 +133,7 @@ function showModes() {
     const [a1, f1, a3, f3, ap, fp] = ["u1_amplitude_m", "u1_phase_rad", "u3_amplitude_m", "u3_phase_rad", "pressure_amplitude_pa", "pressure_phase_rad"].map(get);
     const name = (m, k) => `${k + 1} · ${m.kind}${m.frequency_hz ? ` ${quantity(m.frequency_hz, "Hz", 4)}` : m.time_s ? `, ${quantity(m.time_s, "s")}` : ""}`;
     const first = Math.max(modes.findIndex((m) => m.kind === "oscillation" || m.kind === "flutter"), 0);
-    const body = section("shapes", "How the modes move", "Every small motion is a sum of these. Amplitudes are drawn as large as can be seen; what counts is the shape, and where the pressure is.");
+    const body = section("shapes", "Mode shapes", "Every small motion is a sum of these. Amplitudes are drawn as large as can be seen; what counts is the shape, and where the pressure is.");
     const select = el("select", { "aria-label": "Mode", id: "mode" }, modes.map((m, k) => el("option", { value: k, text: name(m, k), selected: k === first })).filter((_, k) => !["rigid", "volume"].includes(modes[k].kind)));
     const canvas = el("canvas", { role: "img", "aria-label": "The moving shape of the mode" });
     const words = el("p", { class: "caption" });

@@ -1,8 +1,15 @@
 // The wiring in coordinates of the beam: `a` along it [m], `e` across it from its middle [m]. Drawing and animation share it.
 
+/** Half the height of the beam at a place along it [m]. */
+function halfHeight(scene, a) {
+  if (!scene.heights) return scene.height / 2;
+  const n = scene.heights.length;
+  return scene.heights[Math.min(Math.max(Math.floor((a / scene.length) * n), 0), n - 1)] / 2;
+}
+
 /** Positions of bladders, with tubes, ports and turbines as lines between them. */
 function layOut(scene) {
-  const out = { bladders: [], wires: [], marks: [] };
+  const out = { bladders: [], shown: [], wires: [], marks: [] };
   if (!scene.bladders) return out;
   const { per_row: perRow, network } = scene.bladders;
   const segment = scene.length / perRow;
@@ -19,8 +26,11 @@ function layOut(scene) {
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
     const j = b % perRow;
-    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e: row * scene.height * 0.25, ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
+    const e = row * 0.5 * halfHeight(scene, (j + 0.5) * segment);
+    const size = [wide, scene.bladders.heights ? Math.min(scene.bladders.heights[j], 1.84 * Math.abs(e)) : high];
+    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
   }
+  out.shown = out.bladders.filter((b) => !b.absent);
   const sizes = new Map();
   for (const n of network) sizes.set(n, (sizes.get(n) || 0) + 1);
   const joined = [...sizes.keys()].filter((n) => sizes.get(n) > 1).sort((x, y) => x - y);

@@ -1,0 +1,152 @@
+//! Parts of the beam with values of their own.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AreaPerForce, AreaPerMoment};
+use crate::functions::profile::Profile;
+
+/// A part of the beam with values of its own, a whole number of segments long. Values that it does not give are those of `beam` and
+/// `bladders`. Coefficients that it does not give follow its modulus and sizes by the scaling laws of their section.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Span {
+    /// Length [m]; absent in one span: the rest of the beam.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub length_m: Option<f64>,
+    /// Rows that have bladders here. Without bladders the section is full: its factors of mass and stiffness are 1 unless given.
+    #[serde(default, skip_serializing_if = "SpanRows::is_both")]
+    pub rows: SpanRows,
+    /// Values of the solid.
+    #[serde(default, skip_serializing_if = "SpanBeam::is_empty")]
+    pub beam: SpanBeam,
+    /// Values of the bladders.
+    #[serde(default, skip_serializing_if = "SpanBladders::is_empty")]
+    pub bladders: SpanBladders,
+}
+
+/// Rows that have bladders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SpanRows {
+    /// The upper and the lower row.
+    #[default]
+    Both,
+    /// The upper row only.
+    Upper,
+    /// The lower row only.
+    Lower,
+    /// No row.
+    None,
+}
+
+impl SpanRows {
+    /// True for the upper and the lower row.
+    pub fn has(self) -> [bool; 2] {
+        [
+            matches!(self, Self::Both | Self::Upper),
+            matches!(self, Self::Both | Self::Lower),
+        ]
+    }
+
+    fn is_both(&self) -> bool {
+        *self == Self::Both
+    }
+}
+
+/// Values of the solid in a span, as in `beam`. Each is a number, or a function of the place within the span from 0 to 1, which is
+/// evaluated in the middle of each segment.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpanBeam {
+    /// Height of the cross-section [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<Profile>,
+    /// Width of the cross-section [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_m: Option<Profile>,
+    /// Young's modulus [Pa].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub young_modulus_pa: Option<Profile>,
+    /// Density of the solid [kg/m^3].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub density_kg_m3: Option<Profile>,
+    /// `f_e`: axial stiffness over that of the full section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub axial_stiffness_factor: Option<Profile>,
+    /// `f_i`: bending stiffness over that of the full section.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bending_stiffness_factor: Option<Profile>,
+    /// `kGA` [N]; only for beams that shear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shear_stiffness_n: Option<Profile>,
+    /// `f_m`: mass over that of a full section of the solid.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass_factor: Option<Profile>,
+}
+
+impl SpanBeam {
+    /// Given values, with their keys.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
+        given([
+            ("height_m", &self.height_m),
+            ("width_m", &self.width_m),
+            ("young_modulus_pa", &self.young_modulus_pa),
+            ("density_kg_m3", &self.density_kg_m3),
+            ("axial_stiffness_factor", &self.axial_stiffness_factor),
+            ("bending_stiffness_factor", &self.bending_stiffness_factor),
+            ("shear_stiffness_n", &self.shear_stiffness_n),
+            ("mass_factor", &self.mass_factor),
+        ])
+    }
+
+    fn is_empty(&self) -> bool {
+        self.given().next().is_none()
+    }
+}
+
+/// Values of the bladders in a span, as in `bladders`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpanBladders {
+    /// Height of the bladders [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_m: Option<Profile>,
+    /// Width of the bladders, along the beam [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_m: Option<Profile>,
+    /// `a_p`: area per pressure [m^2/Pa].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_pressure_m2_per_pa: Option<Profile>,
+    /// Area per bending moment [m^2/(N m)].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_moment_m2_per_n_m: Option<AreaPerMoment>,
+    /// Area per normal force [m^2/N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_force_m2_per_n: Option<AreaPerForce>,
+}
+
+impl SpanBladders {
+    /// Given values that are functions of the place, with their keys.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
+        given([
+            ("height_m", &self.height_m),
+            ("width_m", &self.width_m),
+            ("area_per_pressure_m2_per_pa", &self.area_per_pressure_m2_per_pa),
+        ])
+    }
+
+    /// True if the span gives no value.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// Given profiles, with their keys.
+fn given<'a, const N: usize>(
+    all: [(&'static str, &'a Option<Profile>); N],
+) -> impl Iterator<Item = (&'static str, &'a Profile)> {
+    all.into_iter()
+        .filter_map(|(key, profile)| Some((key, profile.as_ref()?)))
+}

@@ -1,0 +1,139 @@
+//! Values of beam and bladders along the axis: those of each segment, from the spans of a case.
+
+use serde_json::{Value, json};
+
+use super::scaling::CoefficientSizes;
+use super::schema::{Beam, Bladders, Case, Span, SpanRows};
+
+/// Relative deviation of a span's length from whole segments that counts as rounding.
+const WHOLE: f64 = 1e-6;
+
+/// Beam and bladders of one segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentValues {
+    /// Rows that have a bladder here: upper, lower.
+    pub rows: [bool; 2],
+    /// Values of the solid.
+    pub beam: Beam,
+    /// Values of the bladders; none for a dry beam.
+    pub bladders: Option<Bladders>,
+}
+
+/// Length of a segment [m].
+pub fn segment_length(case: &Case) -> f64 {
+    case.beam.length_m / case.segments() as f64
+}
+
+/// Number of segments of each span; none for a length that is not a whole number of segments, or if nothing is left for a span without
+/// length.
+pub fn counts(case: &Case) -> Vec<Option<usize>> {
+    let pitch = segment_length(case);
+    let whole = |length: f64| {
+        let count = (length / pitch).round();
+        (count >= 1.0 && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
+    };
+    let given: Vec<Option<usize>> = case.spans.iter().map(|span| span.length_m.and_then(whole)).collect();
+    let rest = case.segments().saturating_sub(given.iter().flatten().sum());
+    let rest = Some(rest).filter(|rest| *rest > 0);
+    let counts = case.spans.iter().zip(given);
+    counts
+        .map(|(span, given)| if span.length_m.is_none() { rest } else { given })
+        .collect()
+}
+
+/// Span and place within it, from 0 to 1, of the middle of each segment; empty for a beam without spans.
+pub fn places(case: &Case) -> Vec<(usize, f64)> {
+    let all = counts(case).into_iter().enumerate();
+    let within = |(span, count): (usize, Option<usize>)| {
+        let count = count.unwrap_or(0);
+        (0..count).map(move |k| (span, (k as f64 + 0.5) / count as f64))
+    };
+    all.flat_map(within).take(case.segments()).collect()
+}
+
+/// True if a bladder `0..n`, upper row first, exists.
+pub fn has_bladder(case: &Case, bladder: usize) -> bool {
+    let segments = case.segments();
+    let (segment, row) = (bladder % segments, bladder / segments);
+    let place = places(case).get(segment).copied();
+    place.is_none_or(|(span, _)| case.spans[span].rows.has()[row])
+}
+
+/// Values of each segment; empty for a beam without spans. Coefficients that a span does not give follow modulus and sizes.
+pub fn segments(case: &Case) -> Vec<SegmentValues> {
+    if case.spans.is_empty() {
+        return vec![];
+    }
+    let whole = json!({"beam": case.beam, "bladders": case.bladders, "fluid": case.fluid, "tubes": case.tubes});
+    let places = places(case);
+    places
+        .iter()
+        .map(|&(span, x)| values(case, &whole, &case.spans[span], x))
+        .collect()
+}
+
+/// Case of the uniform beam with the values of one segment.
+pub fn uniform_case(case: &Case, segment: usize) -> Case {
+    let values = segments(case).into_iter().nth(segment);
+    let mut uniform = case.clone();
+    uniform.spans.clear();
+    if let Some(values) = values {
+        (uniform.beam, uniform.bladders) = (values.beam, values.bladders);
+    }
+    uniform
+}
+
+/// Values at a place of a span.
+fn values(case: &Case, whole: &Value, span: &Span, x: f64) -> SegmentValues {
+    let mut here = whole.clone();
+    let mut numbers: Vec<(String, f64)> = vec![];
+    let given = span.beam.given().map(|(key, profile)| ("beam", key, profile));
+    let in_bladders = span.bladders.given().map(|(key, profile)| ("bladders", key, profile));
+    for (part, key, profile) in given.chain(in_bladders) {
+        // an optional number that the case leaves out
+        if let Some(Value::Object(part)) = here.get_mut(part) {
+            part.entry(key).or_insert(Value::Null);
+        }
+        numbers.push((format!("/{part}/{key}"), profile.value(x)));
+    }
+    if let Some(slopes) = &span.bladders.area_per_moment_m2_per_n_m {
+        let key = "/bladders/area_per_moment_m2_per_n_m";
+        numbers.extend([
+            (format!("{key}/opening"), slopes.opening),
+            (format!("{key}/closing"), slopes.closing),
+        ]);
+    }
+    if let Some(slopes) = &span.bladders.area_per_force_m2_per_n {
+        let key = "/bladders/area_per_force_m2_per_n";
+        numbers.extend([
+            (format!("{key}/tension"), slopes.tension),
+            (format!("{key}/compression"), slopes.compression),
+        ]);
+    }
+    let numbers: Vec<(&str, f64)> = numbers.iter().map(|(pointer, x)| (pointer.as_str(), *x)).collect();
+    CoefficientSizes::default().change(&mut here, &numbers);
+    let mut beam: Beam = serde_json::from_value(here["beam"].take()).unwrap_or_else(|_| case.beam.clone());
+    let mut bladders: Option<Bladders> =
+        serde_json::from_value(here["bladders"].take()).unwrap_or_else(|_| case.bladders.clone());
+    let rows = match &bladders {
+        Some(_) => span.rows,
+        None => SpanRows::None,
+    };
+    if rows == SpanRows::None && case.bladders.is_some() {
+        let own = |profile: &Option<_>, full: f64, value: f64| if profile.is_some() { value } else { full };
+        beam.axial_stiffness_factor = own(&span.beam.axial_stiffness_factor, 1.0, beam.axial_stiffness_factor);
+        beam.bending_stiffness_factor = own(&span.beam.bending_stiffness_factor, 1.0, beam.bending_stiffness_factor);
+        beam.mass_factor = beam.mass_factor.filter(|_| span.beam.mass_factor.is_some());
+    }
+    // another size has the permeability of its own rectangle
+    if let Some(bladders) = &mut bladders
+        && (span.bladders.height_m.is_some() || span.bladders.width_m.is_some())
+    {
+        bladders.cross_section = None;
+    }
+    SegmentValues {
+        rows: rows.has(),
+        beam,
+        bladders,
+    }
+}

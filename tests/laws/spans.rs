@@ -1,0 +1,303 @@
+//! Beams with spans, [E83]: against the uniform beam, mirror images, closed forms, balances and differences.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use slcbeam::case::{self, Case};
+use slcbeam::dae::BeamDae;
+use slcbeam::discrete::System;
+use slcbeam::run::dynamics;
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
+use slcbeam::run::modes::{ModeOptions, modes};
+use slcbeam::run::record::{Control, Memory};
+use slcbeam::run::summary::{Status, Summary};
+
+use crate::differences::worst_difference;
+
+fn parse(value: &Value) -> Case {
+    case::parse(&value.to_string(), Path::new("mine.json"), Path::new(""), &[]).unwrap()
+}
+
+fn faults(value: &Value) -> String {
+    match case::parse(&value.to_string(), Path::new("mine.json"), Path::new(""), &[]) {
+        Err(slcbeam::error::Error::Case(fault)) => case::render(&fault, false, 200),
+        other => panic!("{other:?}"),
+    }
+}
+
+fn run(value: &Value) -> (Memory, Summary) {
+    let mut memory = Memory::default();
+    let summary = dynamics::run(&parse(value), &mut memory).unwrap().summary;
+    assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
+    (memory, summary)
+}
+
+/// The published beam of 0.1 m with ten segments: a chain of bladders is pumped up, gravity acts across the beam.
+fn pumped(chain: &[i32], gravity: f64, spans: &Value) -> Value {
+    json!({
+        "name": "pumped", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.3},
+        "bladders": {"coupling": "reciprocal"},
+        "network": {"chains": [{"bladders": chain,
+            "ends": [{"pressure_pa": {"ramp": {"to": 20000, "start_s": 0, "duration_s": 0.05, "shape": "smooth"}}}, "sealed"]}]},
+        "loads": [{"gravity": {"x_m_s2": gravity}}],
+        "ends": {"root": "clamped", "tip": "free"}, "spans": spans,
+        "beam": {"length_m": 0.1, "damping": {"bending_time_s": 2e-3, "axial_time_s": 2e-3}},
+        "effects": "full", "companion": "off",
+        "time": {"end_s": 0.2, "output_interval_s": 0.02}, "solver": {"rtol": 1e-7}
+    })
+}
+
+/// A rigid root block, a taper of one row from the second to the seventh segment, and an uncovered tip.
+fn graded(rows: &str) -> Value {
+    json!([
+        {"length_m": 0.01, "rows": "none", "beam": {"young_modulus_pa": 2e7}},
+        {"length_m": 0.06, "rows": rows, "beam": {"height_m": {"polynomial": {"coefficients": [0.02, -0.003]}}},
+         "bladders": {"height_m": 0.0075}},
+        {"rows": "none", "beam": {"density_kg_m3": 1200, "height_m": 0.016}}
+    ])
+}
+
+/// Column of a recorded run.
+fn column(run: &(Memory, Summary), name: &str) -> Vec<f64> {
+    let at = run.0.columns.iter().position(|column| column.name == name);
+    let at = at.unwrap_or_else(|| panic!("no column {name}"));
+    run.0.rows.iter().map(|row| row[at]).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
+}
+
+/// Goal: several equal spans are the uniform beam to 1e-12.
+#[test]
+fn equal_spans_are_the_uniform_beam() {
+    let chain: Vec<i32> = (1..=10).map(|k| -k).collect();
+    let uniform = run(&pumped(&chain, -9.81, &json!([])));
+    let height = parse(&pumped(&chain, 0.0, &json!([]))).beam.height_m;
+    let spans = json!([{"length_m": 0.03}, {"beam": {"height_m": height}}, {"length_m": 0.05, "rows": "both"}]);
+    let equal = run(&pumped(&chain, -9.81, &spans));
+    for one in &uniform.0.columns {
+        let (a, b) = (column(&uniform, &one.name), column(&equal, &one.name));
+        let apart = a.iter().zip(&b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+        // columns of residuals are rounding errors themselves
+        let size = if one.unit == "J" {
+            largest(&a).max(1e-4)
+        } else {
+            largest(&a)
+        };
+        assert!(apart <= 1e-12 * size, "{}: {apart:.1e} of {size:.1e}", one.name);
+    }
+}
+
+/// Goal: the mirrored structure under mirrored loads moves as the mirror image; energy and volume close.
+#[test]
+fn a_mirrored_structure_moves_as_its_mirror_image() {
+    let chain: Vec<i32> = (2..=7).collect();
+    let below: Vec<i32> = chain.iter().map(|k| -k).collect();
+    let lower = run(&pumped(&below, -9.81, &graded("lower")));
+    let upper = run(&pumped(&chain, 9.81, &graded("upper")));
+    let (a, b) = (column(&lower, "tip_u1_m"), column(&upper, "tip_u1_m"));
+    let apart = a.iter().zip(&b).map(|(x, y)| (x + y).abs()).fold(0.0, f64::max);
+    assert!(largest(&a) > 1e-3 && apart < 1e-10 * largest(&a), "{apart:.1e}");
+    for one in [&lower, &upper] {
+        let relative = one.1.balances.energy_residual_relative;
+        assert!(relative.abs() < 1e-5, "energy {relative:.1e}");
+        assert!(column(one, "min_pressure_pa").iter().all(|p| *p > -20000.0));
+    }
+}
+
+/// Goal: the Jacobian belongs to the residual, with absent bladders, with shear, and in the published form.
+#[test]
+fn unknowns_and_their_jacobian() {
+    let chain: Vec<i32> = (2..=7).collect();
+    let mut case = pumped(&chain, 9.81, &graded("upper"));
+    let unknowns = |case: &Value| System::new(&parse(case)).unwrap().layout.network.area.len();
+    let both = unknowns(&pumped(&chain, 9.81, &json!([])));
+    // the lower row and four bladders of the upper one are gone; sealed bladders have no unknown
+    assert_eq!(unknowns(&case), both);
+    for (key, value) in [
+        ("formulation", json!("conservative")),
+        ("formulation", json!("published")),
+    ] {
+        case[key] = value;
+        for shear in [None, Some(50.0)] {
+            case["beam"]["shear_stiffness_n"] = json!(shear);
+            if case["formulation"] == "published" && shear.is_some() {
+                continue;
+            }
+            let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+            for seed in 1..4 {
+                let worst = worst_difference(&mut dae, seed, 0.1);
+                assert!(worst < 1e-6, "{} {shear:?}: {worst:.1e}", case["formulation"]);
+            }
+        }
+    }
+}
+
+/// A dry beam of unit stiffness and mass per length with these spans.
+fn dry(segments: usize, spans: &Value) -> Value {
+    json!({
+        "name": "dry", "ends": {"root": "clamped", "tip": {"free": {"force_x_n": 1e-3}}},
+        "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4,
+                 "axial_stiffness_factor": 1000},
+        "spans": spans, "mesh": {"segments": segments, "cells_per_segment": 1}, "time": {"end_s": 1.0}
+    })
+}
+
+/// Static deflection of the tip.
+fn deflection(case: &Value) -> f64 {
+    let case = parse(case);
+    let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
+    let at = columns(&system(&case, 1.0).unwrap())
+        .iter()
+        .position(|c| c.name == "tip_u1");
+    path.last().row[at.unwrap()]
+}
+
+/// Observed order of an error between a mesh and one of twice the cells.
+fn order(errors: [f64; 2]) -> f64 {
+    (errors[0] / errors[1]).abs().log2()
+}
+
+/// Goal: `δ = F/3 [a³/EI_2 + (l³ - a³)/EI_1]` of a stepped cantilever, a from the tip, with order two in spite of the jump.
+#[test]
+fn a_stepped_cantilever_bends_as_its_closed_form() {
+    let spans = json!([{"length_m": 0.5}, {"beam": {"young_modulus_pa": 3e8}}]);
+    let exact = 1e-3 / 3.0 * (0.125 / 0.25 + 0.875);
+    let errors = [20, 40].map(|cells| deflection(&dry(cells, &spans)) / exact - 1.0);
+    assert!(errors[1].abs() < 1e-3 && order(errors) > 1.9, "{errors:?}");
+}
+
+/// Goal: `δ = ∫ F s²/EI ds` of a cantilever whose height falls linearly to half, `EI ~ h³`, with order two in segments.
+#[test]
+fn a_tapered_cantilever_bends_as_its_closed_form() {
+    let spans = json!([{"beam": {"height_m": {"polynomial": {"coefficients": [0.01, -0.005]}}}}]);
+    // ∫_0^1 (1-x)²/(1 - x/2)³ dx = 8 ln 2 - 5
+    let exact = 1e-3 * (8.0 * 2f64.ln() - 5.0);
+    let errors = [20, 40].map(|cells| deflection(&dry(cells, &spans)) / exact - 1.0);
+    assert!(errors[1].abs() < 1e-3 && order(errors) > 1.9, "{errors:?}");
+}
+
+/// `cosh, sinh, cos, sin` of a uniform part: deflection, slope, moment and shear at its end, from those at its beginning.
+fn transfer(k: f64, ei: f64, l: f64) -> [[f64; 4]; 4] {
+    let (ch, sh, c, s) = ((k * l).cosh(), (k * l).sinh(), (k * l).cos(), (k * l).sin());
+    let f = [
+        0.5 * (ch + c),
+        0.5 * (sh + s) / k,
+        0.5 * (ch - c) / (k * k),
+        0.5 * (sh - s) / k.powi(3),
+    ];
+    let k4 = k.powi(4);
+    [
+        [f[0], f[1], f[2] / ei, f[3] / ei],
+        [k4 * f[3], f[0], f[1] / ei, f[2] / ei],
+        [k4 * ei * f[2], k4 * ei * f[3], f[0], f[1]],
+        [k4 * ei * f[1], k4 * ei * f[2], k4 * f[3], f[0]],
+    ]
+}
+
+/// Goal: the first two frequencies of a cantilever of two materials are the zeros of its frequency equation, with order two.
+#[test]
+fn a_stepped_beam_vibrates_with_the_frequencies_of_its_equation() {
+    let ei = [1.0, 0.25];
+    // moment and shear at the free tip, for unit moment and shear at the clamped root
+    let determinant = |omega: f64| {
+        let k = ei.map(|ei: f64| (omega * omega / ei).powf(0.25));
+        let (a, b) = (transfer(k[0], ei[0], 0.5), transfer(k[1], ei[1], 0.5));
+        let product = |i: usize, j: usize| (0..4).map(|n| b[i][n] * a[n][j]).sum::<f64>();
+        product(2, 2) * product(3, 3) - product(2, 3) * product(3, 2)
+    };
+    let mut exact = vec![];
+    let mut omega = 0.5;
+    while exact.len() < 2 {
+        let next = omega + 0.05;
+        if determinant(omega) * determinant(next) < 0.0 {
+            let (mut low, mut high) = (omega, next);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                match determinant(low) * determinant(middle) < 0.0 {
+                    true => high = middle,
+                    false => low = middle,
+                }
+            }
+            exact.push(low / (2.0 * PI));
+        }
+        omega = next;
+    }
+    let spans = json!([{"length_m": 0.5}, {"beam": {"young_modulus_pa": 3e8}}]);
+    let plan = ModeOptions {
+        count: 4,
+        near_hz: 0.5,
+        limits: false,
+    };
+    let mut errors = vec![];
+    for cells in [20, 40] {
+        let mut case = dry(cells, &spans);
+        case["ends"]["tip"] = json!("free");
+        let found = modes(&parse(&case), &plan).unwrap();
+        let mut frequencies: Vec<f64> = found.modes.iter().filter_map(|mode| mode.frequency_hz()).collect();
+        frequencies.sort_by(f64::total_cmp);
+        errors.push([0, 1].map(|k| frequencies[k] / exact[k] - 1.0));
+    }
+    for k in [0, 1] {
+        let both = [errors[0][k], errors[1][k]];
+        assert!(both[1].abs() < 5e-3 && order(both) > 1.8, "mode {k}: {both:?}");
+    }
+}
+
+/// Goal: numbers of a span have derivatives, and weight acts where the mass is.
+#[test]
+fn weight_acts_where_the_mass_is() {
+    let heavy = json!([{"length_m": 0.5, "beam": {"density_kg_m3": 1}}, {"beam": {"density_kg_m3": 2e4}}]);
+    let mut case = dry(40, &heavy);
+    case["ends"]["tip"] = json!("free");
+    case["loads"] = json!([{"gravity": {"x_m_s2": 1e-3}}]);
+    // a uniform load q on the outer half: q l⁴/EI (1/8 - 7/384)
+    let exact = 2e-3 * (1.0 / 8.0 - 7.0 / 384.0);
+    let error = deflection(&case) / exact - 1.0;
+    assert!(error.abs() < 2e-3, "{error:.1e}");
+}
+
+/// Goal: each mistake is one fault with place, limit and remedy.
+#[test]
+fn mistakes_are_explained() {
+    let chain: Vec<i32> = (1..=10).collect();
+    let case = |spans: Value| faults(&pumped(&chain, 0.0, &spans));
+    for (spans, parts) in [
+        (
+            json!([{"length_m": 0.015}, {}]),
+            ["/spans/0/length_m", "multiples of 0.01 m; nearest 0.02"],
+        ),
+        (
+            json!([{"length_m": 0.05}]),
+            ["the spans have 5 segments, the beam has 10", "omit length_m"],
+        ),
+        (json!([{}, {}]), ["2 spans without length", "rest of the beam"]),
+        (
+            json!([{"length_m": 0.02, "rows": "lower"}, {}]),
+            ["there is no bladder 1: span 1 has none", "/spans/0/rows"],
+        ),
+        (
+            json!([{"beam": {"height_m": {"polynomial": {"coefficients": [0.02, -0.03]}}}}]),
+            ["/spans/0/beam/height_m", "numbers above 0"],
+        ),
+        (
+            json!([{"beam": {"height_m": 0.012}}]),
+            ["the height of the bladders", "height of the beam"],
+        ),
+        (json!([{"rows": "none"}]), ["no span has bladders", "dry beam"]),
+    ] {
+        let text = case(spans.clone());
+        for part in parts {
+            assert!(text.contains(part), "{spans}: {part}\n{text}");
+        }
+    }
+    let mut fourth = dry(10, &json!([{"length_m": 0.5}, {}]));
+    fourth["mesh"]["order"] = json!(4);
+    let refused = System::new(&parse(&fourth)).unwrap_err().to_string();
+    assert!(
+        refused.contains("a beam with spans needs a mesh of second order"),
+        "{refused}"
+    );
+}
