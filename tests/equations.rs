@@ -257,6 +257,11 @@ const INDEX: [(&str, &str, &str); 82] = [
         "tests/laws/spans.rs",
         "a_stepped_cantilever_bends_as_its_closed_form",
     ),
+    (
+        "[E84]",
+        "tests/laws/foundation.rs",
+        "a_beam_on_a_foundation_bends_as_its_closed_form",
+    ),
 ];
 
 #[test]

@@ -12,7 +12,7 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe the physical model, not the computation.
-const PARTS: [&str; 12] = [
+const PARTS: [&str; 13] = [
     "beam",
     "fluid",
     "bladders",
@@ -21,6 +21,7 @@ const PARTS: [&str; 12] = [
     "network",
     "loads",
     "attachments",
+    "foundation",
     "contacts",
     "surroundings",
     "ends",

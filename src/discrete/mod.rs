@@ -69,6 +69,8 @@ pub struct System {
     pub bodies: Vec<MeshedBody>,
     /// Contact points of the beam, ordered by place.
     pub touching: Vec<ContactPoint>,
+    /// Stiffness of the foundation at the nodes, across and along [N/m]; empty without a foundation.
+    pub foundation: Vec<[f64; 2]>,
     /// Recorded places.
     pub probes: Vec<MeshProbe>,
     /// Masses of the nodes [kg].
@@ -77,6 +79,8 @@ pub struct System {
     pub lengths: Vec<f64>,
     /// True if only loads, ends and sections act on nodes: the beam has no surroundings, attachments or contacts.
     pub stands_alone: bool,
+    /// True if a distributed load turns with the beam.
+    pub followed: bool,
     /// True if any load is a distributed moment.
     pub has_moments: bool,
     /// True if there is material damping.
@@ -280,13 +284,18 @@ impl System {
         let has_moments = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
+        let followed = loads
+            .iter()
+            .any(|l| matches!(l.kind, LoadKind::Normal | LoadKind::Tangential));
         let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
         mesh.lump(&mut lengths);
         let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
         let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = ContactPoint::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
-        let nothing_attached = attached.is_empty() && bodies.is_empty() && touching.is_empty();
+        let foundation = time_data::foundation(&model, &mesh);
+        let nothing_attached =
+            !followed && foundation.is_empty() && attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {
             stands_alone: nothing_attached && !model.section.resists_motion() && model.surroundings.is_none(),
             model,
@@ -299,8 +308,10 @@ impl System {
             attached,
             bodies,
             touching,
+            foundation,
             masses,
             lengths,
+            followed,
             has_moments,
             damped,
         }

@@ -38,7 +38,9 @@ impl SampledLoad {
     /// Discretizes a load on a mesh.
     pub fn new(load: &DistributedLoad, model: &Model, sections: &MeshSections, mesh: &super::BeamMesh) -> Self {
         let mut shape = match load.kind {
-            LoadKind::ForceX | LoadKind::ForceZ => forces_at_nodes(&load.profile, mesh),
+            LoadKind::ForceX | LoadKind::ForceZ | LoadKind::Normal | LoadKind::Tangential => {
+                forces_at_nodes(&load.profile, mesh)
+            }
             LoadKind::RestCurvature => shapes::at_nodes(&load.profile, mesh.cells),
             LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
         };
@@ -60,6 +62,25 @@ impl SampledLoad {
             shape,
         }
     }
+}
+
+/// `[E84]` Stiffness of an elastic foundation at the nodes [N/m], with the weights of [E46] and [E78]; empty without a foundation:
+///
+/// ```text
+/// k_i = ∫ k hat_i dθ        f_i = -k_i u_i        E gains Σ k_i u_i²/2
+/// ```
+pub fn foundation(model: &Model, mesh: &super::BeamMesh) -> Vec<[f64; 2]> {
+    if model.foundation.iter().all(Option::is_none) {
+        return vec![];
+    }
+    let mut stiffness = vec![[0.0; 2]; mesh.nodes];
+    for (axis, profile) in model.foundation.iter().enumerate() {
+        let Some(profile) = profile else { continue };
+        for (node, value) in forces_at_nodes(profile, mesh).into_iter().enumerate() {
+            stiffness[node][axis] = value * mesh.node_length(node);
+        }
+    }
+    stiffness
 }
 
 /// Force per length `b_i` of each node.
@@ -168,6 +189,8 @@ pub struct TimeData {
     pub force: Vec<Planar<f64>>,
     /// First moment per length in each cell [N].
     pub moment: Vec<Planar<f64>>,
+    /// Force per length of each node along its normal (x) and its tangent (z) [N/m]; empty without such loads.
+    pub follower: Vec<Planar<f64>>,
     /// Rest curvature of the beam at each node [1/m], and its rate [1/(m s)]; empty if it is straight.
     pub rest_curvature: [Vec<f64>; 2],
     /// Forces at attachments, in the order of the model.
@@ -211,6 +234,7 @@ impl TimeData {
             ends: [EndData::default(); 2],
             force: vec![Planar::default(); system.mesh.nodes],
             moment: vec![Planar::default(); system.mesh.cells],
+            follower: vec![Planar::default(); if system.followed { system.mesh.nodes } else { 0 }],
             rest_curvature: [(); 2].map(|()| vec![0.0; if curved { system.mesh.nodes } else { 0 }]),
             point_force: vec![PointForces::default(); system.model.attachments.len()],
             stream: Planar::default(),
@@ -326,6 +350,7 @@ impl TimeData {
         }
         self.force.fill(Planar::default());
         self.moment.fill(Planar::default());
+        self.follower.fill(Planar::default());
         self.rest_curvature.iter_mut().for_each(|values| values.fill(0.0));
         for load in &system.loads {
             let jet = load.signal.jet(clock);
@@ -333,6 +358,8 @@ impl TimeData {
             let (array, axis) = match load.kind {
                 LoadKind::ForceX => (&mut self.force, 0),
                 LoadKind::ForceZ => (&mut self.force, 1),
+                LoadKind::Normal => (&mut self.follower, 0),
+                LoadKind::Tangential => (&mut self.follower, 1),
                 LoadKind::MomentX => (&mut self.moment, 0),
                 LoadKind::MomentZ => (&mut self.moment, 1),
                 LoadKind::RestCurvature => {

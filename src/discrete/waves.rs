@@ -72,7 +72,7 @@ pub fn least_damping_ratio(system: &System) -> f64 {
 }
 
 fn of_solid(system: &System) -> f64 {
-    if !system.attached.is_empty() || !system.touching.is_empty() {
+    if !system.attached.is_empty() || !system.touching.is_empty() || !system.foundation.is_empty() {
         return 0.0;
     }
     let s = &system.model.section;

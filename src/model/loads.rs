@@ -12,6 +12,10 @@ pub enum LoadKind {
     ForceX,
     /// Force per length in z [N/m].
     ForceZ,
+    /// Force per length along the normal, which turns with the beam [N/m].
+    Normal,
+    /// Force per length along the tangent [N/m].
+    Tangential,
     /// First moment per length `m b1_x` [N].
     MomentX,
     /// First moment per length `m b1_z` [N].
@@ -68,6 +72,8 @@ impl DistributedLoad {
         match written {
             Written::ForceXNM(d) => one(LoadKind::ForceX, d),
             Written::ForceZNM(d) => one(LoadKind::ForceZ, d),
+            Written::ForceNormalNM(d) => one(LoadKind::Normal, d),
+            Written::ForceTangentialNM(d) => one(LoadKind::Tangential, d),
             Written::MomentXN(d) => one(LoadKind::MomentX, d),
             Written::MomentZN(d) => one(LoadKind::MomentZ, d),
             Written::BodyXMS2(d) => given(LoadKind::ForceX, mass, LoadMeasure::Mass(1.0), d),

@@ -35,6 +35,7 @@ use crate::case::schema::Effect;
 use crate::case::schema::{Bladders, Branch, Case, Effects, Formulation, Viscoelasticity};
 use crate::case::spans::{self, SegmentValues};
 use crate::error::Result;
+use crate::functions::Profile;
 use crate::numerics::Scalar;
 
 pub use attachments::AttachedBody;
@@ -316,6 +317,8 @@ pub struct Model {
     pub loads: Vec<DistributedLoad>,
     /// Point masses, springs, dashpots and forces.
     pub attachments: Vec<AttachedBody>,
+    /// Stiffness of the foundation across and along [N/m^2].
+    pub foundation: [Option<Profile>; 2],
     /// Walls for contact.
     pub contacts: Vec<ContactWall>,
     /// Branches of a relaxing solid.
@@ -434,6 +437,10 @@ impl Model {
             ends,
             loads,
             attachments: AttachedBody::all(case),
+            foundation: case
+                .foundation
+                .as_ref()
+                .map_or([None, None], |one| one.stiffness().map(|(_, profile)| profile.cloned())),
             contacts: ContactWall::all(case),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)

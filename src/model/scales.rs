@@ -87,8 +87,8 @@ impl DriveScales {
             let dist = |l: &Distributed| bends(&l.signal) * l.profile.size();
             let along = |l: &Distributed| size(&l.signal) * l.profile.size();
             match load {
-                Load::ForceXNM(l) => d.transverse_load += dist(l),
-                Load::ForceZNM(l) => d.axial_load += along(l),
+                Load::ForceXNM(l) | Load::ForceNormalNM(l) => d.transverse_load += dist(l),
+                Load::ForceZNM(l) | Load::ForceTangentialNM(l) => d.axial_load += along(l),
                 Load::MomentXN(l) | Load::MomentZN(l) => d.moment += dist(l) * length,
                 Load::BodyXMS2(l) => d.transverse_load += m * dist(l),
                 Load::BodyZMS2(l) => d.axial_load += m * along(l),
@@ -98,7 +98,10 @@ impl DriveScales {
                     d.axial_load += m * z_m_s2.abs();
                 }
             }
-            if let Load::ForceXNM(l) | Load::ForceZNM(l) | Load::MomentZN(l) | Load::RestCurvature(l) = load {
+            if let Some((_, l)) = load
+                .distributed()
+                .filter(|_| !load.is_body() && !matches!(load, Load::MomentXN(_)))
+            {
                 d.hear(&l.signal, end);
             }
         }

@@ -14,8 +14,12 @@ impl Model {
         let driven = |of: &Translation| matches!(of, Translation::Displacement(_));
         let ends = &self.ends;
         let springs = &self.attachments;
-        let along = ends.iter().any(|end| driven(&end.axial)) || springs.iter().any(|one| one.stiffness.z > 0.0);
-        let across = ends.iter().any(|end| driven(&end.transverse)) || springs.iter().any(|one| one.stiffness.x > 0.0);
+        let [bed_across, bed_along] = [0, 1].map(|axis| self.foundation[axis].is_some());
+        let along =
+            ends.iter().any(|end| driven(&end.axial)) || springs.iter().any(|one| one.stiffness.z > 0.0) || bed_along;
+        let across = ends.iter().any(|end| driven(&end.transverse))
+            || springs.iter().any(|one| one.stiffness.x > 0.0)
+            || bed_across;
         let moves_across = self.effects.has(Effect::TransverseMotion);
         let all = [("along", !along), ("across", !across && moves_across)];
         all.into_iter()

@@ -66,7 +66,7 @@ impl WallTimes {
         [
             ("start-up", self.start_up),
             ("set-up", self.set_up),
-            ("runs to choose by", self.pilots),
+            ("earlier runs", self.pilots),
             ("consistent start", self.consistent_start),
             ("equations", self.residual),
             ("Jacobians", self.jacobian),

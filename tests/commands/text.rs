@@ -138,7 +138,7 @@ fn a_finished_run_in_a_glance() {
     │ pressure    largest in a bladder: 9.0 ± 0.3 kPa                          │
     │ errors      ± by a companion run: 2 cells a segment, 4 a bladder, rtol   │
     │             1·10⁻⁴ · 6.20 s                                              │
-    │ balances    open by (relative): energy 3.0·10⁻⁸                          │
+    │ balances    relative residuals: energy 3.0·10⁻⁸                          │
     │ integrator  12 345 steps, mostly of order 4 · 0 rejected · 371 unknowns  │
     │ time        500 ms simulated in 12.3 s · 24.6 s for a simulated second   │
     │ spent on    residual 33 % · Jacobian 24 % · linear solver 33 % ·         │
@@ -172,7 +172,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
     │             largest: u₁ 123 µm · u₃ 1.25 mm              │
     │ pressure    largest in a bladder: 9.01 kPa               │
-    │ balances    open by (relative): energy 3.0·10⁻⁸ ·        │
+    │ balances    relative residuals: energy 3.0·10⁻⁸ ·        │
     │             volume –                                     │
     │ integrator  12 345 steps, mostly of order 4 ·            │
     │             0 rejected · 371 unknowns                    │

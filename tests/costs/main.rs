@@ -45,7 +45,7 @@ fn wall(folder: &Path) -> Vec<(String, f64)> {
 }
 
 /// Goal: parts add up to the total, none is below zero, and the total is no more than what a clock outside tells; with and without
-/// runs to choose by, checkpoints and what goes on from them.
+/// earlier runs, checkpoints and what goes on from them.
 #[test]
 fn parts_of_the_wall_time_add_up_to_all_of_it() {
     let short = ["--set", "/time/end_s=0.001"];

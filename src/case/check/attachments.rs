@@ -10,6 +10,9 @@ const FAR: f64 = 10.0;
 /// Largest rotary inertia of an attachment, in beam masses at the distance `FAR`.
 const HEAVY: f64 = 100.0;
 
+/// Places at which a stiffness is checked.
+const SAMPLES: u32 = 1000;
+
 const LENGTH: &str = "/beam/length_m";
 /// Pointers of the values that determine the mass of the beam.
 const MASS: [&str; 5] = [
@@ -20,7 +23,29 @@ const MASS: [&str; 5] = [
     "/beam/mass_factor",
 ];
 
+/// Checks that a foundation has a stiffness, nowhere below 0.
+fn foundation(case: &Case, faults: &mut Violations) {
+    let Some(foundation) = &case.foundation else { return };
+    let given = foundation.stiffness();
+    for (key, profile) in given.into_iter().filter_map(|(key, profile)| Some((key, profile?))) {
+        let least = (0..=SAMPLES)
+            .map(|k| profile.value(f64::from(k) / f64::from(SAMPLES)))
+            .fold(f64::INFINITY, f64::min);
+        if least < 0.0 {
+            let what = format!("the stiffness of the foundation falls to {} N/m^2", digits(least));
+            let fault = Violation::new(Code::Range, format!("/foundation/{key}"), what);
+            faults.push(fault.allowed("0 or more along the whole beam"));
+        }
+    }
+    if given.iter().all(|(_, profile)| profile.is_none()) {
+        let fault = Violation::new(Code::Missing, "/foundation", "a foundation without stiffness");
+        let fault = fault.allowed("stiffness_x_n_m2 (across), stiffness_z_n_m2 (along)");
+        faults.push(fault.hint("give one of them, or remove the foundation"));
+    }
+}
+
 pub(super) fn check(case: &Case, faults: &mut Violations) {
+    foundation(case, faults);
     let beam = &case.beam;
     let far = FAR * beam.length_m;
     let volume = beam.height_m * beam.width_m * beam.length_m;

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{given, is_zero};
+use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
 
 /// Something attached to the beam at one place: a mass with rotary inertia, at its place or beside it, springs and dashpots to ground, forces; one of them at least. Springs are
@@ -60,6 +61,28 @@ pub struct Attachment {
     /// Force along the normal `e_n = (-cos phi, sin phi)`, which turns with the beam; above 0 it pushes a straight beam towards -x [N].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub force_normal_n: Option<Signal>,
+}
+
+/// Elastic foundation (Winkler): springs to ground along the beam, at rest in the straight beam. One stiffness at least.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Foundation {
+    /// Stiffness across, force per length `-k u1`, a number or a function of `theta/l_s` [N/m^2].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_x_n_m2: Option<Profile>,
+    /// Stiffness along, force per length `-k u3`, a number or a function of `theta/l_s` [N/m^2].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness_z_n_m2: Option<Profile>,
+}
+
+impl Foundation {
+    /// Stiffness across and along, with their keys.
+    pub fn stiffness(&self) -> [(&'static str, Option<&Profile>); 2] {
+        [
+            ("stiffness_x_n_m2", self.stiffness_x_n_m2.as_ref()),
+            ("stiffness_z_n_m2", self.stiffness_z_n_m2.as_ref()),
+        ]
+    }
 }
 
 impl Attachment {

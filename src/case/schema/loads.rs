@@ -14,6 +14,11 @@ pub enum Load {
     ForceXNM(Distributed),
     /// Contact force per length in z (axial) [N/m].
     ForceZNM(Distributed),
+    /// Force per length along the normal `e_n = (-cos phi, sin phi)`, which turns with the beam; above 0 it pushes a straight beam towards
+    /// -x [N/m].
+    ForceNormalNM(Distributed),
+    /// Force per length along the tangent `e_t = (sin phi, cos phi)`, which turns with the beam [N/m].
+    ForceTangentialNM(Distributed),
     /// First moment per length, x component `m b1_x` [N]: acts as a couple `m b1_x x'/lambda^2`.
     MomentXN(Distributed),
     /// First moment per length, z component `m b1_z` [N]; positive turns in the sense of M.
@@ -42,6 +47,11 @@ impl Load {
         matches!(self, Self::BodyXMS2(_) | Self::BodyZMS2(_) | Self::Gravity { .. })
     }
 
+    /// True if the load turns with the beam.
+    pub fn follows(&self) -> bool {
+        matches!(self, Self::ForceNormalNM(_) | Self::ForceTangentialNM(_))
+    }
+
     /// True if the load is a rest curvature, which bends the beam without a moment.
     pub fn is_rest(&self) -> bool {
         matches!(self, Self::RestCurvature(_))
@@ -52,6 +62,8 @@ impl Load {
         match self {
             Self::ForceXNM(load) => Some(("force_x_n_m", load)),
             Self::ForceZNM(load) => Some(("force_z_n_m", load)),
+            Self::ForceNormalNM(load) => Some(("force_normal_n_m", load)),
+            Self::ForceTangentialNM(load) => Some(("force_tangential_n_m", load)),
             Self::MomentXN(load) => Some(("moment_x_n", load)),
             Self::MomentZN(load) => Some(("moment_z_n", load)),
             Self::BodyXMS2(load) => Some(("body_x_m_s2", load)),

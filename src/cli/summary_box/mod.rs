@@ -302,7 +302,7 @@ fn balances(summary: &Summary) -> String {
     // Exactly zero if a balance does not apply; energy always does.
     let shown = parts.into_iter().filter(|(what, x)| *what == "energy" || *x != 0.0);
     let shown: Vec<_> = shown.map(|(what, x)| open(what, x)).collect();
-    format!("open by (relative): {}", shown.join(BETWEEN))
+    format!("relative residuals: {}", shown.join(BETWEEN))
 }
 
 fn integrator(summary: &Summary) -> String {
@@ -341,7 +341,7 @@ fn spent(summary: &Summary) -> Option<String> {
     }
     let shares = [
         ("set-up", w.start_up + w.set_up + w.consistent_start),
-        ("runs to choose by", w.pilots),
+        ("earlier runs", w.pilots),
         ("residual", w.residual),
         ("Jacobian", w.jacobian),
         ("linear solver", w.linear_solver),

@@ -250,6 +250,10 @@ pub fn energies(system: &System, now: &TimeData, w: CompleteState) -> StoredEner
         .iter()
         .map(|attached| attached.energy(system, now, &w))
         .sum();
+    let in_bed = system.foundation.iter().zip(&w.motion.u);
+    e.springs += in_bed
+        .map(|([x, z], u)| 0.5 * (x * u.x * u.x + z * u.z * u.z))
+        .sum::<f64>();
     e.relaxing = residual::relaxation::energy_and_loss(system, now, &w)[0];
     e.section = residual::nonlinear::energy(system, &w);
     e.around = (0..system.mesh.nodes)

@@ -87,7 +87,7 @@ fn wet(system: &System) -> bool {
 }
 
 fn attached(system: &System) -> bool {
-    !system.attached.is_empty()
+    !system.attached.is_empty() || !system.foundation.is_empty()
 }
 
 fn inert(system: &System) -> bool {

@@ -6,6 +6,7 @@ use super::solid::node_stretch;
 use crate::case::schema::Effect;
 use crate::discrete::{BeamMesh, System, TimeData, Workspace};
 use crate::error::{Code, Violation};
+use crate::model::loads::LoadKind;
 use crate::model::{Kinematics, Model};
 use crate::numerics::Scalar;
 
@@ -213,6 +214,12 @@ pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
         "a viscoelastic solid needs a mesh of second order"
     } else if model.strain_energy().is_some() {
         "a section at finite strain needs a mesh of second order"
+    } else if model
+        .loads
+        .iter()
+        .any(|load| matches!(load.kind, LoadKind::Normal | LoadKind::Tangential))
+    {
+        "loads that turn with the beam need a mesh of second order"
     } else if !model.attachments.is_empty() || !model.contacts.is_empty() {
         "a mesh of fourth order does not resolve the point forces of attachments and walls"
     } else {

@@ -109,6 +109,19 @@ pub fn outer_forces<T: Scalar>(
         return;
     }
     ambient_fluid::forces(system, now, w, node, system.lengths[node], &mut each);
+    if let Some(size) = now.follower.get(node) {
+        let force = follower(
+            system,
+            [size.z * length, size.x * length],
+            || ambient_fluid::node_tangent(system, w, node),
+            || node_angle(w, node),
+        );
+        each(Some(EnergyRate::Loads), force);
+    }
+    if let Some(&[across, along]) = system.foundation.get(node) {
+        let u = w.motion.u[node];
+        each(None, Planar::new(u.x * -across, u.z * -along));
+    }
     for (attached, weight) in at_node(&system.attached, node) {
         let given = attached.given(system, now, w);
         each(Some(EnergyRate::Loads), given * weight);
@@ -172,6 +185,14 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>,
     let cell = if at_tip { last - 1 } else { 0 };
     let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.h;
     tangent_beyond(w, cell, node, half)
+}
+
+/// Angle of a node for small rotations: mean of its cells.
+#[inline]
+fn node_angle<T: Scalar>(w: &Workspace<T>, node: usize) -> T {
+    let cells = [node.saturating_sub(1), node.min(w.shape.d3.len() - 1)];
+    let [a, b] = cells.map(|cell| w.shape.d3[cell].x);
+    (a + b) * 0.5
 }
 
 /// Unit tangent at a distance `by` from the midpoint of a cell, towards or away from a node at one of its ends: `φ = φ_c - by κ_node`.

@@ -28,7 +28,7 @@ pub(super) struct Shape {
 impl Shape {
     pub fn new(pointer: String, load: DistributedLoad, constant: f64, model: &Model) -> Self {
         let length = match load.kind {
-            LoadKind::ForceX | LoadKind::ForceZ => model.length,
+            LoadKind::ForceX | LoadKind::ForceZ | LoadKind::Normal | LoadKind::Tangential => model.length,
             LoadKind::MomentX | LoadKind::MomentZ | LoadKind::RestCurvature => 1.0,
         };
         let factor = load.factor * constant * length;
@@ -49,7 +49,7 @@ impl Shape {
 
     /// True if the loads act transversely.
     pub fn bends(&self) -> bool {
-        self.loads[0].0.kind != LoadKind::ForceZ
+        !matches!(self.loads[0].0.kind, LoadKind::ForceZ | LoadKind::Tangential)
     }
 
     /// Description of the quantity lost on a mesh.
@@ -65,8 +65,8 @@ impl Shape {
     /// beam.
     pub fn acts_with(&self, other: &Self) -> bool {
         let kind = |shape: &Self| match shape.loads[0].0.kind {
-            LoadKind::ForceX | LoadKind::MomentZ | LoadKind::RestCurvature => 0,
-            LoadKind::ForceZ => 1,
+            LoadKind::ForceX | LoadKind::Normal | LoadKind::MomentZ | LoadKind::RestCurvature => 0,
+            LoadKind::ForceZ | LoadKind::Tangential => 1,
             LoadKind::MomentX => 2,
         };
         kind(self) == kind(other)
@@ -131,12 +131,12 @@ impl Shape {
                     scale = scale.max((factor * load.profile.value(x)).abs());
                 }
                 match load.kind {
-                    LoadKind::ForceX => {
+                    LoadKind::ForceX | LoadKind::Normal => {
                         gained += length * m1;
                         mean += 0.5 * length * m2;
                         across += m0;
                     }
-                    LoadKind::ForceZ => {
+                    LoadKind::ForceZ | LoadKind::Tangential => {
                         gained += m0;
                         mean += m1;
                     }

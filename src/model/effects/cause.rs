@@ -172,7 +172,7 @@ impl Display for DecisionCause {
             Self::Needs(Effect::NetworkPressureDifferences) => f.write_str("each network has one pressure"),
             Self::Needs(effect) => write!(f, "no {}", effect.name().replace('_', " ")),
             Self::NoKinks => {
-                f.write_str("the reciprocal coupling uses mean slopes, because the kinked potential is not convex")
+                f.write_str("the reciprocal coupling uses mean slopes, because a potential with different slopes for opening and closing is not convex")
             }
             Self::Obstacle(obstacle) => write!(f, "kept: {}", obstacle.what),
             Self::Unstable(why) => write!(f, "kept: {why}"),
@@ -238,7 +238,7 @@ impl Display for Keeps {
             Self::Dissipation => "it is the only dissipation of the fluid",
             Self::UnevenStart => "the initial pressure differs along a bladder",
             Self::FiniteStrain => "the section is nonlinear at these loads",
-            Self::Attachments => "no bound is known for attachments",
+            Self::Attachments => "no bound is known for attachments, foundations and loads that turn with the beam",
             Self::Contacts => "no bound is known for walls",
             Self::Gas => "the fluid is a gas",
             Self::Surroundings => "no bound is known for ambient fluid",

@@ -232,8 +232,11 @@ impl<'a> Chooser<'a> {
             None if scene.resonant() => kept(Keeps::Resonance),
             None => choice,
         };
+        let case = self.case;
+        let unbounded =
+            !case.attachments.is_empty() || case.foundation.is_some() || case.loads.iter().any(Load::follows);
         match effect {
-            _ if !self.case.attachments.is_empty() && by_motion(effect) => kept(Keeps::Attachments),
+            _ if unbounded && by_motion(effect) => kept(Keeps::Attachments),
             _ if !self.case.contacts.is_empty() && by_motion(effect) => kept(Keeps::Contacts),
             _ if self.case.loads.iter().any(Load::is_rest) && by_motion(effect) => kept(Keeps::RestCurvature),
             _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),

@@ -26,11 +26,12 @@ fn obstacle(what: impl Into<String>, hint: &str) -> Option<Obstacle> {
 pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
     const HINT: &str = "remove it, or leave transverse_motion on";
     let across = |load: &Load| match load {
+        Load::ForceNormalNM(d) => !d.signal.is_zero(),
         Load::ForceXNM(d) | Load::BodyXMS2(d) | Load::MomentXN(d) | Load::MomentZN(d) | Load::RestCurvature(d) => {
             !d.signal.is_zero()
         }
         Load::Gravity { x_m_s2, .. } => *x_m_s2 != 0.0,
-        Load::ForceZNM(_) | Load::BodyZMS2(_) => false,
+        Load::ForceZNM(_) | Load::ForceTangentialNM(_) | Load::BodyZMS2(_) => false,
     };
     if let Some(k) = case.loads.iter().position(across) {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
@@ -197,6 +198,10 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
         );
         return obstacle(what, HINT);
     }
+    if let Some(k) = case.loads.iter().position(Load::follows) {
+        let what = format!("/loads/{k} turns with the beam, so the loads alone do not determine the normal force");
+        return obstacle(what, HINT);
+    }
     if let Some(k) = case.attachments.iter().position(Attachment::is_eccentric) {
         return obstacle(
             format!(
@@ -211,6 +216,14 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
             format!("/attachments/{k} supports the beam axially, so the loads alone do not determine the normal force"),
             HINT,
         );
+    }
+    if case
+        .foundation
+        .as_ref()
+        .is_some_and(|bed| bed.stiffness_z_n_m2.is_some())
+    {
+        let what = "the foundation supports the beam axially, so the loads alone do not determine the normal force";
+        return obstacle(what, HINT);
     }
     let held = [&case.ends.root, &case.ends.tip].map(|end| end.resolve().axial);
     match held

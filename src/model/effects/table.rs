@@ -58,7 +58,7 @@ pub fn given(effect: Effect, case: &Case, network: Option<&ResolvedNetwork>) -> 
         Turbines => network.is_some_and(|n| !n.turbines.is_empty()),
         Loads => case.loads.iter().any(|load| !gravity(load)),
         Gravity => case.loads.iter().any(gravity),
-        Attachments => !case.attachments.is_empty(),
+        Attachments => !case.attachments.is_empty() || case.foundation.is_some(),
         Contacts => !case.contacts.is_empty(),
         Surroundings => case.surroundings.is_some(),
         _ => return None,

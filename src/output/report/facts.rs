@@ -35,14 +35,14 @@ forcing_frequency_hz | Hz | frequency of the drive
 gyration_radius_squared_m2 | m^2 | squared radius of gyration of a section, y11
 instantaneous_modulus_pa | Pa | Young's modulus at once, before anything relaxes
 inertial_compression_n_m | N/m | load along the beam by shaking its root
-largest_strain_estimate | 1 | strain that is expected; the model wants it small
+largest_strain_estimate | 1 | expected strain; the model requires small values
 mass_factor | 1 | mass over that of a solid beam of the same size
 mass_per_length_kg_m | kg/m | mass per length, m
 mathieu_frequency_ratio | 1 | drive over twice the first bending frequency; near 1 shaking along makes bending grow
 mathieu_growth_bound_per_s | 1/s | bound of that growth, on the safe side; damping that exceeds it keeps the beam straight
-mathieu_growth_rate_per_s | 1/s | growth of the first bending mode by shaking along, without fluid; 0 is stable
+mathieu_growth_rate_per_s | 1/s | growth rate of the first bending mode under axial shaking, without fluid; 0 means stable
 mathieu_modulation | 1 | how strongly shaking along changes the bending stiffness
-reynolds_estimate | 1 | inertia over viscosity in the tubes; creeping flow needs it small
+reynolds_estimate | 1 | inertia over viscosity in the tubes; creeping flow requires small values
 self_weight_buckling_load_n_m | N/m | load along the beam under which it buckles
 shear_flexibility | 1 | shear over bending, EI/(kGA l^2); small where sections stay across the beam
 shear_stiffness_n | N | resistance to shear, kGA
@@ -53,8 +53,8 @@ t_f_s | s | time scale of the fluid, t_f*
 t_s_over_t_f | 1 | time of the solid over that of the fluid
 t_s_s | s | time scale of the solid, t_s*
 tube_resistance_pa_s_m3 | Pa s/m^3 | pressure drop along a tube per flow
-womersley | 1 | tube radius over the reach of viscosity in a cycle; the model wants it below 1
-slowest_time_of_network_ | s | slowest time in which pressures of a network become equal";
+womersley | 1 | tube radius over viscous depth of one cycle; without tube inertia the model requires less than 1
+slowest_time_of_network_ | s | longest time constant of pressure equalization in a network";
 
 /// Rows of the table: name, unit, meaning.
 fn known() -> impl Iterator<Item = [&'static str; 3]> {

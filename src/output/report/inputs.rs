@@ -64,6 +64,8 @@ fn loads(case: &Case) -> Vec<Input<'_>> {
         let (what, unit) = match load {
             Load::ForceXNM(_) => ("force across", "N/m"),
             Load::ForceZNM(_) => ("force along", "N/m"),
+            Load::ForceNormalNM(_) => ("force normal to the beam", "N/m"),
+            Load::ForceTangentialNM(_) => ("force tangential to the beam", "N/m"),
             Load::MomentXN(_) | Load::MomentZN(_) => ("couple", "N"),
             Load::BodyXMS2(_) => ("body force across", "m/s^2"),
             Load::BodyZMS2(_) => ("body force along", "m/s^2"),

@@ -234,6 +234,8 @@ fn load(load: &Load, end_s: f64) -> Value {
     let (kind, what, unit) = match name {
         "force_x_n_m" => ("across", "force across", "N/m"),
         "force_z_n_m" => ("along", "force along", "N/m"),
+        "force_normal_n_m" => ("across", "force normal to the beam", "N/m"),
+        "force_tangential_n_m" => ("along", "force tangential to the beam", "N/m"),
         "body_x_m_s2" => ("across", "body force across", "m/s²"),
         "body_z_m_s2" => ("along", "body force along", "m/s²"),
         "rest_curvature_1_m" => ("moment", "curvature at rest", "1/m"),

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::EffectScene;
 use super::pace::SignalExcitation;
 use crate::case::Translation;
+use crate::case::schema::Load;
 use crate::error::numbers::significant;
 use crate::functions::Signal;
 use crate::model::AttachedBody;
@@ -81,7 +82,9 @@ impl EffectScene<'_> {
                 significant(compression, 2)
             ));
         }
-        if self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(AttachedBody::follows) {
+        let turns = self.case.loads.iter().any(Load::follows);
+        if turns || self.ends.iter().any(|e| e.follower.is_some()) || self.attachments.iter().any(AttachedBody::follows)
+        {
             return Some("follower loads may cause flutter".into());
         }
         let shaken = self.ends.iter().find_map(|e| match &e.axial {
