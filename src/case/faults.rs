@@ -135,6 +135,11 @@ impl Violations {
         self.list.is_empty()
     }
 
+    /// First fault.
+    pub fn first(&self) -> Option<&Violation> {
+        self.list.first().map(|(fault, _)| fault)
+    }
+
     /// Drops faults at or below the given pointers, which already have a fault.
     pub fn drop_below(&mut self, pointers: &[String]) {
         self.list

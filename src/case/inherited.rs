@@ -8,7 +8,8 @@ use super::numbers::digits;
 use super::origins::Origin;
 use super::own_cell::OwnCell;
 use super::scaling::{LAWS, Law, Sizes};
-use super::schema::Case;
+use super::schema::{Case, SpanRows};
+use super::spans;
 use crate::error::Code;
 
 /// Pointer of a coefficient, and its value if it is a number.
@@ -39,7 +40,51 @@ pub fn warnings(case: &Case) -> Vec<String> {
         }
     }
     let warnings = groups.iter().filter_map(|laws| warning(case, &resolved, laws));
-    warnings.chain(plane_cell(case)).chain(cross_term(case)).collect()
+    let in_spans = in_spans(case);
+    warnings
+        .chain(in_spans)
+        .chain(plane_cell(case))
+        .chain(cross_term(case))
+        .collect()
+}
+
+/// Warning about coefficients that follow the sizes of a span to another shape of section.
+fn in_spans(case: &Case) -> Option<String> {
+    if case.spans.is_empty() {
+        return None;
+    }
+    let resolved = serde_json::to_value(case).ok()?;
+    let usual = Sizes::from_case(&resolved)?;
+    let (mut names, mut shaping) = (vec![], vec![]);
+    for (segment, (span, _)) in spans::places(case).into_iter().enumerate() {
+        let written = &case.spans[span];
+        let own = serde_json::to_value(written).unwrap_or_default();
+        let here = serde_json::to_value(spans::uniform_case(case, segment)).ok();
+        let Some(here) = here.and_then(|here| Sizes::from_case(&here)) else {
+            continue;
+        };
+        let moved = LAWS
+            .iter()
+            .filter(|law| !law.is_exact(&here, &usual) && belongs(&resolved, law));
+        let moved = moved.filter(|law| own.pointer(law.pointer).is_none());
+        let used = moved.filter(|law| written.rows != SpanRows::None || law.pointer == "/beam/shear_stiffness_n");
+        let before = names.len();
+        names.extend(used.map(|law| law.pointer));
+        if names.len() > before && !shaping.contains(&span) {
+            shaping.push(span);
+        }
+    }
+    names.sort_unstable();
+    names.dedup();
+    let shaping: Vec<String> = shaping.iter().map(|span| format!("/spans/{span}")).collect();
+    (!names.is_empty()).then(|| {
+        Code::Inherited.warning(format!(
+            "coefficients of another shape of section: {} changes the shape to which {} belong. {EXACT} Give the \
+             coefficients of the span, or use the result as an estimate.",
+            shaping.join(", "),
+            names.join(", ")
+        ))
+    })
 }
 
 /// Warning about varied or differentiated numbers that change the shape of the section on their own.

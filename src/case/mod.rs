@@ -61,5 +61,5 @@ pub use rewrite::{rewrite, spaced};
 pub use schema::Case;
 pub use schema_json::{schema_json, schema_of_resolved};
 pub use tables::unclosed_quote;
-pub use wording::{nearest, short};
+pub use wording::{nearest, nearest_figure, short};
 pub use written::{CaseText, is_table};

@@ -30,10 +30,15 @@ pub fn counts(case: &Case) -> Vec<Option<usize>> {
     let pitch = segment_length(case);
     let whole = |length: f64| {
         let count = (length / pitch).round();
-        (count >= 1.0 && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
+        let fits = count >= 1.0 && count <= case.segments() as f64;
+        (fits && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
     };
     let given: Vec<Option<usize>> = case.spans.iter().map(|span| span.length_m.and_then(whole)).collect();
-    let rest = case.segments().saturating_sub(given.iter().flatten().sum());
+    let taken = given
+        .iter()
+        .flatten()
+        .fold(0_usize, |sum, count| sum.saturating_add(*count));
+    let rest = case.segments().saturating_sub(taken);
     let rest = Some(rest).filter(|rest| *rest > 0);
     let counts = case.spans.iter().zip(given);
     counts
@@ -54,22 +59,43 @@ pub fn places(case: &Case) -> Vec<(usize, f64)> {
 /// True if a bladder `0..n`, upper row first, exists.
 pub fn has_bladder(case: &Case, bladder: usize) -> bool {
     let segments = case.segments();
+    if counts(case)
+        .into_iter()
+        .map(Option::unwrap_or_default)
+        .fold(0_usize, usize::saturating_add)
+        != segments
+    {
+        // faulty spans are reported by themselves
+        return true;
+    }
     let (segment, row) = (bladder % segments, bladder / segments);
     let place = places(case).get(segment).copied();
     place.is_none_or(|(span, _)| case.spans[span].rows.has()[row])
 }
 
-/// Values of each segment; empty for a beam without spans. Coefficients that a span does not give follow modulus and sizes.
+/// Values of each segment; empty for a uniform beam, with the values of the case everywhere. Coefficients that a span does not give follow modulus and sizes.
 pub fn segments(case: &Case) -> Vec<SegmentValues> {
     if case.spans.is_empty() {
         return vec![];
     }
     let whole = json!({"beam": case.beam, "bladders": case.bladders, "fluid": case.fluid, "tubes": case.tubes});
     let places = places(case);
-    places
+    let all: Vec<SegmentValues> = places
         .iter()
         .map(|&(span, x)| values(case, &whole, &case.spans[span], x))
-        .collect()
+        .collect();
+    let rows = [case.bladders.is_some(); 2];
+    let uniform = |one: &SegmentValues| one.rows == rows && one.beam == case.beam && one.bladders == case.bladders;
+    match all.iter().all(uniform) {
+        true => vec![],
+        false => all,
+    }
+}
+
+/// Least Young's modulus of the solid [Pa].
+pub fn softest_modulus(case: &Case) -> f64 {
+    let moduli = segments(case).into_iter().map(|values| values.beam.young_modulus_pa);
+    moduli.reduce(f64::min).unwrap_or(case.beam.young_modulus_pa)
 }
 
 /// Case of the uniform beam with the values of one segment.
@@ -113,7 +139,7 @@ fn values(case: &Case, whole: &Value, span: &Span, x: f64) -> SegmentValues {
     let numbers: Vec<(&str, f64)> = numbers.iter().map(|(pointer, x)| (pointer.as_str(), *x)).collect();
     CoefficientSizes::default().change(&mut here, &numbers);
     let mut beam: Beam = serde_json::from_value(here["beam"].take()).unwrap_or_else(|_| case.beam.clone());
-    let mut bladders: Option<Bladders> =
+    let bladders: Option<Bladders> =
         serde_json::from_value(here["bladders"].take()).unwrap_or_else(|_| case.bladders.clone());
     let rows = match &bladders {
         Some(_) => span.rows,
@@ -124,12 +150,6 @@ fn values(case: &Case, whole: &Value, span: &Span, x: f64) -> SegmentValues {
         beam.axial_stiffness_factor = own(&span.beam.axial_stiffness_factor, 1.0, beam.axial_stiffness_factor);
         beam.bending_stiffness_factor = own(&span.beam.bending_stiffness_factor, 1.0, beam.bending_stiffness_factor);
         beam.mass_factor = beam.mass_factor.filter(|_| span.beam.mass_factor.is_some());
-    }
-    // another size has the permeability of its own rectangle
-    if let Some(bladders) = &mut bladders
-        && (span.bladders.height_m.is_some() || span.bladders.width_m.is_some())
-    {
-        bladders.cross_section = None;
     }
     SegmentValues {
         rows: rows.has(),

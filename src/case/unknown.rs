@@ -79,6 +79,9 @@ impl<'a> KnownKeys<'a> {
         if let Some(said) = [lower.as_str(), stem].into_iter().find_map(synonyms::instead) {
             return KeyMeaning::elsewhere(said.to_owned());
         }
+        if let [across, along] = self.without_third_axis(&lower)[..] {
+            return self.of_near(&[(1.0, across), (1.0, along)]);
+        }
         let fits = |name: &&str| self.takes(name, value);
         let mut near = all_nearest(key, absent.clone().filter(fits));
         if near.is_empty() {
@@ -141,6 +144,17 @@ impl<'a> KnownKeys<'a> {
             None => kind(schema) == "object",
         };
         !value.is_number() || !self.properties.get(name).is_some_and(object)
+    }
+
+    /// Keys for x and z in place of one for y, which a planar beam does not have.
+    fn without_third_axis(&self, key: &str) -> Vec<&'a str> {
+        let with = |axis: &str| {
+            let parts = key.split('_').map(|part| if part == "y" { axis } else { part });
+            parts.collect::<Vec<_>>().join("_")
+        };
+        let [x, z] = ["x", "z"].map(with);
+        let known = |name: &&str| x != z && (*name == x || *name == z);
+        self.names().filter(known).collect()
     }
 
     /// The nearest key; of several, all with their descriptions.

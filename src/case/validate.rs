@@ -285,6 +285,11 @@ fn called_otherwise(text: &str, words: &[&str], tags: &[&str]) -> Option<String>
         }
         "closed" | "plugged" if words.contains(&"sealed") => Some("it is called \"sealed\"".into()),
         "fixed" | "built-in" | "encastre" if words.contains(&"clamped") => Some("it is called \"clamped\"".into()),
+        "bottom" | "below" | "down" if words.contains(&"lower") => Some("the row below is called \"lower\"".into()),
+        "top" | "above" | "up" if words.contains(&"upper") => Some("the row above is called \"upper\"".into()),
+        "step" | "heaviside" if tags.contains(&"ramp") => {
+            Some("a step is a ramp without duration: {\"ramp\": {\"to\": 1, \"start_s\": 0, \"duration_s\": 0}}".into())
+        }
         "hinged" | "simply supported" if words.contains(&"pinned") => Some("it is called \"pinned\"".into()),
         "none" | "off" | "uncoupled" if words.contains(&"reciprocal") => Some(
             "to uncouple the beam, switch these effects off: \"effects\": {\"pressure_to_curvature\": \"off\", \

@@ -7,6 +7,20 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<S
     all_nearest(name, names).pop().map(|(_, known)| known.to_owned())
 }
 
+/// The most similar figure; `tip_x` means the displacement across the beam, `tip_z` that along it.
+pub fn nearest_figure<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clone) -> Option<String> {
+    let parts = name.split('_').map(|part| match part {
+        "x" => "u1",
+        "z" => "u3",
+        part => part,
+    });
+    let meant = parts.collect::<Vec<_>>().join("_");
+    let known = names
+        .clone()
+        .find(|known| *known == meant || known.starts_with(&format!("{meant}_")));
+    known.map(str::to_owned).or_else(|| nearest(name, names))
+}
+
 /// The most similar names, each with its similarity, up to 1; several if they are equally similar.
 pub fn all_nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Vec<(f64, &'n str)> {
     let mut best = vec![];

@@ -120,7 +120,11 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
             [f.name.to_string(), significant(f.value, 5), wanted]
         }));
         if !asked.verbose {
-            let _ = writeln!(text, "  {good} of {} conditions for an energy-conserving, passive coupling are met", findings.len());
+            let _ = writeln!(
+                text,
+                "  {good} of {} conditions for an energy-conserving, passive coupling are met",
+                findings.len()
+            );
         }
     }
     text += "\ncoefficients\n";

@@ -42,7 +42,7 @@ pub struct ExportArguments {
     #[arg(long, value_name = "NAME", requires = "state_space", value_delimiter = ',')]
     pub output: Vec<String>,
     /// The state about which, as that of `response`
-    #[arg(long, value_name = "SECONDS", requires = "state_space", allow_negative_numbers = true, value_parser = super::progress_line::instant)]
+    #[arg(long, value_name = "SECONDS", requires = "state_space", allow_hyphen_values = true, value_parser = super::progress_line::instant)]
     pub at: Option<f64>,
     /// Formats: csv/FIELD.csv with a row an instant and a column a place; vtk/CASE.pvd with beam, bladders and tubes
     #[arg(

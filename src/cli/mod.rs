@@ -103,7 +103,7 @@ pub fn main_of(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
         Err(answer) => {
             // Help and version are answers, everything else is a usage error; clap prints both.
-            terminal::answer(&answer);
+            terminal::answer(&answer, &words);
             if !answer.use_stderr() {
                 return ExitCode::SUCCESS;
             }

@@ -1,7 +1,10 @@
 //! Capabilities of the terminal, and printing of errors on it.
 
+use std::ffi::OsString;
 use std::io::{IsTerminal as _, Write as _};
 use std::process::ExitCode;
+
+use clap::error::ErrorKind;
 
 use super::embedded;
 use crate::case;
@@ -56,11 +59,38 @@ pub fn exit_code(fault: Option<&SolverError>) -> ExitCode {
 }
 
 /// Prints help and errors of the argument parser, with control sequences in the user's words made visible.
-pub fn answer(answer: &clap::Error) {
+pub fn answer(answer: &clap::Error, words: &[OsString]) {
     let text = answer.render().to_string();
-    if *visible(&text) == text {
+    let known = *visible(&text) == text && answer.kind() != ErrorKind::UnknownArgument;
+    if known {
         let _ = answer.print();
     } else {
-        print_line(text.trim_end());
+        print_line(with_tip(&text, words).trim_end());
     }
+}
+
+/// An error of the argument parser with a tip for the usual mistakes: one dash, and a pointer apart from its value.
+fn with_tip(text: &str, words: &[OsString]) -> String {
+    let words: Vec<&str> = words.iter().skip(1).filter_map(|word| word.to_str()).collect();
+    let one_dash = |word: &&&str| {
+        let name = word.strip_prefix('-').unwrap_or_default();
+        name.len() > 1 && name.starts_with(|c: char| c.is_ascii_lowercase())
+    };
+    let apart = words.windows(3).find(|three| {
+        ["--set", "--vary", "--uncertain"].contains(&three[0]) && three[1].starts_with('/') && !three[1].contains('=')
+    });
+    let tip = match (apart, words.iter().find(one_dash)) {
+        (Some(three), _) => format!(
+            "write the value behind the pointer: {} '{}={}'",
+            three[0], three[1], three[2]
+        ),
+        (_, Some(word)) => format!("options of several letters have two dashes: -{word}"),
+        _ => String::new(),
+    };
+    let own = text.lines().filter(|line| !line.contains("tip: to pass"));
+    let mut lines: Vec<String> = own.map(str::to_owned).collect();
+    if !tip.is_empty() {
+        lines.insert(lines.len().min(1), format!("\n  tip: {tip}"));
+    }
+    visible(&lines.join("\n")).into_owned()
 }

@@ -80,14 +80,16 @@ impl MeshedAttachment {
         let place = attachment.at * mesh.cells as f64;
         let (node, weights) = share(place, mesh.cells);
         let (first, last) = (0.5, mesh.cells as f64 - 0.5);
+        let beyond = |cell: usize, by: f64| by * mesh.h / sections.bending_of_cells[cell];
         let (cells, in_series) = if place <= first {
-            ([(0, 1.0), (0, 0.0)], first - place)
+            ([(0, 1.0), (0, 0.0)], beyond(0, first - place))
         } else if place >= last {
-            ([(mesh.cells - 1, 1.0), (mesh.cells - 1, 0.0)], place - last)
+            let cell = mesh.cells - 1;
+            ([(cell, 1.0), (cell, 0.0)], beyond(cell, place - last))
         } else {
             let cell = ((place - 0.5) as usize).min(mesh.cells - 2);
-            let s = place - 0.5 - cell as f64;
-            ([(cell, 1.0 - s), (cell + 1, s)], s * (1.0 - s))
+            let (share, in_series) = sections.turning(cell, place - 0.5 - cell as f64, mesh.h);
+            ([(cell, 1.0 - share), (cell + 1, share)], in_series)
         };
         let nearest = (place as usize).min(mesh.cells - 1);
         let by = place - (nearest as f64 + 0.5);
@@ -100,7 +102,7 @@ impl MeshedAttachment {
             stiffness: attachment.stiffness,
             damping: attachment.damping,
             cells,
-            turning_stiffness: k / (1.0 + k * in_series * mesh.h / sections.bending[node]),
+            turning_stiffness: k / (1.0 + k * in_series),
         }
     }
 

@@ -3,104 +3,11 @@
 use std::ops::Range;
 
 use super::injected_volume::{self, InjectedShare};
+pub use super::mesh_links::{LinkEnd, MeshAccumulator, MeshBridge, MeshFlow, MeshLink, MeshSource};
 use super::sorted_links::SortedLinks;
 use crate::case::schema::BladderEnd;
-use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, Link, LinkKind, NetworkNode};
+use crate::model::network::{AccumulatorLaw, FlowLaw, Link, NetworkNode};
 use crate::model::{Storage, Wet};
-
-/// End of a link on the mesh.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LinkEnd {
-    /// A cell; half of its resistance is in series.
-    Cell(usize),
-    /// An unknown junction pressure.
-    Junction(usize),
-    /// A prescribed pressure.
-    Port(usize),
-}
-
-/// A link on the mesh.
-#[derive(Clone, Debug)]
-pub struct MeshLink {
-    /// Number among the network's links; none for a face between cells.
-    pub number: Option<usize>,
-    /// Source of positive flow.
-    pub from: LinkEnd,
-    /// Destination of positive flow.
-    pub to: LinkEnd,
-    /// Resistance of the half cells at its ends [Pa s/m^3]; for a face the total resistance.
-    pub half_cells: f64,
-    /// Resistance in between, scaled by the opening of a valve [Pa s/m^3].
-    pub resistance: f64,
-    /// Resistance of the link's pump [Pa s/m^3].
-    pub of_pump: f64,
-    /// Number of the link's pump among all pumps.
-    pub pump: Option<usize>,
-    /// Check valve of the link.
-    pub check_valve: Option<CheckValveLaw>,
-    /// Kind of the link; none for a face between cells.
-    pub kind: Option<LinkKind>,
-    /// Law of a flow that is not given by pressures alone.
-    pub flow: Option<MeshFlow>,
-}
-
-impl MeshLink {
-    /// True if the link is only a resistance.
-    pub fn is_plain(&self) -> bool {
-        self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none()
-    }
-
-    /// Total resistance with open valves [Pa s/m^3].
-    pub fn in_series(&self) -> f64 {
-        self.half_cells + self.of_pump + self.resistance
-    }
-}
-
-/// A flow that is an unknown.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshFlow {
-    /// Number among the flows that are unknowns.
-    pub number: usize,
-    /// Number of its first friction branch among all.
-    pub branch: usize,
-    /// Law of the flow.
-    pub law: FlowLaw,
-}
-
-/// A prescribed flow on the mesh.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshSource {
-    /// Number among the network's sources.
-    pub number: usize,
-    /// Cell or junction that it enters.
-    pub into: LinkEnd,
-    /// Resistance of the half cell behind the port [Pa s/m^3].
-    pub half_cell: f64,
-}
-
-/// An accumulator on the mesh, or the storage of compressible fluid at a junction of tubes with inertia.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshAccumulator {
-    /// Number among the network's accumulators; none for a junction of tubes.
-    pub number: Option<usize>,
-    /// Its index among the junctions of the mesh.
-    pub junction: usize,
-    /// Component of the network to which it belongs.
-    pub component: usize,
-    /// Law of the accumulator.
-    pub law: AccumulatorLaw,
-}
-
-/// A bridge on the mesh.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshBridge {
-    /// Number among the network's bridges.
-    pub number: usize,
-    /// One port.
-    pub from: LinkEnd,
-    /// The other.
-    pub to: LinkEnd,
-}
 
 /// Cells of all bladders: bladder b has the cells from `b cells_per_bladder`, inlet to outlet; upper row first.
 #[derive(Clone, Debug)]
@@ -188,11 +95,22 @@ impl FluidMesh {
         let along = network.along_bladders.as_ref();
         let law = |link: &Link, ends: [LinkEnd; 2]| {
             let own = link.tube.map(|tube| tube.law);
-            let cells = ends.iter().filter(|end| matches!(end, LinkEnd::Cell(_))).count();
+            let bladders: Vec<usize> = ends.iter().filter_map(|end| end.bladder(cells_per_bladder)).collect();
+            let cells = bladders.len();
             let at_junction = ends.iter().any(|end| matches!(end, LinkEnd::Junction(_)));
             match along.filter(|_| cells > 0 && (own.is_some() || !at_junction)) {
                 None => own,
-                Some(along) => Some(own.unwrap_or_default().behind(&along.over(0.5 * cells as f64 * ds))),
+                Some(along) => {
+                    let usual = along.over(0.5 * cells as f64 * ds);
+                    let parts = bladders.iter().filter_map(|bladder| wet.along(*bladder));
+                    let inertance = match wet.segments.is_empty() {
+                        true => usual.inertance,
+                        false => parts.map(|along| along.over(0.5 * ds).inertance).sum(),
+                    };
+                    let mut part = usual;
+                    part.inertance = inertance;
+                    Some(own.unwrap_or_default().behind(&part))
+                }
             }
         };
         let mut pumps = vec![];
@@ -229,7 +147,7 @@ impl FluidMesh {
                 pump: None,
                 check_valve: None,
                 kind: None,
-                flow: Some(flow(along.over(ds))),
+                flow: Some(flow(wet.along(from / cells_per_bladder).unwrap_or(along).over(ds))),
             }));
         }
         let sources = network.sources.iter().enumerate().filter_map(|(number, source)| {

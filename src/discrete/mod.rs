@@ -14,10 +14,12 @@ pub mod injected_volume;
 pub mod layout;
 pub mod ledger;
 pub mod mesh;
+mod mesh_links;
 pub mod quantities;
 pub mod readings;
 pub mod residual;
 pub mod resolution;
+mod sampled_load;
 pub mod sections;
 pub mod shapes;
 pub mod sorted_links;
@@ -42,9 +44,10 @@ pub use fluid_mesh::FluidMesh;
 pub use layout::Layout;
 pub use mesh::BeamMesh;
 pub use quantities::MeshProbe;
+pub use sampled_load::SampledLoad;
 pub use sections::MeshSections;
 pub use statics::Statics;
-pub use time_data::{SampledLoad, TimeData};
+pub use time_data::TimeData;
 pub use valve_tangents::ValveTangents;
 pub use workspace::{CompleteState, Workspace};
 
@@ -293,7 +296,7 @@ impl System {
         let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
         let touching = ContactPoint::all(&model.contacts, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
-        let foundation = time_data::foundation(&model, &mesh);
+        let foundation = sampled_load::foundation(&model, &mesh);
         let nothing_attached =
             !followed && foundation.is_empty() && attached.is_empty() && bodies.is_empty() && touching.is_empty();
         Self {

@@ -19,6 +19,8 @@ pub struct MeshSections {
     pub bending: Vec<f64>,
     /// `h_s/2` of each node, the larger one between two segments [m].
     pub half_height: Vec<f64>,
+    /// `EI` of each cell [N m^2].
+    pub bending_of_cells: Vec<f64>,
     /// `kGA` of each cell [N]; infinite without shear.
     pub shear: Vec<f64>,
     /// `m y11` of each cell [kg m].
@@ -30,6 +32,18 @@ pub struct MeshSections {
 }
 
 impl MeshSections {
+    /// Rotation between the midpoints of a cell and the next, at a place `s` of the way: its share before the place, and the compliance of
+    /// both sides in parallel [rad/(N m)]. On each side it is uniform.
+    pub fn turning(&self, cell: usize, s: f64, h: f64) -> (f64, f64) {
+        let [left, right] = [self.bending_of_cells[cell], self.bending_of_cells[cell + 1]];
+        if left == right {
+            return (s, s * (1.0 - s) * h / left);
+        }
+        let before = h * (s.min(0.5) / left + (s - 0.5).max(0.0) / right);
+        let whole = 0.5 * h * (1.0 / left + 1.0 / right);
+        (before / whole, before * (whole - before) / whole)
+    }
+
     /// Sections of a model on a mesh.
     pub fn new(model: &Model, mesh: &BeamMesh) -> Self {
         let of = |segment: usize| model.sections.get(segment).unwrap_or(&model.section);
@@ -57,6 +71,7 @@ impl MeshSections {
                 true => left.bending_stiffness,
                 false => 2.0 / (1.0 / left.bending_stiffness + 1.0 / right.bending_stiffness),
             }),
+            bending_of_cells: cells(|section| section.bending_stiffness),
             half_height: nodes(&|left, right| left.half_height.max(right.half_height)),
             shear: cells(|section| section.shear_stiffness),
             rotary: cells(Section::rotary_inertia),

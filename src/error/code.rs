@@ -141,7 +141,7 @@ mod tests {
     fn the_page_explains_each_number_once() {
         for code in Code::ALL {
             assert!(code.title().len() > 5, "{code:?} has no heading");
-            assert!(code.text().contains("**Do.**"), "{code:?} has no remedy");
+            assert!(code.text().contains("**Remedy.**"), "{code:?} has no remedy");
         }
         let headings: Vec<&str> = PAGE.lines().filter_map(|l| l.strip_prefix("### ")).collect();
         let ids: Vec<&str> = Code::ALL.iter().map(|c| c.id()).collect();

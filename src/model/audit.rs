@@ -2,13 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use super::convexity::convexity;
+pub use super::convexity::{convex_up_to, refusals};
 use super::{CouplingLaw, Model, Wet, water_hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
-use crate::case::schema::{Bladders, Case, Coupling as Choice};
+use crate::case::schema::{Case, Coupling as Choice};
 use crate::case::{inherited, overshoots, spans};
-use crate::error::numbers::{quantity, significant};
-use crate::error::{Code, Violation};
+use crate::error::Code;
+use crate::error::numbers::significant;
 
 /// One audited number.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,21 +135,21 @@ fn reciprocity(name: &'static str, value: f64, what: &str) -> AuditFinding {
 /// One warning for all violated reciprocity conditions.
 fn not_reciprocal(findings: &[&AuditFinding]) -> Option<String> {
     let first = findings.first()?;
-    let numbers: Vec<String> = findings
-        .iter()
-        .map(|f| format!("{} = {:.4}", f.name, f.value))
-        .collect();
-    let consequences: Vec<&str> = findings.iter().map(|f| f.consequence.as_str()).collect();
-    Some(first.code.warning(format!(
-        "coupling: {} (required: {}): {}. Energies and efficiencies are wrong by {}. Use \"reciprocal\"",
-        numbers.join(" and "),
-        first.wanted,
-        consequences.join(", and "),
-        if findings.len() > 1 {
-            "these factors"
-        } else {
-            "this factor"
+    let returned = findings.iter().zip([" returns", ""]).map(|(f, verb)| {
+        let part = if f.name.contains("psi") { "bending" } else { "stretch" };
+        match f.value.is_infinite() {
+            true => format!("{part}{verb} infinitely many times"),
+            false => format!("{part}{verb} {} times", significant(f.value, 3)),
         }
+    });
+    let mut returned = returned.collect::<Vec<_>>().join(", and ");
+    if findings.len() > 1 {
+        returned.push(',');
+    }
+    Some(first.code.warning(format!(
+        "coupling: over a cycle {returned} the work of the fluid (required: {}). Energies and efficiencies are not \
+         valid, and motion may differ. Use --set '/bladders/coupling=\"reciprocal\"'",
+        first.wanted
     )))
 }
 
@@ -179,88 +181,6 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
             consequence: "the published law has no unique solution, so the state is undetermined".into(),
         });
     }
-}
-
-/// Largest sum of pressures `p_u + p_d` at which the kinked potential is convex, in bending and in stretch [Pa].
-pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
-    if !model.sections.is_empty() {
-        let parts = model.uniform_parts();
-        let limits = parts.filter_map(|(_, part)| Some(convex_up_to(&part, part.wet.as_ref()?)));
-        return limits.fold((f64::INFINITY, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.min(b.1)));
-    }
-    let CouplingLaw::Reciprocal { length_ratio } = wet.coupling else {
-        return (f64::INFINITY, f64::INFINITY);
-    };
-    let law = &wet.area;
-    let limit = |width: f64, stiffness: f64, half_difference: f64, mean: f64| {
-        let scale = stiffness * length_ratio;
-        if half_difference > 0.0 {
-            width / (scale * half_difference) * (1.0 - 2.0 * scale * mean * mean / law.per_pressure)
-        } else {
-            f64::INFINITY
-        }
-    };
-    (
-        limit(
-            law.moment_width,
-            model.section.bending_stiffness,
-            law.moment_half_difference,
-            law.moment_mean,
-        ),
-        limit(
-            law.force_width,
-            model.section.axial_stiffness,
-            law.force_half_difference,
-            law.force_mean,
-        ),
-    )
-}
-
-fn convexity(model: &Model, bladders: &Bladders, wet: &Wet) -> Vec<AuditFinding> {
-    let (bending, stretch) = convex_up_to(model, wet);
-    let expected = 2.0 * model.scales.pressure;
-    [
-        ("convex in bending up to p_u + p_d [Pa]", bending),
-        ("convex in stretch up to p_u + p_d [Pa]", stretch),
-    ]
-    .into_iter()
-    .map(|(name, value)| AuditFinding {
-        code: Code::CouplingLaw,
-        name,
-        value,
-        wanted: "above the expected pressures",
-        good: value > expected,
-        consequence: format!(
-            "the expected p_u + p_d is {}. The kinked potential is not convex there, and the state is not unique. \
-             Widen /bladders/kink_width (now {}), or use \"reciprocal\"",
-            quantity(expected, "Pa", 4),
-            significant(bladders.kink_width, 2)
-        ),
-    })
-    .collect()
-}
-
-/// Errors of a case with valid text: a kinked reciprocal potential that is not convex at the expected pressures.
-pub fn refusals(case: &Case, model: &Model) -> Vec<Violation> {
-    let (Some(bladders), Some(wet)) = (&case.bladders, &model.wet) else {
-        return vec![];
-    };
-    if bladders.coupling != Choice::ReciprocalKinked || !model.effects.has(Effect::Asymmetry) {
-        return vec![];
-    }
-    convexity(model, bladders, wet)
-        .into_iter()
-        .filter(|f| !f.good)
-        .map(|f| {
-            Violation::new(
-                Code::Slopes,
-                "/bladders/coupling",
-                format!("the kinked potential is only {}: {}", f.name, significant(f.value, 4)),
-            )
-            .allowed(f.wanted)
-            .hint(f.consequence)
-        })
-        .collect()
 }
 
 /// Warnings before a run: those of [`lasting`], and estimates beyond the validity limits, which a run measures instead.
@@ -342,7 +262,8 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
         )));
     }
     if !model.effects.has(Effect::TubeInertia) {
-        let what = "Oscillating flow in the tubes is not creeping, but the model leaves out its inertia";
+        let what = "Oscillating flow in the tubes is not creeping, but the model leaves out its inertia. Pressures are \
+                    estimates. Use --set '/effects/tube_inertia=\"on\"'";
         all.extend(over(
             numbers,
             Code::FastFlow,
@@ -369,16 +290,19 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
     {
         all.push(Code::Mathieu.warning(format!(
             "the root's axial motion lies inside a Mathieu tongue of the first bending mode, or at its edge. Any deflection may \
-             grow at up to {:.3} 1/s (first mode, undamped, drained bladders; {rate:.3} 1/s for an inextensible axis). Compute the stability \
-             with `slcbeam floquet`",
+             grow at up to {:.3} 1/s (estimate for the first mode without damping and fluid; {rate:.3} 1/s for an \
+             inextensible axis). Compute the stability with `slcbeam floquet CASE`",
             bound.max(rate)
         )));
     }
-    if let Some(&slender) = numbers.get("slenderness")
-        && slender < if model.effects.has(Effect::Shear) { 2.0 } else { 4.0 }
-    {
+    let (limit, remedy) = match model.effects.has(Effect::Shear) {
+        true => (2.0, "Use"),
+        false => (4.0, "Add /beam/shear_stiffness_n, or use"),
+    };
+    if let Some(slender) = numbers.get("slenderness").filter(|slender| **slender < limit) {
         all.push(Code::Stocky.warning(format!(
-            "range of the model: length over height is {slender:.2} (a rod model needs 5, one with shear 2). Results are estimates"
+            "range of the model: length over height is {slender:.2} (a rod model is valid from 5, from 2 with shear). \
+             Results are estimates. {remedy} a 3-D model"
         )));
     }
     all

@@ -51,10 +51,11 @@ impl Slowest {
 /// Conductance of a link at an instant, without its pump.
 fn conductance(wet: &Wet, link: &Link, t: f64) -> f64 {
     let half = 0.5 * wet.bladder_length / wet.network.bladder_mobility;
-    let cells = [link.from, link.to]
-        .iter()
-        .filter(|n| matches!(n, NetworkNode::Cell { .. }))
-        .count() as f64;
+    let cells = [link.from, link.to].into_iter().filter_map(|node| match node {
+        NetworkNode::Cell { bladder, .. } => Some(1.0 / wet.mobility_ratio(bladder)),
+        _ => None,
+    });
+    let cells: f64 = cells.sum();
     let clock = SmoothTime { t, within: t };
     let opening = link.opening.as_ref().map_or(1.0, |o| o.jet(clock).value);
     opening / (opening * half * cells + link.resistance)
@@ -109,7 +110,17 @@ fn time(wet: &Wet, component: &Component, t: f64) -> Option<f64> {
             }
         }
     }
-    let reduced = laplacian.view((0, 0), (nb, nb)).into_owned();
+    let mut reduced = laplacian.view((0, 0), (nb, nb)).into_owned();
+    // symmetric form of C dp/dt = -L p for bladders of different compliances C
+    let ratios: Vec<f64> = bladders
+        .iter()
+        .map(|bladder| wet.compliance_ratio(*bladder).sqrt())
+        .collect();
+    if !wet.segments.is_empty() {
+        for (i, j) in (0..nb).flat_map(|i| (0..nb).map(move |j| (i, j))) {
+            reduced[(i, j)] /= ratios[i] * ratios[j];
+        }
+    }
     let mut values: Vec<f64> = reduced.symmetric_eigenvalues().iter().copied().collect();
     values.sort_by(f64::total_cmp);
     let slowest = values.get(usize::from(!grounded)).copied()?;

@@ -30,6 +30,8 @@ use crate::error::numbers::quantity;
 
 /// Relative error of a figure above which the run warns.
 const OPEN: f64 = 0.1;
+/// Largest number of figures in the warning; the rest is counted.
+const NAMED: usize = 2;
 /// Energy figures below this fraction of the largest stored energy are remainders of larger terms that cancel.
 pub const REMAINDER: f64 = 3e-3;
 /// Amount by which an efficiency must be above one, or below zero, to exceed its rounding error.
@@ -61,6 +63,11 @@ impl Parts {
     /// `H + D - P`.
     fn spent(&self) -> f64 {
         self.harvested + self.dissipated - self.added
+    }
+
+    /// True if a coupling or formulation that does not conserve energy contributes.
+    fn fed(&self) -> bool {
+        self.added.abs() > ROUND_OFF * self.harvested.abs()
     }
 }
 
@@ -185,8 +192,30 @@ impl EnergyAccumulator {
 
     /// Warns of energy figures with a large error of the balance, and of efficiencies outside 0 to 1. `None` if there are none.
     pub fn warning(&self, quantities: &BTreeMap<String, Quantity>) -> Option<String> {
-        let mut all = vec![];
+        let (mut all, mut fed) = (vec![], false);
         let times = [("over the run", self.run), ("in the window", self.window)];
+        if let Some(q) = quantities.get(Interest::Efficiency.name()).filter(|_| self.turbines) {
+            let figures = [(q.last, q.final_error), (q.window, q.window_error)];
+            for ((value, error), (when, since)) in figures.into_iter().zip(times) {
+                let (Some(value), Some(error)) = (value, error) else {
+                    continue;
+                };
+                let mut faults = vec![];
+                if !(-ROUND_OFF..=1.0 + ROUND_OFF).contains(&value) {
+                    let gained = since.gained(&self.last);
+                    let side = if value > 1.0 { "above one" } else { "below zero" };
+                    faults.push(format!("{side}: {}", why(&gained)));
+                    fed |= gained.fed();
+                }
+                if error > OPEN {
+                    faults.push(format!("balance error {:.0} %", 100.0 * error));
+                }
+                if !faults.is_empty() {
+                    let faults = faults.join(", ");
+                    all.push(format!("efficiency {:.1} % {when} ({faults})", 100.0 * value));
+                }
+            }
+        }
         for of in [Interest::InputEnergy, Interest::HarvestedEnergy] {
             let Some(q) = quantities.get(of.name()) else { continue };
             let figures = [(q.last, q.final_error), (q.window, q.window_error)];
@@ -196,7 +225,7 @@ impl EnergyAccumulator {
                     && value.abs() > (REMAINDER * self.largest_stored).max(self.floor)
                 {
                     all.push(format!(
-                        "the {} {when}, {}, has a balance error of {:.0} %",
+                        "{} {} {when} (balance error {:.0} %)",
                         of.describe(),
                         quantity(value, "J", 4),
                         100.0 * error
@@ -204,27 +233,19 @@ impl EnergyAccumulator {
                 }
             }
         }
-        if let Some(q) = quantities.get(Interest::Efficiency.name()).filter(|_| self.turbines) {
-            let figures = [(q.last, q.final_error), (q.window, q.window_error)];
-            for ((value, error), (when, since)) in figures.into_iter().zip(times) {
-                let (Some(value), Some(error)) = (value, error) else {
-                    continue;
-                };
-                let gained = since.gained(&self.last);
-                let what = format!("the efficiency {when}, {:.1} %", 100.0 * value);
-                if error > OPEN {
-                    all.push(format!(
-                        "{what}, is computed from energies with a balance error of {:.0} %",
-                        100.0 * error
-                    ));
-                }
-                if !(-ROUND_OFF..=1.0 + ROUND_OFF).contains(&value) {
-                    let side = if value > 1.0 { "above one" } else { "below zero" };
-                    all.push(format!("{what}, is {side}: {}", why(&gained)));
-                }
-            }
+        let more = all.len().saturating_sub(NAMED);
+        all.truncate(NAMED);
+        if more > 0 {
+            all.push(format!("{more} more in summary.json"));
         }
-        (!all.is_empty()).then(|| Code::EnergyFigure.warning(format!("energy: {}", all.join("; "))))
+        let action = match fed {
+            true => {
+                "The published coupling or formulation does not conserve energy. Use the reciprocal coupling and the \
+                 conservative formulation, or reduce /solver/rtol"
+            }
+            false => "Reduce /solver/rtol, or extend the window",
+        };
+        (!all.is_empty()).then(|| Code::EnergyFigure.warning(format!("energy: {}. {action}.", all.join("; "))))
     }
 }
 
@@ -248,21 +269,17 @@ pub fn too_open(error: f64) -> bool {
 
 /// Explains an efficiency outside 0 to 1.
 fn why(gained: &Parts) -> String {
-    if gained.added.abs() > ROUND_OFF * gained.harvested.abs() {
+    if gained.fed() {
         return format!(
-            "the published coupling or formulation added {}, with an input of {} (an efficiency is meaningful only \
-             with the reciprocal coupling and the conservative formulation)",
+            "{} added to {} put in",
             quantity(gained.added, "J", 3),
             quantity(gained.input, "J", 3)
         );
     }
     if gained.stored < 0.0 {
-        return format!(
-            "{} of energy stored before were released",
-            quantity(-gained.stored, "J", 3)
-        );
+        return format!("{} stored before was released", quantity(-gained.stored, "J", 3));
     }
-    "no coupling adds energy here, so this is an integration error".into()
+    "integration error".into()
 }
 
 fn finite(x: f64) -> Option<f64> {

@@ -12,6 +12,7 @@ use super::schedule::SAME;
 use super::summary::Quantity;
 use super::tracked_value::TrackedValue;
 use crate::case::schema::Case;
+use crate::case::spans;
 use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::discrete::quantities::{Interest, InterestSource, ObservableRow};
@@ -43,7 +44,7 @@ impl FigureAccumulator {
             window_time: 0.0,
             tracks: Interest::recorded(has).map(|_| TrackedValue::default()).collect(),
             has,
-            sizes: [case.beam.length_m, case.beam.young_modulus_pa],
+            sizes: [case.beam.length_m, spans::softest_modulus(case)],
         }
     }
 

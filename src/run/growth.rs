@@ -288,10 +288,21 @@ fn follows(late: &[&Window]) -> bool {
 }
 
 impl GrowingResponse {
-    /// Formats the growth as one warning.
-    pub fn warning(&self) -> String {
+    /// Formats the growth as one warning; `periodic` is true for a periodic drive.
+    pub fn warning(&self, periodic: bool) -> String {
+        let driven_by = |name: &str| self.drivers.iter().any(|driver| driver.name == name);
+        let action = if periodic {
+            "Check with `slcbeam floquet CASE`"
+        } else if driven_by("coupling") || driven_by("formulation") {
+            "Use the reciprocal coupling and the conservative formulation"
+        } else if driven_by("integrator") {
+            "Reduce /solver/rtol"
+        } else {
+            "Run longer"
+        };
         format!(
-            "the deflection grows at {:.3} 1/s, by a factor {:.3} over the later three quarters of the run; driven by: {}",
+            "the deflection grows at {:.3} 1/s, by a factor {:.3} over the later three quarters of the run; driven by: \
+             {}. {action}.",
             self.rate_per_s,
             self.factor,
             Driver::list(&self.drivers)

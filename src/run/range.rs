@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::cubic::Cubic;
 use super::unphysical::{Unphysical, UnphysicalRecord};
 use crate::case::schema::{Case, Effect};
+use crate::case::spans;
 use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
@@ -133,7 +134,7 @@ impl Limits {
         Self {
             half_height: 0.5 * case.beam.height_m,
             length: system.model.length,
-            modulus: case.beam.young_modulus_pa,
+            modulus: spans::softest_modulus(case),
             swelling: wet.map_or(f64::INFINITY, |wet| {
                 (0..wet.per_row)
                     .filter_map(|j| room(j, wet))
@@ -306,18 +307,19 @@ impl Range {
 
     /// Warnings of the exceeded limits.
     pub fn warnings(&self, limits: &Limits) -> Vec<String> {
-        let mut all = limits
-            .unphysical
-            .warnings(&self.unphysical, &|t| format!("t = {t:.4} s"));
+        let at = |t: f64| format!("t = {t:.4} s");
+        let unphysical = &limits.unphysical;
+        let mut all = unphysical.warnings(&self.unphysical, &at, "Reduce the load or /time/end_s");
         if let Some(excess) = self.strain.excess(2, format!(", node {}", self.strain.place), STRAIN) {
             all.push(Code::Strain.warning(format!(
                 "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 {excess}. The model \
-                 assumes small strains."
+                 assumes small strains. Use later shapes only qualitatively."
             )));
         }
         if let Some(excess) = self.reynolds.excess(0, in_tube(&self.reynolds), REYNOLDS) {
             all.push(Code::FastFlow.warning(format!(
-                "range of the model: the Reynolds number {excess}. The model assumes creeping flow."
+                "range of the model: the Reynolds number {excess}. The model assumes creeping flow. Pressures are \
+                 estimates. Use --set '/effects/tube_losses=\"on\"'."
             )));
         }
         if let Some(excess) = self.mach.excess(2, in_tube(&self.mach), MACH) {

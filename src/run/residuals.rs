@@ -177,7 +177,7 @@ impl Residuals {
         let open = self.energy_relative();
         if open > OPEN {
             all.push(Code::EnergyOpen.warning(format!(
-                "energy balance: its error is {} of the largest energy (limit {OPEN}). Tighten solver/rtol until \
+                "energy balance: its error is {} of the largest energy (limit {OPEN}). Reduce /solver/rtol until \
                  results no longer change. At a jump to which a beam without inertia responds far from linearly, the \
                  error remains at any tolerance.",
                 significant(open, 2)
@@ -195,19 +195,20 @@ impl Residuals {
         }
         let (momentum, angular) = (self.momentum_relative(), self.angular_relative());
         if momentum > OPEN || angular > OPEN {
-            let open = |share: f64| significant(share, 2);
-            let which = match (momentum > OPEN, angular > OPEN) {
+            let open = |share: f64| format!("{} %", significant(100.0 * share, 2));
+            let residual = match (momentum > OPEN, angular > OPEN) {
                 (true, true) => format!(
-                    "{} for momentum and {} for angular momentum",
+                    "momentum balance has a residual of {}, and that of angular momentum {},",
                     open(momentum),
                     open(angular)
                 ),
-                (true, false) => format!("{} for momentum", open(momentum)),
-                _ => format!("{} for angular momentum", open(angular)),
+                (true, false) => format!("momentum balance has a residual of {}", open(momentum)),
+                _ => format!("angular momentum balance has a residual of {}", open(angular)),
             };
             all.push(Code::EnergyOpen.warning(format!(
-                "balance of momentum: its error relative to the largest momentum or impulse is {which} (limit \
-                 {OPEN}). Tighten solver/rtol until results no longer change."
+                "the {residual} of the largest momentum or impulse (limit {:.0} %). Reduce /solver/rtol until results \
+                 no longer change.",
+                100.0 * OPEN
             )));
         }
         all

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::case::Case;
+use crate::case::spans;
 use crate::discrete::quantities::Interest;
 use crate::error::Result;
 use crate::model::Model;
@@ -47,7 +48,7 @@ impl RoundingScales {
     /// Rounding scales of a case and its model.
     pub fn of_model(case: &Case, model: &Model) -> Self {
         let (scales, section) = (&model.scales, &model.section);
-        let (length, modulus) = (model.length, case.beam.young_modulus_pa);
+        let (length, modulus) = (model.length, spans::softest_modulus(case));
         let displacement = (SMALL * length).min(NOTHING * scales.transverse.max(scales.axial));
         let pressure = (SMALL * modulus).min(NOTHING * scales.pressure);
         let stiffness = section.bending_stiffness;

@@ -9,9 +9,14 @@ use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
 
+/// Part of the length within which a place is that of an end.
+const AT_AN_END: f64 = 1e-3;
+
 /// Limits of physical states, known before the run of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Unphysical {
+    /// Length of the beam [m].
+    length: f64,
     /// Gauge pressure below which the liquid boils [Pa]; `None` for a gas.
     boils_below: Option<f64>,
     /// True if this is the vapor pressure; otherwise it is vacuum.
@@ -38,12 +43,17 @@ pub struct UnphysicalRecord {
 impl Unphysical {
     /// Limits of a case.
     pub fn new(case: &Case, system: &System) -> Self {
+        let length = system.model.length;
         let (Some(fluid), Some(wet)) = (&case.fluid, &system.model.wet) else {
-            return Self::default();
+            return Self {
+                length,
+                ..Self::default()
+            };
         };
         let junctions = wet.network.junctions.iter().map(|one| format!("junction \"{one}\""));
         let sources = wet.network.sources.iter().map(|one| format!("port \"{}\"", one.name));
         Self {
+            length,
             boils_below: fluid.boils_below(),
             known: fluid.vapor_pressure().is_some(),
             per_row: wet.per_row,
@@ -58,13 +68,22 @@ impl Unphysical {
         self.places.get(place).cloned().unwrap_or_else(|| "the network".into())
     }
 
-    /// Warnings of unphysical states; `at` formats an instant or load factor.
-    pub fn warnings(&self, met: &UnphysicalRecord, at: &dyn Fn(f64) -> String) -> Vec<String> {
+    /// A place along the beam [m] in words.
+    fn place_along(&self, place: f64) -> String {
+        match place / self.length {
+            part if part < AT_AN_END => "the root".into(),
+            part if part > 1.0 - AT_AN_END => "the tip".into(),
+            _ => format!("{} from the root", quantity(place, "m", 4)),
+        }
+    }
+
+    /// Warnings of unphysical states; `at` formats an instant or load factor, `remedy` avoids a crossing.
+    pub fn warnings(&self, met: &UnphysicalRecord, at: &dyn Fn(f64) -> String, remedy: &str) -> Vec<String> {
         let crossing = met.crossing.map(|(places, when)| {
-            let [first, second] = places.map(|place| quantity(place, "m", 4));
+            let [first, second] = places.map(|place| self.place_along(place));
             Code::BeyondRange.warning(format!(
-                "The beam crosses itself: {first} and {second} from the root meet at {} (first seen). The model has no contact between parts of a beam, so \
-                 that later states are not physical. Reduce the load that bends it, or end before that.",
+                "the beam crosses itself: {first} and {second} meet from {} on. The model has no contact of the beam \
+                 with itself: later states are not valid. {remedy}.",
                 at(when)
             ))
         });

@@ -208,12 +208,12 @@ impl Causes {
         let explains = both.into_iter().filter_map(|(name, instead, rate)| {
             let rate = rate.filter(|rate| *rate < EXPLAINED * self.rate)?;
             let left = match rate > 0.0 {
-                true => format!("grows at {} 1/s", significant(rate, 3)),
-                false => "does not grow".into(),
+                true => format!("growth at {} 1/s", significant(rate, 3)),
+                false => "no growth".into(),
             };
             Some(super::growth::Driver {
                 name: name.into(),
-                evidence: format!("with {instead} it {left} at the same state"),
+                evidence: format!("{left} with {instead}"),
             })
         });
         explains.collect()
@@ -228,20 +228,22 @@ impl GrowingWave {
             false => super::growth::Driver::list(&self.drivers),
         };
         let resolved = self.step_s * self.frequency_hz * std::f64::consts::TAU < 1.0;
+        let step = quantity(self.step_s, "s", 2);
         let consequence = match resolved {
-            true => "The steps of this run resolve it, so it grows in the results",
-            false => "The steps of this run damp it, so results change with /solver/rtol",
+            true => format!("is resolved by the time steps of {step}: it grows in the results"),
+            false => format!(
+                "is damped by the time steps of {step}: results depend on /solver/rtol, and error bars do not \
+                 include this"
+            ),
         };
         format!(
-            "a wave grows in the equations: rate {} 1/s at {} (amplification 10^{:.0} over the run, limit 10^{:.0}), found at {} with \
-             steps of {}; driven by: {driven}. {consequence}. Use \"reciprocal\" coupling and the conservative formulation, or add \
-             damping of the beam",
-            significant(self.rate_per_s, 3),
+            "an unstable wave ({}, grows at {} 1/s at t = {}, by 10^{:.0} over the run, limit 10^{:.0}) {consequence}. \
+             Cause: {driven}. Use the reciprocal coupling and the conservative formulation, or damping.",
             quantity(self.frequency_hz, "Hz", 4),
+            significant(self.rate_per_s, 3),
+            quantity(self.at_s, "s", 3),
             self.exponent / std::f64::consts::LN_10,
             AMPLIFICATION.log10(),
-            quantity(self.at_s, "s", 3),
-            quantity(self.step_s, "s", 2),
         )
     }
 }

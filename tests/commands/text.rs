@@ -152,8 +152,9 @@ fn a_finished_run_in_a_glance() {
 fn a_failure_says_why_and_warnings_come_first() {
     let mut failed = summary(Status::Failed);
     failed.reason = Some("the step became smaller than round-off at t = 0.0213 s".to_string());
-    failed.warnings = (1..=5)
-        .map(|k| format!("warning number {k} that goes on for quite a few words"))
+    failed.warnings = (1..=7)
+        .zip(["W004", "W021", "W003", "W007", "W005", "other", "W005"])
+        .map(|(k, code)| format!("{code} warning number {k} that goes on for quite a few words"))
         .collect();
     failed.balances.volume_residual_relative = f64::NAN;
     let text = render(&failed, Path::new("out/wiring-2"), true, false, 60);
@@ -161,14 +162,15 @@ fn a_failure_says_why_and_warnings_come_first() {
     ╭─ wiring-2 ────────────────────────────────────── FAILED ─╮
     │ why         the step became smaller than round-off at t  │
     │             = 0.0213 s                                   │
-    │ warning     warning number 1 that goes on for quite a    │
-    │             few words                                    │
-    │ warning     warning number 2 that goes on for quite a    │
-    │             few words                                    │
-    │ warning     warning number 3 that goes on for quite a    │
-    │             few words                                    │
-    │             and 2 more in summary.json; slcbeam explain  │
-    │             describes each number                        │
+    │ warning     W007 warning number 4 that goes on for quite │
+    │             a few words                                  │
+    │ warning     W004 warning number 1 that goes on for quite │
+    │             a few words                                  │
+    │ warning     W021 warning number 2 that goes on for quite │
+    │             a few words                                  │
+    │             also W003 Inertia or losses of the flow left │
+    │             out, W005 Beam too short for a rod model, 1  │
+    │             more: see summary.json, slcbeam explain W003 │
     │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
     │             largest: u₁ 123 µm · u₃ 1.25 mm              │
     │ pressure    largest in a bladder: 9.01 kPa               │

@@ -28,7 +28,7 @@ fn a_wave_that_steps_damp_is_found() {
     assert_eq!(drivers, ["coupling"]);
     let words = warned(&usual);
     assert!(
-        words.len() == 1 && words[0].contains("damp it") && words[0].contains("reciprocal"),
+        words.len() == 1 && words[0].contains("is damped by the time steps") && words[0].contains("reciprocal"),
         "{words:?}"
     );
     let fine = run(&shipped("bend-wet", &["/mesh/cells_per_segment=8", "/mesh/order=4"]));

@@ -52,7 +52,7 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
     if index.is_some_and(|index| !spans::has_bladder(case, index)) {
         let segment = number.unsigned_abs() as usize - 1;
         let span = spans::places(case).get(segment).map_or(0, |place| place.0);
-        let what = format!("there is no bladder {number}: span {} has none in this row", span + 1);
+        let what = format!("there is no bladder {number}: /spans/{span} has none in this row");
         let fault = Violation::new(Code::Wiring, pointer, what);
         faults.push(fault.hint(format!(
             "change /spans/{span}/rows, or name another bladder; numbers count segments"
@@ -162,7 +162,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
-fn slopes(bladders: &Bladders, faults: &mut Violations) {
+pub(super) fn slopes(bladders: &Bladders, faults: &mut Violations) {
     let (moment, force) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let pairs = [
         (

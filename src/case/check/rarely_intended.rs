@@ -249,15 +249,15 @@ pub fn unheld(case: &Case, directions: &[&str]) -> Option<(String, String)> {
 /// Warning about a requested instant `at` [s] outside the run.
 pub fn instant(case: &Case, at: f64) -> Option<String> {
     let end = case.time.end_s;
-    let side = match at {
-        _ if at < 0.0 => "before the run begins at 0 s",
-        _ if at > end * (1.0 + 1e-9) => "after it ends",
+    let (side, limit) = match at {
+        _ if at < 0.0 => ("before the start", 0.0),
+        _ if at > end * (1.0 + 1e-9) => ("after the end", end),
         _ => return None,
     };
     Some(format!(
-        "--at {}: this is {side}; the run of the case is from 0 to {} s. Signals are extrapolated to this instant",
+        "--at {} s is {side} of the run ({} s). Signals are extrapolated to this instant",
         plain(at),
-        plain(end)
+        plain(limit)
     ))
 }
 

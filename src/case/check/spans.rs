@@ -1,7 +1,8 @@
 //! Checks of spans: whole segments that fill the beam, positive values, bladders that fit, and settings that require a uniform beam.
 
-use super::bladders;
+use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
+use crate::case::numbers::rounded as plain;
 use crate::case::schema::{Case, Span, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
@@ -18,6 +19,11 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let fault = Violation::new(Code::Together, format!("/spans/{k}"), what);
             faults.push(fault.hint("add \"bladders\", or remove \"rows\" and \"bladders\" from the span"));
         }
+        if span.rows == SpanRows::None && !span.bladders.is_empty() {
+            let what = "the span has values of bladders, but no bladders";
+            let fault = Violation::new(Code::Together, format!("/spans/{k}/bladders"), what);
+            faults.push(fault.hint("give \"rows\", or remove \"bladders\" from the span"));
+        }
         if span.beam.shear_stiffness_n.is_some() && case.beam.shear_stiffness_n.is_none() {
             let pointer = format!("/spans/{k}/beam/shear_stiffness_n");
             let fault = Violation::new(Code::Together, pointer, "shear in one span of a beam without shear");
@@ -31,6 +37,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         faults.push(fault.hint("give \"rows\" of a span, or null for /bladders, /fluid and /network: a dry beam"));
     }
     uniform_only(case, faults);
+    near_borders(case, faults);
+    if faults.is_empty() {
+        values(case, faults);
+    }
     if faults.is_empty() {
         let all = spans::segments(case);
         for ((span, _), values) in spans::places(case).into_iter().zip(&all) {
@@ -42,6 +52,68 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 faults.push(fault.hint("give smaller bladders or a larger section in this span"));
                 break;
             }
+        }
+    }
+}
+
+/// Applies the rules for values of a beam to the uniform beam of each span, and reports the first fault of each span.
+fn values(case: &Case, faults: &mut Violations) {
+    let mut known = vec![];
+    for (segment, (span, _)) in spans::places(case).into_iter().enumerate() {
+        if known.contains(&span) || spans::segments(case).is_empty() {
+            continue;
+        }
+        let uniform = spans::uniform_case(case, segment);
+        let mut own = Violations::default();
+        if !case.plausibility.is_on() {
+            own.take_as_meant();
+        }
+        for rule in [
+            plausible::sizes,
+            plausible::proportions,
+            coefficients::check,
+            strength::check,
+        ] {
+            rule(&uniform, &mut own);
+        }
+        let slopes = uniform
+            .bladders
+            .as_ref()
+            .filter(|_| case.spans[span].rows != SpanRows::None);
+        slopes.iter().for_each(|bladders| bladders::slopes(bladders, &mut own));
+        if let Some(first) = own.first() {
+            known.push(span);
+            let what = format!("{} (at {} of this span)", first.what, first.pointer);
+            let fault = Violation {
+                pointer: format!("/spans/{span}"),
+                what,
+                ..first.clone()
+            };
+            faults.push(fault);
+        }
+    }
+}
+
+/// Checks that bodies with rotary inertia or an offset keep away from borders: their couple is distributed to cells of one section.
+fn near_borders(case: &Case, faults: &mut Violations) {
+    let cell = 1.0 / (case.segments() * case.mesh.cells_per_segment.max(1)) as f64;
+    let places = spans::places(case);
+    let borders = places.windows(2).enumerate().filter(|(_, pair)| pair[0].0 != pair[1].0);
+    let borders: Vec<f64> = borders.map(|(k, _)| (k + 1) as f64 / case.segments() as f64).collect();
+    for (k, one) in case.attachments.iter().enumerate() {
+        let turns = one.rotary_inertia_kg_m2 > 0.0 || one.offset_across_m != 0.0 || one.offset_along_m != 0.0;
+        let near = |border: &&f64| (one.at - **border).abs() < 2.0 * cell;
+        if let Some(border) = borders.iter().find(near).filter(|_| turns) {
+            let what = format!(
+                "a body that turns with the beam, near the border of spans at {}",
+                plain(*border)
+            );
+            let fault = Violation::new(Code::Geometry, format!("/attachments/{k}/at"), what);
+            let fault = fault.allowed(format!(
+                "at least 2 cells ({} of the length) from the border",
+                plain(2.0 * cell)
+            ));
+            faults.push(fault.hint("move the attachment, use more cells per segment, or leave out inertia and offset"));
         }
     }
 }
@@ -66,26 +138,41 @@ fn lengths(case: &Case, faults: &mut Violations) {
         };
         whole = false;
         let nearest = (length / pitch).round().max(1.0) * pitch;
-        let what = format!("{} m is not a whole number of segments", significant(length, 6));
+        let key = match case.bladders {
+            Some(_) => "/bladders/per_row",
+            None => "/mesh/segments",
+        };
+        let what = format!(
+            "{} m is not a whole number of segments of {} m (/beam/length_m {} m over {key} {segments})",
+            plain(length),
+            plain(pitch),
+            plain(case.beam.length_m)
+        );
         let fault = Violation::new(Code::Geometry, format!("/spans/{k}/length_m"), what).allowed(format!(
             "multiples of {} m; nearest {}",
-            significant(pitch, 6),
-            significant(nearest, 6)
+            plain(pitch),
+            plain(nearest)
         ));
-        faults.push(fault.hint(match case.bladders {
-            Some(_) => "segments have the length of the beam over /bladders/per_row; change one of the three",
-            None => "segments have the length of the beam over /mesh/segments; change one of the three",
-        }));
+        faults.push(fault.hint(format!("change this length, /beam/length_m or {key}")));
     }
-    let total: usize = counts.iter().flatten().sum();
+    let total = counts
+        .iter()
+        .flatten()
+        .fold(0_usize, |sum, count| sum.saturating_add(*count));
+    if let Some(k) = (0..counts.len()).find(|&k| whole && case.spans[k].length_m.is_none() && counts[k].is_none()) {
+        let what = "nothing of the beam is left for the span without length_m";
+        let fault = Violation::new(Code::Geometry, format!("/spans/{k}"), what);
+        faults.push(fault.hint("shorten other spans, or remove this one"));
+        return;
+    }
     if whole && (total != segments || counts.contains(&None)) {
         let what = format!(
-            "the spans have {}, the beam has {segments} ({} m)",
-            counted(total as u64, "segment"),
-            significant(case.beam.length_m, 6)
+            "the spans are {} m long together, the beam {} m ({total} of {segments} segments)",
+            plain(total as f64 * pitch),
+            plain(case.beam.length_m)
         );
         let fault = Violation::new(Code::Geometry, "/spans", what);
-        faults.push(fault.hint("omit length_m of one span: it is the rest of the beam"));
+        faults.push(fault.hint("change a length_m, or omit that of one span: it is then the rest of the beam"));
     }
 }
 

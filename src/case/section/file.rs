@@ -72,7 +72,9 @@ pub fn parse(text: &str, path: &Path, sets: &[String]) -> Result<SectionFile> {
     let of_case = value.get(KEY).is_some();
     if !of_case && value.get("ends").is_some() {
         let what = "this case has no section: it gives its coefficients directly or by a preset";
-        return Err(source.error(vec![Violation::new(Code::Missing, "", what)]));
+        let fault = Violation::new(Code::Missing, "", what);
+        let hint = "slcbeam check prints its coefficients; slcbeam new section writes a section";
+        return Err(source.error(vec![fault.hint(hint)]));
     }
     let (schema, at) = schema_json::section(of_case);
     let mut faults = Violations::default();

@@ -33,7 +33,7 @@ pub struct EquilibriumArguments {
     #[command(flatten)]
     pub case: CaseArguments,
     /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
@@ -81,7 +81,7 @@ pub struct ModesArguments {
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub near: Option<f64>,
     /// About the equilibrium under the loads at this instant [s] [default: about the start]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Differentiate frequencies and growth rates by this number of the case, a JSON pointer such as /beam/young_modulus_pa;
     /// repeatable

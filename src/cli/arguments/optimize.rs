@@ -6,6 +6,7 @@ use super::{CaseArguments, DesignCommand, ResultArguments};
 
 /// `optimize`.
 #[derive(Debug, Args)]
+#[command(group(clap::ArgGroup::new("goal").required(true)))]
 pub struct OptimizeArguments {
     /// The case.
     #[command(flatten)]
@@ -20,15 +21,10 @@ pub struct OptimizeArguments {
     #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub crossovers: Option<usize>,
     /// The figure that is to be largest, as the table of sweep names it, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
-    #[arg(
-        long,
-        value_name = "QUANTITY[.FIGURE]",
-        conflicts_with = "minimize",
-        required_unless_present = "minimize"
-    )]
+    #[arg(long, value_name = "QUANTITY[.FIGURE]", group = "goal")]
     pub maximize: Option<String>,
     /// The figure that is to be least
-    #[arg(long, value_name = "QUANTITY[.FIGURE]")]
+    #[arg(long, value_name = "QUANTITY[.FIGURE]", group = "goal")]
     pub minimize: Option<String>,
     /// Limit of another figure, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
     #[arg(long, value_name = "QUANTITY[.FIGURE]<=VALUE")]

@@ -26,7 +26,7 @@ pub struct RunArguments {
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
     /// Stop after so many seconds of wall time, with everything so far written
-    #[arg(long, value_name = "SECONDS", value_parser = crate::cli::progress_line::duration)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::duration)]
     pub max_wall: Option<f64>,
     /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
     #[arg(long)]

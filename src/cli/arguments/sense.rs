@@ -36,7 +36,7 @@ pub struct SenseArguments {
     #[arg(long, value_name = "N", requires = "dynamic", value_parser = clap::value_parser!(u16).range(5..=200))]
     pub knots: Option<u16>,
     /// Instant whose own loads of the case act besides [default: the end of the run]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = crate::cli::progress_line::instant)]
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Which bladders to measure: the best sets of every size, by the sum of the variances of the loads, or by the volume in which they lie
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "variances",

@@ -1,6 +1,7 @@
 //! The box at the end of a run, with the most important results.
 
 mod errors;
+mod warnings;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -16,8 +17,6 @@ use crate::run::sensitivity::figures::FigureSensitivity;
 use crate::run::summary::{Quantity, Status, Summary};
 use errors::{errors, figure};
 
-/// Largest number of warnings shown; the rest is counted.
-const WARNINGS: usize = 3;
 /// Largest number of lines of a plain entry. Warnings and reasons of failures are printed in full, because their advice is at the end.
 const LINES: usize = 2;
 /// Smallest share of the wall time that is shown.
@@ -99,12 +98,11 @@ fn rows(summary: &Summary, tone: Tone) -> Vec<Row> {
         }
     };
     add("why", summary.reason.clone(), tone);
-    for warning in summary.warnings.iter().take(WARNINGS) {
-        add("warning", Some(warning.clone()), Tone::Warning);
+    let (shown, others) = warnings::divide(&summary.warnings);
+    for warning in shown {
+        add("warning", Some(warning.into()), Tone::Warning);
     }
-    let more = summary.warnings.len().saturating_sub(WARNINGS);
-    let more = (more > 0).then(|| format!("and {more} more in summary.json; slcbeam explain describes each number"));
-    add("", more, Tone::Warning);
+    add("", others, Tone::Warning);
     let [end, largest] = tip(summary);
     let below = if end.is_some() { "" } else { "tip" };
     add("tip", end, Tone::Plain);

@@ -58,12 +58,12 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     if section.bending_damping_time > 0.0 {
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
-        for i in first..end {
+        for (i, ei) in ei.iter().enumerate().take(end).skip(first) {
             let mut rate = w.shape.kappa_rate[i];
             if let Some(rest) = now.rest_curvature[1].get(i) {
                 rate -= T::constant(*rest);
             }
-            w.forces.viscous_moment[i] = rate * (ei[i] * section.bending_damping_time);
+            w.forces.viscous_moment[i] = rate * (ei * section.bending_damping_time);
         }
         if system.mesh.fourth {
             fourth_order::moments(&system.mesh, now, &mut w.forces.viscous_moment);

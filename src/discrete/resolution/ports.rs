@@ -76,7 +76,9 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<PortEffect> {
     let network = &wet.network;
     let ringing = model.effects.has(Effect::SolidInertia);
     let ringing = ringing.then(|| characteristic::first_axial_frequency(model));
-    let in_depths = |omega: f64| wet.bladder_length * (wet.compliance() * omega / network.bladder_mobility).sqrt();
+    let in_depths = |omega: f64| {
+        wet.bladder_length * (wet.slowest_diffusion() * wet.compliance() * omega / network.bladder_mobility).sqrt()
+    };
     let depths = |signal: &Signal, begins: bool| {
         let sudden = |first: &f64| {
             let time = signal.shortest_time_s(end).filter(|time| time * first < SUDDEN);
@@ -160,7 +162,7 @@ fn lags(case: &Case, wet: &Wet) -> Vec<f64> {
     const SAMPLES: usize = 200;
     const REACHED: f64 = 0.9;
     let (end, network) = (case.time.end_s, &wet.network);
-    let diffusivity = network.bladder_mobility / wet.compliance();
+    let diffusivity = network.bladder_mobility / (wet.slowest_diffusion() * wet.compliance());
     let open = at_open_ends(wet);
     let lag = |(port, open): (&PressurePort, Option<(usize, BladderEnd)>)| {
         if open.is_none() {

@@ -27,7 +27,7 @@ pub struct AlongBladder {
 
 impl AlongBladder {
     /// Law for the bladders of a case, with all effects; none for massless fluid.
-    pub(super) fn new(bladders: &Bladders, fluid: &Fluid) -> Option<Self> {
+    pub(in crate::model) fn new(bladders: &Bladders, fluid: &Fluid) -> Option<Self> {
         let (density, viscosity) = (fluid.density_kg_m3, fluid.viscosity_pa_s);
         let section = bladders.cross_section.clone().unwrap_or(CrossSection::Rectangle {
             height_m: bladders.height_m,

@@ -93,6 +93,10 @@ impl ResultFolder {
             let why = "it is a symbolic link whose target does not exist";
             return Err(fault("use", dir, io::Error::new(io::ErrorKind::NotFound, why)));
         }
+        if dir.is_file() {
+            let why = "it is a file; name a folder that is new or empty";
+            return Err(fault("use", dir, io::Error::new(io::ErrorKind::AlreadyExists, why)));
+        }
         fs::create_dir_all(dir).map_err(|e| fault("create", dir, e))?;
         let lock = Lock::take(dir)?;
         let older = FolderKind::within(dir);
@@ -143,11 +147,18 @@ impl ResultFolder {
     /// Claims the folder of an interrupted run.
     ///
     /// # Errors
-    ///
     /// There is no run, or another process writes into the folder.
     pub fn again(dir: &Path) -> Result<Self> {
         if FolderKind::within(dir) != Some(FolderKind::Run) {
-            return Err(Error::Usage(format!("{} contains no run to resume", dir.display())));
+            let what = if dir.exists() {
+                "contains no run to resume"
+            } else {
+                "does not exist"
+            };
+            return Err(Error::Usage(format!(
+                "{} {what}; run without --resume, with /time/checkpoint_interval_s in the case",
+                dir.display()
+            )));
         }
         let mut folder = Self::claim(dir, FolderKind::Run, false)?;
         folder.origin.stays = true;

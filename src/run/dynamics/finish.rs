@@ -7,7 +7,7 @@ use crate::discrete::System;
 use crate::discrete::quantities::{Group, Interest};
 use crate::error::Code;
 use crate::integrate::SolverWallTimes;
-use crate::model::water_hammer;
+use crate::model::{characteristic, water_hammer};
 use crate::run::method::{Integrator, IntegratorOptions};
 use crate::run::order;
 use crate::run::sensitivity::forward::ForwardSensitivities;
@@ -117,8 +117,9 @@ impl Run<'_> {
             .filter(|(one, _)| one.unit() == "J" && one.group() != Group::Open);
         b.energy_j = energies.map(|(one, value)| (one.name().into(), value)).collect();
         s.growth = o.growth.judge(self.case.beam.length_m, &self.linear);
+        let periodic = characteristic::forcing_period(self.case).is_some();
         s.warnings
-            .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning())));
+            .extend(s.growth.as_ref().map(|g| Code::Growth.warning(g.warning(periodic))));
         s.growing_wave = self.waves.as_ref().and_then(|watch| watch.judge(&o.waves));
         s.warnings
             .extend(s.growing_wave.as_ref().map(|wave| Code::Growth.warning(wave.warning())));

@@ -176,7 +176,8 @@ impl Path {
         let fast = (reynolds > REYNOLDS).then(|| {
             Code::FastFlow.warning(format!(
                 "range of the model: the Reynolds number of steady flow in a tube reached {reynolds:.0} at load \
-                 factor {share:.4} (above {REYNOLDS}). The model assumes creeping flow."
+                 factor {share:.4} (above {REYNOLDS}). The model assumes creeping flow. Pressures are estimates. Use \
+                 --set '/effects/tube_losses=\"on\"'."
             ))
         });
         let [mach, share] = self.mach;
@@ -191,12 +192,13 @@ impl Path {
         let strained = (strain > STRAIN).then(|| {
             Code::Strain.warning(format!(
                 "range of the model: the largest fibre strain |lambda - 1| + |kappa| h_s/2 reached {strain:.2} at \
-                 load factor {share:.4} (above {STRAIN}). The model assumes small strains."
+                 load factor {share:.4} (above {STRAIN}). The model assumes small strains. Use later shapes only \
+                 qualitatively."
             ))
         });
         let trapped = self.trapped.clone();
         let at = |factor: f64| format!("load factor {factor:.4}");
-        let unphysical = self.limits.warnings(&self.unphysical, &at);
+        let unphysical = self.limits.warnings(&self.unphysical, &at, "Reduce the load");
         let all = trapped.into_iter().chain(beyond).chain(unphysical).chain(strained);
         all.chain(fast).chain(choked).collect()
     }

@@ -231,7 +231,7 @@ fn find(columns: &[HistoryColumn], name: &str) -> Result<usize> {
         keys.sort_by_key(|key| key.starts_with("bladder_"));
         let mut seen = BTreeSet::new();
         keys.retain(|key| seen.insert(key.clone()));
-        let meant = case::nearest(name, keys.iter().map(String::as_str));
+        let meant = case::nearest_figure(name, keys.iter().map(String::as_str));
         let meant = meant.map_or_else(String::new, |near| format!("; nearest is {near}"));
         let more = keys.len().saturating_sub(LISTED);
         keys.truncate(LISTED);

@@ -14,7 +14,7 @@ use crate::case::Case;
 use crate::error::numbers::error_percent as percent;
 use crate::error::{Code, Result};
 use crate::run::record::Recorder;
-use crate::run::summary::{Figures, Status, Summary, largest_error};
+use crate::run::summary::{Figures, Status, Summary, has_unit_of_quantity, largest_error};
 use crate::study::effects::full_model::full;
 use crate::study::significant::RoundingScales;
 
@@ -122,7 +122,7 @@ pub(super) fn attribute(
     let Some(causes) = causes else { return Ok(()) };
     let large = large(summary, floors, least);
     if accuracy.is_none() && !large.is_empty() {
-        let warning = describe(case, &large, &causes, &shares(summary, causes.known()));
+        let warning = describe(case, summary, &large, &causes, &shares(summary, causes.known()));
         summary.warnings.insert(0, warning);
     }
     if let (Some(companion), Some(known)) = (&mut summary.companion, causes.known()) {
@@ -245,8 +245,7 @@ fn shares(
 ) -> BTreeMap<String, Vec<(ErrorCause, f64)>> {
     let of = |name: &String| {
         let size = |errors: &Figures| errors.get(name).and_then(largest_error).unwrap_or(0.0);
-        let quantity = [&summary.quantities, &summary.probes, &summary.ports];
-        let largest = quantity.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size());
+        let largest = largest_figure(summary, name);
         let each = causes.into_iter().flatten();
         let mut all: Vec<(ErrorCause, f64)> = each.map(|(c, errors)| (*c, size(errors) / largest)).collect();
         all.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -255,16 +254,32 @@ fn shares(
     summary.errors.keys().map(of).collect()
 }
 
+/// Largest figure of a quantity, probe or port.
+fn largest_figure(summary: &Summary, name: &str) -> f64 {
+    let all = [&summary.quantities, &summary.probes, &summary.ports];
+    all.iter().find_map(|all| all.get(name)).map_or(0.0, |q| q.size())
+}
+
+/// True if only the value at the end has a large error.
+fn only_at_the_end(summary: &Summary, name: &str) -> bool {
+    let limit = NAMED_FROM * largest_figure(summary, name);
+    let above = |(figure, error): (&String, &f64)| has_unit_of_quantity(figure) && *error > limit;
+    let errors = summary.errors.get(name).into_iter().flatten();
+    errors.filter(|one| above(*one)).all(|(figure, _)| figure == "final")
+}
+
 fn describe(
     case: &Case,
+    summary: &Summary,
     large: &[(String, f64)],
     measured: &Causes,
     shares: &BTreeMap<String, Vec<(ErrorCause, f64)>>,
 ) -> String {
-    let names: Vec<String> = large
-        .iter()
-        .map(|(name, e)| format!("{name} ± {}", percent(*e)))
-        .collect();
+    let named = |(name, error): &(String, f64)| match only_at_the_end(summary, name) {
+        true => format!("{name} (final) ± {}", percent(*error)),
+        false => format!("{name} ± {}", percent(*error)),
+    };
+    let names: Vec<String> = large.iter().map(named).collect();
     let found = format!(
         "estimated errors above {} of the largest value: {}.",
         percent(NAMED_FROM),
@@ -301,7 +316,7 @@ fn describe(
     }
     let set: Vec<String> = wanted.iter().map(|(cause, error)| cause.remedy(case, *error)).collect();
     Code::ErrorEstimate.warning(format!(
-        "{found} Causes for {worst}: {}. Use {}.",
+        "{found} Causes for {worst}: {}. Next, use {}; then check again, or use --accuracy {LIMIT}.",
         causes.join(", "),
         set.join(" ")
     ))

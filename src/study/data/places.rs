@@ -1,6 +1,8 @@
 //! Positions of quantities: `tip`, `bladder 3`, `port inlet`, the name of a probe, or a share of the beam's length.
 
 use crate::case::schema::{Case, Probe};
+use crate::case::spans;
+use crate::case::wiring::bladder_index;
 use crate::discrete::quantities::stations;
 use crate::error::{Error, Result};
 
@@ -62,7 +64,8 @@ fn of_bladder(case: &Case, quantity: &str, label: &str) -> std::result::Result<Q
     };
     let count = bladders.per_row;
     let number = label.replace('−', "-").parse::<i64>().ok();
-    let number = number.filter(|n| *n != 0 && n.unsigned_abs() as usize <= count);
+    let there = |n: &i64| bladder_index(*n, count).is_some_and(|bladder| spans::has_bladder(case, bladder));
+    let number = number.filter(there);
     let Some(number) = number else {
         return Err(format!(
             "no such bladder. The upper row has bladders 1 to {count}, the lower row -1 to -{count}"

@@ -1,6 +1,6 @@
 //! Figures by name, as in the table of `slcbeam sweep`.
 
-use crate::case::nearest;
+use crate::case::nearest_figure;
 use crate::error::{Error, Result};
 use crate::study::analysis::AnalysisKind;
 
@@ -32,7 +32,7 @@ pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -
     let mut quantities: Vec<String> = names.iter().map(quantity).collect();
     quantities.dedup();
     let all = names.iter().chain(&quantities).map(String::as_str);
-    let hint = match nearest(text, all) {
+    let hint = match nearest_figure(text, all) {
         Some(meant) => format!("nearest is {meant}"),
         None => {
             let more = if quantities.len() > LISTED { ", .." } else { "" };
@@ -40,8 +40,13 @@ pub fn resolve(option: &str, text: &str, what: AnalysisKind, names: &[String]) -
             format!("there are {}{more}", quantities.join(", "))
         }
     };
+    let elsewhere = match what {
+        AnalysisKind::Run if text.starts_with("mode_") => "; `--command modes` computes figures of modes",
+        AnalysisKind::Run if text.ends_with(".mean") => "; `--command periodic` computes means over a steady cycle",
+        _ => "",
+    };
     Err(Error::Usage(format!(
-        "{option} {text}: `{}` computes no such figure; {hint}",
+        "{option} {text}: `{}` computes no such figure; {hint}{elsewhere}",
         what.word()
     )))
 }

@@ -66,7 +66,7 @@ impl FigureLimit {
                 bound,
             }),
             _ => Err(Error::Usage(format!(
-                "--subject-to '{text}': expected a figure and its limit, such as 'max_pressure_pa<=2e4' or \
+                "--subject-to '{text}': expected a figure and its limit with <= or >=, such as 'max_pressure_pa<=2e4' or \
                  'mode_1.frequency_hz>=12'"
             ))),
         }

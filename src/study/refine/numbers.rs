@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{ReferencedNumber, RefinedNumbers};
-use crate::case::Case;
+use crate::case::{Case, spans};
 use crate::discrete::quantities::{Observable, probes};
 use crate::error::{Error, Result};
 use crate::model::Model;
@@ -45,7 +45,7 @@ pub fn of_equilibrium(case: &Case, options: &EquilibriumOptions) -> Result<Refin
 pub fn of_path(case: &Case, columns: &[HistoryColumn], path: &Path) -> Result<RefinedNumbers> {
     let row = path.states.last().map_or(&[][..], |state| &state.row);
     let length = case.beam.length_m;
-    let modulus = case.beam.young_modulus_pa;
+    let modulus = spans::softest_modulus(case);
     // compare angles with displacements, stresses of the solid with strains
     let alike = |column: &HistoryColumn| match column.unit {
         "rad" => ("m", length),

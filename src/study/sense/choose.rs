@@ -40,7 +40,11 @@ pub fn choose(matrix: &DMatrix<f64>, before: &DMatrix<f64>, criterion: Criterion
     let mut sensors: Vec<usize> = vec![];
     let mut all = vec![];
     for count in 1..=matrix.nrows() {
-        let open: Vec<usize> = (0..matrix.nrows()).filter(|row| !sensors.contains(row)).collect();
+        // a pressure that no load changes, such as that of a bladder that does not exist, is no sensor
+        let sees = |row: &usize| matrix.row(*row).amax() > 0.0;
+        let open: Vec<usize> = (0..matrix.nrows())
+            .filter(|row| !sensors.contains(row) && sees(row))
+            .collect();
         let with = |row: usize| sensors.iter().copied().chain([row]).collect::<Vec<_>>();
         let Some(best) = best_of(open.into_iter().map(with), matrix, before, criterion) else {
             break;

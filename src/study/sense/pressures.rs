@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::case::schema::Case;
+use crate::case::spans;
 use crate::case::wiring::{bladder_index, bladder_label};
 use crate::error::{Error, Result, listed, visible};
 use crate::study::data::DataTable;
@@ -71,7 +72,8 @@ impl PressureTable {
                 Holds::Pressure(label) => (label, &mut pressures),
                 Holds::Deviation(label) => (label, &mut deviations),
             };
-            let bladder = bladder_index(label, per_row).ok_or_else(|| {
+            let there = |bladder: &usize| spans::has_bladder(case, *bladder);
+            let bladder = bladder_index(label, per_row).filter(there).ok_or_else(|| {
                 wrong(format!(
                     "column {heading}: there is no bladder {label}. The upper row has bladders 1 to {per_row}, the \
                      lower row -1 to -{per_row}"

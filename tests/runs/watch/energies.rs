@@ -69,8 +69,9 @@ fn the_window_counts_what_was_spent() {
     assert_eq!(all["input_energy_j"].window_error, Some(0.25));
     assert_eq!(all["input_energy_j"].final_error, Some(1.0 / 105.0));
     let words = energies.warning(&all).expect("a warning");
-    assert!(words.starts_with("W020") && words.contains("in the window"), "{words}");
-    assert!(!words.contains("the energy put in over the run"), "{words}");
+    let named = "energy put in 4.000 J in the window (balance error 25 %)";
+    assert!(words.starts_with("W020") && words.contains(named), "{words}");
+    assert!(!words.contains("105.0 J over the run"), "{words}");
 }
 
 /// An efficiency above one names the origin of the energy.

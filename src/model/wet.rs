@@ -1,0 +1,283 @@
+//! Bladders with their fluid and network.
+
+use super::{
+    AlongBladder, AreaLaw, Compression, CouplingLaw, EffectSet, LumpedNetwork, ResolvedNetwork, Section, Storage,
+    StrainPotential, WallClosing, network, storage,
+};
+use crate::case::schema::{Bladders, Case, Effect};
+use crate::case::spans::{self, SegmentValues};
+use crate::numerics::Scalar;
+
+/// Laws of the bladders of one segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentLaw {
+    /// Area change of a bladder cell; slopes of omitted effects are zero.
+    pub area: AreaLaw,
+    /// Slopes by which pressure strains the beam; those of omitted effects are zero.
+    pub strains: AreaLaw,
+    /// Strains caused by pressure.
+    pub coupling: CouplingLaw,
+    /// Cross-section of a bladder at rest [m^2].
+    pub area_at_rest: f64,
+    /// Permeability of a bladder over that of [`ResolvedNetwork::bladder_mobility`].
+    pub mobility_ratio: f64,
+    /// Inertia along a bladder; none if omitted.
+    pub along: Option<AlongBladder>,
+}
+
+impl SegmentLaw {
+    fn new(case: &Case, values: &SegmentValues, bladders: &Bladders, section: &Section, asymmetry: bool) -> Self {
+        let area = AreaLaw::new(case, bladders, section, asymmetry);
+        let usual = case.bladders.as_ref().map_or(1.0, network::bladder_permeability);
+        Self {
+            area,
+            strains: area,
+            coupling: CouplingLaw::new(&values.beam, bladders),
+            area_at_rest: bladders.height_m * bladders.width_m,
+            mobility_ratio: network::bladder_permeability(bladders) / usual,
+            along: case.fluid.as_ref().and_then(|fluid| AlongBladder::new(bladders, fluid)),
+        }
+    }
+}
+
+/// Bladders with their fluid and network.
+#[derive(Clone, Debug)]
+pub struct Wet {
+    /// Bladders in a row, `n/2`.
+    pub per_row: usize,
+    /// Length `l_b` of a bladder [m].
+    pub bladder_length: f64,
+    /// Cross-section at rest `h_b w_b` [m^2].
+    pub area_at_rest: f64,
+    /// Area change of a bladder cell; slopes of omitted effects are zero.
+    pub area: AreaLaw,
+    /// Contact between the walls of a bladder; none if omitted.
+    pub closing: Option<WallClosing>,
+    /// Compression of the fluid; none for incompressible fluid.
+    pub compression: Option<Compression>,
+    /// Slopes by which pressure strains the beam; those of omitted effects are zero.
+    pub strains: AreaLaw,
+    /// Strains caused by pressure.
+    pub coupling: CouplingLaw,
+    /// Laws of the segments of a beam with spans, of which `area`, `strains` and `coupling` are those of the case; empty for a uniform
+    /// beam.
+    pub segments: Vec<SegmentLaw>,
+    /// Tubes, junctions, ports, turbines.
+    pub network: ResolvedNetwork,
+    /// True if fluid flows.
+    pub flows: bool,
+    /// Storage law of each bladder.
+    pub storage: Vec<Storage>,
+    /// Groups of bladders with a common pressure.
+    pub lumped: Vec<LumpedNetwork>,
+    /// True if a law depends on mean moments, which are then unknowns.
+    pub takes_moments: bool,
+    /// True if a law depends on mean forces, which are then unknowns.
+    pub takes_forces: bool,
+    /// Energy of the section beyond its quadratic part.
+    pub strain_energy: Option<StrainPotential>,
+}
+
+/// `R` of the rows: upper, lower.
+pub const ROWS: [f64; 2] = [1.0, -1.0];
+
+impl Wet {
+    /// The bladders of a segment: upper, lower.
+    pub fn pair(&self, segment: usize) -> [usize; 2] {
+        [segment, self.per_row + segment]
+    }
+
+    /// Segment and row `R` of a bladder.
+    pub fn place(&self, bladder: usize) -> (usize, f64) {
+        let row = bladder / self.per_row;
+        (bladder - row * self.per_row, ROWS[row])
+    }
+
+    /// `φ_b l_b` for a beam length.
+    pub fn length_ratio(&self, length: f64) -> f64 {
+        self.bladder_length * self.per_row as f64 / length
+    }
+
+    /// Area law of a segment.
+    #[inline]
+    pub fn area_of(&self, segment: usize) -> &AreaLaw {
+        self.segments.get(segment).map_or(&self.area, |law| &law.area)
+    }
+
+    /// Strains of a segment by pressure, and their slopes.
+    #[inline]
+    pub fn strains_of(&self, segment: usize) -> (&CouplingLaw, &AreaLaw) {
+        let own = self.segments.get(segment);
+        own.map_or((&self.coupling, &self.strains), |law| (&law.coupling, &law.strains))
+    }
+
+    /// Cross-section of the bladders of a segment at rest [m^2].
+    pub fn area_at_rest_of(&self, segment: usize) -> f64 {
+        self.segments
+            .get(segment)
+            .map_or(self.area_at_rest, |law| law.area_at_rest)
+    }
+
+    /// Permeability of a bladder over that of most.
+    pub fn mobility_ratio(&self, bladder: usize) -> f64 {
+        self.segments
+            .get(self.place(bladder).0)
+            .map_or(1.0, |law| law.mobility_ratio)
+    }
+
+    /// Inertia along a bladder; none if omitted.
+    pub fn along(&self, bladder: usize) -> Option<&AlongBladder> {
+        let own = self.segments.get(self.place(bladder).0);
+        own.map_or(self.network.along_bladders.as_ref(), |law| law.along.as_ref())
+    }
+
+    /// Compliance of a bladder over that of most.
+    pub fn compliance_ratio(&self, bladder: usize) -> f64 {
+        let own = self.segments.get(self.place(bladder).0);
+        own.map_or(1.0, |law| {
+            (self.compliance() + law.area.per_pressure - self.area.per_pressure) / self.compliance()
+        })
+    }
+
+    /// Largest time of diffusion along a bladder over that of most bladders.
+    pub fn slowest_diffusion(&self) -> f64 {
+        let there = (0..self.storage.len()).filter(|bladder| self.has(*bladder) && !self.segments.is_empty());
+        let ratios = there.map(|bladder| self.compliance_ratio(bladder) / self.mobility_ratio(bladder));
+        ratios.reduce(f64::max).unwrap_or(1.0)
+    }
+
+    /// Makes the areas of all bladders unknowns.
+    pub fn flow_everywhere(&mut self) {
+        let there = self.storage.iter_mut().filter(|storage| **storage != Storage::Absent);
+        there.for_each(|storage| *storage = Storage::Flowing);
+    }
+
+    /// True if a bladder exists.
+    pub fn has(&self, bladder: usize) -> bool {
+        self.storage[bladder] != Storage::Absent
+    }
+
+    /// Area stored per pressure at ambient pressure [m^2/Pa], with compression.
+    pub fn compliance(&self) -> f64 {
+        self.compliance_at(0.0)
+    }
+
+    /// Area stored per pressure at a pressure [Pa], with compression. Gas stiffens with pressure.
+    pub fn compliance_at(&self, pressure: f64) -> f64 {
+        match &self.compression {
+            None => self.area.per_pressure,
+            Some(compression) => self.area.per_pressure + compression.compliance(pressure),
+        }
+    }
+
+    /// Content of a cell with an area law at a pressure [m^2]; `imposed` is the area change by bending and force.
+    #[inline]
+    pub fn content<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
+        match &self.compression {
+            None => self.swelling(law, pressure, imposed),
+            Some(compression) => compression.content(pressure, self.swelling(law, pressure, imposed)),
+        }
+    }
+
+    /// Area change of a cell with an area law at a pressure [m^2]; `imposed` is the part by bending and force.
+    #[inline]
+    pub fn swelling<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
+        match &self.closing {
+            None => pressure * law.per_pressure + imposed,
+            Some(closing) => closing.swelling(law, pressure, imposed),
+        }
+    }
+
+    /// Flow potential at a pressure, [E55].
+    #[inline]
+    pub fn potential<T: Scalar>(&self, pressure: T) -> T {
+        match &self.compression {
+            None => pressure,
+            Some(compression) => compression.potential(pressure),
+        }
+    }
+
+    /// Energy carried per volume at ambient density [Pa], [E56].
+    pub fn enthalpy(&self, pressure: f64) -> f64 {
+        self.compression.as_ref().map_or(pressure, |c| c.enthalpy(pressure))
+    }
+
+    /// Bladders of a case with all couplings.
+    pub(super) fn new(
+        case: &Case,
+        bladders: &Bladders,
+        section: &Section,
+        network: ResolvedNetwork,
+        effects: &EffectSet,
+    ) -> Self {
+        let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
+        let area_at_rest = bladders.height_m * bladders.width_m;
+        let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
+        let (storage, lumped) = storage::of_bladders(case, &network, effects);
+        let values = spans::segments(case);
+        let sections = Section::of_segments(case, &values);
+        let segments = values.iter().zip(&sections).map(|(values, section)| {
+            let own = values.bladders.as_ref().unwrap_or(bladders);
+            SegmentLaw::new(case, values, own, section, effects.has(Effect::Asymmetry))
+        });
+        let segments = segments.collect();
+        Self {
+            per_row: bladders.per_row,
+            bladder_length: bladders.length_m,
+            area_at_rest,
+            area,
+            closing: bladders
+                .closing
+                .as_ref()
+                .map(|written| WallClosing::new(written, area_at_rest)),
+            compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
+            strains: area,
+            coupling: CouplingLaw::new(&case.beam, bladders),
+            segments,
+            network,
+            flows: effects.has(Effect::Flow),
+            storage,
+            lumped,
+            takes_moments: true,
+            takes_forces: true,
+            strain_energy: bladders.strain_energy.as_ref().map(StrainPotential::new),
+        }
+    }
+
+    /// Removes the couplings of omitted effects. Pressure strains the beam by its own slopes, which depend on M and N
+    /// where these are kinked.
+    pub(super) fn reduce(&mut self, effects: &EffectSet) {
+        let reciprocal = matches!(self.coupling, CouplingLaw::Reciprocal { .. });
+        let bends = effects.has(Effect::PressureToCurvature) && reciprocal && self.strains.moment_half_difference > 0.0;
+        let stretches =
+            effects.has(Effect::PressureToStretch) && reciprocal && self.strains.force_half_difference > 0.0;
+        self.takes_moments = effects.has(Effect::MomentToArea) || bends;
+        self.strain_energy = self
+            .strain_energy
+            .take()
+            .filter(|_| effects.has(Effect::NonlinearSection));
+        self.takes_forces = effects.has(Effect::AxialStretch) && (effects.has(Effect::ForceToArea) || stretches);
+        let areas = self.segments.iter_mut().map(|law| &mut law.area);
+        for area in areas.chain([&mut self.area]) {
+            *area = area.without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
+        }
+        for link in &mut self.network.links {
+            link.tube = link.tube.and_then(|tube| tube.reduced(effects));
+        }
+        let along = &mut self.network.along_bladders;
+        *along = along.and_then(|along| along.reduced(effects));
+        for law in &mut self.segments {
+            law.along = law.along.and_then(|along| along.reduced(effects));
+        }
+        let [bends, stretches] =
+            [Effect::PressureToCurvature, Effect::PressureToStretch].map(|effect| effects.has(effect));
+        let laws = self
+            .segments
+            .iter_mut()
+            .map(|law| (&mut law.coupling, &mut law.strains));
+        for (coupling, strains) in laws.chain([(&mut self.coupling, &mut self.strains)]) {
+            *coupling = coupling.without(!bends, !stretches);
+            *strains = strains.without(!bends, !stretches);
+        }
+    }
+}
