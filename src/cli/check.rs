@@ -145,7 +145,7 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         |cause: &DecisionCause| matches!(cause, DecisionCause::Given(_) | DecisionCause::Filled(_)) && !asked.verbose;
     let (given, decided): (Vec<_>, Vec<_>) = system.model.effects.decisions.iter().partition(|d| by_case(&d.cause));
     text += &listed(decisions(&decided, asked.verbose).into_iter());
-    for (on, what) in [(true, "  given: "), (false, "  not given: ")] {
+    for (on, what) in [(true, "  part of the case: "), (false, "  not part of the case: ")] {
         let names: Vec<_> = given
             .iter()
             .filter(|d| d.on == on)

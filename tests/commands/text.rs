@@ -136,11 +136,11 @@ fn a_finished_run_in_a_glance() {
     │ tip         at the end: u₁ 123 ± 5 µm · u₃ 1.25 mm                       │
     │             largest: u₁ 123.0 ± 1.4 µm · u₃ 1.25 mm                      │
     │ pressure    largest in a bladder: 9.0 ± 0.3 kPa                          │
-    │ errors      ± by a companion run: 2 cells a segment, 4 a bladder, rtol   │
-    │             1·10⁻⁴ · 6.20 s                                              │
+    │ errors      ± by a companion run: 2 cells per segment, 4 per bladder,    │
+    │             rtol 1·10⁻⁴ · 6.20 s                                         │
     │ balances    relative residuals: energy 3.0·10⁻⁸                          │
     │ integrator  12 345 steps, mostly of order 4 · 0 rejected · 371 unknowns  │
-    │ time        500 ms simulated in 12.3 s · 24.6 s for a simulated second   │
+    │ time        500 ms simulated in 12.3 s · 24.6 s per simulated second     │
     │ spent on    residual 33 % · Jacobian 24 % · linear solver 33 % ·         │
     │             output 4 %                                                   │
     ╰─ report.html and data in out/wiring-2 ───────────────────────────────────╯

@@ -28,7 +28,7 @@ pub(super) fn errors(summary: &Summary) -> Option<String> {
         n => format!(", {} more", counted(n as u64, "effect")),
     };
     Some(format!(
-        "± by a companion run: {} a segment, {} a bladder, rtol {}{effects}{BETWEEN}{}",
+        "± by a companion run: {} per segment, {} per bladder, rtol {}{effects}{BETWEEN}{}",
         counted(companion.cells_per_segment as u64, "cell"),
         companion.cells_per_bladder,
         significant(companion.rtol, 1),

@@ -325,7 +325,7 @@ fn times(summary: &Summary) -> String {
     let (simulated, wall) = (summary.time_s, summary.wall_s.total);
     let simulated_text = hold(trimmed(&quantity(simulated, "s", 4)));
     let ratio = if simulated > 0.0 && wall > 0.0 {
-        format!("{BETWEEN}{} for a simulated second", hold(duration(wall / simulated)))
+        format!("{BETWEEN}{} per simulated second", hold(duration(wall / simulated)))
     } else {
         String::new()
     };
