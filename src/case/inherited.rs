@@ -56,10 +56,10 @@ fn in_spans(case: &Case) -> Option<String> {
     let resolved = serde_json::to_value(case).ok()?;
     let usual = Sizes::from_case(&resolved)?;
     let (mut names, mut shaping) = (vec![], vec![]);
-    for (segment, (span, _)) in spans::places(case).into_iter().enumerate() {
+    for (_, span, uniform) in spans::uniform_cases(case) {
         let written = &case.spans[span];
         let own = serde_json::to_value(written).unwrap_or_default();
-        let here = serde_json::to_value(spans::uniform_case(case, segment)).ok();
+        let here = serde_json::to_value(uniform).ok();
         let Some(here) = here.and_then(|here| Sizes::from_case(&here)) else {
             continue;
         };

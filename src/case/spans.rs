@@ -73,7 +73,8 @@ pub fn has_bladder(case: &Case, bladder: usize) -> bool {
     place.is_none_or(|(span, _)| case.spans[span].rows.has()[row])
 }
 
-/// Values of each segment; empty for a uniform beam, with the values of the case everywhere. Coefficients that a span does not give follow modulus and sizes.
+/// Values of each segment; empty for a uniform beam, with the values of the case everywhere. Coefficients that a span does not give
+/// follow modulus and sizes.
 pub fn segments(case: &Case) -> Vec<SegmentValues> {
     if case.spans.is_empty() {
         return vec![];
@@ -98,15 +99,23 @@ pub fn softest_modulus(case: &Case) -> f64 {
     moduli.reduce(f64::min).unwrap_or(case.beam.young_modulus_pa)
 }
 
-/// Case of the uniform beam with the values of one segment.
-pub fn uniform_case(case: &Case, segment: usize) -> Case {
-    let values = segments(case).into_iter().nth(segment);
-    let mut uniform = case.clone();
-    uniform.spans.clear();
-    if let Some(values) = values {
-        (uniform.beam, uniform.bladders) = (values.beam, values.bladders);
-    }
-    uniform
+/// Cases of uniform beams with the values of each segment, of equal neighbors in a span one; each with its first segment and its span.
+pub fn uniform_cases(case: &Case) -> impl Iterator<Item = (usize, usize, Case)> + '_ {
+    let all = segments(case);
+    let places = places(case);
+    (0..all.len()).filter_map(move |k| {
+        let span = places[k].0;
+        if k > 0 && places[k - 1].0 == span && all[k - 1] == all[k] {
+            return None;
+        }
+        let uniform = Case {
+            spans: vec![],
+            beam: all[k].beam.clone(),
+            bladders: all[k].bladders.clone(),
+            ..case.clone()
+        };
+        Some((k, span, uniform))
+    })
 }
 
 /// Values at a place of a span.

@@ -119,8 +119,10 @@ impl<'a> Walk<'a> {
         } else if !words.is_empty() {
             fault.code = Code::Name;
             fault.what = format!("unknown name \"{}\"", short(text));
-            fault.nearest = nearest(text, words.iter().chain(&tags).copied());
             fault.hint = called_otherwise(text, &words, &tags);
+            // a similar name that the remedy does not mean would mislead
+            let meant = |near: &String| fault.hint.as_ref().is_none_or(|hint| hint.contains(near.as_str()));
+            fault.nearest = nearest(text, words.iter().chain(&tags).copied()).filter(meant);
         }
         if fault.code == Code::Kind && fault.hint.is_none() {
             fault.hint = other();

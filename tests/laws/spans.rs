@@ -294,13 +294,16 @@ fn mistakes_are_explained() {
             ["the height of the bladders", "height of the beam"],
         ),
         (json!([{"rows": "none"}]), ["no span has bladders", "dry beam"]),
+        (json!([{"beam": {"young_modulus_pa": 2.0}}]), ["/spans/0", "at /beam/young_modulus_pa of this span"]),
+        (json!([{"length_m": 0.1}, {}]), ["nothing of the beam is left", "shorten other spans"]),
+        (json!([{"length_m": 0.05, "rows": "bottom"}, {}]), ["unknown name \"bottom\"", "the row below is called \"lower\""]),
     ] {
         let text = case(spans.clone());
         for part in parts {
             assert!(text.contains(part), "{spans}: {part}\n{text}");
         }
     }
-    let mut fourth = dry(10, &json!([{"length_m": 0.5}, {}]));
+    let mut fourth = dry(10, &json!([{"length_m": 0.5}, {"beam": {"young_modulus_pa": 3e8}}]));
     fourth["mesh"]["order"] = json!(4);
     let refused = System::new(&parse(&fourth)).unwrap_err().to_string();
     assert!(

@@ -59,11 +59,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 /// Applies the rules for values of a beam to the uniform beam of each span, and reports the first fault of each span.
 fn values(case: &Case, faults: &mut Violations) {
     let mut known = vec![];
-    for (segment, (span, _)) in spans::places(case).into_iter().enumerate() {
-        if known.contains(&span) || spans::segments(case).is_empty() {
+    for (_, span, uniform) in spans::uniform_cases(case) {
+        if known.contains(&span) {
             continue;
         }
-        let uniform = spans::uniform_case(case, segment);
         let mut own = Violations::default();
         if !case.plausibility.is_on() {
             own.take_as_meant();

@@ -21,14 +21,16 @@ function showScene(describe) {
   const scene = data.scene;
   if (!scene) return null;
   const half = scene.bladders?.per_row;
-  const size = half ? `${half} bladder${half === 1 ? "" : "s"} in each of two rows` : "no bladders";
+  const there = half ? scene.bladders.present.filter(Boolean).length : 0;
+  const plural = (n) => `${n} bladder${n === 1 ? "" : "s"}`;
+  const size = there === 2 * half && half ? `${plural(half)} in each of two rows` : there ? plural(there) : "no bladders";
   const body = section("scene", "Structure", `A beam ${scene.size}, seen from the side, with ${size}.`);
   const host = el("div");
   const readout = el("div", { class: "readout dim", "aria-live": "polite", text: half ? "Point at a bladder or a tube, or move among bladders with the arrow keys." : "" });
   const legend = el("ul", { class: "legend" });
   const note = el("p", { class: "caption" });
   const card = figure(null, null, host, half ? readout : null, legend, note);
-  const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Squares"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
+  const parts = half ? ` ${scene.bladders.outlines ? "Outlines" : "Rectangles"} are bladders, which lie across the beam; lines are tubes, which join their ends in front and behind.` : "";
   const scale = (thicker) => (note.textContent = `${thicker > 1.01 ? `To scale along the beam; its height is drawn ${shortest(thicker)} times larger.` : "To scale."} Root on the left, tip on the right.${parts}`);
   body.append(card);
   const drawn = drawScene(scene, host, readout, describe || ((b, layout) => bladderWords(b, layout, scene)), scale);
