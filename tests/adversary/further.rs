@@ -41,6 +41,37 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
         let fluid = case["fluid"].as_object_mut().expect("a fluid");
         fluid.extend(compression(r, pressure));
     }
+    // bodies that turn must not be near the borders of spans
+    if !attached && r.one_in(3) {
+        spans(r, b, case);
+    }
+    if r.one_in(4) {
+        case["foundation"] = json!({"stiffness_x_n_m2": short(b.ei / b.length.powi(4) * r.log(1.0, 1e3))});
+    }
+}
+
+/// Two or three spans of other materials.
+fn spans(r: &mut Random, b: &Beam, case: &mut Value) {
+    let count = |at: &str| case.pointer(at).and_then(Value::as_u64);
+    let segments = count("/bladders/per_row").or(count("/mesh/segments")).unwrap_or(10);
+    if segments < 4 {
+        return;
+    }
+    let pitch = b.length / segments as f64;
+    let span = |r: &mut Random, length: Option<u64>| {
+        let modulus = case["beam"]["young_modulus_pa"].as_f64().expect("a modulus") * r.log(0.2, 20.0);
+        let mut one = json!({"beam": {"young_modulus_pa": short(modulus)}});
+        if let Some(length) = length {
+            one["length_m"] = json!(length as f64 * pitch);
+        }
+        one
+    };
+    let first = 1 + r.below(segments as usize / 2) as u64;
+    let mut all = vec![span(r, Some(first)), span(r, None)];
+    if r.one_in(2) {
+        all.push(span(r, Some(1)));
+    }
+    case["spans"] = json!(all);
 }
 
 fn attachment(r: &mut Random, b: &Beam) -> Value {

@@ -294,9 +294,18 @@ fn mistakes_are_explained() {
             ["the height of the bladders", "height of the beam"],
         ),
         (json!([{"rows": "none"}]), ["no span has bladders", "dry beam"]),
-        (json!([{"beam": {"young_modulus_pa": 2.0}}]), ["/spans/0", "at /beam/young_modulus_pa of this span"]),
-        (json!([{"length_m": 0.1}, {}]), ["nothing of the beam is left", "shorten other spans"]),
-        (json!([{"length_m": 0.05, "rows": "bottom"}, {}]), ["unknown name \"bottom\"", "the row below is called \"lower\""]),
+        (
+            json!([{"beam": {"young_modulus_pa": 2.0}}]),
+            ["/spans/0", "at /beam/young_modulus_pa of this span"],
+        ),
+        (
+            json!([{"length_m": 0.1}, {}]),
+            ["nothing of the beam is left", "shorten other spans"],
+        ),
+        (
+            json!([{"length_m": 0.05, "rows": "bottom"}, {}]),
+            ["unknown name \"bottom\"", "the row below is called \"lower\""],
+        ),
     ] {
         let text = case(spans.clone());
         for part in parts {

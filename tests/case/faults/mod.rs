@@ -374,9 +374,10 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
      --> --set at /slover
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
-      = allowed: $schema, name, about, preset, section, beam, fluid, bladders, tubes, network, loads,
-                 attachments, contacts, surroundings, ends, start, formulation, plausibility, effects,
-                 effects_tolerance, mesh, time, solver, companion, probes, step_response
+      = allowed: $schema, name, about, preset, section, beam, fluid, bladders, spans, tubes, network,
+                 loads, attachments, foundation, contacts, surroundings, ends, start, formulation,
+                 plausibility, effects, effects_tolerance, mesh, time, solver, companion, probes,
+                 step_response
       = nearest: did you mean "solver"?
 
     fault[E006]: -1 is out of range
