@@ -178,7 +178,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             volume –                                     │
     │ integrator  12 345 steps, mostly of order 4 ·            │
     │             0 rejected · 371 unknowns                    │
-    │ time        500 ms simulated in 12.3 s · 24.6 s for a    │
+    │ time        500 ms simulated in 12.3 s · 24.6 s per      │
     │             simulated second                             │
     ╰─ report.html and data in out/wiring-2 ───────────────────╯
     ");

@@ -193,7 +193,7 @@ impl Display for MeasuredAgainst {
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let value = match self.value.is_finite() {
             true => significant(self.value, 2),
-            false => "infinite, because the loads are zero".into(),
+            false => "infinite".into(),
         };
         let side = if self.on() { "not below" } else { "below" };
         write!(f, "{}: {value}, {side} {}", self.what, significant(self.tolerance, 1))

@@ -281,8 +281,8 @@ fn describe(
     };
     let names: Vec<String> = large.iter().map(named).collect();
     let found = format!(
-        "estimated errors above {} of the largest value: {}.",
-        percent(NAMED_FROM),
+        "estimated errors above {} % of the largest value: {}.",
+        100.0 * NAMED_FROM,
         names.join(", ")
     );
     let of = |name: &str| shares.get(name).map_or(&[][..], Vec::as_slice);
