@@ -9,7 +9,7 @@ pub fn figure_name(figure: &str) -> String {
 }
 
 /// Endings of keys and their units, the longer ones first.
-const ENDS: [(&str, &str); 37] = [
+const ENDS: [(&str, &str); 38] = [
     ("m2_per_n_m", "m^2/(N m)"),
     ("m2_per_pa", "m^2/Pa"),
     ("m2_per_n", "m^2/N"),
@@ -19,6 +19,7 @@ const ENDS: [(&str, &str); 37] = [
     ("n_s2_m3", "N s^2/m^3"),
     ("n_s_m2", "N s/m^2"),
     ("n_s_m", "N s/m"),
+    ("n_m2", "N/m^2"),
     ("n_m_rad", "N m/rad"),
     ("kg_m2", "kg m^2"),
     ("kg_m3", "kg/m^3"),

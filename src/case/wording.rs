@@ -15,9 +15,8 @@ pub fn nearest_figure<'n>(name: &str, names: impl Iterator<Item = &'n str> + Clo
         part => part,
     });
     let meant = parts.collect::<Vec<_>>().join("_");
-    let known = names
-        .clone()
-        .find(|known| *known == meant || known.starts_with(&format!("{meant}_")));
+    let mut others = names.clone().filter(|_| meant != name);
+    let known = others.find(|known| *known == meant || known.starts_with(&format!("{meant}_")));
     known.map(str::to_owned).or_else(|| nearest(name, names))
 }
 

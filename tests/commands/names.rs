@@ -80,7 +80,10 @@ fn words_as_they_are_typed_are_explained() {
         ("torque", "moment_x_n"),
         ("pressure drop", "tube_resistance_pa_s_m3"),
         ("f_u", "forcing frequency times fluid time [1], a characteristic number"),
-        ("slowest_time_of_network_2_s", "longest time constant of pressure equalization in a network [s]"),
+        (
+            "slowest_time_of_network_2_s",
+            "longest time constant of pressure equalization in a network [s]",
+        ),
         ("tip_u1_m.max_abs", "max_abs (result): the largest magnitude"),
         (
             "bladder__1_pressure",

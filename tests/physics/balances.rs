@@ -135,6 +135,8 @@ fn balances_of_loaded_beams_close() {
         ("section-actuator", 0.3),
         ("section-finite", 0.3),
         ("ecoflex-actuator", 0.3),
+        ("tapered-finger", 0.3),
+        ("two-materials", 0.5),
     ] {
         closes(name, end);
     }

@@ -127,19 +127,23 @@ impl Outline {
     }
 }
 
+/// Part of a half side below which the straight rest between two fillets is too short for a mesh: both fillets then meet.
+const STRAIGHT: f64 = 0.01;
+
 fn rounded(origin: Point, a: f64, b: f64, fillet: f64) -> Outline {
     let [z, x] = origin;
     if fillet == 0.0 {
         return Outline::rectangle([z - a, z + a], [x - b, x + b]);
     }
+    let radii = [a, b].map(|half| if half - fillet < STRAIGHT * half { half } else { fillet });
     let mut curves = Vec::with_capacity(8);
     let signs = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
     for (k, [sz, sx]) in signs.into_iter().enumerate() {
-        let center = [z + sz * (a - fillet), x + sx * (b - fillet)];
+        let center = [z + sz * (a - radii[0]), x + sx * (b - radii[1])];
         let from = k as f64 * FRAC_PI_2;
         curves.push(Curve::Arc {
             center,
-            radii: [fillet; 2],
+            radii,
             from,
             to: from + FRAC_PI_2,
         });
