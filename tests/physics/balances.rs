@@ -136,7 +136,7 @@ fn balances_of_loaded_beams_close() {
         ("section-finite", 0.3),
         ("ecoflex-actuator", 0.3),
         ("tapered-finger", 0.3),
-        ("two-materials", 0.5),
+        ("two-materials", 1.5),
     ] {
         closes(name, end);
     }
