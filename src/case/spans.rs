@@ -1,5 +1,7 @@
 //! Values of beam and bladders along the axis: those of each segment, from the spans of a case.
 
+use std::ops::RangeInclusive;
+
 use serde_json::{Value, json};
 
 use super::scaling::CoefficientSizes;
@@ -19,14 +21,25 @@ pub struct SegmentValues {
     pub bladders: Option<Bladders>,
 }
 
+/// Numbers of segments that the schema allows; a list of more may not fit into memory.
+const POSSIBLE: RangeInclusive<usize> = 1..=1_000_000;
+
+/// True if the number of segments is one that the schema allows, so that spans can be resolved.
+pub fn countable(case: &Case) -> bool {
+    POSSIBLE.contains(&case.segments())
+}
+
 /// Length of a segment [m].
 pub fn segment_length(case: &Case) -> f64 {
     case.beam.length_m / case.segments() as f64
 }
 
-/// Number of segments of each span; none for a length that is not a whole number of segments, or if nothing is left for a span without
-/// length.
+/// Number of segments of each span; none for a length that is not a whole number of segments, if nothing is left for a span without
+/// length, or if the number of all segments is not allowed.
 pub fn counts(case: &Case) -> Vec<Option<usize>> {
+    if !countable(case) {
+        return vec![None; case.spans.len()];
+    }
     let pitch = segment_length(case);
     let whole = |length: f64| {
         let count = (length / pitch).round();
@@ -34,11 +47,8 @@ pub fn counts(case: &Case) -> Vec<Option<usize>> {
         (fits && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
     };
     let given: Vec<Option<usize>> = case.spans.iter().map(|span| span.length_m.and_then(whole)).collect();
-    let taken = given
-        .iter()
-        .flatten()
-        .fold(0_usize, |sum, count| sum.saturating_add(*count));
-    let rest = case.segments().saturating_sub(taken);
+    // each count is at most that of all segments, so that no sum overflows
+    let rest = case.segments().saturating_sub(given.iter().flatten().sum());
     let rest = Some(rest).filter(|rest| *rest > 0);
     let counts = case.spans.iter().zip(given);
     counts
@@ -53,24 +63,20 @@ pub fn places(case: &Case) -> Vec<(usize, f64)> {
         let count = count.unwrap_or(0);
         (0..count).map(move |k| (span, (k as f64 + 0.5) / count as f64))
     };
-    all.flat_map(within).take(case.segments()).collect()
+    all.flat_map(within).collect()
 }
 
 /// True if a bladder `0..n`, upper row first, exists.
 pub fn has_bladder(case: &Case, bladder: usize) -> bool {
-    let segments = case.segments();
-    if counts(case)
-        .into_iter()
-        .map(Option::unwrap_or_default)
-        .fold(0_usize, usize::saturating_add)
-        != segments
-    {
-        // faulty spans are reported by themselves
-        return true;
-    }
-    let (segment, row) = (bladder % segments, bladder / segments);
-    let place = places(case).get(segment).copied();
-    place.is_none_or(|(span, _)| case.spans[span].rows.has()[row])
+    bladders(case)(bladder)
+}
+
+/// Existence of each bladder `0..n`, upper row first.
+pub fn bladders(case: &Case) -> impl Fn(usize) -> bool + '_ {
+    let (segments, places) = (case.segments(), places(case));
+    // faulty spans are reported by themselves
+    let faulty = places.len() != segments;
+    move |bladder| faulty || case.spans[places[bladder % segments].0].rows.has()[bladder / segments]
 }
 
 /// Values of each segment; empty for a uniform beam, with the values of the case everywhere. Coefficients that a span does not give
@@ -122,9 +128,7 @@ pub fn uniform_cases(case: &Case) -> impl Iterator<Item = (usize, usize, Case)> 
 fn values(case: &Case, whole: &Value, span: &Span, x: f64) -> SegmentValues {
     let mut here = whole.clone();
     let mut numbers: Vec<(String, f64)> = vec![];
-    let given = span.beam.given().map(|(key, profile)| ("beam", key, profile));
-    let in_bladders = span.bladders.given().map(|(key, profile)| ("bladders", key, profile));
-    for (part, key, profile) in given.chain(in_bladders) {
+    for (part, key, profile) in span.given() {
         // an optional number that the case leaves out
         if let Some(Value::Object(part)) = here.get_mut(part) {
             part.entry(key).or_insert(Value::Null);

@@ -92,5 +92,6 @@ fn with_tip(text: &str, words: &[OsString]) -> String {
     if !tip.is_empty() {
         lines.insert(lines.len().min(1), format!("\n  tip: {tip}"));
     }
+    lines.dedup_by(|line, before| line.is_empty() && before.is_empty());
     visible(&lines.join("\n")).into_owned()
 }

@@ -42,10 +42,8 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
         return vec![];
     };
     if !model.sections.is_empty() {
-        let cases: BTreeMap<usize, Case> = spans::uniform_cases(case).map(|(j, _, case)| (j, case)).collect();
-        let of = |j: usize| cases.range(..=j).next_back().map(|(_, case)| case);
-        let parts = model.uniform_parts().filter_map(|(j, part)| Some((of(j)?, part)));
-        return worst(parts.flat_map(|(case, part)| coupling(case, &part)));
+        let parts = spans::uniform_cases(case).filter(|(segment, ..)| model.has_bladders(*segment));
+        return worst(parts.flat_map(|(segment, _, uniform)| coupling(&uniform, &model.uniform_part(segment))));
     }
     let (m, n) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let (am, an) = (0.5 * (m.opening + m.closing), 0.5 * (n.tension + n.compression));

@@ -10,7 +10,7 @@ use crate::error::{Code, Violation};
 pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
     if !model.sections.is_empty() {
         let parts = model.uniform_parts();
-        let limits = parts.filter_map(|(_, part)| Some(convex_up_to(&part, part.wet.as_ref()?)));
+        let limits = parts.filter_map(|part| Some(convex_up_to(&part, part.wet.as_ref()?)));
         return limits.fold((f64::INFINITY, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.min(b.1)));
     }
     let CouplingLaw::Reciprocal { length_ratio } = wet.coupling else {

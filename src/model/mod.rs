@@ -213,18 +213,23 @@ impl Model {
         }
     }
 
+    /// True if a segment has a bladder.
+    fn has_bladders(&self, segment: usize) -> bool {
+        let wet = self.wet.as_ref();
+        wet.is_some_and(|wet| wet.pair(segment).into_iter().any(|bladder| wet.has(bladder)))
+    }
+
     /// For a beam with spans, the uniform beam of each segment with bladders; of equal neighbors one.
-    pub fn uniform_parts(&self) -> impl Iterator<Item = (usize, Self)> + '_ {
-        let wet = self.wet.as_ref().filter(|_| !self.sections.is_empty());
-        let there = move |j: &usize| wet.is_some_and(|wet| wet.pair(*j).into_iter().any(|bladder| wet.has(bladder)));
+    pub fn uniform_parts(&self) -> impl Iterator<Item = Self> + '_ {
+        let there = |j: &usize| self.has_bladders(*j);
         let differs = move |j: &usize| {
             let same = |wet: &Wet| wet.segments[*j] == wet.segments[j - 1] && self.sections[*j] == self.sections[j - 1];
-            *j == 0 || !there(&(j - 1)) || wet.is_none_or(|wet| !same(wet))
+            *j == 0 || !there(&(j - 1)) || !self.wet.as_ref().is_some_and(same)
         };
         (0..self.sections.len())
             .filter(there)
             .filter(differs)
-            .map(|j| (j, self.uniform_part(j)))
+            .map(|j| self.uniform_part(j))
     }
 
     /// Uniform beam with the section and the bladders of one segment.

@@ -32,7 +32,7 @@ const FAR: f64 = 1e6;
 /// Evaluates both sides of each kink and returns the worst. None without bladders.
 pub fn assess(model: &Model) -> Option<Passivity> {
     if !model.sections.is_empty() {
-        let parts = model.uniform_parts().filter_map(|(_, part)| assess(&part));
+        let parts = model.uniform_parts().filter_map(|part| assess(&part));
         return parts.reduce(|a, b| if b.least < a.least { b } else { a });
     }
     let wet = model.wet.as_ref()?;

@@ -112,6 +112,7 @@ impl LumpedNetwork {
 /// Storage law of every bladder, and the lumped networks.
 pub fn of_bladders(case: &Case, network: &ResolvedNetwork, effects: &EffectSet) -> (Vec<Storage>, Vec<LumpedNetwork>) {
     let per_row = network.component_of_bladder.len() / 2;
+    let exists = spans::bladders(case);
     let uneven = |bladder: usize| {
         case.start.pressures.iter().any(|start| {
             let here = |b: &i64| bladder_index(*b, per_row) == Some(bladder);
@@ -122,7 +123,7 @@ pub fn of_bladders(case: &Case, network: &ResolvedNetwork, effects: &EffectSet) 
         .sealed()
         .enumerate()
         .map(|(bladder, sealed)| {
-            if !spans::has_bladder(case, bladder) {
+            if !exists(bladder) {
                 Storage::Absent
             } else if !effects.has(Effect::Flow) || (sealed && !uneven(bladder)) {
                 Storage::Kept

@@ -53,7 +53,7 @@ impl Answer {
     fn warnings(&self, code: &str) -> Vec<&str> {
         let all = self.summary["warnings"].as_array().into_iter().flatten();
         all.filter_map(Value::as_str)
-            .filter(|told| told.starts_with(code))
+            .filter(|warning| warning.starts_with(code))
             .collect()
     }
 
@@ -154,12 +154,12 @@ fn pressures_that_the_mesh_of_the_fluid_misses_are_reported() {
         );
         println!("{name}: {value:.4e} ± {bar:.2e}, right {right:.4e}");
         assert!(bar > (right - value).abs() / 3.0, "{name}: {value:e} ± {bar:e}");
-        let told = answer.warning("W021");
-        assert!(told.contains("max_pressure_pa"), "{told}");
-        let remedy = told
+        let warning = answer.warning("W021");
+        assert!(warning.contains("max_pressure_pa"), "{warning}");
+        let remedy = warning
             .split("--set ")
             .find(|set| set.starts_with("/mesh/cells_per_bladder="));
-        let remedy = remedy.and_then(|set| set.split([' ', ';']).next()).expect(told);
+        let remedy = remedy.and_then(|set| set.split([' ', ';']).next()).expect(warning);
         let finer = Answer::run(name, &[remedy]).figure("max_pressure_pa", "max_abs");
         assert!((finer / right - 1.0).abs() < 0.15, "{name}: {finer:e} with {remedy}");
     }
@@ -169,8 +169,11 @@ fn pressures_that_the_mesh_of_the_fluid_misses_are_reported() {
 #[test]
 fn what_the_mesh_and_the_steps_miss_is_reported() {
     let answer = Answer::run("shaken-contact", &[]);
-    let told = answer.warning("W021");
-    assert!(told.contains("tip_u3_m") && told.contains("tip_u1_m"), "{told}");
+    let warning = answer.warning("W021");
+    assert!(
+        warning.contains("tip_u3_m") && warning.contains("tip_u1_m"),
+        "{warning}"
+    );
 }
 
 /// Source: Joukowsky, 9.1e5 Pa with the speed of sound by the bulk modulus. Goal: compressibility is kept, the rise is below one and a half times this,
@@ -241,8 +244,8 @@ fn a_liquid_that_would_boil_is_reported() {
         ("forced-reverse-flow", "junction \"j\"", "−621.3 ± "),
     ] {
         let answer = Answer::run(name, &[]);
-        let told = answer.warning("W040");
-        assert!(told.contains(place) && told.contains("t = "), "{told}");
+        let warning = answer.warning("W040");
+        assert!(warning.contains(place) && warning.contains("t = "), "{warning}");
         assert!(answer.said.out.contains(printed), "{}", answer.said.out);
     }
 }
@@ -251,11 +254,11 @@ fn a_liquid_that_would_boil_is_reported() {
 #[test]
 fn a_beam_that_crosses_itself_is_reported() {
     let answer = Answer::run("self-crossing", &[]);
-    let told = answer.warning("W023");
-    assert!(told.contains(" meet from t = 0.66"), "{told}");
-    let (_, rest) = told.split_once(": ").expect(told);
-    let (places, _) = rest.split_once(" meet ").expect(told);
-    let (first, second) = places.split_once(" and ").expect(told);
+    let warning = answer.warning("W023");
+    assert!(warning.contains(" meet from t = 0.66"), "{warning}");
+    let (_, rest) = warning.split_once(": ").expect(warning);
+    let (places, _) = rest.split_once(" meet ").expect(warning);
+    let (first, second) = places.split_once(" and ").expect(warning);
     let is_place = |place: &str| ["the root", "the tip"].contains(&place) || place.ends_with(" mm from the root");
-    assert!(is_place(first) && is_place(second), "{told}");
+    assert!(is_place(first) && is_place(second), "{warning}");
 }

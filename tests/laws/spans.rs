@@ -312,6 +312,17 @@ fn mistakes_are_explained() {
             assert!(text.contains(part), "{spans}: {part}\n{text}");
         }
     }
+    for segments in [0_u64, 1_000_000_000_000_000_000, u64::MAX] {
+        let mut wet = pumped(&chain, 0.0, &json!([{"length_m": 0.05}, {}]));
+        wet["bladders"]["per_row"] = json!(segments);
+        let mut dry = dry(10, &json!([{"length_m": 0.5}, {}]));
+        dry["mesh"]["segments"] = json!(segments);
+        for (case, key) in [(wet, "/bladders/per_row"), (dry, "/mesh/segments")] {
+            let text = faults(&case);
+            let alone = text.contains(key) && text.matches("fault[").count() == 1;
+            assert!(alone && text.contains("fault[E006]"), "{key} {segments}: {text}");
+        }
+    }
     let mut fourth = dry(10, &json!([{"length_m": 0.5}, {"beam": {"young_modulus_pa": 3e8}}]));
     fourth["mesh"]["order"] = json!(4);
     let Err(slcbeam::error::Error::Case(refused)) = System::new(&parse(&fourth)) else {

@@ -190,12 +190,11 @@ fn one() -> f64 {
     1.0
 }
 
-/// Given signals, with their keys.
-fn given<'a, const N: usize>(
-    all: [(&'static str, &'a Option<Signal>); N],
-) -> impl Iterator<Item = (&'static str, &'a Signal)> {
-    all.into_iter()
-        .filter_map(|(key, signal)| Some((key, signal.as_ref()?)))
+/// Given signals or profiles, with their keys.
+fn given<'a, T, const N: usize>(
+    all: [(&'static str, &'a Option<T>); N],
+) -> impl Iterator<Item = (&'static str, &'a T)> {
+    all.into_iter().filter_map(|(key, value)| Some((key, value.as_ref()?)))
 }
 
 /// True if a number is 0, the default that a case may omit.

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AreaPerForce, AreaPerMoment};
+use super::{AreaPerForce, AreaPerMoment, given};
 use crate::functions::profile::Profile;
 
 /// A part of the beam with values of its own, a whole number of segments long. Values that it does not give are those of `beam` and
@@ -24,6 +24,14 @@ pub struct Span {
     /// Values of the bladders.
     #[serde(default, skip_serializing_if = "SpanBladders::is_empty")]
     pub bladders: SpanBladders,
+}
+
+impl Span {
+    /// Given values that are functions of the place, with the key of their part and their own.
+    pub fn given(&self) -> impl Iterator<Item = (&'static str, &'static str, &Profile)> {
+        let in_beam = self.beam.given().map(|(key, profile)| ("beam", key, profile));
+        in_beam.chain(self.bladders.given().map(|(key, profile)| ("bladders", key, profile)))
+    }
 }
 
 /// Rows that have bladders.
@@ -88,7 +96,7 @@ pub struct SpanBeam {
 
 impl SpanBeam {
     /// Given values, with their keys.
-    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
+    fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
         given([
             ("height_m", &self.height_m),
             ("width_m", &self.width_m),
@@ -129,7 +137,7 @@ pub struct SpanBladders {
 
 impl SpanBladders {
     /// Given values that are functions of the place, with their keys.
-    pub fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
+    fn given(&self) -> impl Iterator<Item = (&'static str, &Profile)> {
         given([
             ("height_m", &self.height_m),
             ("width_m", &self.width_m),
@@ -141,12 +149,4 @@ impl SpanBladders {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
-}
-
-/// Given profiles, with their keys.
-fn given<'a, const N: usize>(
-    all: [(&'static str, &'a Option<Profile>); N],
-) -> impl Iterator<Item = (&'static str, &'a Profile)> {
-    all.into_iter()
-        .filter_map(|(key, profile)| Some((key, profile.as_ref()?)))
 }

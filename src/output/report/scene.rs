@@ -40,7 +40,7 @@ pub fn to_json(case: &Case) -> Option<Value> {
         ),
         "bladders": case.bladders.as_ref().zip(ResolvedNetwork::from_case(case).ok()?).map(|(b, network)| json!({
             "per_row": b.per_row,
-            "present": (0..2 * b.per_row).map(|bladder| spans::has_bladder(case, bladder)).collect::<Vec<_>>(),
+            "present": (0..2 * b.per_row).map(spans::bladders(case)).collect::<Vec<_>>(),
             "heights": of_bladders,
             "length": b.length_m,
             "height": b.height_m,
