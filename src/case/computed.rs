@@ -53,6 +53,7 @@ pub fn written(energy: &StrainEnergy) -> Value {
         upper_pressure_pa,
         lower_pressure_pa,
         degree: energy.degree,
+        mirrored: energy.mirrored,
         coefficients_n: energy.coefficients_n.clone(),
         error: energy.error,
     })

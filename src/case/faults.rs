@@ -146,6 +146,13 @@ impl Violations {
             .retain(|(fault, _)| !pointers.iter().any(|p| is_below(&fault.pointer, p)));
     }
 
+    /// Adds a fault unless another one has the same cause in its text.
+    pub fn push_once(&mut self, cause: &str, violation: Violation) {
+        if !self.list.iter().any(|(fault, _)| fault.what.contains(cause)) {
+            self.push(violation);
+        }
+    }
+
     /// True if a fault is at or below a pointer.
     pub fn any_below(&self, pointer: &str) -> bool {
         self.list.iter().any(|(fault, _)| is_below(&fault.pointer, pointer))

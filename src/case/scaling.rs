@@ -80,6 +80,17 @@ impl Sizes {
         Some(self.area_per_force()? / self.section[0])
     }
 
+    /// `1/(E w_s h_s)`, to which areas per normal force of bladders of one size are proportional [1/N].
+    fn per_force(&self) -> f64 {
+        let [h, w] = self.section;
+        1.0 / (self.modulus * w * h)
+    }
+
+    /// `1/(E w_s h_s²)`, to which areas per bending moment of bladders of one size are proportional [1/(N m)].
+    fn per_moment(&self) -> f64 {
+        self.per_force() / self.section[0]
+    }
+
     /// `l_b h_b w_b/(w_s h_s)`, to which the length of a segment per p/E is proportional [m].
     fn length_per_pressure(&self) -> Option<f64> {
         let [h, w] = self.section;
@@ -94,11 +105,17 @@ impl Sizes {
 
     /// Proportions of the section and its cell; without bladders, those of the section.
     fn whole(&self) -> Option<Vec<f64>> {
-        let [h, w] = self.section;
         let Some(b) = self.bladders else {
-            return Some(vec![w / h]);
+            return self.outline();
         };
+        let [_, w] = self.section;
         Some([self.cell()?, vec![b.length / w]].concat())
+    }
+
+    /// Width over height of the section.
+    fn outline(&self) -> Option<Vec<f64>> {
+        let [h, w] = self.section;
+        Some(vec![w / h])
     }
 
     /// Proportions as in `whole`, and 1 plus the density ratio of fluid to solid; without bladders, the fluid counts as 0.
@@ -130,13 +147,14 @@ fn ratio(_: &Sizes) -> Option<f64> {
 /// Scaling laws of coefficients.
 ///
 /// ```text
-/// f_e, f_i, f_m ~ 1        kGA, P_k ~ E w_s h_s        ψ' ~ l_b h_b w_b/(w_s h_s²)     ζ' ~ l_b h_b w_b/(w_s h_s)
+/// f_e, f_i, f_m ~ 1        z_n ~ h_s        kGA, P_k ~ E w_s h_s        ψ' ~ l_b h_b w_b/(w_s h_s²)     ζ' ~ l_b h_b w_b/(w_s h_s)
 /// a_p ~ h_b w_b/E          aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
 /// q1b ~ h_b³ w_b³/(h_b² + w_b²)                        q1c ~ r_c⁴
 /// ```
-pub(super) const LAWS: [Law; 17] = [
+pub(super) const LAWS: [Law; 23] = [
     law("/beam/axial_stiffness_factor", ratio, Sizes::whole),
     law("/beam/bending_stiffness_factor", ratio, Sizes::whole),
+    law("/beam/neutral_axis_m", |s| Some(s.section[0]), Sizes::whole),
     law(
         "/beam/shear_stiffness_n",
         |s| Some(s.modulus * s.section[0] * s.section[1]),
@@ -167,6 +185,31 @@ pub(super) const LAWS: [Law; 17] = [
         "/bladders/area_per_force_m2_per_n/compression",
         Sizes::area_per_force,
         Sizes::whole,
+    ),
+    law(
+        "/bladders/lower/unlike/area_per_pressure_m2_per_pa",
+        |s| Some(s.modulus.recip()),
+        |_| None,
+    ),
+    law(
+        "/bladders/lower/unlike/area_per_moment_m2_per_n_m/opening",
+        |s| Some(s.per_moment()),
+        Sizes::outline,
+    ),
+    law(
+        "/bladders/lower/unlike/area_per_moment_m2_per_n_m/closing",
+        |s| Some(s.per_moment()),
+        Sizes::outline,
+    ),
+    law(
+        "/bladders/lower/unlike/area_per_force_m2_per_n/tension",
+        |s| Some(s.per_force()),
+        Sizes::outline,
+    ),
+    law(
+        "/bladders/lower/unlike/area_per_force_m2_per_n/compression",
+        |s| Some(s.per_force()),
+        Sizes::outline,
     ),
     law(
         "/bladders/coupling/published/slope_per_pressure_rad",

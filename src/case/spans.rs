@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use serde_json::{Value, json};
 
 use super::scaling::CoefficientSizes;
-use super::schema::{Beam, Bladders, Case, Span, SpanRows};
+use super::schema::{AreaPerForce, AreaPerMoment, Beam, Bladders, Case, LowerRow, Span, SpanRows};
 
 /// Relative deviation of a span's length from whole segments that counts as rounding.
 const WHOLE: f64 = 1e-6;
@@ -17,8 +17,16 @@ pub struct SegmentValues {
     pub rows: [bool; 2],
     /// Values of the solid.
     pub beam: Beam,
-    /// Values of the bladders; none for a dry beam.
-    pub bladders: Option<Bladders>,
+    /// Values of the bladders of the upper row and of the lower one; none for a dry beam.
+    pub bladders: Option<[Bladders; 2]>,
+}
+
+impl SegmentValues {
+    /// Values of the bladders that exist here.
+    pub fn present(&self) -> impl Iterator<Item = &Bladders> {
+        let both = self.bladders.iter().flatten().zip(self.rows);
+        both.filter(|(_, there)| *there).map(|(bladders, _)| bladders)
+    }
 }
 
 /// Numbers of segments that the schema allows; a list of more may not fit into memory.
@@ -56,14 +64,11 @@ pub fn counts(case: &Case) -> Vec<Option<usize>> {
         .collect()
 }
 
-/// Span and place within it, from 0 to 1, of the middle of each segment; empty for a beam without spans.
+/// Span and place within it, from 0 to 1, of the middle of each segment; empty for a beam without spans or with faulty lengths.
 pub fn places(case: &Case) -> Vec<(usize, f64)> {
-    let all = counts(case).into_iter().enumerate();
-    let within = |(span, count): (usize, Option<usize>)| {
-        let count = count.unwrap_or(0);
-        (0..count).map(move |k| (span, (k as f64 + 0.5) / count as f64))
-    };
-    all.flat_map(within).collect()
+    let all: Option<Vec<usize>> = counts(case).into_iter().collect();
+    let within = |(span, count): (usize, usize)| (0..count).map(move |k| (span, (k as f64 + 0.5) / count as f64));
+    all.into_iter().flatten().enumerate().flat_map(within).collect()
 }
 
 /// True if a bladder `0..n`, upper row first, exists.
@@ -73,30 +78,125 @@ pub fn has_bladder(case: &Case, bladder: usize) -> bool {
 
 /// Existence of each bladder `0..n`, upper row first.
 pub fn bladders(case: &Case) -> impl Fn(usize) -> bool + '_ {
-    let (segments, places) = (case.segments(), places(case));
+    let (segments, places) = (case.segments().max(1), places(case));
+    let rows = rows(case);
     // faulty spans are reported by themselves
-    let faulty = places.len() != segments;
-    move |bladder| faulty || case.spans[places[bladder % segments].0].rows.has()[bladder / segments]
+    let uniform = places.len() != segments;
+    move |bladder| {
+        let row = (bladder / segments).min(1);
+        rows[row] && (uniform || case.spans[places[bladder % segments].0].rows.has()[row])
+    }
 }
 
-/// Values of each segment; empty for a uniform beam, with the values of the case everywhere. Coefficients that a span does not give
-/// follow modulus and sizes.
+/// Rows that the bladders of a case have outside of spans: upper, lower.
+pub fn rows(case: &Case) -> [bool; 2] {
+    let bladders = case.bladders.as_ref();
+    [
+        bladders.is_some(),
+        bladders.is_some_and(|bladders| bladders.lower != LowerRow::None),
+    ]
+}
+
+/// Values of each segment; empty for a uniform beam with two equal rows or none, with the values of the case everywhere. Coefficients that
+/// a span or a row does not give follow modulus and sizes.
 pub fn segments(case: &Case) -> Vec<SegmentValues> {
-    if case.spans.is_empty() {
+    let mirrored = case
+        .bladders
+        .as_ref()
+        .is_none_or(|bladders| bladders.lower.is_mirrored());
+    if (mirrored && case.spans.is_empty()) || !countable(case) {
         return vec![];
     }
-    let whole = json!({"beam": case.beam, "bladders": case.bladders, "fluid": case.fluid, "tubes": case.tubes});
+    let mut beam = json!(case.beam);
+    if case.beam.neutral_axis_m != 0.0 {
+        // the line stays where it is if the neutral axis of a span is elsewhere
+        beam["reference_axis_m"] = case.beam.line_height().into();
+    }
+    let part = |bladders: Option<&Bladders>| json!({"beam": beam, "bladders": bladders, "fluid": case.fluid, "tubes": case.tubes});
+    let lower = lower_bladders(case);
+    let whole = [case.bladders.as_ref(), lower.as_ref()].map(part);
+    if case.spans.is_empty() {
+        return vec![values(case, &whole, &Span::default(), 0.5); case.segments()];
+    }
     let places = places(case);
     let all: Vec<SegmentValues> = places
         .iter()
         .map(|&(span, x)| values(case, &whole, &case.spans[span], x))
         .collect();
     let rows = [case.bladders.is_some(); 2];
-    let uniform = |one: &SegmentValues| one.rows == rows && one.beam == case.beam && one.bladders == case.bladders;
+    let own = |bladders: &[Bladders; 2]| bladders.iter().all(|own| Some(own) == case.bladders.as_ref());
+    let uniform =
+        |one: &SegmentValues| one.rows == rows && one.beam == case.beam && one.bladders.as_ref().is_none_or(own);
     match all.iter().all(uniform) {
         true => vec![],
         false => all,
     }
+}
+
+/// True if the neutral axis is beside the beam's line somewhere.
+pub fn is_eccentric(case: &Case) -> bool {
+    let off = |beam: &Beam| beam.neutral_axis_m != beam.line_height();
+    let in_span = |span: &Span| span.beam.neutral_axis_m.is_some() || span.beam.reference_axis_m.is_some();
+    let graded = case.beam.neutral_axis_m != 0.0 || case.beam.reference_axis_m.is_some();
+    match case.spans.is_empty() {
+        true => off(&case.beam),
+        false => (graded || case.spans.iter().any(in_span)) && segments(case).iter().any(|one| off(&one.beam)),
+    }
+}
+
+/// Bladders of the lower row of a case with the values of its own row; those of the case if it is mirrored or missing.
+pub fn lower_bladders(case: &Case) -> Option<Bladders> {
+    let bladders = case.bladders.as_ref()?;
+    let LowerRow::Unlike(row) = &bladders.lower else {
+        return Some(bladders.clone());
+    };
+    let mut own = json!({"beam": case.beam, "bladders": bladders, "fluid": case.fluid, "tubes": case.tubes});
+    let given = [
+        ("height_m", row.height_m),
+        ("width_m", row.width_m),
+        ("area_per_pressure_m2_per_pa", row.area_per_pressure_m2_per_pa),
+        ("permeability_m4", row.permeability_m4),
+    ];
+    let given = given.into_iter().filter_map(|(key, value)| Some((key, value?)));
+    let mut numbers: Vec<(String, f64)> = given.map(|(key, value)| (format!("/bladders/{key}"), value)).collect();
+    numbers.extend(slopes(&row.area_per_moment_m2_per_n_m, &row.area_per_force_m2_per_n));
+    change(&mut own, &numbers);
+    serde_json::from_value(own["bladders"].take()).ok()
+}
+
+/// Pointers and values of the slopes of a row or a span.
+fn slopes(
+    by_moment: &Option<AreaPerMoment>,
+    by_force: &Option<AreaPerForce>,
+) -> impl Iterator<Item = (String, f64)> + use<> {
+    let by_moment = by_moment.as_ref().map(|slopes| {
+        [
+            ("area_per_moment_m2_per_n_m/opening", slopes.opening),
+            ("area_per_moment_m2_per_n_m/closing", slopes.closing),
+        ]
+    });
+    let by_force = by_force.as_ref().map(|slopes| {
+        [
+            ("area_per_force_m2_per_n/tension", slopes.tension),
+            ("area_per_force_m2_per_n/compression", slopes.compression),
+        ]
+    });
+    let all = by_moment.into_iter().chain(by_force).flatten();
+    all.map(|(key, value)| (format!("/bladders/{key}"), value))
+}
+
+/// Sets numbers of a case in JSON, also those that it leaves out, and scales its other coefficients.
+fn change(case: &mut Value, numbers: &[(String, f64)]) {
+    for (pointer, _) in numbers {
+        if let Some((part, key)) = pointer[1..].split_once('/')
+            && let Some(Value::Object(part)) = case.get_mut(part)
+            && !key.contains('/')
+        {
+            part.entry(key).or_insert(Value::Null);
+        }
+    }
+    let numbers: Vec<(&str, f64)> = numbers.iter().map(|(pointer, x)| (pointer.as_str(), *x)).collect();
+    CoefficientSizes::default().change(case, &numbers);
 }
 
 /// Least Young's modulus of the solid [Pa].
@@ -109,64 +209,60 @@ pub fn softest_modulus(case: &Case) -> f64 {
 pub fn uniform_cases(case: &Case) -> impl Iterator<Item = (usize, usize, Case)> + '_ {
     let all = segments(case);
     let places = places(case);
+    let span_of = move |k: usize| places.get(k).map_or(0, |place| place.0);
     (0..all.len()).filter_map(move |k| {
-        let span = places[k].0;
-        if k > 0 && places[k - 1].0 == span && all[k - 1] == all[k] {
+        let span = span_of(k);
+        if k > 0 && span_of(k - 1) == span && all[k - 1] == all[k] {
             return None;
         }
         let uniform = Case {
             spans: vec![],
             beam: all[k].beam.clone(),
-            bladders: all[k].bladders.clone(),
+            bladders: all[k].bladders.as_ref().map(|[upper, _]| upper.clone()),
             ..case.clone()
         };
         Some((k, span, uniform))
     })
 }
 
-/// Values at a place of a span.
-fn values(case: &Case, whole: &Value, span: &Span, x: f64) -> SegmentValues {
-    let mut here = whole.clone();
-    let mut numbers: Vec<(String, f64)> = vec![];
-    for (part, key, profile) in span.given() {
-        // an optional number that the case leaves out
-        if let Some(Value::Object(part)) = here.get_mut(part) {
-            part.entry(key).or_insert(Value::Null);
-        }
-        numbers.push((format!("/{part}/{key}"), profile.value(x)));
-    }
-    if let Some(slopes) = &span.bladders.area_per_moment_m2_per_n_m {
-        let key = "/bladders/area_per_moment_m2_per_n_m";
-        numbers.extend([
-            (format!("{key}/opening"), slopes.opening),
-            (format!("{key}/closing"), slopes.closing),
-        ]);
-    }
-    if let Some(slopes) = &span.bladders.area_per_force_m2_per_n {
-        let key = "/bladders/area_per_force_m2_per_n";
-        numbers.extend([
-            (format!("{key}/tension"), slopes.tension),
-            (format!("{key}/compression"), slopes.compression),
-        ]);
-    }
-    let numbers: Vec<(&str, f64)> = numbers.iter().map(|(pointer, x)| (pointer.as_str(), *x)).collect();
-    CoefficientSizes::default().change(&mut here, &numbers);
-    let mut beam: Beam = serde_json::from_value(here["beam"].take()).unwrap_or_else(|_| case.beam.clone());
-    let bladders: Option<Bladders> =
-        serde_json::from_value(here["bladders"].take()).unwrap_or_else(|_| case.bladders.clone());
-    let rows = match &bladders {
-        Some(_) => span.rows,
-        None => SpanRows::None,
+/// Values at a place of a span, from those of a case in JSON with the bladders of the upper and of the lower row.
+fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64) -> SegmentValues {
+    let given = span.given();
+    let mut numbers: Vec<(String, f64)> = given
+        .map(|(part, key, profile)| (format!("/{part}/{key}"), profile.value(x)))
+        .collect();
+    let own = &span.bladders;
+    numbers.extend(slopes(&own.area_per_moment_m2_per_n_m, &own.area_per_force_m2_per_n));
+    let here = |whole: &Value| {
+        let mut here = whole.clone();
+        change(&mut here, &numbers);
+        here
     };
-    if rows == SpanRows::None && case.bladders.is_some() {
+    let [mut upper, mut lower] = match whole[0] == whole[1] {
+        true => {
+            let both = here(&whole[0]);
+            [both.clone(), both]
+        }
+        false => [here(&whole[0]), here(&whole[1])],
+    };
+    let mut beam: Beam = serde_json::from_value(upper["beam"].take()).unwrap_or_else(|_| case.beam.clone());
+    let row = |here: &mut Value| -> Option<Bladders> {
+        serde_json::from_value(here["bladders"].take()).unwrap_or_else(|_| case.bladders.clone())
+    };
+    let bladders = row(&mut upper).zip(row(&mut lower));
+    let possible = rows(case);
+    let there = span.rows.has();
+    let rows = [0, 1].map(|row| possible[row] && there[row]);
+    if span.rows == SpanRows::None && case.bladders.is_some() {
         let own = |profile: &Option<_>, full: f64, value: f64| if profile.is_some() { value } else { full };
         beam.axial_stiffness_factor = own(&span.beam.axial_stiffness_factor, 1.0, beam.axial_stiffness_factor);
         beam.bending_stiffness_factor = own(&span.beam.bending_stiffness_factor, 1.0, beam.bending_stiffness_factor);
+        beam.neutral_axis_m = own(&span.beam.neutral_axis_m, 0.0, beam.neutral_axis_m);
         beam.mass_factor = beam.mass_factor.filter(|_| span.beam.mass_factor.is_some());
     }
     SegmentValues {
-        rows: rows.has(),
+        rows,
         beam,
-        bladders,
+        bladders: bladders.map(|(upper, lower)| [upper, lower]),
     }
 }

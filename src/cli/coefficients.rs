@@ -1,5 +1,6 @@
 //! `slcbeam coefficients`: the coefficients of a section from its geometry, with errors.
 
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -14,6 +15,7 @@ use super::interrupt::WallArguments;
 use crate::case::{self, section};
 use crate::error::{Error, Result};
 use crate::output::columns::table;
+use crate::output::folder::replace;
 use crate::output::numbers::significant;
 
 /// `coefficients`.
@@ -31,6 +33,12 @@ pub struct CoefficientsArguments {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    /// Write a case of the section with these coefficients
+    #[arg(long = "case", value_name = "FILE", value_parser = super::progress_line::output_path(), conflicts_with = "three_d")]
+    pub case_file: Option<PathBuf>,
+    /// Write over a file that is there
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// A number of the table with its error. `entry` is the place of its compliance, and the power, which is negative for a stiffness.
@@ -50,12 +58,68 @@ pub fn coefficients(asked: &CoefficientsArguments) -> Result<ExitCode> {
     let mut written = section::parse(&text, &asked.case.case, &asked.case.sets)?;
     // beside the cell in three dimensions, the table shows the plane cell
     written.section.three_d &= !asked.three_d;
+    if let Some(path) = &asked.case_file {
+        return write_case(&written, path, asked);
+    }
     let found = written.coefficients()?;
     let energy = written.strain_energy()?;
     let spatial = asked.three_d.then(|| written.three_dimensional()).transpose()?;
     super::print(&match asked.json {
         true => format!("{:#}\n", in_json(&found, spatial.as_ref(), energy.as_ref())?),
         false => in_words(&written.section, &found, spatial.as_ref()) + &energy.map(of_energy).unwrap_or_default(),
+    })?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Number of cells of the beam in a written case.
+const CELLS: u32 = 10;
+
+/// Writes a case of a section: a cantilever of ten cells whose upper row is pumped to a hundredth of Young's modulus.
+fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsArguments) -> Result<ExitCode> {
+    if path.exists() && !asked.force {
+        let what = format!(
+            "{} exists and is not overwritten; name another file, or use --force",
+            path.display()
+        );
+        return Err(Error::Usage(what));
+    }
+    let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("section");
+    let name: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '-' })
+        .collect();
+    let own = &written.section;
+    let length = f64::from(CELLS) * own.pitch_m;
+    let mut case = json!({
+        "name": name,
+        "about": "Coefficients of a section. Change length, fluid, tubes, network, ends and times to those of your structure.",
+        "beam": {"length_m": length},
+        "ends": {"root": "clamped", "tip": "free"},
+        "time": {"end_s": 2.0, "output_interval_s": 0.01},
+    });
+    for (part, values) in written.values(length)?.as_object().into_iter().flatten() {
+        match (case.get_mut(part).and_then(Value::as_object_mut), values.as_object()) {
+            (Some(own), Some(values)) => own.extend(values.clone()),
+            _ => case[part] = values.clone(),
+        }
+    }
+    if case.get("bladders").is_some() {
+        let row = |sign: i64| (1..=i64::from(CELLS)).map(|k| sign * k).collect::<Vec<_>>();
+        let to = 0.01 * own.material.young_modulus_pa;
+        let mut chains = vec![
+            json!({"bladders": row(1), "ends": [{"pressure_pa": {"ramp": {"to": to, "duration_s": 1.0}}}, "sealed"]}),
+        ];
+        if case["bladders"].get("lower") != Some(&"none".into()) {
+            chains.push(json!({"bladders": row(-1), "ends": [{"pressure_pa": 0.0}, "sealed"]}));
+        }
+        case["fluid"] = json!({"preset": "water"});
+        case["tubes"] = json!({"length_m": 0.3 * own.pitch_m, "radius_m": 0.001});
+        case["network"] = json!({"chains": chains});
+    }
+    replace(path, &format!("{case:#}\n"))?;
+    super::print(&match asked.json {
+        true => format!("{:#}\n", json!({"case": path})),
+        false => format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display()),
     })?;
     Ok(ExitCode::SUCCESS)
 }
@@ -97,6 +161,19 @@ fn in_space(row: &Row, plane: &Numbers, spatial: &Spatial) -> Option<(f64, f64)>
     Some((ratio.recip() - 1.0, row.value * ratio)).filter(|_| ratio.is_finite() && ratio != 0.0)
 }
 
+/// Text about a neutral axis beside mid-height.
+fn beside_mid_height(section: &Section, numbers: &Numbers) -> String {
+    let axis = neutral_axis(numbers);
+    if axis.abs() < 1e-3 * section.height_m {
+        return String::new();
+    }
+    format!(
+        "\nneutral axis {} mm from mid-height: a normal force at mid-height bends this section. The stiffness and areas above are those of \
+         a force at mid-height. --case FILE writes a case with those about the neutral axis\n",
+        significant(1e3 * axis, 4)
+    )
+}
+
 /// Text about the energy at finite strain.
 fn of_energy(energy: StrainEnergy) -> String {
     let names = [
@@ -122,6 +199,7 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
     all["errors"] = value(&|| serde_json::to_value(&found.errors))?;
     all["asymmetry"] = json!(found.asymmetry);
     all["unknowns"] = json!(found.unknowns);
+    all["neutral_axis_m"] = json!(neutral_axis(&found.numbers));
     if let Some(energy) = energy {
         all["strain_energy"] = value(&|| serde_json::to_value(energy))?;
     }
@@ -136,6 +214,11 @@ fn in_json(found: &Coefficients, spatial: Option<&Spatial>, energy: Option<&Stra
         all["three_d"]["unknowns"] = json!(spatial.unknowns);
     }
     Ok(all)
+}
+
+/// Height of the neutral axis above mid-height [m].
+fn neutral_axis(numbers: &Numbers) -> f64 {
+    -numbers.compliance[0][1] / numbers.compliance[1][1]
 }
 
 fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) -> String {
@@ -175,5 +258,5 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         table(&headings, lines),
         found.asymmetry,
         table("< | N | M | p upper | p lower", matrix)
-    )
+    ) + &beside_mid_height(section, &found.numbers)
 }

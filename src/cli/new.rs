@@ -21,7 +21,7 @@ pub struct NewArguments {
     /// The file; the case is named like it [default: <kind>.json]
     #[arg(value_parser = super::progress_line::output_path())]
     pub file: Option<PathBuf>,
-    /// Which section, of `new section` [default: honeycomb]; the others have one row, which `coefficients` takes and a case does not
+    /// Section of `new section` [default: honeycomb]; the others have one row
     #[arg(long, value_name = "NAME")]
     pub of: Option<SectionKind>,
     /// Write over a file that is there
@@ -52,7 +52,7 @@ pub enum StarterCase {
 /// Sections to begin with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SectionKind {
-    /// The paper's honeycomb, in a case
+    /// The paper's honeycomb: two rows
     Honeycomb,
     /// A row of chambers over a sheet that hardly stretches
     Pneunet,
@@ -86,7 +86,7 @@ impl StarterCase {
     }
 }
 
-/// Writes the case, named after its file, and the schema beside it, or a section alone. Overwrites an existing case file only with
+/// Writes the case, named after its file, and the schema beside it. Overwrites an existing case file only with
 /// `--force`.
 pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     let named = asked
@@ -116,12 +116,9 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
         )));
     }
     let text = asked.kind.text(of);
-    // a section alone has no name
-    let alone = asked.kind == StarterCase::Section && of != SectionKind::Honeycomb;
     let keys = [("name", name.as_str()), ("$schema", SCHEMA)];
     let text = keys
         .into_iter()
-        .filter(|_| !alone)
         .try_fold(text.to_owned(), |text, (key, value)| rewrite(&text, key, &value.into()))
         .unwrap_or_default();
     if path.exists() && !asked.force {
@@ -136,16 +133,6 @@ pub fn new(asked: &NewArguments) -> Result<ExitCode> {
     } else {
         path.display().to_string()
     };
-    if alone {
-        super::print(&match asked.json {
-            true => format!("{:#}\n", json!({"section": path})),
-            false => format!(
-                "wrote {quoted}, a section with one row: its coefficients can be computed, but no case can contain \
-                 it\nnext: slcbeam coefficients {quoted}\n"
-            ),
-        })?;
-        return Ok(ExitCode::SUCCESS);
-    }
     let schema = path.with_file_name(SCHEMA);
     replace(&schema, &format!("{:#}\n", schema_json()))?;
     super::print(&if asked.json {

@@ -120,7 +120,7 @@ impl MonitoredValues {
         g.strained = node;
         g.moving[MonitoredQuantity::Strain as usize] = [
             strain,
-            strain_rate(now, node, last, system.sections.half_height[node], w),
+            strain_rate(now, node, last, system.sections.farthest_fiber[node], w),
         ];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
@@ -242,11 +242,11 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
 }
 
 /// Rate of the largest fibre strain at its node [1/s].
-fn strain_rate(now: &TimeData, node: usize, last: usize, half_height: f64, w: &Workspace<f64>) -> f64 {
+fn strain_rate(now: &TimeData, node: usize, last: usize, fiber: f64, w: &Workspace<f64>) -> f64 {
     let (a, b) = (node.saturating_sub(1), node.min(last - 1));
     let stretch_rate = 0.5 * (w.shape.stretch_rate[a] + w.shape.stretch_rate[b]);
     (node_stretch(w, node, last) - 1.0).signum() * stretch_rate
         + (w.shape.kappa[node] - now.rest_curvature(node)).signum()
             * (w.shape.kappa_rate[node] - now.rest_curvature_rate(node))
-            * half_height
+            * fiber
 }

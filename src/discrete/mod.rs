@@ -204,9 +204,7 @@ impl System {
     /// Cross-section of a cell of the fluid at rest [m^2].
     pub fn area_at_rest(&self, cell: usize) -> f64 {
         let both = self.model.wet.as_ref().zip(self.fluid.as_ref());
-        both.map_or(1.0, |(wet, fluid)| {
-            wet.area_at_rest_of(wet.place(cell / fluid.cells_per_bladder).0)
-        })
+        both.map_or(1.0, |(wet, fluid)| wet.area_at_rest_of(cell / fluid.cells_per_bladder))
     }
 
     /// Cell whose cross-section is the smallest relative to that at rest.

@@ -43,14 +43,17 @@ impl Workspace<f64> {
     pub fn moments(&self) -> Cow<'_, [f64]> {
         let forces = &self.forces;
         let moment = own(&self.readings.moment, &forces.moment);
-        together(moment, [&forces.nonlinear_moment, &forces.relaxing_moment])
+        together(
+            moment,
+            &[&forces.nonlinear_moment, &forces.relaxing_moment, &forces.offset_moment],
+        )
     }
 
     /// Normal forces N in cells without damping [N].
     pub fn normals(&self) -> Cow<'_, [f64]> {
         let forces = &self.forces;
         let normal = own(&self.readings.normal, &forces.normal);
-        together(normal, [&forces.nonlinear_normal, &forces.relaxing_normal])
+        together(normal, &[&forces.nonlinear_normal, &forces.relaxing_normal])
     }
 
     /// Shear forces V in cells [N].
@@ -64,10 +67,10 @@ fn own<'a>(read: &'a [f64], known: &'a [f64]) -> &'a [f64] {
 }
 
 /// Sum of parts; all but the first may be empty.
-fn together<'a>(part: &'a [f64], others: [&[f64]; 2]) -> Cow<'a, [f64]> {
+fn together<'a>(part: &'a [f64], others: &[&[f64]]) -> Cow<'a, [f64]> {
     let mut sum = Cow::Borrowed(part);
-    for other in others.into_iter().filter(|other| !other.is_empty()) {
-        sum.to_mut().iter_mut().zip(other).for_each(|(sum, more)| *sum += more);
+    for other in others.iter().filter(|other| !other.is_empty()) {
+        sum.to_mut().iter_mut().zip(*other).for_each(|(sum, more)| *sum += more);
     }
     sum
 }

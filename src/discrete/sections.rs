@@ -17,8 +17,10 @@ pub struct MeshSections {
     pub axial: Vec<f64>,
     /// `EI` of each node [N m^2].
     pub bending: Vec<f64>,
-    /// `h_s/2` of each node, the larger one between two segments [m].
-    pub half_height: Vec<f64>,
+    /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
+    pub farthest_fiber: Vec<f64>,
+    /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
+    pub offset: Vec<f64>,
     /// `EI` of each cell [N m^2].
     pub bending_of_cells: Vec<f64>,
     /// `kGA` of each cell [N]; infinite without shear.
@@ -72,7 +74,11 @@ impl MeshSections {
                 false => 2.0 / (1.0 / left.bending_stiffness + 1.0 / right.bending_stiffness),
             }),
             bending_of_cells: cells(|section| section.bending_stiffness),
-            half_height: nodes(&|left, right| left.half_height.max(right.half_height)),
+            farthest_fiber: nodes(&|left, right| left.farthest_fiber().max(right.farthest_fiber())),
+            offset: match cells(|section| section.offset) {
+                all if all.iter().all(|d| *d == 0.0) => vec![],
+                all => all,
+            },
             shear: cells(|section| section.shear_stiffness),
             rotary: cells(Section::rotary_inertia),
             mass: half_sum(|section| section.mass_per_length),

@@ -129,7 +129,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
                     .clone()
                     .nth(bladder)
                     .map_or(0.0, |unknown| y[unknown]);
-                let law = wet.area_of(j);
+                let law = wet.area_of(bladder);
                 let imposed = law.of_moment(moment, row) + law.of_force(force) + excess;
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
                     for (k, cell) in fluid.cells_of(bladder).enumerate() {

@@ -126,6 +126,8 @@ pub struct Forces<T> {
     pub turning: Vec<T>,
     /// Addition of the normal force to the moment in bent cells, [E79] [N m]; empty without it.
     pub arc_moment: Vec<T>,
+    /// Moment of the normal forces about neutral axes beside the beam's line at nodes, [E89] [N m].
+    pub offset_moment: Vec<T>,
     /// Addition to the moment by the section's energy at finite strain [N m]; empty without it.
     pub nonlinear_moment: Vec<T>,
     /// Addition to the normal force by the section's energy at finite strain [N].
@@ -347,6 +349,7 @@ impl<T: Scalar> Workspace<T> {
                 relaxing_shear: zeros(relaxation.shear.len().min(c)),
                 turning: zeros(sheared),
                 arc_moment: zeros(if bent { n } else { 0 }),
+                offset_moment: zeros(if system.sections.offset.is_empty() { 0 } else { n }),
                 nonlinear_moment: zeros(nonlinear * n),
                 nonlinear_normal: zeros(nonlinear * c),
             },

@@ -33,7 +33,7 @@ pub struct AuditFinding {
 ///
 /// ```text
 /// l_b am E/ψ' = 1, l_b an E/ζ' = 1                                       energy is conserved
-/// a_p > 2 EA φ_b l_b aN+²,  a_p > EI φ_b l_b (aM+² + aM-²)               passive
+/// EA φ_b l_b Σ aN+²/a_p < 1,  EI φ_b l_b Σ aM²/a_p < 1                   passive, sums over the rows
 /// 1 - 2 EI φ_b ψ' am/(E a_p) > 0,  1 - 2 EA φ_b ζ' aN+/(E a_p) > 0       published law solvable
 /// d_M ≥ EI φ_b l_b dm p_max/(1 - 2 EI φ_b l_b am²/a_p)                   kinked potential convex
 /// ```
@@ -73,17 +73,10 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
             consequence: "the closing slope must be at least the opening slope".into(),
         });
     }
+    let (along, across) = sealed_stiffening(case, wet);
     for (name, value, what) in [
-        (
-            "a_p/(2 EA phi_b l_b aN+^2)",
-            ap / (2.0 * ea * ratio * n.compression.powi(2)),
-            "axial",
-        ),
-        (
-            "a_p/(EI phi_b l_b (aM+^2 + aM-^2))",
-            ap / (ei * ratio * (m.closing.powi(2) + m.opening.powi(2))),
-            "bending",
-        ),
+        ("1/(EA phi_b l_b sum aN+^2/a_p)", 1.0 / (ea * ratio * along), "axial"),
+        ("1/(EI phi_b l_b sum aM^2/a_p)", 1.0 / (ei * ratio * across), "bending"),
     ] {
         if value.is_finite() {
             found.push(AuditFinding {
@@ -103,6 +96,21 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
         found.extend(convexity(model, bladders, wet));
     }
     found
+}
+
+/// `Σ aN+²/a_p` and `Σ aM²/a_p` over the rows; the moment closes one row and opens the other.
+fn sealed_stiffening(case: &Case, wet: &Wet) -> (f64, f64) {
+    let rows = [case.bladders.clone(), spans::lower_bladders(case)];
+    let there = rows.iter().flatten().zip(wet.rows()).filter(|(_, there)| *there);
+    let (mut along, mut across) = (0.0, [0.0; 2]);
+    for (k, (row, _)) in there.enumerate() {
+        let (m, n) = (&row.area_per_moment_m2_per_n_m, &row.area_per_force_m2_per_n);
+        let ap = row.area_per_pressure_m2_per_pa;
+        along += n.compression.powi(2) / ap;
+        across[k % 2] += m.closing.powi(2) / ap;
+        across[(k + 1) % 2] += m.opening.powi(2) / ap;
+    }
+    (along, across[0].max(across[1]))
 }
 
 /// One finding of each name: the first that is not good, or the first.

@@ -2,7 +2,7 @@
 
 use super::surroundings::displaced;
 use crate::case::schema::{Beam, Bladders, Case, Viscoelasticity};
-use crate::case::spans::SegmentValues;
+use crate::case::spans::{self, SegmentValues};
 
 /// Constants of the cross-section.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +13,10 @@ pub struct Section {
     pub mass_per_length: f64,
     /// `h_s/2` [m].
     pub half_height: f64,
+    /// `z_n - z_r`: height of the neutral axis above the beam's line [m].
+    pub offset: f64,
+    /// `z_r`: height of the beam's line above mid-height [m].
+    pub line_height: f64,
     /// `EA = E h_s w_s f_e` [N] (A.37).
     pub axial_stiffness: f64,
     /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
@@ -36,6 +40,16 @@ pub struct Section {
 }
 
 impl Section {
+    /// Distance of the farthest fiber from the beam's line [m].
+    pub fn farthest_fiber(&self) -> f64 {
+        self.half_height + self.line_height.abs()
+    }
+
+    /// True if moments depend on rates of strain.
+    pub fn bends_viscously(&self) -> bool {
+        self.bending_damping_time > 0.0 || (self.axial_damping_time > 0.0 && self.offset != 0.0)
+    }
+
     /// True if forces on the straight beam depend on its node velocities.
     pub fn resists_motion(&self) -> bool {
         self.drag > 0.0 || self.quadratic_drag > 0.0 || self.axial_damping_time > 0.0
@@ -54,28 +68,34 @@ impl Section {
     /// m = ρ_s w_s h_s f_m    EA = E h_s w_s f_e    EI = E (w_s h_s³/12) f_i    y11 = (ρ_s/m) (w_s h_s³/12) f_i
     /// ```
     pub fn new(case: &Case) -> Self {
-        Self::with_values(case, &case.beam, case.bladders.as_ref(), 2.0)
+        let rows = spans::rows(case).into_iter().filter(|row| *row);
+        Self::with_values(case, &case.beam, rows.flat_map(|_| &case.bladders))
     }
 
     /// Sections of the segments of a beam with spans.
     pub fn of_segments(case: &Case, values: &[SegmentValues]) -> Vec<Self> {
-        let of = |one: &SegmentValues| {
-            let rows = one.rows.iter().filter(|row| **row).count() as f64;
-            Self::with_values(case, &one.beam, one.bladders.as_ref(), rows)
-        };
+        let of = |one: &SegmentValues| Self::with_values(case, &one.beam, one.present());
         values.iter().map(of).collect()
     }
 
-    /// Section with the mean mass and the mean compliances of some segments, and the largest height: it has their extension by a constant
+    /// Section with the mean mass and the mean compliances of some segments, the largest height and the largest offset: it has their extension by a constant
     /// force, and their deflection by a constant moment.
     pub fn mean(of: &[Self]) -> Option<Self> {
         let first = of.first()?;
+        if of.iter().all(|one| one == first) {
+            return Some(*first);
+        }
         let mean = |value: &dyn Fn(&Self) -> f64| of.iter().map(value).sum::<f64>() / of.len() as f64;
         let mass = mean(&|one| one.mass_per_length);
         Some(Self {
             mass_factor: mean(&|one| one.mass_factor),
             mass_per_length: mass,
             half_height: of.iter().map(|one| one.half_height).fold(0.0, f64::max),
+            offset: of
+                .iter()
+                .map(|one| one.offset)
+                .fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a }),
+            line_height: mean(&|one| one.line_height),
             axial_stiffness: 1.0 / mean(&|one| 1.0 / one.axial_stiffness),
             bending_stiffness: 1.0 / mean(&|one| 1.0 / one.bending_stiffness),
             shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
@@ -90,15 +110,13 @@ impl Section {
         self.mass_per_length * self.gyration_radius_squared
     }
 
-    /// Section of a beam, with the mass of the cavities of `rows` rows of bladders.
-    fn with_values(case: &Case, beam: &Beam, bladders: Option<&Bladders>, rows: f64) -> Self {
+    /// Section of a beam, with the mass of the cavities of its rows of bladders.
+    fn with_values<'a>(case: &Case, beam: &Beam, rows: impl Iterator<Item = &'a Bladders>) -> Self {
         let solid = beam.length_m * beam.width_m * beam.height_m;
-        let (cavities, fluid_density) = match (bladders, &case.fluid) {
-            (Some(b), Some(f)) => (
-                rows * b.per_row as f64 * b.width_m * b.height_m * b.length_m,
-                f.density_kg_m3,
-            ),
-            _ => (0.0, 0.0),
+        let cavity = |b: &Bladders| b.per_row as f64 * b.width_m * b.height_m * b.length_m;
+        let (cavities, fluid_density) = match &case.fluid {
+            Some(f) => (rows.map(cavity).sum(), f.density_kg_m3),
+            None => (0.0, 0.0),
         };
         let mass_factor = beam.mass_factor.unwrap_or(
             (cavities * fluid_density + (solid - cavities) * beam.density_kg_m3) / (solid * beam.density_kg_m3),
@@ -111,6 +129,8 @@ impl Section {
             mass_factor,
             mass_per_length,
             half_height: 0.5 * beam.height_m,
+            offset: beam.neutral_axis_m - beam.line_height(),
+            line_height: beam.line_height(),
             axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
             bending_stiffness: beam.young_modulus_pa * second_moment,
             shear_stiffness: beam.shear_stiffness_n.unwrap_or(f64::INFINITY),

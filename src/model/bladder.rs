@@ -1,6 +1,6 @@
 //! Area of one bladder as a function of pressure, bending moment and normal force.
 
-use super::{ROWS, Section};
+use super::Section;
 use crate::case::schema::{Bladders, Case, Coupling as CouplingChoice};
 use crate::numerics::Scalar;
 
@@ -74,13 +74,6 @@ impl AreaLaw {
     #[inline]
     pub fn of_moment<T: Scalar>(&self, moment: T, row: f64) -> T {
         moment * (row * self.moment_mean) - kink(moment, self.moment_width) * self.moment_half_difference
-    }
-
-    /// `R A_M(M)` of the upper and of the lower row [m^2].
-    #[inline]
-    pub fn of_moments<T: Scalar>(&self, moment: T) -> [T; 2] {
-        let kinked = kink(moment, self.moment_width) * self.moment_half_difference;
-        ROWS.map(|row| moment * (row * self.moment_mean) - kinked)
     }
 
     /// `A_N'(N)` [m^2/N].

@@ -115,7 +115,10 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
         put("forcing_frequency_hz", f);
     }
     if let (Some(wet), Some(bladders), Some(fluid)) = (&model.wet, &case.bladders, &case.fluid) {
-        put("bladder_compliance_m3_pa", wet.area.per_pressure * wet.bladder_length);
+        put(
+            "bladder_compliance_m3_pa",
+            wet.area[0].per_pressure * wet.bladder_length,
+        );
         let bladder_resistance = wet.bladder_length / wet.network.bladder_mobility;
         put("bladder_resistance_pa_s_m3", bladder_resistance);
         if let Some(tubes) = &case.tubes {
@@ -128,7 +131,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
                 .unwrap_or(wet.network.tubes)
                 .max(1);
             let slender = 2.0 * tubes.radius_m / (tubes.length_m * in_one as f64);
-            let fluid_time = fluid.viscosity_pa_s * wet.area.per_pressure
+            let fluid_time = fluid.viscosity_pa_s * wet.area[0].per_pressure
                 / (PI * tubes.radius_m * tubes.radius_m * slender * slender);
             put("t_f_s", fluid_time);
             put("t_s_over_t_f", solid_time / fluid_time);
@@ -175,7 +178,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
             "bladder_fill",
             2.0 * bladders.per_row as f64 * bladders.width_m / (2.0 * l),
         );
-        let closing = wet.area.per_pressure * model.scales.pressure / wet.area_at_rest;
+        let closing = wet.area[0].per_pressure * model.scales.pressure / wet.area_at_rest;
         put("area_change_estimate", closing);
     }
     put("force_scale_n", model.scales.force);

@@ -1,7 +1,7 @@
 //! Convexity of the kinked potential of bladders.
 
 use super::audit::AuditFinding;
-use super::{CouplingLaw, Model, Wet};
+use super::{AreaLaw, CouplingLaw, Model, Wet};
 use crate::case::schema::{Bladders, Case, Coupling as Choice, Effect};
 use crate::error::numbers::{quantity, significant};
 use crate::error::{Code, Violation};
@@ -16,28 +16,29 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
     let CouplingLaw::Reciprocal { length_ratio } = wet.coupling else {
         return (f64::INFINITY, f64::INFINITY);
     };
-    let law = &wet.area;
-    let limit = |width: f64, stiffness: f64, half_difference: f64, mean: f64| {
+    // The rows add their concave parts, and their stiffening without flow.
+    let there = wet.rows();
+    let laws = || {
+        wet.area
+            .iter()
+            .zip(there)
+            .filter(|(_, there)| *there)
+            .map(|(law, _)| law)
+    };
+    let limit = |stiffness: f64, of: fn(&AreaLaw) -> [f64; 3]| {
         let scale = stiffness * length_ratio;
-        if half_difference > 0.0 {
-            width / (scale * half_difference) * (1.0 - 2.0 * scale * mean * mean / law.per_pressure)
-        } else {
-            f64::INFINITY
-        }
+        let stiffening: f64 = laws().map(|law| scale * of(law)[2].powi(2) / law.per_pressure).sum();
+        let limits = laws().map(of).filter(|[_, half_difference, _]| *half_difference > 0.0);
+        let limits = limits.map(|[width, half_difference, _]| width / (scale * half_difference) * (1.0 - stiffening));
+        limits.fold(f64::INFINITY, f64::min)
     };
     (
-        limit(
-            law.moment_width,
-            model.section.bending_stiffness,
-            law.moment_half_difference,
-            law.moment_mean,
-        ),
-        limit(
-            law.force_width,
-            model.section.axial_stiffness,
-            law.force_half_difference,
-            law.force_mean,
-        ),
+        limit(model.section.bending_stiffness, |law| {
+            [law.moment_width, law.moment_half_difference, law.moment_mean]
+        }),
+        limit(model.section.axial_stiffness, |law| {
+            [law.force_width, law.force_half_difference, law.force_mean]
+        }),
     )
 }
 

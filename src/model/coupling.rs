@@ -9,8 +9,10 @@ use crate::numerics::Scalar;
 ///
 /// ```text
 /// published    λ_p =  φ_b ζ' (p_u + p_d)/E              α_p = -φ_b ψ' (p_d - p_u)/E
-/// reciprocal   λ_p =  φ_b l_b A_N'(N) (p_u + p_d)       α_p =  φ_b l_b [am (p_u - p_d) - dm σ'(M) (p_u + p_d)]
+/// reciprocal   λ_p =  φ_b l_b Σ_R A_N'(N) p_R           α_p =  φ_b l_b Σ_R (R A_M)'(M) p_R
 /// ```
+///
+/// with the areas of each row's own law.
 ///
 /// The reciprocal law and the areas derive from one potential g*(N, M, p), which conserves energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,24 +62,26 @@ impl CouplingLaw {
 
     /// `λ_p` [1].
     #[inline]
-    pub fn stretch<T: Scalar>(&self, law: &AreaLaw, force: T, upper: T, lower: T) -> T {
+    pub fn stretch<T: Scalar>(&self, laws: &[AreaLaw; 2], force: T, upper: T, lower: T) -> T {
         match *self {
             Self::Published {
                 stretch_per_pressure, ..
             } => (upper + lower) * stretch_per_pressure,
-            Self::Reciprocal { length_ratio } => law.force_slope(force) * (upper + lower) * length_ratio,
+            Self::Reciprocal { length_ratio } => {
+                (laws[0].force_slope(force) * upper + laws[1].force_slope(force) * lower) * length_ratio
+            }
         }
     }
 
     /// `α_p` [1/m].
     #[inline]
-    pub fn curvature<T: Scalar>(&self, law: &AreaLaw, moment: T, upper: T, lower: T) -> T {
+    pub fn curvature<T: Scalar>(&self, laws: &[AreaLaw; 2], moment: T, upper: T, lower: T) -> T {
         match *self {
             Self::Published {
                 curvature_per_pressure, ..
             } => (upper - lower) * curvature_per_pressure,
             Self::Reciprocal { length_ratio } => {
-                (law.moment_slope(moment, 1.0) * upper + law.moment_slope(moment, -1.0) * lower) * length_ratio
+                (laws[0].moment_slope(moment, 1.0) * upper + laws[1].moment_slope(moment, -1.0) * lower) * length_ratio
             }
         }
     }

@@ -240,7 +240,11 @@ impl Model {
         if let Some(wet) = &mut model.wet {
             let law = wet.segments[segment];
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
-            wet.area_at_rest = law.area_at_rest;
+            wet.area_at_rest = law.area_at_rest[0];
+            let there = wet.pair(segment).map(|bladder| wet.storage[bladder]);
+            for (row, storage) in wet.storage.chunks_mut(wet.per_row).zip(there) {
+                row.fill(storage);
+            }
             wet.segments.clear();
         }
         model

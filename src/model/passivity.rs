@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix4, SymmetricEigen};
 
-use super::{CouplingLaw, Model, Wet};
+use super::{CouplingLaw, Model, ROWS, Wet};
 use crate::error::numbers::quantity;
 
 /// Passivity of the local law.
@@ -42,23 +42,23 @@ pub fn assess(model: &Model) -> Option<Passivity> {
 }
 
 fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity {
-    let law = &wet.area;
-    let moment = moment_sign * FAR * law.moment_width.max(f64::MIN_POSITIVE.sqrt());
-    let force = force_sign * FAR * law.force_width.max(f64::MIN_POSITIVE.sqrt());
+    let laws = &wet.area;
+    let moment = moment_sign * FAR * laws[0].moment_width.max(f64::MIN_POSITIVE.sqrt());
+    let force = force_sign * FAR * laws[0].force_width.max(f64::MIN_POSITIVE.sqrt());
     let (ei, ea) = (
         model.section.bending_stiffness.sqrt(),
         model.section.axial_stiffness.sqrt(),
     );
     let ratio = wet.per_row as f64 / model.length * wet.bladder_length;
-    let fluid = (ratio * law.per_pressure).sqrt();
+    let fluid = laws.map(|law| (ratio * law.per_pressure).sqrt());
+    let there = wet.rows().map(|there| if there { 1.0 } else { 0.0 });
     let mut l = Matrix4::identity();
-    for (column, (upper, lower)) in [(2, (1.0, 0.0)), (3, (0.0, 1.0))] {
-        l[(0, column)] = ei * wet.coupling.curvature(&wet.strains, moment, upper, lower) / fluid;
-        l[(1, column)] = ea * wet.coupling.stretch(&wet.strains, force, upper, lower) / fluid;
-    }
-    for (row, side) in [(2, 1.0), (3, -1.0)] {
-        l[(row, 0)] = ei * law.moment_slope(moment, side) * ratio / fluid;
-        l[(row, 1)] = ea * law.force_slope(force) * ratio / fluid;
+    for (k, (law, row)) in laws.iter().zip(ROWS).enumerate() {
+        let [upper, lower] = [0, 1].map(|of| if of == k { there[k] } else { 0.0 });
+        l[(0, 2 + k)] = ei * wet.coupling.curvature(&wet.strains, moment, upper, lower) / fluid[k];
+        l[(1, 2 + k)] = ea * wet.coupling.stretch(&wet.strains, force, upper, lower) / fluid[k];
+        l[(2 + k, 0)] = ei * law.moment_slope(moment, row) * there[k] * ratio / fluid[k];
+        l[(2 + k, 1)] = ea * law.force_slope(force) * there[k] * ratio / fluid[k];
     }
     let symmetric = (l + l.transpose()) * 0.5;
     let eigen = SymmetricEigen::new(symmetric);
@@ -66,7 +66,7 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
     let v = eigen.eigenvectors.column(least);
     // drop rounding errors
     let v = v.map(|x| if x.abs() < 1e-12 { 0.0 } else { x });
-    let physical = [v[0] * ei, v[1] * ea, v[2] / fluid, v[3] / fluid];
+    let physical = [v[0] * ei, v[1] * ea, v[2] / fluid[0], v[3] / fluid[1]];
     let pressure = if physical[2].abs() >= physical[3].abs() {
         physical[2]
     } else {

@@ -222,7 +222,8 @@ impl Scales {
                 }
             }
             let moment = moment_of_loads + ei * started / (l * l);
-            let sealed = (wet.area.force_mean * force_of_loads + wet.area.moment_mean * moment) / wet.compliance();
+            let sealed =
+                (wet.area[0].force_mean * force_of_loads + wet.area[0].moment_mean * moment) / wet.compliance();
             d.pressure = d.pressure.max(sealed).max(1e-7 * case.beam.young_modulus_pa);
             curvature = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
             stretch = wet.coupling.stretch(&wet.area, 0.0, d.pressure, 0.0).abs();

@@ -12,14 +12,14 @@ const ALL: usize = (DEGREE + 1) * (DEGREE + 2) / 2;
 /// `[E48]` Potential added by a finite-strain law of the section; `g_i` is the larger limit of `y_i`:
 ///
 /// ```text
-/// Ω = Ω_2 + P(z)      y = (λ - 1 - λ_p, κ - α_p, p_u, p_d)      P = Σ P_k z^k, 3 <= |k| <= degree, k_2 + k_4 even
+/// Ω = Ω_2 + P(z)      y = (λ - 1 - λ_p, κ - α_p, p_u, p_d)      P = Σ P_k z^k, 3 <= |k| <= degree
 /// z = (y_1/g_1, y_2/g_2, (p_u + p_d)/2 g_3, (p_u - p_d)/2 g_3)
 /// N = EA y_1 + P_1      M = EI y_2 + P_2      φ_b l_b a1_R = φ_b l_b (a_p p_R + R A_M + A_N) - ∂P/∂p_R
-/// ∂P/∂p_u = P_3 - (λ_p)' P_1 - (α_p)' P_2      ∂P/∂p_d = P_4 - (λ_p)' P_1 + (α_p)' P_2
+/// ∂P/∂p_R = P_{3,4} - (∂λ_p/∂p_R) P_1 - (∂α_p/∂p_R) P_2
 /// ```
 ///
 /// All derivatives follow from one potential, so every polynomial conserves energy. Odd total powers of curvature and
-/// pressure difference (`k_2 + k_4`) do not occur in mirror-symmetric sections.
+/// pressure difference (`k_2 + k_4`) do not occur in mirror-symmetric sections, powers of the difference not with an upper row alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainPotential {
     /// Lower and upper limits of `y`.
@@ -105,21 +105,29 @@ impl StrainPotential {
         let limits = written.limits();
         let degree = written.degree.min(DEGREE);
         let mut given = written.coefficients_n.iter().copied();
-        let of_pressures = (0..=degree).flat_map(|sum| (0..=sum).map(move |d| [sum - d, d]));
-        let blocks = of_pressures.map(|powers| {
-            let (sum, odd) = (powers[0] + powers[1], powers[1] % 2);
-            let kind = [&MONOMIALS[..EVEN], &MONOMIALS[EVEN..]][odd];
-            let all = kind.iter().map(|[a, b]| a + b + sum);
-            let coefficients = all.take_while(|all| *all <= degree).map(|all| match all {
-                0..3 => 0.0,
-                _ => given.next().unwrap_or(0.0),
-            });
-            Block {
+        let pairs = |most: usize| (0..=most).flat_map(|sum| (0..=sum).map(move |second| [sum - second, second]));
+        let mut blocks = vec![];
+        for powers in pairs(degree) {
+            let sum = powers[0] + powers[1];
+            let mut both = [0, 1].map(|odd| Block {
                 powers,
-                coefficients: coefficients.collect(),
+                coefficients: vec![],
                 first: odd * EVEN,
+            });
+            for [a, b] in pairs(degree - sum) {
+                if written.mirrored && (b + powers[1]) % 2 == 1 {
+                    continue;
+                }
+                both[b % 2].coefficients.push(match a + b + sum {
+                    0..3 => 0.0,
+                    _ => given.next().unwrap_or(0.0),
+                });
             }
-        });
+            blocks.extend(
+                both.into_iter()
+                    .filter(|block| block.coefficients.iter().any(|c| *c != 0.0)),
+            );
+        }
         let inverse = |parts: &[[f64; 2]]| match parts.iter().flatten().fold(0.0, |most, end| end.abs().max(most)) {
             largest if largest > 0.0 => 1.0 / largest,
             _ => 0.0,
@@ -131,7 +139,7 @@ impl StrainPotential {
                 inverse(&limits[1..2]),
                 0.5 * inverse(&limits[2..]),
             ],
-            blocks: blocks.collect(),
+            blocks,
         }
     }
 

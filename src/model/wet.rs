@@ -11,31 +11,33 @@ use crate::numerics::Scalar;
 /// Laws of the bladders of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentLaw {
-    /// Area change of a bladder cell; slopes of omitted effects are zero.
-    pub area: AreaLaw,
+    /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
+    pub area: [AreaLaw; 2],
     /// Slopes by which pressure strains the beam; those of omitted effects are zero.
-    pub strains: AreaLaw,
+    pub strains: [AreaLaw; 2],
     /// Strains caused by pressure.
     pub coupling: CouplingLaw,
-    /// Cross-section of a bladder at rest [m^2].
-    pub area_at_rest: f64,
-    /// Permeability of a bladder over that of [`ResolvedNetwork::bladder_mobility`].
-    pub mobility_ratio: f64,
-    /// Inertia along a bladder; none if omitted.
-    pub along: Option<AlongBladder>,
+    /// Cross-sections of both bladders at rest [m^2].
+    pub area_at_rest: [f64; 2],
+    /// Permeability of both bladders over that of [`ResolvedNetwork::bladder_mobility`].
+    pub mobility_ratio: [f64; 2],
+    /// Inertia along both bladders; none if omitted.
+    pub along: [Option<AlongBladder>; 2],
 }
 
 impl SegmentLaw {
-    fn new(case: &Case, values: &SegmentValues, bladders: &Bladders, section: &Section, asymmetry: bool) -> Self {
-        let area = AreaLaw::new(case, bladders, section, asymmetry);
-        let usual = case.bladders.as_ref().map_or(1.0, network::bladder_permeability);
+    fn new(case: &Case, values: &SegmentValues, usual: &Bladders, section: &Section, asymmetry: bool) -> Self {
+        let rows = values.bladders.as_ref().map_or([usual; 2], |rows| rows.each_ref());
+        let area = rows.map(|bladders| AreaLaw::new(case, bladders, section, asymmetry));
+        let usual = network::bladder_permeability(usual);
+        let along = |bladders| case.fluid.as_ref().and_then(|fluid| AlongBladder::new(bladders, fluid));
         Self {
             area,
             strains: area,
-            coupling: CouplingLaw::new(&values.beam, bladders),
-            area_at_rest: bladders.height_m * bladders.width_m,
-            mobility_ratio: network::bladder_permeability(bladders) / usual,
-            along: case.fluid.as_ref().and_then(|fluid| AlongBladder::new(bladders, fluid)),
+            coupling: CouplingLaw::new(&values.beam, rows[0]),
+            area_at_rest: rows.map(|bladders| bladders.height_m * bladders.width_m),
+            mobility_ratio: rows.map(|bladders| network::bladder_permeability(bladders) / usual),
+            along: rows.map(along),
         }
     }
 }
@@ -49,17 +51,17 @@ pub struct Wet {
     pub bladder_length: f64,
     /// Cross-section at rest `h_b w_b` [m^2].
     pub area_at_rest: f64,
-    /// Area change of a bladder cell; slopes of omitted effects are zero.
-    pub area: AreaLaw,
+    /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
+    pub area: [AreaLaw; 2],
     /// Contact between the walls of a bladder; none if omitted.
     pub closing: Option<WallClosing>,
     /// Compression of the fluid; none for incompressible fluid.
     pub compression: Option<Compression>,
     /// Slopes by which pressure strains the beam; those of omitted effects are zero.
-    pub strains: AreaLaw,
+    pub strains: [AreaLaw; 2],
     /// Strains caused by pressure.
     pub coupling: CouplingLaw,
-    /// Laws of the segments of a beam with spans, of which `area`, `strains` and `coupling` are those of the case; empty for a uniform
+    /// Laws of the segments of a beam with spans or with unlike rows, of which `area`, `strains` and `coupling` are those of the case; empty for a uniform
     /// beam.
     pub segments: Vec<SegmentLaw>,
     /// Tubes, junctions, ports, turbines.
@@ -87,10 +89,29 @@ impl Wet {
         [segment, self.per_row + segment]
     }
 
+    /// Segment of a bladder, and 0 for the upper row, 1 for the lower one.
+    #[inline]
+    fn segment_and_row(&self, bladder: usize) -> (usize, usize) {
+        match bladder.checked_sub(self.per_row) {
+            None => (bladder, 0),
+            Some(segment) => (segment, 1),
+        }
+    }
+
     /// Segment and row `R` of a bladder.
+    #[inline]
     pub fn place(&self, bladder: usize) -> (usize, f64) {
-        let row = bladder / self.per_row;
-        (bladder - row * self.per_row, ROWS[row])
+        let (segment, row) = self.segment_and_row(bladder);
+        (segment, ROWS[row])
+    }
+
+    /// True for the rows that have a bladder: upper, lower.
+    pub fn rows(&self) -> [bool; 2] {
+        let mut rows = self.storage.chunks(self.per_row.max(1));
+        [0, 1].map(|_| {
+            rows.next()
+                .is_some_and(|row| row.iter().any(|one| *one != Storage::Absent))
+        })
     }
 
     /// `φ_b l_b` for a beam length.
@@ -98,45 +119,49 @@ impl Wet {
         self.bladder_length * self.per_row as f64 / length
     }
 
-    /// Area law of a segment.
+    /// Area law of a bladder.
     #[inline]
-    pub fn area_of(&self, segment: usize) -> &AreaLaw {
+    pub fn area_of(&self, bladder: usize) -> &AreaLaw {
+        let (segment, row) = self.segment_and_row(bladder);
+        &self.areas_of(segment)[row]
+    }
+
+    /// Area laws of a segment's bladders.
+    pub fn areas_of(&self, segment: usize) -> &[AreaLaw; 2] {
         self.segments.get(segment).map_or(&self.area, |law| &law.area)
     }
 
     /// Strains of a segment by pressure, and their slopes.
     #[inline]
-    pub fn strains_of(&self, segment: usize) -> (&CouplingLaw, &AreaLaw) {
+    pub fn strains_of(&self, segment: usize) -> (&CouplingLaw, &[AreaLaw; 2]) {
         let own = self.segments.get(segment);
         own.map_or((&self.coupling, &self.strains), |law| (&law.coupling, &law.strains))
     }
 
-    /// Cross-section of the bladders of a segment at rest [m^2].
-    pub fn area_at_rest_of(&self, segment: usize) -> f64 {
+    /// Cross-section of a bladder at rest [m^2].
+    pub fn area_at_rest_of(&self, bladder: usize) -> f64 {
+        let (segment, row) = self.segment_and_row(bladder);
         self.segments
             .get(segment)
-            .map_or(self.area_at_rest, |law| law.area_at_rest)
+            .map_or(self.area_at_rest, |law| law.area_at_rest[row])
     }
 
     /// Permeability of a bladder over that of most.
     pub fn mobility_ratio(&self, bladder: usize) -> f64 {
-        self.segments
-            .get(self.place(bladder).0)
-            .map_or(1.0, |law| law.mobility_ratio)
+        let (segment, row) = self.segment_and_row(bladder);
+        self.segments.get(segment).map_or(1.0, |law| law.mobility_ratio[row])
     }
 
     /// Inertia along a bladder; none if omitted.
     pub fn along(&self, bladder: usize) -> Option<&AlongBladder> {
-        let own = self.segments.get(self.place(bladder).0);
-        own.map_or(self.network.along_bladders.as_ref(), |law| law.along.as_ref())
+        let (segment, row) = self.segment_and_row(bladder);
+        let own = self.segments.get(segment);
+        own.map_or(self.network.along_bladders.as_ref(), |law| law.along[row].as_ref())
     }
 
     /// Compliance of a bladder over that of most.
     pub fn compliance_ratio(&self, bladder: usize) -> f64 {
-        let own = self.segments.get(self.place(bladder).0);
-        own.map_or(1.0, |law| {
-            (self.compliance() + law.area.per_pressure - self.area.per_pressure) / self.compliance()
-        })
+        (self.compliance() + self.area_of(bladder).per_pressure - self.area[0].per_pressure) / self.compliance()
     }
 
     /// Largest time of diffusion along a bladder over that of most bladders.
@@ -165,8 +190,8 @@ impl Wet {
     /// Area stored per pressure at a pressure [Pa], with compression. Gas stiffens with pressure.
     pub fn compliance_at(&self, pressure: f64) -> f64 {
         match &self.compression {
-            None => self.area.per_pressure,
-            Some(compression) => self.area.per_pressure + compression.compliance(pressure),
+            None => self.area[0].per_pressure,
+            Some(compression) => self.area[0].per_pressure + compression.compliance(pressure),
         }
     }
 
@@ -210,16 +235,16 @@ impl Wet {
         network: ResolvedNetwork,
         effects: &EffectSet,
     ) -> Self {
-        let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
+        let area = [AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry)); 2];
         let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);
         let values = spans::segments(case);
         let sections = Section::of_segments(case, &values);
-        let segments = values.iter().zip(&sections).map(|(values, section)| {
-            let own = values.bladders.as_ref().unwrap_or(bladders);
-            SegmentLaw::new(case, values, own, section, effects.has(Effect::Asymmetry))
-        });
+        let segments = values
+            .iter()
+            .zip(&sections)
+            .map(|(values, section)| SegmentLaw::new(case, values, bladders, section, effects.has(Effect::Asymmetry)));
         let segments = segments.collect();
         Self {
             per_row: bladders.per_row,
@@ -248,9 +273,12 @@ impl Wet {
     /// where these are kinked.
     pub(super) fn reduce(&mut self, effects: &EffectSet) {
         let reciprocal = matches!(self.coupling, CouplingLaw::Reciprocal { .. });
-        let bends = effects.has(Effect::PressureToCurvature) && reciprocal && self.strains.moment_half_difference > 0.0;
-        let stretches =
-            effects.has(Effect::PressureToStretch) && reciprocal && self.strains.force_half_difference > 0.0;
+        let bends = effects.has(Effect::PressureToCurvature)
+            && reciprocal
+            && self.strains.iter().any(|law| law.moment_half_difference > 0.0);
+        let stretches = effects.has(Effect::PressureToStretch)
+            && reciprocal
+            && self.strains.iter().any(|law| law.force_half_difference > 0.0);
         self.takes_moments = effects.has(Effect::MomentToArea) || bends;
         self.strain_energy = self
             .strain_energy
@@ -258,7 +286,7 @@ impl Wet {
             .filter(|_| effects.has(Effect::NonlinearSection));
         self.takes_forces = effects.has(Effect::AxialStretch) && (effects.has(Effect::ForceToArea) || stretches);
         let areas = self.segments.iter_mut().map(|law| &mut law.area);
-        for area in areas.chain([&mut self.area]) {
+        for area in areas.chain([&mut self.area]).flatten() {
             *area = area.without(!effects.has(Effect::MomentToArea), !effects.has(Effect::ForceToArea));
         }
         for link in &mut self.network.links {
@@ -267,7 +295,7 @@ impl Wet {
         let along = &mut self.network.along_bladders;
         *along = along.and_then(|along| along.reduced(effects));
         for law in &mut self.segments {
-            law.along = law.along.and_then(|along| along.reduced(effects));
+            law.along = law.along.map(|along| along.and_then(|along| along.reduced(effects)));
         }
         let [bends, stretches] =
             [Effect::PressureToCurvature, Effect::PressureToStretch].map(|effect| effects.has(effect));
@@ -277,7 +305,7 @@ impl Wet {
             .map(|law| (&mut law.coupling, &mut law.strains));
         for (coupling, strains) in laws.chain([(&mut self.coupling, &mut self.strains)]) {
             *coupling = coupling.without(!bends, !stretches);
-            *strains = strains.without(!bends, !stretches);
+            *strains = strains.map(|strains| strains.without(!bends, !stretches));
         }
     }
 }

@@ -128,8 +128,9 @@ impl Limits {
         let pitch = system.mesh.segment_length;
         let room = |j: usize, wet: &Wet| {
             let section = system.model.sections.get(j).unwrap_or(&system.model.section);
-            let there = wet.pair(j).into_iter().any(|bladder| wet.has(bladder));
-            there.then(|| pitch * section.half_height - wet.area_at_rest_of(j))
+            let there = wet.pair(j).into_iter().filter(|bladder| wet.has(*bladder));
+            let largest = there.map(|bladder| wet.area_at_rest_of(bladder)).reduce(f64::max);
+            largest.map(|largest| pitch * section.half_height - largest)
         };
         Self {
             half_height: 0.5 * case.beam.height_m,

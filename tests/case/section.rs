@@ -136,10 +136,13 @@ fn coefficients_scale_with_the_section() {
 #[test]
 fn sections_that_cannot_be_are_refused_at_their_place() {
     assert_eq!(refused(&["/beam/height_m=0.03"]), ["/beam/height_m"]);
+    // of the bladders that are not there, the first
     assert_eq!(
         refused(&["/section/bladders/lower=\"none\""]),
-        ["/section/bladders/lower"]
+        ["/network/chains/1/bladders/0"]
     );
+    let below = r#"/section/bladders={"length_m": 0.014, "upper": "none", "lower": {"center_m": -0.0052, "shape": {"circle": {"radius_m": 0.0028}}}}"#;
+    assert_eq!(refused(&[below]), ["/section/bladders/upper"]);
     assert_eq!(refused(&["/section/pitch_m=0.0085"]), ["/section/pitch_m"]);
     assert_eq!(
         refused(&["/section/material/poisson_ratio=0.5"]),

@@ -9,6 +9,7 @@ mod chance;
 mod closing;
 #[path = "../differences/mod.rs"]
 mod differences;
+mod eccentric;
 mod foundation;
 mod jacobian;
 #[path = "../common/kinematics.rs"]

@@ -132,7 +132,7 @@ fn fluid_swings_along_a_bladder() {
             let wet = model.wet.as_ref().unwrap();
             let (law, resistance) = (along(&case), 1.0 / wet.network.bladder_mobility);
             let length = wet.bladder_length;
-            let wave = (gamma_l / length).powi(2) / wet.area.per_pressure;
+            let wave = (gamma_l / length).powi(2) / wet.area[0].per_pressure;
             let plan = ModeOptions {
                 count: 1,
                 near_hz: (wave / law.inertance).sqrt() / (2.0 * PI),

@@ -15,18 +15,18 @@ use slcbeam::run::summary::{Status, Summary};
 
 use crate::differences::worst_difference;
 
-fn parse(value: &Value) -> Case {
+pub fn parse(value: &Value) -> Case {
     case::parse(&value.to_string(), Path::new("mine.json"), Path::new(""), &[]).unwrap()
 }
 
-fn faults(value: &Value) -> String {
+pub fn faults(value: &Value) -> String {
     match case::parse(&value.to_string(), Path::new("mine.json"), Path::new(""), &[]) {
         Err(slcbeam::error::Error::Case(fault)) => case::render(&fault, false, 200),
         other => panic!("{other:?}"),
     }
 }
 
-fn run(value: &Value) -> (Memory, Summary) {
+pub fn run(value: &Value) -> (Memory, Summary) {
     let mut memory = Memory::default();
     let summary = dynamics::run(&parse(value), &mut memory).unwrap().summary;
     assert_eq!(summary.status, Status::Finished, "{:?}", summary.reason);
@@ -59,11 +59,11 @@ fn graded(rows: &str) -> Value {
 }
 
 /// Column of a recorded run.
-fn column(run: &(Memory, Summary), name: &str) -> Vec<f64> {
+pub fn column(run: &(Memory, Summary), name: &str) -> Vec<f64> {
     run.0.column(name).unwrap_or_else(|| panic!("no column {name}"))
 }
 
-fn largest(values: &[f64]) -> f64 {
+pub fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 

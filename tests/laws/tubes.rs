@@ -252,7 +252,7 @@ fn fluid_swings_between_bladders_as_in_a_u_tube() {
                 system.model.wet.as_ref().unwrap(),
                 &system.fluid.as_ref().unwrap().links[0],
             );
-            let compliance = wet.area.per_pressure * wet.bladder_length;
+            let compliance = wet.area[0].per_pressure * wet.bladder_length;
             let (law, half) = (link.flow.unwrap().law, link.half_cells);
             let viscous_rate = wet.network.links[0].tube.unwrap().viscous_rate;
             let ladder = |s: Complex<f64>| {

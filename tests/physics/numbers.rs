@@ -167,7 +167,7 @@ fn slowest_time(cells: usize) -> f64 {
     }
     let mut rates: Vec<f64> = laplacian.symmetric_eigenvalues().iter().copied().collect();
     rates.sort_by(f64::total_cmp);
-    wet.area.per_pressure * fluid.ds / rates[1]
+    wet.area[0].per_pressure * fluid.ds / rates[1]
 }
 
 /// 4.22 ms continuous to 4.24 ms with one volume a bladder, so that `w tau = 1` at 18 Hz for a permeability factor of

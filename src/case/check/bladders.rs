@@ -2,9 +2,10 @@
 
 use slcbeam_section::finite::energy::monomials;
 
+use super::coefficients;
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
-use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, StrainEnergy};
+use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, LowerRow, StrainEnergy};
 use crate::case::spans;
 use crate::case::wiring::bladder_index;
 use crate::error::numbers::counted;
@@ -19,6 +20,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             }
             fits(case, bladders, faults);
             slopes(bladders, faults);
+            lower_row(case, bladders, faults);
             if let Some(energy) = &bladders.strain_energy {
                 strain_energy(case, bladders, energy, faults);
             }
@@ -49,14 +51,21 @@ fn dry(case: &Case, faults: &mut Violations) {
 pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Violations) -> Option<usize> {
     let per_row = case.segments();
     let index = bladder_index(number, per_row);
-    if index.is_some_and(|index| !spans::has_bladder(case, index)) {
-        let segment = number.unsigned_abs() as usize - 1;
-        let span = spans::places(case).get(segment).map_or(0, |place| place.0);
-        let what = format!("there is no bladder {number}: /spans/{span} has none in this row");
-        let fault = Violation::new(Code::Wiring, pointer, what);
-        faults.push(fault.hint(format!(
-            "change /spans/{span}/rows, or name another bladder; numbers count segments"
-        )));
+    if let Some(index) = index.filter(|index| !spans::has_bladder(case, *index)) {
+        let (cause, hint) = match spans::rows(case)[index / per_row] {
+            false => (
+                "/bladders/lower is \"none\"".to_owned(),
+                "name bladders of the upper row, or remove \"lower\"".to_owned(),
+            ),
+            true => {
+                let span = spans::places(case).get(index % per_row).map_or(0, |place| place.0);
+                let hint = format!("change /spans/{span}/rows, or name other bladders; numbers count segments");
+                (format!("/spans/{span} has none in this row"), hint)
+            }
+        };
+        // one fault for all bladders of a row
+        let fault = Violation::new(Code::Wiring, pointer, format!("there is no bladder {number}: {cause}"));
+        faults.push_once(&cause, fault.hint(hint));
         return None;
     }
     if index.is_none() {
@@ -67,25 +76,30 @@ pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Vio
     index
 }
 
-/// Why bladders do not fit into a segment of this length [m] with these rows; none if they fit.
-pub(super) fn too_large(beam: &Beam, bladders: &Bladders, segment: f64, rows: [bool; 2]) -> Option<String> {
-    let stacked = rows.iter().filter(|row| **row).count() as f64;
+/// Why the bladders of the rows of a segment of this length [m] do not fit into it; none if they fit.
+pub(super) fn too_large<'a>(
+    beam: &Beam,
+    rows: impl Iterator<Item = &'a Bladders> + Clone,
+    segment: f64,
+) -> Option<String> {
+    let stacked: f64 = rows.clone().map(|bladders| bladders.height_m).sum();
+    let largest = |size: fn(&Bladders) -> f64| rows.clone().map(size).fold(0.0, f64::max);
     let sizes = [
         (
             "the width of a bladder",
-            bladders.width_m,
+            largest(|bladders| bladders.width_m),
             "the length of a segment",
             segment,
         ),
         (
             "the height of the bladders",
-            stacked * bladders.height_m,
+            stacked,
             "the height of the beam",
             beam.height_m,
         ),
         (
             "the length of a bladder",
-            bladders.length_m,
+            largest(|bladders| bladders.length_m),
             "the width of the beam",
             beam.width_m,
         ),
@@ -119,20 +133,29 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
             format!("at most {} m each, the length of a segment", rounded(segment)),
         );
     }
-    if exceeds(2.0 * bladders.height_m, beam.height_m) {
-        let what = format!(
-            "two rows of bladders of height {} m do not fit above each other",
-            bladders.height_m
-        );
-        refuse(
-            "height_m",
-            &["/beam/height_m"],
-            what,
-            format!(
-                "at most {} m, half the height of the beam",
-                rounded(beam.height_m / 2.0)
+    let stacked = match &bladders.lower {
+        LowerRow::Mirrored => 2.0 * bladders.height_m,
+        LowerRow::None => bladders.height_m,
+        LowerRow::Unlike(row) => bladders.height_m + row.height_m.unwrap_or(bladders.height_m),
+    };
+    if exceeds(stacked, beam.height_m) {
+        let (what, allowed) = match &bladders.lower {
+            LowerRow::Mirrored => (
+                format!(
+                    "two rows of bladders of height {} m do not fit above each other",
+                    bladders.height_m
+                ),
+                format!(
+                    "at most {} m, half the height of the beam",
+                    rounded(beam.height_m / 2.0)
+                ),
             ),
-        );
+            _ => (
+                format!("the bladders above each other are {} m high", rounded(stacked)),
+                format!("at most {} m, the height of the beam", rounded(beam.height_m)),
+            ),
+        };
+        refuse("height_m", &["/beam/height_m", "/bladders/lower"], what, allowed);
     }
     if exceeds(bladders.length_m, beam.width_m) {
         let what = format!(
@@ -191,12 +214,85 @@ pub(super) fn slopes(bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
+/// Checks a lower row that is not the mirror image of the upper one.
+fn lower_row(case: &Case, bladders: &Bladders, faults: &mut Violations) {
+    const AT: &str = "/bladders/lower";
+    if bladders.lower.is_mirrored() {
+        return;
+    }
+    let mut refuse = |place: &str, what: &str, hint: &str| {
+        let fault = Violation::new(Code::Together, place, format!("{what} needs two equal rows"));
+        faults.push(fault.hint(hint));
+    };
+    if case.formulation == Formulation::Published {
+        refuse(
+            "/formulation",
+            "the published form",
+            "use \"conservative\", or remove /bladders/lower",
+        );
+    }
+    if matches!(bladders.coupling, Coupling::Published(_)) {
+        refuse(
+            "/bladders/coupling",
+            "the published coupling",
+            "use \"reciprocal\", or remove /bladders/lower",
+        );
+    }
+    let LowerRow::Unlike(row) = &bladders.lower else { return };
+    if row.height_m.is_some() || row.width_m.is_some() {
+        let hint = "give both rows the same height and width, and area_per_pressure_m2_per_pa of the lower row";
+        if bladders.closing.is_some() {
+            refuse("/bladders/closing", "contact of the walls of bladders", hint);
+        }
+        if case.fluid.as_ref().is_some_and(|fluid| fluid.is_compressible()) {
+            refuse("/fluid", "a compressible fluid in bladders of different sizes", hint);
+        }
+    }
+    let Some(own) = spans::lower_bladders(case).filter(|_| faults.is_empty()) else {
+        return;
+    };
+    if exceeds_segment(case, &own) {
+        let fault = Violation::new(
+            Code::Geometry,
+            format!("{AT}/unlike/width_m"),
+            "no room along the beam for the lower bladders",
+        );
+        faults.push(fault.allowed("at most the length of a segment"));
+    }
+    let mut found = Violations::default();
+    if !case.plausibility.is_on() {
+        found.take_as_meant();
+    }
+    slopes(&own, &mut found);
+    let alone = Case {
+        bladders: Some(Bladders {
+            lower: LowerRow::None,
+            ..own
+        }),
+        ..case.clone()
+    };
+    coefficients::check(&alone, &mut found);
+    if let Some(first) = found.first() {
+        let key = first.pointer.trim_start_matches("/bladders/");
+        faults.push(Violation {
+            pointer: format!("{AT}/unlike"),
+            what: format!("{} ({key} of the lower row)", first.what),
+            ..first.clone()
+        });
+    }
+}
+
+/// True if a bladder is wider than a segment is long.
+fn exceeds_segment(case: &Case, bladders: &Bladders) -> bool {
+    bladders.width_m > spans::segment_length(case) * (1.0 + 1e-9)
+}
+
 /// Checks a strain energy: number of coefficients, limits on both sides of zero, reciprocal coupling, conservative formulation.
 fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults: &mut Violations) {
     let at = "/bladders/strain_energy";
     // an invalid degree already has its fault from the schema
     let (degree, given) = (energy.degree, energy.coefficients_n.len());
-    let wanted = || monomials(degree).count();
+    let wanted = || monomials(degree, energy.mirrored).count();
     if faults.are_sound(&[at]) && given != wanted() {
         let what = format!("{given} coefficients of degree {degree}");
         let fault = Violation::new(Code::Count, format!("{at}/coefficients_n"), what);
@@ -204,7 +300,8 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
     }
     let keys = ["stretch", "curvature_1_m", "upper_pressure_pa", "lower_pressure_pa"];
     for (key, [low, high]) in keys.into_iter().zip(energy.limits()) {
-        if low > 0.0 || high < 0.0 || low == high {
+        let absent = key.starts_with("lower") && bladders.lower == LowerRow::None;
+        if low > 0.0 || high < 0.0 || (low == high && !absent) {
             let fault = Violation::new(Code::Range, format!("{at}/{key}"), format!("limits {low} and {high}"));
             faults.push(fault.allowed("one below zero and one above"));
         }
@@ -214,6 +311,13 @@ fn strain_energy(case: &Case, bladders: &Bladders, energy: &StrainEnergy, faults
         let fault = Violation::new(Code::Together, place, what).allowed(allowed);
         faults.push(fault.hint("or leave the strain energy out: \"strain_energy\": null"));
     };
+    if energy.mirrored && !bladders.lower.is_mirrored() {
+        refuse(
+            &format!("{at}/mirrored"),
+            "rows that are not mirrored",
+            "false, with coefficients of all terms",
+        );
+    }
     if bladders.coupling != Coupling::Reciprocal {
         let what = "a coupling that is not reciprocal";
         refuse("/bladders/coupling", what, "\"reciprocal\"");

@@ -28,7 +28,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 18] = [
+const RULES: [(Rule, &[&str]); 19] = [
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -52,6 +52,7 @@ const RULES: [(Rule, &[&str]); 18] = [
         &["beam", "bladders", "network", "loads", "ends", "start", "time"],
     ),
     (coefficients::check, &["beam", "bladders", "tubes"]),
+    (spans::axes, &["beam", "bladders", "mesh", "spans"]),
     (
         spans::check,
         &["beam", "bladders", "fluid", "tubes", "mesh", "spans", "surroundings"],

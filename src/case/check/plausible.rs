@@ -42,7 +42,12 @@ const SOFTNESS: Range = Range::new(
     "m^2/Pa",
     "area in m^2 per pressure in Pa; is this per MPa or in mm^2?",
 );
-const FACTOR: Range = Range::new(1e-6, 1e3, "1", "a ratio to the full section, near 1");
+const FACTOR: Range = Range::new(
+    1e-6,
+    1e5,
+    "1",
+    "a ratio to the full section, near 1; above with stiff layers",
+);
 /// Range of the shear stiffness relative to Young's modulus times the area of the full section.
 const SHEAR: Range = Range::new(
     1e-6,

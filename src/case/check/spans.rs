@@ -3,10 +3,13 @@
 use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
-use crate::case::schema::{Case, Span, SpanRows};
+use crate::case::schema::{Case, Formulation, Span, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
+
+/// Tolerance for rounding errors of decimal fractions.
+const WITHIN: f64 = 1e-9;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     // a number of segments that is not allowed is reported by the schema
@@ -45,15 +48,81 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     if faults.is_empty() {
         let all = spans::segments(case);
         for ((span, _), values) in spans::places(case).into_iter().zip(&all) {
-            let Some(own) = values.bladders.as_ref().filter(|_| values.rows != [false; 2]) else {
-                continue;
-            };
-            if let Some(what) = bladders::too_large(&values.beam, own, spans::segment_length(case), values.rows) {
+            let rows = values.present().collect::<Vec<_>>();
+            if let Some(what) = bladders::too_large(&values.beam, rows.into_iter(), spans::segment_length(case)) {
                 let fault = Violation::new(Code::Geometry, format!("/spans/{span}"), what);
                 faults.push(fault.hint("give smaller bladders or a larger section in this span"));
                 break;
             }
         }
+    }
+}
+
+/// Checks the heights of the neutral axis and of the beam's line, and rejects settings of which the equations need both at one height.
+pub(super) fn axes(case: &Case, faults: &mut Violations) {
+    let uniform = [("/beam".to_owned(), case.beam.clone())];
+    let known = case.spans.is_empty() || !spans::countable(case);
+    let graded = spans::uniform_cases(case).filter(|_| !known);
+    let all = uniform
+        .into_iter()
+        .chain(graded.map(|(_, span, uniform)| (format!("/spans/{span}/beam"), uniform.beam)));
+    for (at, beam) in all {
+        let half = 0.5 * beam.height_m * (1.0 + WITHIN);
+        let both = [
+            (
+                "neutral_axis_m",
+                beam.neutral_axis_m,
+                half,
+                "the neutral axis is inside the section: at most half the height from mid-height",
+            ),
+            (
+                "reference_axis_m",
+                beam.line_height(),
+                2.0 * half,
+                "the beam's line is at most one height from mid-height",
+            ),
+        ];
+        for (key, value, most, why) in both {
+            if value.abs() > most && beam.height_m > 0.0 {
+                let what = format!("{} m, in a section {} m high", plain(value), plain(beam.height_m));
+                let fault = Violation::new(Code::Range, format!("{at}/{key}"), what);
+                faults.push(
+                    fault
+                        .allowed(format!("{} to {} m", plain(-most), plain(most)))
+                        .hint(why),
+                );
+                return;
+            }
+        }
+    }
+    if !spans::is_eccentric(case) {
+        return;
+    }
+    let mut refuse = |pointer: &str, what: &str, hint: &str| {
+        let what = format!("{what} with a neutral axis that is not at the beam's line");
+        faults.push(Violation::new(Code::Together, pointer, what).hint(hint));
+    };
+    let same =
+        "remove reference_axis_m, and give all spans one neutral_axis_m: the beam's line is then at the neutral axis";
+    if case.formulation == Formulation::Published {
+        refuse(
+            "/formulation",
+            "the published form",
+            "use \"conservative\", or set both axes to one height",
+        );
+    }
+    if case.beam.viscoelasticity.is_some() {
+        refuse("/beam/viscoelasticity", "a relaxing material", same);
+    }
+    if case
+        .bladders
+        .as_ref()
+        .is_some_and(|bladders| bladders.strain_energy.is_some())
+    {
+        refuse("/bladders/strain_energy", "a section at finite strain", same);
+    }
+    if case.segments().saturating_mul(case.mesh.cells_per_segment) < 2 {
+        refuse("/mesh", "a mesh of one cell", "use at least two cells");
     }
 }
 
@@ -137,25 +206,38 @@ fn lengths(case: &Case, faults: &mut Violations) {
             continue;
         };
         whole = false;
+        let key = format!("/spans/{k}/length_m");
+        if length > case.beam.length_m {
+            let what = format!("{} m is longer than the beam", plain(length));
+            let fault = Violation::new(Code::Geometry, key, what);
+            faults.push_beside(
+                &["/beam/length_m"],
+                fault.allowed(format!("at most {} m", plain(case.beam.length_m))),
+            );
+            continue;
+        }
         let nearest = (length / pitch).round().max(1.0) * pitch;
-        let key = match case.bladders {
+        let number = match case.bladders {
             Some(_) => "/bladders/per_row",
             None => "/mesh/segments",
         };
         let what = format!(
-            "{} m is not a whole number of segments of {} m (/beam/length_m {} m over {key} {segments})",
+            "{} m is not a whole number of segments of {} m (/beam/length_m {} m over {number} {segments})",
             plain(length),
             plain(pitch),
             plain(case.beam.length_m)
         );
-        let fault = Violation::new(Code::Geometry, format!("/spans/{k}/length_m"), what).allowed(format!(
+        let fault = Violation::new(Code::Geometry, key, what).allowed(format!(
             "multiples of {} m; nearest {}",
             plain(pitch),
             plain(nearest)
         ));
-        faults.push(fault.hint(format!("change this length, /beam/length_m or {key}")));
+        faults.push(fault.hint(format!("change this length, /beam/length_m or {number}")));
     }
-    let total: usize = counts.iter().flatten().sum();
+    let total: usize = counts
+        .iter()
+        .flatten()
+        .fold(0, |sum: usize, count| sum.saturating_add(*count));
     if let Some(k) = (0..counts.len()).find(|&k| whole && case.spans[k].length_m.is_none() && counts[k].is_none()) {
         let what = "nothing of the beam is left for the span without length_m";
         let fault = Violation::new(Code::Geometry, format!("/spans/{k}"), what);
@@ -176,7 +258,7 @@ fn lengths(case: &Case, faults: &mut Violations) {
 /// Checks that every value is positive in the middle of every segment.
 fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
     let places = spans::places(case);
-    for (part, key, profile) in span.given() {
+    for (part, key, profile) in span.given().filter(|(_, key, _)| !key.contains("axis")) {
         let here = places.iter().filter(|(span, _)| *span == k);
         let values = here.map(|(_, x)| profile.value(*x));
         if let Some(value) = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0) {

@@ -32,6 +32,13 @@ pub struct Beam {
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub bending_stiffness_factor: f64,
+    /// `z_n`: height of the neutral axis above mid-height; stiffness and areas of bladders are those about it [m].
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub neutral_axis_m: f64,
+    /// `z_r`: height of the beam's line above mid-height; ends and loads act there, and displacements are its own; absent: at the neutral
+    /// axis [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_axis_m: Option<f64>,
     /// `kGA`: shear force over shear strain of the section, of a full rectangle about 5/6 of its area times the shear modulus; absent:
     /// sections stay across the beam [N].
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -47,6 +54,13 @@ pub struct Beam {
     /// Relaxation of the material; absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub viscoelasticity: Option<Viscoelasticity>,
+}
+
+impl Beam {
+    /// Height `z_r` of the beam's line above mid-height [m].
+    pub fn line_height(&self) -> f64 {
+        self.reference_axis_m.unwrap_or(self.neutral_axis_m)
+    }
 }
 
 /// Kelvin-Voigt material damping and external drag (not in the paper).

@@ -93,7 +93,7 @@ impl FluidKind {
     }
 }
 
-/// Two rows of equal bladders, `per_row` each: upper `1..=per_row`, lower `-1..=-per_row`, root to tip.
+/// Two rows of bladders, `per_row` each: upper `1..=per_row`, lower `-1..=-per_row`, root to tip.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Bladders {
@@ -123,6 +123,9 @@ pub struct Bladders {
     pub area_per_moment_m2_per_n_m: AreaPerMoment,
     /// `aN-` (tension) and `aN+` (compression) in `A_N(N)`: area per normal force [m^2/N].
     pub area_per_force_m2_per_n: AreaPerForce,
+    /// The lower row. Absent: the mirror image of the upper row, to which the values above belong.
+    #[serde(default, skip_serializing_if = "LowerRow::is_mirrored")]
+    pub lower: LowerRow,
     /// Strain of the beam by pressure: `lambda_p` and `alpha_p` in `N = EA (lambda - 1 - lambda_p)`, `M = EI (alpha - alpha_p)`.
     #[serde(default)]
     pub coupling: Coupling,
@@ -139,6 +142,55 @@ pub struct Bladders {
     pub kink_width: f64,
 }
 
+/// The lower row of bladders.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum LowerRow {
+    /// Mirror image of the upper row.
+    #[default]
+    Mirrored,
+    /// No lower row.
+    None,
+    /// A row with values of its own.
+    Unlike(RowBladders),
+}
+
+impl LowerRow {
+    /// True for the mirror image of the upper row.
+    pub fn is_mirrored(&self) -> bool {
+        *self == Self::Mirrored
+    }
+}
+
+/// Values of the bladders of one row. Sizes that it does not give are those of the upper row; coefficients that it does not give follow
+/// its sizes by the scaling laws of their section.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RowBladders {
+    /// Height [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub height_m: Option<f64>,
+    /// Width, along the beam [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub width_m: Option<f64>,
+    /// `a_p`: area per pressure [m^2/Pa].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub area_per_pressure_m2_per_pa: Option<f64>,
+    /// Area per bending moment [m^2/(N m)].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_moment_m2_per_n_m: Option<AreaPerMoment>,
+    /// Area per normal force [m^2/N].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_force_m2_per_n: Option<AreaPerForce>,
+    /// Permeability `q1b` [m^4].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub permeability_m4: Option<f64>,
+}
+
 /// Walls that touch, and press on each other with `P (below/x - 1)^2`, x the cross-section over that at rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -151,7 +203,7 @@ pub struct Closing {
     pub stiffness_pa: f64,
 }
 
-/// `P = sum P_k z^k`, `3 <= |k| <= degree`, `k_2 + k_4` even: what a law at finite strain adds to the potential of the section [N]. `z` are
+/// `P = sum P_k z^k`, `3 <= |k| <= degree`, with mirrored rows `k_2 + k_4` even: what a law at finite strain adds to the potential of the section [N]. `z` are
 /// the stretch and the curvature that loads make and half of sum and difference of the upper and the lower pressure, each over the
 /// largest of its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -168,6 +220,9 @@ pub struct StrainEnergy {
     /// Degree of `P`.
     #[schemars(range(min = 3, max = 6))]
     pub degree: usize,
+    /// True if `P` has only the terms of a section with mirrored rows.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub mirrored: bool,
     /// `P_k`: powers of sum and difference of the pressures outermost, by their sum; then those of stretch and curvature, by theirs [N].
     pub coefficients_n: Vec<f64>,
     /// Largest error of the first derivatives over the largest of their linear parts.
@@ -271,6 +326,14 @@ pub enum CrossSection {
         #[schemars(extend("exclusiveMinimum" = 0))]
         side_m: f64,
     },
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(value: &bool) -> bool {
+    *value
 }
 
 fn default_kink_width() -> f64 {

@@ -86,6 +86,12 @@ pub struct SpanBeam {
     /// `f_i`: bending stiffness over that of the full section.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending_stiffness_factor: Option<Profile>,
+    /// `z_n`: height of the neutral axis above mid-height [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neutral_axis_m: Option<Profile>,
+    /// `z_r`: height of the beam's line above mid-height; absent: that of the beam [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reference_axis_m: Option<Profile>,
     /// `kGA` [N]; only for beams that shear.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_n: Option<Profile>,
@@ -104,6 +110,8 @@ impl SpanBeam {
             ("density_kg_m3", &self.density_kg_m3),
             ("axial_stiffness_factor", &self.axial_stiffness_factor),
             ("bending_stiffness_factor", &self.bending_stiffness_factor),
+            ("neutral_axis_m", &self.neutral_axis_m),
+            ("reference_axis_m", &self.reference_axis_m),
             ("shear_stiffness_n", &self.shear_stiffness_n),
             ("mass_factor", &self.mass_factor),
         ])

@@ -48,6 +48,15 @@ impl SectionFile {
         self.solved(self.section.three_dimensional())
     }
 
+    /// Values of `beam` and `bladders` in a case whose beam has a length [m].
+    ///
+    /// # Errors
+    /// As [`Self::coefficients`].
+    pub fn values(&self, length: f64) -> Result<Value> {
+        let case = serde_json::json!({"beam": {"length_m": length}});
+        super::values(&case, &self.section).map_err(|faults| self.source.fault(faults))
+    }
+
     fn solved<T>(&self, found: std::result::Result<T, Error>) -> Result<T> {
         found.map_err(|error| self.source.fault(violations(error, self.at)))
     }

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
+use slcbeam_section::coefficients::{Numbers, RowCoefficients};
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 
@@ -21,7 +22,7 @@ pub(super) use file::{is_one, no_case};
 const KEY: &str = "section";
 /// Pointer of the section in a case.
 const AT: &str = "/section";
-/// Largest difference of the rows, and largest coupling of force and curvature, that the model's two equal rows may neglect.
+/// Largest difference of the rows, and largest coupling of force and curvature, of a section that counts as mirror-symmetric.
 const ALIKE: f64 = 1e-3;
 /// Largest accepted relative error of a coefficient.
 const COARSE: f64 = 0.02;
@@ -29,6 +30,8 @@ const COARSE: f64 = 0.02;
 const COARSE_IN_SPACE: f64 = 0.06;
 /// Pointer of the energy at finite strain.
 const ENERGY: &str = "/bladders/strain_energy";
+/// Pointer of the lower row.
+const LOWER: &str = "/bladders/lower";
 /// Pointer of the number of bladders per row.
 const PER_ROW: &str = "/bladders/per_row";
 /// Pointer of the same number in the case of a result.
@@ -115,6 +118,9 @@ pub(super) fn release(case: &mut Value, file: &Value) {
     let mut released: Vec<String> = pointers.into_iter().filter(of_section).collect();
     if released.iter().any(|p| p == PER_ROW) && same(SEGMENTS) == file.pointer(PER_ROW) {
         released.push(SEGMENTS.into());
+    }
+    if same(LOWER).is_some_and(|given| brought.values.pointer(LOWER) == Some(given)) {
+        released.push(LOWER.into());
     }
     let energy = file
         .get(KEY)
@@ -260,37 +266,62 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
         "bending_stiffness_factor": c.bending_stiffness_factor,
         "shear_stiffness_n": c.shear_stiffness_n,
     }});
-    if c.force_curvature_coupling.abs() > ALIKE {
-        let what = format!(
-            "a normal force bends this section (coupling {:.1e})",
-            c.force_curvature_coupling
-        );
-        let place = if section.regions.is_empty() {
-            "/bladders/lower"
-        } else {
-            "/regions"
-        };
-        faults.push(fault(place, what).allowed("mirror-symmetric halves").hint(ONE_ROW));
+    let about = AboutNeutralAxis::new(section, c);
+    let mirrored = about.offset == 0.0;
+    if !mirrored {
+        values["beam"]["axial_stiffness_factor"] = about.axial_stiffness_factor.into();
+        values["beam"]["neutral_axis_m"] = about.offset.into();
     }
     match (&c.upper, &c.lower) {
         (None, None) => {}
-        (Some(upper), Some(lower)) => {
-            let differs = (lower.area_per_moment_m2_per_n_m / upper.area_per_moment_m2_per_n_m - 1.0).abs() > ALIKE;
-            if differs && faults.is_empty() {
-                let what = "the two rows differ".to_owned();
-                faults.push(fault("/bladders/lower", what).allowed("\"mirrored\"").hint(ONE_ROW));
-            }
+        (None, Some(_)) => {
+            let what = "only the lower row has bladders".to_owned();
+            faults
+                .push(fault("/bladders/upper", what).hint("turn the section over: describe the row as the upper one"));
+        }
+        (Some(upper), lower) => {
             let along = section.bladders.along();
-            let (of_moment, of_force) = (c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n);
+            let slopes = |row: &RowCoefficients, sign: f64| {
+                let (of_moment, of_force) = about.slopes(row, sign);
+                json!({
+                    "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
+                    "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
+                })
+            };
+            let alike = mirrored
+                && lower.as_ref().is_some_and(|lower| {
+                    (lower.area_per_moment_m2_per_n_m / upper.area_per_moment_m2_per_n_m - 1.0).abs() <= ALIKE
+                });
             values["bladders"] = json!({
                 "length_m": section.bladders.length_m,
                 "width_m": along,
                 "height_m": upper.area_m2 / along,
                 "permeability_m4": c.permeability_m4,
                 "area_per_pressure_m2_per_pa": c.area_per_pressure_m2_per_pa,
+            });
+            let (of_moment, of_force) = (c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n);
+            let mut own = json!({
                 "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                 "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
             });
+            if !alike {
+                own = slopes(upper, 1.0);
+                own["permeability_m4"] = upper.permeability_m4.into();
+                own["area_per_pressure_m2_per_pa"] = upper.area_per_pressure_m2_per_pa.into();
+                own["lower"] = match lower {
+                    None => json!("none"),
+                    Some(lower) => {
+                        let mut row = slopes(lower, -1.0);
+                        row["height_m"] = (lower.area_m2 / along).into();
+                        row["area_per_pressure_m2_per_pa"] = lower.area_per_pressure_m2_per_pa.into();
+                        row["permeability_m4"] = lower.permeability_m4.into();
+                        json!({"unlike": row})
+                    }
+                };
+            }
+            if let (Some(all), Value::Object(own)) = (values["bladders"].as_object_mut(), own) {
+                all.extend(own);
+            }
             // an energy that the case gives, as that of a result does, or omits by null is not computed
             let given = |energy: &Value| energy.is_null() || energy.get("coefficients_n").is_some();
             if !case.pointer(ENERGY).is_some_and(given) {
@@ -310,8 +341,6 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 }
             }
         }
-        _ if faults.is_empty() => faults.push(fault("/bladders", "only one row has bladders".into()).hint(ONE_ROW)),
-        _ => {}
     }
     if faults.is_empty() { Ok(values) } else { Err(faults) }
 }
@@ -319,7 +348,40 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
 /// Pointer of the length of a cell.
 const PITCH: &str = "/section/pitch_m";
 
-const ONE_ROW: &str = "a case has two equal rows; `slcbeam coefficients` computes the numbers of any section";
+/// Stiffness and areas about the neutral axis, from the compliance about mid-height: with `M = M_n + d N`,
+///
+/// ```text
+/// d = -C_NM/C_MM      1/EA = C_NN - C_NM²/C_MM      1/EI = C_MM      φ_b l_b an_R = C_NR + d C_MR      φ_b l_b R am_R = C_MR
+/// ```
+struct AboutNeutralAxis {
+    /// `d` [m]; 0 if force and curvature are not coupled.
+    offset: f64,
+    axial_stiffness_factor: f64,
+}
+
+impl AboutNeutralAxis {
+    fn new(section: &Section, numbers: &Numbers) -> Self {
+        let c = &numbers.compliance;
+        if numbers.force_curvature_coupling.abs() <= ALIKE {
+            return Self {
+                offset: 0.0,
+                axial_stiffness_factor: numbers.axial_stiffness_factor,
+            };
+        }
+        let axial = c[0][0] - c[0][1] * c[0][1] / c[1][1];
+        let full = section.material.young_modulus_pa * section.height_m * section.width_m;
+        Self {
+            offset: -c[0][1] / c[1][1],
+            axial_stiffness_factor: 1.0 / (axial * full),
+        }
+    }
+
+    /// `am` and `an` of a row, `sign` its R.
+    fn slopes(&self, row: &RowCoefficients, sign: f64) -> (f64, f64) {
+        let of_moment = row.area_per_moment_m2_per_n_m;
+        (of_moment, row.area_per_force_m2_per_n + self.offset * sign * of_moment)
+    }
+}
 
 /// Number of bladders in a row.
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {

@@ -76,7 +76,7 @@ impl LineLayout {
         let inertia = model.effects.has(Effect::SolidInertia);
         let waves = [inertia && !bar, inertia && model.effects.has(Effect::AxialInertia)];
         let damped = model.section.resists_motion();
-        let bent = model.section.bending_damping_time > 0.0;
+        let bent = model.section.bends_viscously();
         // Without axial waves bending damping alone does not make u3 differential: in a straight beam it acts
         // transversely.
         let differential = [inertia || damped || bent, waves[1] || damped || (bent && !inertia)];
@@ -119,7 +119,7 @@ impl SectionRotation {
         let (size, rate) = (s.transverse / model.length, s.transverse_rate / model.length);
         let moment = (s.transverse_force * model.length).max(1e-12 * model.length);
         let row = if swings { rate } else { moment };
-        let differential = swings || section.bending_damping_time > 0.0;
+        let differential = swings || section.bends_viscously();
         let inertia = section.mass_per_length * section.gyration_radius_squared * mesh.h;
         let mut cells = |what: &'static str, size: f64, row: f64, differential: bool| {
             build.block(|build| {

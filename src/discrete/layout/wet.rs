@@ -49,7 +49,7 @@ impl CouplingUnknowns {
             mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
             mean_force: build.segments("mean normal force [N]", segments(wet.takes_forces), model.scales.force),
             nonlinear_area: build.block(|build| {
-                let scale = wet.area.per_pressure * model.scales.pressure;
+                let scale = wet.area[0].per_pressure * model.scales.pressure;
                 for bladder in (0..2 * wet.per_row).filter(|_| wet.strain_energy.is_some()) {
                     build.push(Name::NonlinearArea(bladder), scale, scale, false);
                 }

@@ -8,7 +8,7 @@ use crate::model::{AreaLaw, Compression, Storage, Wet};
 
 /// Area law of a bladder.
 fn law_of(wet: &Wet, bladder: usize) -> &AreaLaw {
-    wet.area_of(wet.place(bladder).0)
+    wet.area_of(bladder)
 }
 
 /// Rates of a cell's pressure [Pa/s], of the pressure on its walls, and of its area [m^2/s], from the rate of its content.

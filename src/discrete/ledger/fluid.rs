@@ -9,9 +9,9 @@ use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressur
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, von_karman};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace, injected_volume};
-use crate::model::bladder::{kink_curvature, kink_slope};
+use crate::model::bladder::kink_curvature;
 use crate::model::network::{LinkKind, ResolvedNetwork};
-use crate::model::{AreaLaw, CouplingLaw, LumpedKind, LumpedNetwork, Wet};
+use crate::model::{AreaLaw, CouplingLaw, LumpedKind, LumpedNetwork, ROWS, Wet};
 
 /// Computes quantities needed only for balances: means, pressure rates of lumped networks, and area rates of their
 /// bladders.
@@ -51,14 +51,8 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
         for &bladder in &lumped.bladders {
             let rate = imposed_rate(wet, w, bladder);
             let cell = fluid.cells_of(bladder).start;
-            let [_, stored] = compressed::shared_rates(
-                wet,
-                wet.area_of(wet.place(bladder).0),
-                w,
-                cell,
-                w.fluid.lumped_rate[k],
-                rate,
-            );
+            let [_, stored] =
+                compressed::shared_rates(wet, wet.area_of(bladder), w, cell, w.fluid.lumped_rate[k], rate);
             w.fluid.area_rate[fluid.cells_of(bladder)].fill(stored);
         }
     }
@@ -68,7 +62,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
 /// Rate of a bladder's area by moment, force and finite strain.
 pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
-    let law = wet.area_of(j);
+    let law = wet.area_of(bladder);
     law.moment_slope(w.coupling.mean_moment[j], row) * w.coupling.mean_moment_rate[j]
         + law.force_slope(w.coupling.mean_force[j]) * w.coupling.mean_force_rate[j]
         + w.coupling.excess_area_rate.get(bladder).copied().unwrap_or(0.0)
@@ -93,7 +87,8 @@ pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
     von_karman::foreshorten(system, now, stretch_rate, w);
 }
 
-/// Adds the power of a coupling without reciprocity; returns the rate of curvature at an end with a given moment, less that of `M/EI`.
+/// Adds the power of a coupling without reciprocity; returns the rates of stretch by pressure, and of curvature at an end with a given
+/// moment, less that of `M/EI`.
 ///
 /// ```text
 /// P_reciprocity = l_seg Σ_j { Nbar d/dt(φ_b [l_b A_N' - ζ'/E] (p_u + p_d))
@@ -103,23 +98,23 @@ pub fn rates<'a>(
     system: &'a System,
     w: &Workspace<f64>,
     out: &mut [f64],
-) -> impl Fn(&Workspace<f64>, usize) -> f64 + use<'a> {
+) -> impl Fn(&Workspace<f64>, usize) -> [f64; 2] + use<'a> {
     if let Some(wet) = &system.model.wet {
         let ratio = wet.length_ratio(system.model.length);
         for j in 0..wet.per_row {
             let s = SegmentRates::new(system, wet, w, j);
             let reciprocal = CouplingLaw::Reciprocal { length_ratio: ratio };
             let (stretch, curvature) = s.strain_rates(wet.strains_of(j));
-            let (stretch_0, curvature_0) = s.strain_rates((&reciprocal, wet.area_of(j)));
+            let (stretch_0, curvature_0) = s.strain_rates((&reciprocal, wet.areas_of(j)));
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
             add(out, EnergyRate::Reciprocity, system.mesh.segment_length * power);
         }
     }
     move |w, node| {
-        let Some(wet) = &system.model.wet else { return 0.0 };
+        let Some(wet) = &system.model.wet else { return [0.0; 2] };
         let j = system.mesh.segments_of_node(node).0;
-        let (_, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j));
-        curvature + nonlinear::end_rate(system, w, node)
+        let (stretch, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j));
+        [stretch, curvature + nonlinear::end_rate(system, w, node)]
     }
 }
 
@@ -160,7 +155,7 @@ impl SegmentRates {
     }
 
     /// Rates of `lambda_p` and `alpha_p` for a coupling.
-    fn strain_rates(&self, (coupling, law): (&CouplingLaw, &AreaLaw)) -> (f64, f64) {
+    fn strain_rates(&self, (coupling, laws): (&CouplingLaw, &[AreaLaw; 2])) -> (f64, f64) {
         let [pu, pd] = self.pressure;
         let [pu_t, pd_t] = self.pressure_rate;
         match *coupling {
@@ -172,13 +167,14 @@ impl SegmentRates {
                 curvature_per_pressure * (pu_t - pd_t),
             ),
             CouplingLaw::Reciprocal { length_ratio } => {
-                let force_kink = kink_curvature(self.force, law.force_width) * self.force_rate;
-                let moment_kink = kink_curvature(self.moment, law.moment_width) * self.moment_rate;
-                let stretch =
-                    law.force_slope(self.force) * (pu_t + pd_t) - law.force_half_difference * force_kink * (pu + pd);
-                let slope = kink_slope(self.moment, law.moment_width);
-                let curvature = law.moment_mean * (pu_t - pd_t)
-                    - law.moment_half_difference * (slope * (pu_t + pd_t) + moment_kink * (pu + pd));
+                let (mut stretch, mut curvature) = (0.0, 0.0);
+                for ((law, row), (p, p_t)) in laws.iter().zip(ROWS).zip([(pu, pu_t), (pd, pd_t)]) {
+                    let force_kink = kink_curvature(self.force, law.force_width) * self.force_rate;
+                    let moment_kink = kink_curvature(self.moment, law.moment_width) * self.moment_rate;
+                    stretch += law.force_slope(self.force) * p_t - law.force_half_difference * force_kink * p;
+                    curvature +=
+                        law.moment_slope(self.moment, row) * p_t - law.moment_half_difference * moment_kink * p;
+                }
                 (length_ratio * stretch, length_ratio * curvature)
             }
         }

@@ -4,7 +4,7 @@ use super::{EnergyRate, Rates, StoredEnergies, add};
 use crate::case::schema::Effect;
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
-use crate::discrete::residual::{fourth_order, relaxation};
+use crate::discrete::residual::{eccentric, fourth_order, relaxation};
 use crate::discrete::{System, TimeData, Workspace, attached};
 use crate::model::Kinematics;
 use crate::numerics::Planar;
@@ -13,7 +13,7 @@ use crate::numerics::Planar;
 pub fn flows(
     system: &System,
     now: &TimeData,
-    curvature_rate: impl Fn(&Workspace<f64>, usize) -> f64,
+    pressure_rate: impl Fn(&Workspace<f64>, usize) -> [f64; 2],
     w: &Workspace<f64>,
 ) -> Rates {
     let (mesh, l) = (&system.mesh, &system.layout);
@@ -56,7 +56,7 @@ pub fn flows(
         };
         add(out, EnergyRate::AngularImpulse, arm.cross(f) + turning);
         if system.model.kinematics != Kinematics::Bar {
-            bending(system, now, &curvature_rate, w, i, out);
+            bending(system, now, &pressure_rate, w, i, out);
         }
     }
     add(out, EnergyRate::AngularImpulse, attached::torque(system, now, w));
@@ -104,12 +104,13 @@ pub fn reaction(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize
 fn bending(
     system: &System,
     now: &TimeData,
-    curvature_rate: &impl Fn(&Workspace<f64>, usize) -> f64,
+    pressure_rate: &impl Fn(&Workspace<f64>, usize) -> [f64; 2],
     w: &Workspace<f64>,
     i: usize,
     out: &mut Rates,
 ) {
     let mesh = &system.mesh;
+    let curvature_rate = |w: &Workspace<f64>, node: usize| pressure_rate(w, node)[1];
     let last = mesh.nodes - 1;
     let length = mesh.node_length(i);
     let published = system.model.published();
@@ -128,6 +129,9 @@ fn bending(
     let (stretch, stretch_rate) = stretches(i);
     // With a given moment, the curvature follows from it.
     let kappa_rate = match end {
+        Some(e) if e.slope.is_none() && !system.sections.offset.is_empty() => {
+            eccentric::end_rate(system, now, w, i, pressure_rate(w, i)).unwrap_or(0.0)
+        }
         Some(e) if e.slope.is_none() => {
             let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
             let mut elastic_rate = e.moment.rate / system.sections.bending[i];
@@ -148,7 +152,8 @@ fn bending(
     };
     let part = |moments: &[f64]| moments.get(i).copied().unwrap_or(0.0);
     let forces = &w.forces;
-    let elastic = forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment);
+    let elastic =
+        forces.moment[i] + part(&forces.nonlinear_moment) + part(&forces.relaxing_moment) + part(&forces.offset_moment);
     let moment = elastic + forces.viscous_moment[i];
     if let Some(e) = end {
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };

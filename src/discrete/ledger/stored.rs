@@ -26,7 +26,7 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
                 }
                 squares += in_walls * in_walls;
             }
-            let law = wet.area_of(j);
+            let law = wet.area_of(bladder);
             let mixed = w.coupling.mean_force[j] * law.force_slope(w.coupling.mean_force[j])
                 + w.coupling.mean_moment[j] * law.moment_slope(w.coupling.mean_moment[j], row);
             let in_walls = 0.5 * law.per_pressure * squares + closed;

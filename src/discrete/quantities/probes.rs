@@ -25,7 +25,8 @@ pub struct MeshProbe {
     /// Segment of the probe.
     segment: usize,
     /// `h_s/2` [m].
-    half_height: f64,
+    /// Heights of the upper and the lower surface above the beam's line [m].
+    surfaces: [f64; 2],
     /// Young's modulus of the solid [Pa].
     young_modulus: f64,
 }
@@ -46,10 +47,10 @@ const TABLE: [Entry; 13] = [
     ("u3", "m", "axial displacement", false, |p, look| p.of_nodes(|i| look.w.motion.u[i].z)),
     ("angle", "rad", "slope angle phi, counted over full turns", false, MeshProbe::angle),
     ("curvature", "1/m", "curvature", false, |p, look| { let kappa = look.w.curvature(); p.of_nodes(|i| kappa[i]) }),
-    ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 1.0)),
-    ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, -1.0)),
-    ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", false, |p, look| p.stress(look, 1.0)),
-    ("stress_lower", "Pa", "stress along the beam of the solid at the lower surface, without viscous damping", false, |p, look| p.stress(look, -1.0)),
+    ("strain_upper", "1", "strain lambda - 1 + kappa h_s/2 of the upper surface", false, |p, look| p.surface(look, 0)),
+    ("strain_lower", "1", "strain lambda - 1 - kappa h_s/2 of the lower surface", false, |p, look| p.surface(look, 1)),
+    ("stress_upper", "Pa", "stress along the beam of the solid at the upper surface, without viscous damping", false, |p, look| p.stress(look, 0)),
+    ("stress_lower", "Pa", "stress along the beam of the solid at the lower surface, without viscous damping", false, |p, look| p.stress(look, 1)),
     ("normal_force", "N", "normal force without viscous damping", false, |p, look| { let n = look.w.normals(); p.of_cells(|c| n[c]) }),
     ("moment", "N m", "bending moment without viscous damping", false, |p, look| { let m = look.w.moments(); p.of_nodes(|i| m[i]) }),
     ("shear_force", "N", "shear force", false, |p, look| p.of_cells(|c| look.w.shears()[c])),
@@ -144,7 +145,8 @@ impl MeshProbe {
         let probe = |probe: &Written| {
             let mut one = Self::new(&probe.name, probe.at, mesh);
             let beam = segments.get(one.segment).map_or(&case.beam, |values| &values.beam);
-            (one.half_height, one.young_modulus) = (0.5 * beam.height_m, beam.young_modulus_pa);
+            one.surfaces = [0.5, -0.5].map(|side| side * beam.height_m - beam.line_height());
+            one.young_modulus = beam.young_modulus_pa;
             one
         };
         case.probes.iter().map(probe).collect()
@@ -161,7 +163,7 @@ impl MeshProbe {
             node: (node, place - node as f64),
             cell: (cell, beyond),
             segment: node / mesh.cells_per_segment,
-            half_height: 0.0,
+            surfaces: [0.0; 2],
             young_modulus: 0.0,
         }
     }
@@ -194,10 +196,10 @@ impl MeshProbe {
     }
 
     /// `λ - 1 ± κ h_s/2`, κ relative to the rest curvature.
-    fn surface(&self, look: &StateView, side: f64) -> f64 {
+    fn surface(&self, look: &StateView, side: usize) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
-            + side * self.half_height * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
+            + self.surfaces[side] * self.of_nodes(|i| look.w.curvature()[i] - look.now.rest_curvature(i))
     }
 
     /// Stress of a fibre at a surface: Young's modulus E times its strain, plus the stress of the Maxwell branches, which, like strain,
@@ -206,13 +208,13 @@ impl MeshProbe {
     /// ```text
     /// σ = E (λ - 1 ± κ h_s/2 + N_r/EA ± M_r h_s/(2 EI))        N_r, M_r: forces of the branches
     /// ```
-    fn stress(&self, look: &StateView, side: f64) -> f64 {
+    fn stress(&self, look: &StateView, side: usize) -> f64 {
         let (sections, forces) = (&look.system.sections, &look.w.forces);
         let part =
             |forces: &[f64], stiffness: &[f64], k: usize| forces.get(k).map_or(0.0, |force| force / stiffness[k]);
         let normal = |c: usize| part(&forces.relaxing_normal, &sections.axial, c);
         let moment = |i: usize| part(&forces.relaxing_moment, &sections.bending, i);
-        let relaxing = self.of_cells(normal) + side * self.half_height * self.of_nodes(moment);
+        let relaxing = self.of_cells(normal) + self.surfaces[side] * self.of_nodes(moment);
         self.young_modulus * (self.surface(look, side) + relaxing)
     }
 

@@ -98,7 +98,11 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
                 let part = |moments: &[f64]| moments.get(node(k)).copied().unwrap_or(0.0);
                 let f = &w.forces;
                 let moment = f.moment[node(k)] + f.viscous_moment[node(k)];
-                let moment = moment + part(&f.nonlinear_moment) + part(&f.relaxing_moment) + part(&f.arc_moment);
+                let moment = moment
+                    + part(&f.nonlinear_moment)
+                    + part(&f.relaxing_moment)
+                    + part(&f.arc_moment)
+                    + part(&f.offset_moment);
                 if k == 0 { moment } else { -moment }
             }
             Told::Angle(k) => {

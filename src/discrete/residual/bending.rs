@@ -48,14 +48,17 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     for (moment, ei) in moment.iter_mut().zip(ei) {
         *moment = *moment * *ei;
     }
-    for node in [0, last] {
-        given_moment(system, now, node, w);
+    if system.sections.offset.is_empty() {
+        for node in [0, last] {
+            given_moment(system, now, node, w);
+        }
     }
     if system.mesh.fourth {
         fourth_order::moments(&system.mesh, now, &mut w.forces.moment);
     }
     relaxation::moments(system, now, w);
-    if section.bending_damping_time > 0.0 {
+    if section.bends_viscously() {
+        w.forces.viscous_moment.fill(T::zero());
         let first = usize::from(now.ends[0].slope.is_none());
         let end = last + usize::from(now.ends[1].slope.is_some());
         for (i, ei) in ei.iter().enumerate().take(end).skip(first) {
@@ -116,10 +119,11 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         &forces.nonlinear_moment[..],
         &forces.relaxing_moment,
         &forces.arc_moment,
+        &forces.offset_moment,
         &[],
     ];
-    if system.model.section.bending_damping_time > 0.0 {
-        parts[3] = &forces.viscous_moment;
+    if system.model.section.bends_viscously() {
+        parts[4] = &forces.viscous_moment;
     }
     for part in parts {
         for (drop, pair) in forces.shear.iter_mut().zip(part.windows(2)) {
@@ -144,7 +148,10 @@ pub fn total_moment_drop<T: Scalar>(system: &System, w: &Workspace<T>, c: usize)
     if let [left, right, ..] = w.forces.arc_moment.get(c..).unwrap_or_default() {
         drop += *left - *right;
     }
-    if system.model.section.bending_damping_time > 0.0 {
+    if let [left, right, ..] = w.forces.offset_moment.get(c..).unwrap_or_default() {
+        drop += *left - *right;
+    }
+    if system.model.section.bends_viscously() {
         drop + (w.forces.viscous_moment[c] - w.forces.viscous_moment[c + 1])
     } else {
         drop

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge, MeshLink, MeshSource};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace};
-use crate::model::{AreaLaw, Compression, Storage, Wet};
+use crate::model::{AreaLaw, Compression, ROWS, Storage, Wet};
 use crate::numerics::Scalar;
 
 /// `[E8]` Pressure of each cell from its area, and the mean of each bladder (A.15, A.16 solved for p):
@@ -21,11 +21,10 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     };
     let share = 1.0 / fluid.cells_per_bladder as f64;
     for j in 0..wet.per_row {
-        let law = wet.area_of(j);
-        let of_force = law.of_force(w.coupling.mean_force[j]);
-        let of_moments = law.of_moments(w.coupling.mean_moment[j]);
-        for (bladder, of_moment) in wet.pair(j).into_iter().zip(of_moments) {
-            let mut imposed = of_force + of_moment;
+        let (force, moment) = (w.coupling.mean_force[j], w.coupling.mean_moment[j]);
+        for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
+            let law = wet.area_of(bladder);
+            let mut imposed = law.of_force(force) + law.of_moment(moment, row);
             if let Some(excess) = w.coupling.excess_area.get(bladder) {
                 imposed += *excess;
             }
@@ -77,7 +76,7 @@ fn compressed<T: Scalar>(
     w: &mut Workspace<T>,
 ) -> T {
     let own = &mut w.fluid;
-    let law = wet.area_of(wet.place(bladder).0);
+    let law = wet.area_of(bladder);
     let (p, in_walls, area) = match wet.storage[bladder] {
         Storage::Flowing => {
             let share = 1.0 / cells.len() as f64;

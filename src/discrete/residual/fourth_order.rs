@@ -208,8 +208,10 @@ pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
 pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
-    } else if !model.sections.is_empty() {
+    } else if model.sections.iter().any(|section| *section != model.section) {
         "a beam with spans needs a mesh of second order"
+    } else if model.section.offset != 0.0 {
+        "a neutral axis beside the beam's line needs a mesh of second order"
     } else if !model.relaxation.is_empty() {
         "a viscoelastic solid needs a mesh of second order"
     } else if model.strain_energy().is_some() {

@@ -4,6 +4,7 @@ pub mod ambient_fluid;
 pub mod arcs;
 pub mod bar;
 pub mod bending;
+pub mod eccentric;
 pub mod fluid;
 pub mod fourth_order;
 pub mod momentum;
@@ -43,7 +44,7 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         Kinematics::Bar => {
             bar::kinematics(system, w);
             bar::rates(system, w);
-            solid::normal_forces(system, w);
+            solid::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             bar::section_forces(system, w);
         }
@@ -54,9 +55,11 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             }
             fourth_order::arcs(system, now, w);
             von_karman::rates(system, now, w);
+            eccentric::end_curvatures(system, now, w);
             von_karman::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
+            eccentric::moments(system, now, w);
             fourth_order::arc_moments(system, now, w);
             if sheared {
                 timoshenko::forces(system, now, w);
@@ -72,9 +75,11 @@ pub fn beyond_strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
             }
             fourth_order::arcs(system, now, w);
             solid::rates(system, now, w);
-            solid::normal_forces(system, w);
+            eccentric::end_curvatures(system, now, w);
+            solid::normal_forces(system, now, w);
             relaxation::normal_forces(system, w);
             bending::moments(system, now, w);
+            eccentric::moments(system, now, w);
             fourth_order::arc_moments(system, now, w);
             if sheared {
                 timoshenko::forces(system, now, w);

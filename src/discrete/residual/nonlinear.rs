@@ -32,13 +32,13 @@ pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
             w.forces.nonlinear_moment[j * k + i] += slopes.moment * share;
         }
         for (bladder, by) in wet.pair(j).into_iter().zip(slopes.by_pressure) {
-            w.coupling.nonlinear_area[bladder] = wet.area_of(j).of_force(slopes.force) - by * per_area;
+            w.coupling.nonlinear_area[bladder] = wet.area_of(bladder).of_force(slopes.force) - by * per_area;
         }
     }
     for j in 0..wet.per_row {
         let moment = mean_of_nodes(system, &w.forces.nonlinear_moment, j);
         for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-            w.coupling.nonlinear_area[bladder] += wet.area_of(j).of_moment(moment, row);
+            w.coupling.nonlinear_area[bladder] += wet.area_of(bladder).of_moment(moment, row);
         }
     }
 }

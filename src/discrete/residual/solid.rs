@@ -1,6 +1,6 @@
 //! Kinematics, resultants and section forces of the beam.
 
-use super::{fourth_order, timoshenko};
+use super::{eccentric, fourth_order, timoshenko};
 use crate::case::schema::Effect;
 use crate::discrete::workspace::{BeamShape, Sections};
 use crate::discrete::{System, TimeData, Workspace, attached, bodies};
@@ -163,7 +163,7 @@ pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Works
 /// ```
 ///
 /// At an end with given moment, M is this moment and determines the curvature.
-pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
+pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let section = &system.model.section;
     let ea = &system.sections.axial;
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
@@ -185,6 +185,7 @@ pub fn normal_forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
             *force = *rate * (*ea * section.axial_damping_time);
         }
     }
+    eccentric::normal_forces(system, now, w);
     if system.mesh.fourth {
         fourth_order::of_cells(&mut w.forces.normal);
         if section.axial_damping_time > 0.0 {

@@ -86,7 +86,7 @@ pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspac
 /// Normal forces: elastic, or for an inextensible beam those of statics, `[E28]`.
 pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     if system.model.effects.has(Effect::AxialStretch) {
-        solid::normal_forces(system, w);
+        solid::normal_forces(system, now, w);
         return;
     }
     for (force, &given) in w.forces.normal.iter_mut().zip(&now.statics.force) {

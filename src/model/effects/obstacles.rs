@@ -1,7 +1,7 @@
 //! Obstacles to omitting an effect: inputs of a case that require it.
 
 use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
-use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::case::{ResolvedEnd, Rotation, Translation, spans};
 use crate::functions::profile::Profile;
 use crate::model::network::{AccumulatorLaw, Feed};
 use crate::model::{LumpedNetwork, ResolvedNetwork};
@@ -33,6 +33,9 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         Load::Gravity { x_m_s2, .. } => *x_m_s2 != 0.0,
         Load::ForceZNM(_) | Load::ForceTangentialNM(_) | Load::BodyZMS2(_) => false,
     };
+    if let Some(what) = off_axis(case) {
+        return obstacle(what, HINT);
+    }
     if let Some(k) = case.loads.iter().position(across) {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
     }
@@ -80,6 +83,12 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         return obstacle("the beam starts with a deflection or a transverse velocity", HINT);
     }
     None
+}
+
+/// Reason to keep bending and stretch together: a neutral axis beside the beam's line.
+fn off_axis(case: &Case) -> Option<String> {
+    spans::is_eccentric(case)
+        .then(|| "the neutral axis is not at the beam's line, so that forces along it bend the beam".to_owned())
 }
 
 /// Obstacle: the published form, which has finite rotations.
@@ -184,6 +193,9 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     const HINT: &str = "leave axial_stretch on";
     if !transverse_motion {
         return obstacle("a beam that neither bends nor stretches is rigid", HINT);
+    }
+    if let Some(what) = off_axis(case) {
+        return obstacle(what, HINT);
     }
     if finite_rotation {
         return obstacle(

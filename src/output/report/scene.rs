@@ -26,13 +26,18 @@ pub fn to_json(case: &Case) -> Option<Value> {
         (!segments.is_empty()).then(|| segments.iter().map(|one| one.beam.height_m).collect());
     let highest = heights.iter().flatten().copied().fold(0.0, f64::max);
     let height = if heights.is_some() { highest } else { beam.height_m };
-    let in_bladders = |one: &spans::SegmentValues| one.bladders.as_ref().map_or(0.0, |b| b.height_m);
+    let in_bladders = |one: &spans::SegmentValues| {
+        one.bladders
+            .as_ref()
+            .map_or([0.0; 2], |rows| rows.each_ref().map(|b| b.height_m))
+    };
     let volume = |b: &Bladders| format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3));
-    let of_bladders: Option<Vec<f64>> = heights.as_ref().map(|_| segments.iter().map(in_bladders).collect());
+    let of_bladders: Option<Vec<[f64; 2]>> = heights.as_ref().map(|_| segments.iter().map(in_bladders).collect());
     Some(json!({
         "length": beam.length_m,
         "height": height,
         "heights": heights,
+        "line": beam.line_height(),
         "width": beam.width_m,
         "size": format!(
             "{} long, {} high, {} wide",
@@ -46,7 +51,7 @@ pub fn to_json(case: &Case) -> Option<Value> {
             "height": b.height_m,
             "width": b.width_m,
             "volume": volume(b),
-            "volumes": heights.as_ref().map(|_| segments.iter().map(|one| one.bladders.as_ref().map(volume)).collect::<Vec<_>>()),
+            "volumes": heights.as_ref().map(|_| segments.iter().map(|one| one.bladders.as_ref().map(|rows| rows.each_ref().map(volume))).collect::<Vec<_>>()),
             "network": network.component_of_bladder,
             "outlines": case.section.as_ref().and_then(super::cell::outlines),
         })),

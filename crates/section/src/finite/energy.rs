@@ -1,13 +1,13 @@
 //! Polynomial for the section's energy beyond its quadratic part: smooth, conservative for any fit error, and cheap to evaluate.
 //!
 //! ```text
-//! Omega(e, kappa, p) = Omega_2 + P(z)      y = (e - l (p_u + p_l), kappa - c (p_u - p_l), p_u, p_l)                        [F6]
-//! P = sum over 3 <= |k| <= degree, k_2 + k_4 even, of P_k z^k
+//! Omega(e, kappa, p) = Omega_2 + P(z)      y = (e - e_p, kappa - kappa_p, p_u, p_l)                        [F6]
+//! P = sum over 3 <= |k| <= degree of P_k z^k, with mirrored rows those of even k_2 + k_4, with an upper row alone those of k_4 = 0
 //! z = (y_1/g_1, y_2/g_2, (p_u + p_l)/2 g_3, (p_u - p_l)/2 g_3),      g_i the largest of its limits
 //! ```
 //!
-//! Omega_2 is the quadratic part of [F5]; l and c are its strains by pressure. y contains the strains by loads, and the pressures. The
-//! terms are those of a section with mirrored rows. P is the least-squares fit of first and second derivatives on rays of the ellipsoid of
+//! Omega_2 is the quadratic part of [F5]; e_p and kappa_p are its strains by pressure, e the stretch of the neutral axis. y contains the strains by
+//! loads, and the pressures. P is the least-squares fit of first and second derivatives on rays of the ellipsoid of
 //! the limits. Its error is that of the first derivatives at states on the ellipsoid outside the fit. The limits are the widest with a
 //! stable cell and a good fit: each axis is followed to its end, or to the validity limit of rubber laws. Then all axes are shortened
 //! together.
@@ -55,18 +55,29 @@ pub struct StrainEnergy {
     pub limits: [[f64; 2]; 4],
     /// Degree of the polynomial.
     pub degree: usize,
+    /// True if the terms are those of mirrored rows.
+    #[serde(default = "yes", skip_serializing_if = "is_yes")]
+    pub mirrored: bool,
     /// `P_k` [N], in the order of `monomials`.
     pub coefficients_n: Vec<f64>,
     /// Largest error of the first derivatives over the largest of their linear parts.
     pub error: f64,
 }
 
+fn yes() -> bool {
+    true
+}
+
+fn is_yes(mirrored: &bool) -> bool {
+    *mirrored
+}
+
 /// Exponents k of [F6], those of pressures outermost, pairs sorted by sum; coefficients of one pair of pressure exponents are adjacent.
-pub fn monomials(degree: usize) -> impl Iterator<Item = [usize; 4]> {
+pub fn monomials(degree: usize, mirrored: bool) -> impl Iterator<Item = [usize; 4]> {
     let pairs = |most: usize| (0..=most).flat_map(|sum| (0..=sum).map(move |second| [sum - second, second]));
     pairs(degree).flat_map(move |[s, d]| {
         let inner = pairs(degree - s - d).map(move |[e, k]| [e, k, s, d]);
-        inner.filter(|[e, k, s, d]| e + k + s + d >= 3 && (k + d) % 2 == 0)
+        inner.filter(move |[e, k, s, d]| e + k + s + d >= 3 && (!mirrored || (k + d) % 2 == 0))
     })
 }
 
@@ -82,9 +93,9 @@ fn sizes(g: [f64; 3]) -> [[f64; 4]; 4] {
 }
 
 impl Section {
-    /// P of the section under the laws of its materials; None if its material has no law, or the rows are not mirror images.
+    /// P of the section under the laws of its materials; None if its material has no law.
     pub fn strain_energy(&self) -> Result<Option<StrainEnergy>, Error> {
-        let Some(law) = self.material.law.filter(|_| self.bladders.lower != Row::None) else {
+        let Some(law) = self.material.law else {
             return Ok(None);
         };
         let meshes = self.meshes(&Options {
@@ -99,8 +110,7 @@ impl Section {
             material.young_modulus_pa = 2.0 * (1.0 + material.poisson_ratio) * mu;
         }
         let cell = FiniteCell::new(&softer, Cell::new(&softer, &meshes[0]), law)?;
-        let experiment = Experiment::new(&cell, &softer)?;
-        experiment.is_mirrored().then(|| experiment.fit()).transpose()
+        Experiment::new(&cell, &softer)?.fit().map(Some)
     }
 }
 
@@ -134,7 +144,9 @@ struct Experiment<'a> {
     cell: &'a FiniteCell,
     /// True if the lower row mirrors the upper one.
     mirrored: bool,
-    height: f64,
+    terms: Terms,
+    /// Distance of the farthest fibre from the neutral axis [m].
+    farthest: f64,
     modulus: f64,
     /// phi_b l_b.
     ratio: f64,
@@ -150,6 +162,10 @@ impl<'a> Experiment<'a> {
     fn new(cell: &'a FiniteCell, section: &Section) -> Result<Self, Error> {
         let tangent = cell.equilibrium(Drive::Strain([0.0; 2]), [0.0; 2])?.tangent;
         let mut turn = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
+        let neutral = -tangent[0][1] / tangent[0][0];
+        if !is_mirrored(&tangent) {
+            turn[0][1] = neutral;
+        }
         for p in 2..4 {
             let block = [[tangent[0][0], tangent[0][1]], [tangent[1][0], tangent[1][1]]];
             let strain = dense::solve(block, [-tangent[0][p], -tangent[1][p]]).ok_or(Error::Singular)?;
@@ -158,20 +174,17 @@ impl<'a> Experiment<'a> {
         Ok(Self {
             cell,
             mirrored: matches!(section.bladders.lower, Row::Mirrored) && section.regions.is_empty(),
-            height: section.height_m,
+            terms: Terms {
+                mirrored: is_mirrored(&tangent),
+                one_row: section.bladders.lower == Row::None,
+            },
+            farthest: 0.5 * section.height_m + turn[0][1].abs(),
             modulus: section.material.young_modulus_pa,
             ratio: section.bladders.length_m / section.pitch_m,
             areas: cell.areas,
             tangent,
             turn,
         })
-    }
-
-    /// True if the linear response is mirror-symmetric.
-    fn is_mirrored(&self) -> bool {
-        let t = &self.tangent;
-        let zero = |i: usize, j: usize, off: f64| off.abs() <= ALIKE * (t[i][i] * t[j][j]).abs().sqrt();
-        zero(0, 1, t[0][1]) && zero(0, 2, t[0][2] - t[0][3]) && zero(1, 2, t[1][2] + t[1][3])
     }
 
     /// Equilibrium of the cell at y, from a state at `before`; None if not found or unstable.
@@ -210,12 +223,7 @@ impl<'a> Experiment<'a> {
             }
             _ => 0.0,
         };
-        let most = [
-            LARGEST_STRAIN,
-            2.0 * LARGEST_STRAIN / self.height,
-            swelling(0),
-            swelling(1),
-        ];
+        let most = [LARGEST_STRAIN, LARGEST_STRAIN / self.farthest, swelling(0), swelling(1)];
         std::array::from_fn(|k| [-1.0, 1.0].map(|sense| sense * self.reach(k, sense * most[k]).abs()))
     }
 
@@ -292,7 +300,7 @@ impl<'a> Experiment<'a> {
             };
             let mut best: Option<StrainEnergy> = None;
             for degree in DEGREES {
-                let found = least_squares(&seen, &unseen, limits, degree)?;
+                let found = least_squares(&seen, &unseen, limits, degree, self.terms)?;
                 if best.as_ref().is_none_or(|best| found.error < best.error) {
                     best = Some(found);
                 }
@@ -306,6 +314,21 @@ impl<'a> Experiment<'a> {
         }
         Err(Error::Energy)
     }
+}
+
+/// Terms of P.
+#[derive(Clone, Copy, Debug)]
+struct Terms {
+    /// Only those of mirrored rows.
+    mirrored: bool,
+    /// Only those of an upper row.
+    one_row: bool,
+}
+
+/// True if a linear response is mirror-symmetric.
+fn is_mirrored(t: &[[f64; 4]; 4]) -> bool {
+    let zero = |i: usize, j: usize, off: f64| off.abs() <= ALIKE * (t[i][i] * t[j][j]).abs().sqrt();
+    zero(0, 1, t[0][1]) && zero(0, 2, t[0][2] - t[0][3]) && zero(1, 2, t[1][2] + t[1][3])
 }
 
 /// True if the energy is convex in the strains, and areas grow with pressures.
@@ -324,6 +347,7 @@ fn least_squares(
     unseen: &[Sample],
     limits: [[f64; 2]; 4],
     degree: usize,
+    kind: Terms,
 ) -> Result<StrainEnergy, Error> {
     let largest = |of: &[[f64; 2]]| {
         of.iter()
@@ -334,9 +358,16 @@ fn least_squares(
     let z = |sample: &Sample| z_by_y.map(|row| dense::dot(&row, &sample.y));
     // Derivatives by y from those by z, by the chain rule; each is weighted relative to the largest of the quadratic part.
     let size: [f64; 4] = std::array::from_fn(|i| seen.iter().map(|s| s.linear[i].abs()).fold(0.0, f64::max));
-    let terms: Vec<[usize; 4]> = monomials(degree).collect();
+    let terms: Vec<[usize; 4]> = monomials(degree, kind.mirrored).collect();
+    let absent = |k: &[usize; 4]| kind.one_row && k[3] > 0;
     let by = |at: &[f64; 4], i: usize| -> Vec<f64> {
-        let one = |k: &[usize; 4]| (0..4).map(|a| z_by_y[a][i] * derivative(k, at, &[a])).sum();
+        let one = |k: &[usize; 4]| {
+            if absent(k) {
+                0.0
+            } else {
+                (0..4).map(|a| z_by_y[a][i] * derivative(k, at, &[a])).sum()
+            }
+        };
         terms.iter().map(one).collect()
     };
     let twice = |at: &[f64; 4], i: usize, j: usize| -> Vec<f64> {
@@ -346,6 +377,9 @@ fn least_squares(
                 .filter(|(a, b)| z_by_y[*a][i] * z_by_y[*b][j] != 0.0)
         };
         let one = |k: &[usize; 4]| {
+            if absent(k) {
+                return 0.0;
+            }
             pairs()
                 .map(|(a, b)| z_by_y[a][i] * z_by_y[b][j] * derivative(k, at, &[a, b]))
                 .sum()
@@ -385,6 +419,7 @@ fn least_squares(
     Ok(StrainEnergy {
         limits,
         degree,
+        mirrored: kind.mirrored,
         coefficients_n,
         error,
     })

@@ -20,7 +20,7 @@ impl EffectScene<'_> {
         let fluid = self.case.fluid.as_ref();
         let compression = fluid.and_then(|fluid| Compression::new(fluid, wet.area_at_rest));
         let stored = compression.map_or(0.0, |compression| compression.compliance(-self.scales.pressure));
-        let share = stored / wet.area.per_pressure;
+        let share = stored / wet.area[0].per_pressure;
         let [bent, stretched] = self.stiffness_of_fluid(wet);
         share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }

@@ -69,7 +69,7 @@ impl EffectScene<'_> {
             let own = &mut all[component];
             (own.least, own.most) = (own.least.min(least), own.most.max(most));
         };
-        let bladder = wet.area.per_pressure * wet.bladder_length;
+        let bladder = wet.area[0].per_pressure * wet.bladder_length;
         for &component in &network.component_of_bladder {
             take(component, [bladder; 2]);
         }

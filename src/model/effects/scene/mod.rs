@@ -292,7 +292,13 @@ impl<'a> EffectScene<'a> {
         };
         let steady = network.ports.iter().all(|p| p.pressure.is_constant());
         let fixed = network.links.iter().all(|link| link.opening.is_none());
-        plain && quiet_start && steady && fixed && sorted(false) == sorted(true)
+        let equal = (0..wet.per_row).all(|j| {
+            let [upper, lower] = wet.areas_of(j);
+            let [above, below] = wet.pair(j).map(|bladder| wet.has(bladder));
+            upper == lower && above == below
+        });
+        let centred = self.section.offset == 0.0;
+        plain && equal && centred && quiet_start && steady && fixed && sorted(false) == sorted(true)
     }
 
     /// True if fluid exchanges energy with the outside: ports with pressure, sources, turbines, pumps, charged
@@ -368,7 +374,7 @@ impl<'a> EffectScene<'a> {
         let (ea, ei) = (self.section.axial_stiffness, self.section.bending_stiffness);
         let sudden = 1.0 + self.inertia_ratio(self.bending).min(2.0);
         let pressure = self.scales.pressure * sudden;
-        let stored = wet.length_ratio(self.case.beam.length_m) * wet.area.per_pressure;
+        let stored = wet.length_ratio(self.case.beam.length_m) * wet.area[0].per_pressure;
         law.share(
             [ea, ei, stored],
             [self.largest_force() / ea, sudden * self.scales.moment / ei, pressure],

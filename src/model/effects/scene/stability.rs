@@ -104,7 +104,7 @@ impl EffectScene<'_> {
         }
         let excess = self.wet.map_or(0.0, |wet| {
             let sum = wet.coupling.curvature(&wet.area, 0.0, 1.0, 0.0) * self.section.bending_stiffness;
-            2.0 * sum * wet.area.moment_mean / self.compliances(wet)[0]
+            2.0 * sum * wet.area[0].moment_mean / self.compliances(wet)[0]
         });
         (excess > 0.5).then(|| format!("pressure feeds back {} of a bending moment", significant(excess, 2)))
     }
@@ -166,7 +166,7 @@ impl EffectScene<'_> {
     /// Relative stiffening of bending and stretch by sealed bladders.
     pub fn stiffenings(&self) -> [f64; 2] {
         let along = self.wet.map_or(0.0, |wet| {
-            let area = &wet.area;
+            let area = &wet.area[0];
             let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
             2.0 * self.section.axial_stiffness * density * area.force_mean.powi(2) / self.compliances(wet)[0]
         });
@@ -176,7 +176,7 @@ impl EffectScene<'_> {
     /// `2 EI φ_b l_b am²/a_p`: relative stiffening of bending by sealed bladders.
     fn stiffening(&self) -> f64 {
         self.wet.map_or(0.0, |wet| {
-            let area = &wet.area;
+            let area = &wet.area[0];
             let density = wet.per_row as f64 / self.case.beam.length_m * wet.bladder_length;
             2.0 * self.section.bending_stiffness * density * area.moment_mean.powi(2) / self.compliances(wet)[0]
         })

@@ -138,8 +138,8 @@ impl EffectScene<'_> {
         let (area, coupling) = (&wet.area, &wet.coupling);
         // far from the kink on both sides, where slopes are largest
         let steepest = |slope: &dyn Fn(f64) -> f64| slope(1e100).abs().max(slope(-1e100).abs());
-        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area.moment_slope(m, 1.0));
-        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area.force_slope(n));
+        let bent = steepest(&|m| coupling.curvature(area, m, 1.0, -1.0) * area[0].moment_slope(m, 1.0));
+        let stretched = steepest(&|n| coupling.stretch(area, n, 1.0, 1.0) * area[0].force_slope(n));
         let stiffness = [self.section.bending_stiffness, self.section.axial_stiffness];
         [
             stiffness[0] * bent / self.compliances(wet)[0],

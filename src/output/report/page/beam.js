@@ -39,7 +39,7 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
   const outline = (points) => {
     ctx.beginPath();
     points.forEach(([a, e], k) => {
-      placed(curve, a, e, at);
+      placed(curve, a, e - scene.line, at);
       if (k) ctx.lineTo(view.X(at[0]), view.Y(at[1]));
       else ctx.moveTo(view.X(at[0]), view.Y(at[1]));
     });
@@ -105,7 +105,10 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
 /** The outline of a shape filled with the present colour, for what is shown behind. */
 function paintShade(ctx, view, curve, scene) {
   const half = (k) => halfHeight(scene, curve.theta[k]);
-  const edge = (k, e) => ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
+  const edge = (k, height) => {
+    const e = height - scene.line;
+    ctx.lineTo(view.X(curve.x[k] + e * curve.nx[k]), view.Y(curve.y[k] + e * curve.ny[k]));
+  };
   ctx.beginPath();
   for (let k = 0; k < curve.n; k++) edge(k, half(k));
   for (let k = curve.n - 1; k >= 0; k--) edge(k, -half(k));

@@ -44,7 +44,7 @@ function bladderWords(b, layout, scene) {
   const k = layout.colourOf(b.network);
   const where = k >= 0 ? `network ${k + 1}` : "joined to no other bladder";
   if (b.absent) return `No bladder ${String(b.label).replace("-", "−")}.`;
-  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volumes ? scene.bladders.volumes[b.index % scene.bladders.per_row] : scene.bladders.volume} at rest.`;
+  return `Bladder ${String(b.label).replace("-", "−")} (${b.row > 0 ? "upper" : "lower"} row): ${where}; ${scene.bladders.volumes ? scene.bladders.volumes[b.index % scene.bladders.per_row][b.row > 0 ? 0 : 1] : scene.bladders.volume} at rest.`;
 }
 
 /** Rows of the legend: mark, strong words, words. */

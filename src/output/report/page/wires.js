@@ -26,8 +26,10 @@ function layOut(scene) {
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
     const j = b % perRow;
-    const e = row * 0.5 * halfHeight(scene, (j + 0.5) * segment);
-    const size = [wide, scene.bladders.heights ? Math.min(scene.bladders.heights[j], 1.84 * Math.abs(e)) : high];
+    const half = halfHeight(scene, (j + 0.5) * segment);
+    const both = scene.bladders.present[j] && scene.bladders.present[perRow + j];
+    const size = [wide, scene.bladders.heights ? Math.min(scene.bladders.heights[j][row > 0 ? 0 : 1], (both ? 0.92 : 1.84) * half) : high];
+    const e = row * Math.min(0.5 * half, 0.96 * half - size[1] / 2);
     out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
   }
   out.shown = out.bladders.filter((b) => !b.absent);

@@ -1,0 +1,155 @@
+//! Sections whose neutral axis is beside the beam's line.
+
+use super::bending::pressure_curvature;
+use crate::case::schema::Effect;
+use crate::discrete::{System, TimeData, Workspace};
+use crate::numerics::Scalar;
+
+/// `[E89]` Neutral axis at the height `d = z_n - z_r` above the beam's line. Stiffness and areas are those about the neutral axis; N, M and
+/// loads are those of the line. A force on the line bends the section, and a moment stretches the line:
+///
+/// ```text
+/// N = EA (λ - 1 - λ_p + d (κ - κ_0))      M_n = EI (κ - α_p - κ_0)      M = M_n + d N      areas and strains by pressure: those by N and M_n
+/// N_c = EA [λ_c - 1 - λ_p + d (κ̄_c - κ̄_0)]      κ̄_c = (κ_c + κ_{c+1})/2      M_i = M_n,i + Σ_c h d_c N_c/(2 h_i)      c the cells beside node i
+/// N_total = N + EA τ_a (λ_t + d (κ - κ_0)_t)      M_total likewise
+/// ```
+///
+/// They are the derivatives of `Σ h N²/2EA + Σ h_i M_n²/2EI`: the energy balance is exact. At an end with a given moment M,
+///
+/// ```text
+/// κ_n = [M + EI (α_p + κ_0) - EA d (λ_c - 1 - λ_p + d (κ_{n-1}/2 - κ̄_0))]/(EI + EA d²/2)
+/// ```
+///
+/// and the viscous part of the force has the curvature rate of the neighboring node.
+pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    if system.sections.offset.is_empty() {
+        return;
+    }
+    for end in ends(system, now) {
+        let [bending, axial] = end.stiffness(system);
+        let force = (w.shape.strain[end.cell] - pressure_stretch(system, w, end.cell)) * axial
+            + (w.shape.kappa[end.beside] * 0.5 - T::constant(mean_rest(now, 0, end.cell))) * (axial * end.offset);
+        let free = pressure_curvature(system, w, end.node) + T::constant(now.rest_curvature(end.node));
+        let moment = free * bending + T::constant(end.moment) - force * end.offset;
+        w.shape.kappa[end.node] = moment * (1.0 / end.compliant(system));
+    }
+}
+
+/// Adds the part of curvature to normal forces, and to viscous ones.
+pub fn normal_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let time = system.model.section.axial_damping_time;
+    for (c, (d, ea)) in system.sections.offset.iter().zip(&system.sections.axial).enumerate() {
+        let bent = (w.shape.kappa[c] + w.shape.kappa[c + 1]) * 0.5 - T::constant(mean_rest(now, 0, c));
+        w.forces.normal[c] += bent * (d * ea);
+        if time > 0.0 {
+            let mut rate = T::constant(-mean_rest(now, 1, c));
+            for (node, weight) in viscous_weights(system, now, c) {
+                rate += w.shape.kappa_rate[node] * weight;
+            }
+            w.forces.viscous_normal[c] += rate * (d * ea * time);
+        }
+    }
+}
+
+/// Moments of the normal forces about the neutral axis.
+pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
+    let mesh = &system.mesh;
+    w.forces.offset_moment.fill(T::zero());
+    for (c, d) in system.sections.offset.iter().enumerate() {
+        for node in [c, c + 1] {
+            w.forces.offset_moment[node] += w.forces.normal[c] * (0.5 * mesh.h * d / mesh.node_length(node));
+        }
+        if system.model.section.axial_damping_time > 0.0 {
+            for (node, weight) in viscous_weights(system, now, c) {
+                w.forces.viscous_moment[node] +=
+                    w.forces.viscous_normal[c] * (weight * mesh.h * d / mesh.node_length(node));
+            }
+        }
+    }
+}
+
+/// Rate of the curvature of an end with a given moment; `by_pressure` are the rates of stretch and curvature by pressure.
+pub fn end_rate(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<f64>,
+    node: usize,
+    by_pressure: [f64; 2],
+) -> Option<f64> {
+    let end = ends(system, now).find(|end| end.node == node && !system.sections.offset.is_empty())?;
+    let [bending, axial] = end.stiffness(system);
+    let force = axial * (w.shape.stretch_rate[end.cell] - by_pressure[0])
+        + axial * end.offset * (0.5 * w.shape.kappa_rate[end.beside] - mean_rest(now, 1, end.cell));
+    let moment = end.moment_rate + bending * (by_pressure[1] + now.rest_curvature_rate(node)) - end.offset * force;
+    Some(moment / end.compliant(system))
+}
+
+/// An end with a given moment.
+struct GivenMoment {
+    node: usize,
+    /// Node beside it.
+    beside: usize,
+    /// Cell between both.
+    cell: usize,
+    moment: f64,
+    moment_rate: f64,
+    /// `d` [m].
+    offset: f64,
+}
+
+impl GivenMoment {
+    /// `EI` and `EA`.
+    fn stiffness(&self, system: &System) -> [f64; 2] {
+        [system.sections.bending[self.node], system.sections.axial[self.cell]]
+    }
+
+    /// `EI + EA d²/2`.
+    fn compliant(&self, system: &System) -> f64 {
+        let [bending, axial] = self.stiffness(system);
+        bending + 0.5 * axial * self.offset * self.offset
+    }
+}
+
+/// Ends with given moments.
+fn ends<'a>(system: &'a System, now: &'a TimeData) -> impl Iterator<Item = GivenMoment> + 'a {
+    let last = system.mesh.nodes - 1;
+    let all = [(0, 1.min(last), 0), (last, last - 1, last - 1)]
+        .into_iter()
+        .zip(&now.ends);
+    all.filter(|(_, end)| end.slope.is_none())
+        .map(|((node, beside, cell), end)| GivenMoment {
+            node,
+            beside,
+            cell,
+            moment: end.moment.value,
+            moment_rate: end.moment.rate,
+            offset: system.sections.offset.get(cell).copied().unwrap_or(0.0),
+        })
+}
+
+/// Nodes of a cell with their weights in the mean rate of curvature; an end with a given moment has none.
+fn viscous_weights(system: &System, now: &TimeData, cell: usize) -> [(usize, f64); 2] {
+    let last = system.mesh.nodes - 1;
+    let moves = |node: usize| now.end(node).is_none_or(|end| end.slope.is_some());
+    let [left, right] = [cell, cell + 1].map(|node| (node != 0 && node != last) || moves(node));
+    match (left, right) {
+        (true, false) => [(cell, 1.0), (cell + 1, 0.0)],
+        (false, true) => [(cell, 0.0), (cell + 1, 1.0)],
+        (false, false) => [(cell, 0.0), (cell + 1, 0.0)],
+        (true, true) => [(cell, 0.5), (cell + 1, 0.5)],
+    }
+}
+
+/// Mean of `κ_0` of a cell, or of its rate.
+fn mean_rest(now: &TimeData, order: usize, cell: usize) -> f64 {
+    let both = now.rest_curvature[order].get(cell..cell + 2);
+    both.map_or(0.0, |both| 0.5 * (both[0] + both[1]))
+}
+
+/// `λ_p` of a cell.
+fn pressure_stretch<T: Scalar>(system: &System, w: &Workspace<T>, cell: usize) -> T {
+    match system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch) {
+        true => w.coupling.pressure_stretch[cell / system.mesh.cells_per_segment],
+        false => T::zero(),
+    }
+}
