@@ -115,8 +115,8 @@ pub fn check(asked: &CheckArguments) -> Result<ExitCode> {
         let good = findings.iter().filter(|f| f.good).count();
         let shown = findings.iter().filter(|f| asked.verbose || !f.good);
         text += &listed(shown.map(|f| {
-            let verdict = if f.good { "good" } else { "BAD" };
-            let wanted = format!("wanted {}: {verdict}", f.wanted);
+            let verdict = if f.good { "met" } else { "NOT MET" };
+            let wanted = format!("required {}: {verdict}", f.wanted);
             [f.name.to_string(), significant(f.value, 5), wanted]
         }));
         if !asked.verbose {
@@ -236,7 +236,7 @@ fn grouped<'n>(numbers: &[(&'n String, &f64)], all: bool) -> Vec<(String, &'n st
     lines.extend(listed.map(|(at, (own, name, value))| {
         let more = match own.len() {
             1 => String::new(),
-            n => format!(" and {} more alike", n - 1),
+            n => format!(" and {} more of the same value", n - 1),
         };
         let faster = match hidden {
             n if n > 0 && at + 1 == NETWORKS => format!(", {n} faster ones not listed"),

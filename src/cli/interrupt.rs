@@ -54,7 +54,7 @@ static LATE: AtomicBool = AtomicBool::new(false);
 /// The wall time that a command is allowed.
 #[derive(Clone, Debug, Default, Args)]
 pub struct WallArguments {
-    /// Stop after so many seconds of wall time as after Ctrl-C, with everything so far written
+    /// Stop after this wall time, as after Ctrl-C; results so far are written
     #[arg(long, value_name = "SECONDS", value_parser = super::progress_line::duration)]
     pub max_wall: Option<f64>,
 }

@@ -17,7 +17,7 @@ pub struct PlaceArguments {
     /// Result folder [default: out/<case name>, with the command's name behind it where it is not run]
     #[arg(short, long, value_name = "DIR", value_parser = super::progress_line::output_path())]
     pub out: Option<PathBuf>,
-    /// Take a folder that holds something else
+    /// Accept a folder that contains other files
     #[arg(long)]
     pub force: bool,
 }

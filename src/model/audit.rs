@@ -257,7 +257,7 @@ pub fn lasting(case: &Case, model: &Model, numbers: &BTreeMap<String, f64>) -> V
     let mut all: Vec<String> = not_reciprocal(&twofold).into_iter().collect();
     all.extend(others.into_iter().map(|f| {
         f.code.warning(format!(
-            "coupling: {} = {:.4}, wanted {}: {}",
+            "coupling: {} = {:.4}, required {}: {}",
             f.name, f.value, f.wanted, f.consequence
         ))
     }));

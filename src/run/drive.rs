@@ -63,7 +63,7 @@ pub fn drive(case: &Case, model: &Model, asked: Option<f64>) -> Result<PeriodicD
                 "--period {period}: must be a time > 0, in seconds"
             ))),
             None => Err(Error::Usage(format!(
-                "nothing drives {name} periodically: give an end, a load, a valve or a port a sine, or analyze the \
+                "the case {name} has no periodic signal. Use a sine at an end, a load, a valve or a port, or analyze the \
                  undriven case by `slcbeam floquet --period SECONDS`"
             ))),
         };

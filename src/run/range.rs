@@ -332,7 +332,7 @@ impl Range {
         }
         if self.begun > 0.0 {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam begins {} behind the face of a wall, which throws it off. Begin in front of the \
+                "contact: the beam begins {} behind the face of a wall, which pushes it out. Begin in front of the \
                  wall, or with /start/equilibrium.",
                 quantity(self.begun, "m", 4)
             )));

@@ -35,8 +35,8 @@ pub fn warning(case: &Case, system: &System, at_s: f64) -> Option<String> {
     (share > LEFT).then(|| {
         Code::LateRest.warning(format!(
             "the slowest flow of the network (time constant {}, mainly between {from} and {to}) lags by {:.0} % at {} \
-             in the run. Pressures of the run then differ from those of the equilibrium. Use a longer or slower run, \
-             wider tubes or valves, or `slcbeam run` for the state at that time.",
+             in the run. Pressures of the run then differ from those of the equilibrium. Extend the run, slow the \
+             loads, or widen tubes or valves; `slcbeam run` gives the state at that time.",
             span(slowest.time),
             100.0 * share,
             span(until)

@@ -168,9 +168,10 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             a few words                                  │
     │ warning     W021 warning number 2 that goes on for quite │
     │             a few words                                  │
-    │             also W003 Inertia or losses of the flow left │
-    │             out, W005 Beam too short for a rod model, 1  │
-    │             more: see summary.json, slcbeam explain W003 │
+    │             others in summary.json: W003 Inertia or      │
+    │             losses of the flow left out, W005 Beam too   │
+    │             short for a rod model, 1 more (slcbeam       │
+    │             explain W003)                                │
     │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
     │             largest: u₁ 123 µm · u₃ 1.25 mm              │
     │ pressure    largest in a bladder: 9.01 kPa               │

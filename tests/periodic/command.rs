@@ -240,7 +240,7 @@ fn cycles_of_a_harvester_tell_energy_power_and_efficiency() {
         .find(|line| line.starts_with("mean power "))
         .unwrap_or_default();
     assert!(
-        line.contains("W (balance open by ") && line.contains("estimated error "),
+        line.contains("W (residual of the energy balance ") && line.contains("estimated error "),
         "{}",
         said.out
     );

@@ -335,10 +335,10 @@ fn a_profile_shows_where_a_load_is() {
 fn own_loads_are_told() {
     let dir = TempDir::new().unwrap();
     let said = sense(&dir, &[]);
-    assert!(said.code == 0 && !said.out.contains("own loads"), "{}", said.out);
+    assert!(said.code == 0 && !said.out.contains("also act"), "{}", said.out);
     let said = sense(&dir, &["--set", r#"/loads=[{"gravity": {"x_m_s2": -9.81}}]"#]);
     assert!(
-        said.out.contains("own loads act besides") && said.out.contains("/loads/0/gravity"),
+        said.out.contains("loads of the case also act") && said.out.contains("/loads/0/gravity"),
         "{}{}",
         said.out,
         said.err

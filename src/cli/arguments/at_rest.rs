@@ -32,13 +32,13 @@ pub struct EquilibriumArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Instant whose loads, end motions, port pressures and valves are the full ones [default: the end of the run]
+    /// Instant of the full loads, end motions, port pressures and valves [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Loading in stages: instants whose loads are reached first, one after the other, such as -1 or 0.2,0.5
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     pub via: Option<String>,
-    /// Share of these loads at which the path ends, of the last stage where there are several
+    /// Fraction of these loads at which the path ends; with several stages, of the loads of the last
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, allow_negative_numbers = true)]
     pub load_factor: f64,
     /// Points along the path at least
@@ -71,13 +71,13 @@ pub struct ModesArguments {
     /// The case.
     #[command(flatten)]
     pub case: CaseArguments,
-    /// Modes to find; rigid motions and kept volumes come besides
+    /// Modes to find; rigid motions and conserved volumes are listed in addition
     #[arg(long, value_name = "COUNT", default_value_t = 12, value_parser = crate::cli::progress_line::count)]
     pub count: usize,
-    /// Those of one kind alone
+    /// Find only modes of one kind
     #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["map", "accuracy", "uncertain"])]
     pub kind: Option<ModeKind>,
-    /// Find those nearest this frequency [Hz] [default: the slowest]
+    /// Find modes nearest this frequency [Hz] [default: the slowest]
     #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = crate::cli::progress_line::frequency)]
     pub near: Option<f64>,
     /// About the equilibrium under the loads at this instant [s] [default: about the start]

@@ -10,9 +10,9 @@ use crate::study::fit::robust::LossFunction;
 /// Weight of large residuals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Robust {
-    /// Beyond some standard deviations their size in place of their square
+    /// Absolute value in place of the square beyond some standard deviations
     Huber,
-    /// Hardly anything
+    /// Nearly no weight for large residuals
     Cauchy,
 }
 
@@ -60,7 +60,7 @@ pub struct FitArguments {
     /// Standard deviation of a column's noise in its own unit, repeatable [default: a column COLUMN_sd, else what the fit leaves]
     #[arg(long, value_name = "COLUMN=SIGMA")]
     pub noise: Vec<String>,
-    /// Let large residuals count less
+    /// Reduce the weight of large residuals
     #[arg(long, value_enum)]
     pub robust: Option<Robust>,
     /// Searches, from the case's own numbers and from places between the bounds
@@ -72,7 +72,7 @@ pub struct FitArguments {
     /// Its result.
     #[command(flatten)]
     pub result: ResultArguments,
-    /// Print fit.json instead of the words
+    /// Print fit.json instead of the text
     #[arg(long)]
     pub json: bool,
 }

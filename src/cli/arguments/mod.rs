@@ -57,34 +57,34 @@ pub enum Command {
     Measure(MeasureArguments),
     /// Find the static equilibrium under the loads of one instant, along the path from rest
     Equilibrium(EquilibriumArguments),
-    /// Find what accuracy costs: time against error over tolerances, meshes and orders
+    /// Measure the cost of accuracy: time against error over tolerances, meshes and orders
     Study(StudyArguments),
-    /// Find what each effect does: the full model without it, what that changes and saves, what to leave out
+    /// Measure each effect: changed results and saved time if the model leaves it out; recommend effects to leave out
     Effects(EffectsArguments),
-    /// Find frequencies, damping, shapes and stability of small motions, with the fluid as it is, sealed in, and free
+    /// Find frequencies, damping, shapes and stability of small motions, with coupled, undrained and drained fluid
     Modes(ModesArguments),
     /// Compute the frequency response of small motions: amplitude and phase of outputs over a signal of the case, peaks and poles
     Response(ResponseArguments),
-    /// Find the steady cycle of a periodically driven case and whether it is stable, or a map of where shaking is stable
+    /// Find the steady cycle of a periodically driven case and its stability, or a stability map of shaking
     Floquet(FloquetArguments),
     /// Find the steady cycle of a periodically driven case directly, without its transient; or along a parameter
     Periodic(PeriodicArguments),
-    /// Compute many designs on all cores into one table: grids, ranges, samples, cases beside each other; the same command goes on
-    /// with what is missing after an interruption
+    /// Compute many designs on all cores into one table: grids, ranges, samples, several cases; after an interruption the same command
+    /// computes the missing designs
     Sweep(SweepArguments),
-    /// Join the shards of a sweep to one table, and name what is lost
+    /// Join the shards of a sweep to one table, and list missing designs
     Merge(MergeArguments),
     /// Fit numbers of a case to measured data between bounds, with errors; report what the data do not determine
     Fit(FitArguments),
     /// Find loads from measured pressures of bladders, at rest or over time, with bands; report observable loads and the best sensors
     Sense(SenseArguments),
-    /// Find the numbers of a case between bounds with which a figure is largest or least, under limits to others
+    /// Find numbers of a case, between bounds, that maximize or minimize a figure under limits to other figures
     Optimize(OptimizeArguments),
     /// Compare result folders: error norms of every field and quantity, figures, cost; or a run with measured data
     Compare(CompareArguments),
     /// Write a result in other formats: tables of its fields (CSV), surfaces that ParaView opens (VTK)
     Export(ExportArguments),
-    /// Make one self-contained HTML page of a result folder, whichever command filled it
+    /// Write one self-contained HTML page of a result folder of any command
     Report(ReportArguments),
     /// Print the paper's tables A.1 and A.2 (maps between beam and network) for a case, as CSV
     Mapping(MappingArguments),

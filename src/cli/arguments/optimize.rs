@@ -20,10 +20,10 @@ pub struct OptimizeArguments {
     /// Choose between all wirings in which the first two chains, of opposite bladders, change sides at most so often along the beam
     #[arg(long, value_name = "N", value_parser = crate::cli::progress_line::count)]
     pub crossovers: Option<usize>,
-    /// The figure that is to be largest, as the table of sweep names it, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
+    /// Figure to maximize, as named in the table of sweep, such as harvested_power_w.mean, tip_u1_m, mode_1.frequency_hz
     #[arg(long, value_name = "QUANTITY[.FIGURE]", group = "goal")]
     pub maximize: Option<String>,
-    /// The figure that is to be least
+    /// Figure to minimize
     #[arg(long, value_name = "QUANTITY[.FIGURE]", group = "goal")]
     pub minimize: Option<String>,
     /// Limit of another figure, repeatable, such as 'max_pressure_pa<=2e4' or 'tip_u1_m>=0.01'
@@ -41,7 +41,7 @@ pub struct OptimizeArguments {
     /// Its result.
     #[command(flatten)]
     pub result: ResultArguments,
-    /// Print optimum.json instead of the words
+    /// Print optimum.json instead of the text
     #[arg(long)]
     pub json: bool,
 }

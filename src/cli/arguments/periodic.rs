@@ -20,7 +20,7 @@ pub struct PeriodicArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "sweep", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
-    /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
+    /// Also compute derivatives with respect to this number of the case, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with_all = ["accuracy", "sweep"])]
     pub sensitivities: Vec<String>,
     /// Uncertain numbers.
@@ -29,7 +29,7 @@ pub struct PeriodicArguments {
     /// Its result.
     #[command(flatten)]
     pub result: ResultArguments,
-    /// Print cycle.json or sweep.json instead of the words
+    /// Print cycle.json or sweep.json instead of the text
     #[arg(long)]
     pub json: bool,
 }

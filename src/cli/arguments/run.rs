@@ -19,16 +19,16 @@ pub struct RunArguments {
     /// Choose mesh and tolerance so that the estimated relative error of every quantity is below this, such as 0.01
     #[arg(long, value_name = "REL", conflicts_with = "resume", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
-    /// Give derivatives with respect to this number of the case too, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
+    /// Also compute derivatives with respect to this number of the case, repeatable: a JSON pointer, such as /fluid/viscosity_pa_s
     #[arg(long = "sensitivity", value_name = "POINTER", conflicts_with = "accuracy")]
     pub sensitivities: Vec<String>,
-    /// Go on from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
+    /// Continue from the last checkpoint in the result folder (needs /time/checkpoint_interval_s in the case)
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Stop after so many seconds of wall time, with everything so far written
+    /// Stop after this wall time; results so far are written
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::duration)]
     pub max_wall: Option<f64>,
-    /// Leave summary.json, case.json and the arrays of fields.npz alone: no pictures, no page, no tables
+    /// Write only summary.json, case.json and the arrays of fields.npz: no pictures, no page, no tables
     #[arg(long)]
     pub lean: bool,
     /// No progress bar

@@ -15,7 +15,7 @@ pub struct SenseArguments {
     /// Measured pressures (CSV), a column a bladder such as `pressure_3_pa` or `pressure_-3_kpa`, a row a measurement at rest, or
     /// an instant (--dynamic); without it: loads that pressures can determine, and which pressures to measure
     pub pressures: Option<PathBuf>,
-    /// A load that is looked for, repeatable: tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places,
+    /// A load to estimate, repeatable: tip-force, tip-moment, tip-axial, uniform, uniform-axial, profile:N with N places,
     /// point:S at a share S of the length [default: tip-force where the tip is free, uniform]
     #[arg(long = "load", value_name = "LOAD")]
     pub loads: Vec<String>,
@@ -35,7 +35,7 @@ pub struct SenseArguments {
     /// more than rows [default: as many as rows, at most 41]
     #[arg(long, value_name = "N", requires = "dynamic", value_parser = clap::value_parser!(u16).range(5..=200))]
     pub knots: Option<u16>,
-    /// Instant whose own loads of the case act besides [default: the end of the run]
+    /// Instant of the loads of the case that also act [default: the end of the run]
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true, value_parser = crate::cli::progress_line::instant)]
     pub at: Option<f64>,
     /// Which bladders to measure: the best sets of every size, by the sum of the variances of the loads, or by the volume in which they lie

@@ -61,7 +61,7 @@ pub struct SweepArguments {
     /// Sampling of designs with drawn values: latin:N or sobol:N; grid: all combinations of values
     #[arg(long, value_name = "grid|latin:N|sobol:N", default_value = "grid")]
     pub design: String,
-    /// Draw other designs [default: 1 for latin; sobol as it is]
+    /// Seed of other drawn designs [default: 1 for latin; sobol without a seed]
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Change a value of all cases, repeatable: a JSON pointer and a JSON value, such as /solver/rtol=1e-7
@@ -70,7 +70,7 @@ pub struct SweepArguments {
     /// Choose mesh and tolerance of every design so that the estimated relative error of every number is below this, such as 0.01
     #[arg(long, value_name = "REL", value_parser = crate::cli::progress_line::ratio)]
     pub accuracy: Option<f64>,
-    /// Leave out the errors that meshes make of cycles, equilibria and modes, which takes a third of the time that it takes with them
+    /// Omit mesh errors of cycles, equilibria and modes; the sweep then takes a third of the time
     #[arg(long)]
     pub no_mesh_errors: bool,
     /// Designs computed at once [default: one for every core]
@@ -94,16 +94,16 @@ pub struct SweepArguments {
     /// Keep the result folder of every design, designs/NNNNN, of runs
     #[arg(long)]
     pub keep_folders: bool,
-    /// Go on with what is missing, as the same command does in any case, and compute again what did not finish
+    /// Compute missing designs, as the same command always does, and repeat designs that did not finish
     #[arg(long, conflicts_with = "restart")]
     pub retry: bool,
-    /// Begin again where the folder holds another sweep, or a part of this one
+    /// Start again if the folder contains another sweep, or a part of this one
     #[arg(long)]
     pub restart: bool,
     /// Its result.
     #[command(flatten)]
     pub result: ResultArguments,
-    /// Print sweep.json instead of the words
+    /// Print sweep.json instead of the text
     #[arg(long)]
     pub json: bool,
 }
@@ -123,7 +123,7 @@ pub struct MergeArguments {
     /// No progress; merging shows none
     #[arg(long)]
     pub quiet: bool,
-    /// Print sweep.json instead of the words
+    /// Print sweep.json instead of the text
     #[arg(long)]
     pub json: bool,
 }

@@ -17,7 +17,7 @@ pub struct UncertainArguments {
     /// Samples, each of them computed
     #[arg(long, value_name = "COUNT", default_value_t = 64, requires = "uncertain", value_parser = crate::cli::progress_line::count)]
     pub samples: usize,
-    /// Sobol's indices as well, whose share of the variance is which number's: as many samples again, and as many more for each number
+    /// Also compute Sobol's indices, the share of each number in the variance; needs --samples more runs, and as many again for each number
     #[arg(long, requires = "uncertain")]
     pub indices: bool,
     /// Seed of the samples

@@ -344,7 +344,7 @@ fn spent(summary: &Summary) -> Option<String> {
         ("Jacobian", w.jacobian),
         ("linear solver", w.linear_solver),
         ("rest of steps", w.steps),
-        ("watching", w.watching),
+        ("monitoring", w.watching),
         ("error bars", w.companion),
         ("samples", w.samples),
         ("output", w.output + w.pictures + w.report + w.files),

@@ -47,7 +47,7 @@ fn titles(warnings: &[&str]) -> Option<String> {
     if others > 0 {
         all.push(format!("{others} more"));
     }
-    let explain = codes.first().map(|code| format!(", slcbeam explain {}", code.id()));
+    let explain = codes.first().map(|code| format!(" (slcbeam explain {})", code.id()));
     let explain = explain.unwrap_or_default();
-    (!all.is_empty()).then(|| format!("also {}: see summary.json{explain}", all.join(", ")))
+    (!all.is_empty()).then(|| format!("others in summary.json: {}{explain}", all.join(", ")))
 }

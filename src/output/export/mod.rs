@@ -56,15 +56,15 @@ pub fn read(dir: &Path) -> Result<Recording> {
         return Err(Error::Usage(what));
     }
     if !dir.join(CASE).is_file() {
-        return usage("is no result folder: it has no case.json; `slcbeam run CASE --out DIR` makes one");
+        return usage("is no result folder: it has no case.json; `slcbeam run CASE --out DIR` creates one");
     }
     if !dir.join(FIELDS).is_file() {
         return if dir.join(RAW_FIELDS).is_dir() {
             usage(
-                "has no fields.npz yet: its run goes on, or was killed; `slcbeam run CASE --out DIR --resume` goes on from its checkpoint",
+                "has no fields.npz yet: its run continues, or was killed; `slcbeam run CASE --out DIR --resume` resumes from its checkpoint",
             )
         } else {
-            usage("has no fields.npz: it holds no fields over time")
+            usage("has no fields.npz: it contains no fields over time")
         };
     }
     reading::read(dir)

@@ -17,7 +17,7 @@ const HEADINGS: &str = " | mode | moves | frequency | mesh error | damping ratio
 pub fn table(report: &Report) -> String {
     let found = report.found;
     let mut text = format!(
-        "{}: small motions about {}, signals held as at t = {} s\n{}, {}, {}; {}, {}\n\n",
+        "{}: small motions about {}, signals held as at t = {} s\n{}, {}, listed: {}; {} factorizations, {} solves\n\n",
         report.case,
         report.about(),
         found.about.at,

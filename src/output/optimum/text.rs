@@ -134,8 +134,8 @@ pub fn ranked(found: &Optimum) -> Vec<&ComparedAlternative> {
 /// Bound at which a number lies, or the range in which the figure is at most 1 % worse.
 pub fn place(one: &Variable) -> String {
     match (one.at_bound, one.within_1_percent) {
-        (Some(Bound::Low), _) => "at its lower bound".into(),
-        (Some(Bound::High), _) => "at its upper bound".into(),
+        (Some(Bound::Low), _) => "- (best at its lower bound)".into(),
+        (Some(Bound::High), _) => "- (best at its upper bound)".into(),
         (None, Some([low, high])) => format!("{} and {}", significant(low, 4), significant(high, 4)),
         (None, None) => "between its bounds".into(),
     }

@@ -71,7 +71,7 @@ pub fn lines(
             unit => quantity(f.value, unit, 4),
         };
         let of = power::energy_of(&f.name).unwrap_or(f.name.clone());
-        let open = f.open.map(|e| format!("balance open by {} of it", percent(e)));
+        let open = f.open.map(|e| format!("residual of the energy balance {}", percent(e)));
         let error = error(&of).map(|e| format!("estimated error {}", percent(e)));
         let known: Vec<String> = open.into_iter().chain(error).collect();
         let known = match known.is_empty() {

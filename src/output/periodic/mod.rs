@@ -199,7 +199,7 @@ pub fn slopes(summary: &Summary) -> String {
 /// Text of the work of the search.
 pub fn search(search: &ShootingRecord) -> String {
     format!(
-        "found in {} over {}: {}, {}, {}; it returns to {:.1e} of the tolerance\n",
+        "found in {} over {}: {}, {}, {}; the cycle closes to {:.1e} of the tolerance\n",
         counted(search.newton_steps, "Newton step"),
         counted(search.periods, "period"),
         counted(search.work.steps, "step"),

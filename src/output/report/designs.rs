@@ -31,8 +31,8 @@ pub fn data(place: &Place) -> Result<Page> {
     let kinds = kinds(found.statuses.iter().map(|(status, n)| (&**status, n)));
     let missing = match found.missing {
         0 => String::new(),
-        1 => " 1 design is missing; the same command goes on with it.".into(),
-        n => format!(" {} are missing; the same command goes on with them.", several(n)),
+        1 => " 1 design is missing; the same command computes it.".into(),
+        n => format!(" {} are missing; the same command computes them.", several(n)),
     };
     let varied: Vec<String> = plan
         .axes

@@ -67,7 +67,7 @@ pub fn about_sight(found: &Sensed) -> String {
     );
     if !found.own_loads.is_empty() {
         text += &format!(
-            "  the case's own loads act besides, as at t = {} s: {}; the loads found are in addition to them\n",
+            "  loads of the case also act, with their values at t = {} s: {}; the loads found add to them\n",
             trimmed(&significant(found.loads_at_s, 4)),
             found.own_loads.join(", ")
         );

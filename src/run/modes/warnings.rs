@@ -69,9 +69,9 @@ impl Modes {
             .fold(0.0, f64::max);
         (womersley.powi(4) / 1152.0 > FORGOTTEN).then(|| {
             Code::FastFlow.warning(format!(
-                "the fluid has the friction of steady profiles here, at Womersley numbers up to {womersley:.1}: \
-                 frequencies and damping of modes that move much fluid are inaccurate. Use {{\"unsteady_friction\": \
-                 \"on\"}}, which adds decays of its own."
+                "fluid friction is that of steady velocity profiles, although Womersley numbers reach {womersley:.1}: \
+                 frequencies and damping of modes that move much fluid are inaccurate. Use --set \
+                 '/effects/unsteady_friction=\"on\"', which adds decays of its own."
             ))
         })
     }

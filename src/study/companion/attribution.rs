@@ -316,7 +316,7 @@ fn describe(
     }
     let set: Vec<String> = wanted.iter().map(|(cause, error)| cause.remedy(case, *error)).collect();
     Code::ErrorEstimate.warning(format!(
-        "{found} Causes for {worst}: {}. Next, use {}; then check again, or use --accuracy {LIMIT}.",
+        "{found} Causes for {worst}: {}. Use {} and repeat while errors are large, or use --accuracy {LIMIT}.",
         causes.join(", "),
         set.join(" ")
     ))
