@@ -198,6 +198,10 @@ fn given<'a, T, const N: usize>(
 }
 
 /// True if a number is 0, the default that a case may omit.
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
