@@ -127,12 +127,11 @@ fn a_beam_bends_around_a_disc() {
         let tip = json!({"free": {"follower_normal_n": 20.0, "follower_shear_n": side * 8.0}});
         let rest = AtRest::new(&parse(&wrapped(128, rho, 1e6, side, tip)));
         let place = |k: usize| [rest.nodes[k][0], k as f64 / 128.0 + rest.nodes[k][1]];
-        let angle = |k: usize| {
-            let [a, b] = [place(k), place(k + 1)];
-            (b[0] - a[0]).atan2(b[1] - a[1])
-        };
+        let chord = |k: usize| [0, 1].map(|axis| place(k + 1)[axis] - place(k)[axis]);
         for k in (32..64).step_by(8) {
-            let curvature = (angle(k + 1) - angle(k)) * -side * 128.0;
+            let (a, b) = (chord(k), chord(k + 1));
+            let turn = b[0].atan2(b[1]) - a[0].atan2(a[1]);
+            let curvature = -side * turn / (0.5 * (a[0].hypot(a[1]) + b[0].hypot(b[1])));
             assert!((curvature * rho - 1.0).abs() < 1e-3, "{side} {k}: {curvature}");
         }
         [

@@ -33,36 +33,24 @@ fn shape(case: &Case, contact: &Contact, pointer: &str, faults: &mut Violations)
     };
     if contact.point_m.is_some() || contact.normal.is_some() {
         let hint = "remove point_m and normal, or circle; a further obstacle is a further contact";
-        fault(
-            Code::Together,
-            "/circle",
-            "a contact that is both a wall and a circle",
-            None,
-            hint,
-        );
+        let what = "a contact that is both a wall and a circle";
+        fault(Code::Together, "/circle", what, None, hint);
     }
     let length = case.beam.length_m;
     let [smallest, largest] = [length / LARGEST, length * LARGEST];
-    let sizes = || {
-        Some(format!(
+    if circle.radius_m > largest || (0.0 < circle.radius_m && circle.radius_m < smallest) {
+        let what = format!("a circle with a radius of {} m", digits(circle.radius_m));
+        let hint = "radius_m is in meters; a circle without visible curvature is a wall: give point_m and normal";
+        let allowed = format!(
             "{} to {} m, from a millionth to a million lengths of the beam",
             digits(smallest),
             digits(largest)
-        ))
-    };
-    if circle.radius_m > largest || circle.radius_m < smallest {
-        let what = format!("a circle with a radius of {} m", digits(circle.radius_m));
-        let hint = "a circle without visible curvature is a wall: give point_m and normal";
-        fault(Code::Implausible, "/circle/radius_m", &what, sizes(), hint);
+        );
+        fault(Code::Implausible, "/circle/radius_m", &what, Some(allowed), hint);
     } else if circle.center_m.iter().any(|x| x.abs() > largest) {
         let what = "a center more than a million lengths of the beam away";
-        fault(
-            Code::Implausible,
-            "/circle/center_m",
-            what,
-            None,
-            "center_m is in meters",
-        );
+        let hint = "center_m is in meters";
+        fault(Code::Implausible, "/circle/center_m", what, None, hint);
     }
     let reach = contact.reach_m.unwrap_or(0.5 * case.beam.height_m);
     if circle.inside && circle.radius_m <= reach {
@@ -70,13 +58,9 @@ fn shape(case: &Case, contact: &Contact, pointer: &str, faults: &mut Violations)
             "the beam reaches {} m from its center line, which the circle does not contain",
             digits(reach)
         );
-        fault(
-            Code::Together,
-            "/circle/radius_m",
-            &what,
-            Some(format!("more than {} m", digits(reach))),
-            "increase the radius, or give a smaller reach_m",
-        );
+        let allowed = Some(format!("more than {} m", digits(reach)));
+        let hint = "increase the radius, or give a smaller reach_m";
+        fault(Code::Together, "/circle/radius_m", &what, allowed, hint);
     }
 }
 
