@@ -262,6 +262,7 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/laws/foundation.rs",
         "a_beam_on_a_foundation_bends_as_its_closed_form",
     ),
+    ("[E85]", "tests/contact/circles.rs", "a_cantilever_lies_on_a_former"),
     (
         "[E89]",
         "tests/laws/eccentric.rs",

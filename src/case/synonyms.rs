@@ -51,6 +51,8 @@ const MEANT: &[(&str, &[&str])] = &[
     ("spring", &["attachments", "stiffness_x_n_m"]),
     ("wall", &["contacts"]),
     ("obstacle", &["contacts"]),
+    ("disc", &["contacts"]),
+    ("cylinder", &["contacts"]),
     ("clamp", &["clamped", "ends"]),
     ("boundary", &["ends"]),
     ("support", &["ends", "attachments"]),

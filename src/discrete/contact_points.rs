@@ -1,8 +1,8 @@
-//! Contact points with walls, on a mesh.
+//! Contact points with obstacles, on a mesh.
 
 use super::ledger::EnergyRate;
 use super::{BeamMesh, System, Workspace};
-use crate::model::ContactWall;
+use crate::model::ContactLaw;
 use crate::model::contact::ContactForces;
 use crate::numerics::{Planar, Scalar};
 
@@ -15,7 +15,7 @@ use crate::numerics::{Planar, Scalar};
 /// x is the position of a node, `(u1, θ + u3)`: force, work and energy are consistent on every mesh.
 #[derive(Clone, Debug)]
 pub struct ContactPoint {
-    /// Number of the wall in the model.
+    /// Number of the contact in the model.
     pub number: usize,
     /// Node before the contact point.
     node: usize,
@@ -29,7 +29,7 @@ pub struct ContactPoint {
 
 impl ContactPoint {
     /// Contact points of a model, ordered by place.
-    pub fn all(contacts: &[ContactWall], mesh: &BeamMesh) -> Vec<Self> {
+    pub fn all(contacts: &[ContactLaw], mesh: &BeamMesh) -> Vec<Self> {
         let mut all = vec![];
         for (number, contact) in contacts.iter().enumerate() {
             let mut push = |place: f64, measure: f64| {
@@ -56,8 +56,8 @@ impl ContactPoint {
         values[self.node] * self.weights[0] + values[self.node + 1] * self.weights[1]
     }
 
-    fn place<T: Scalar>(&self, w: &Workspace<T>) -> Planar<T> {
-        let u = self.between(&w.motion.u);
+    fn place<T: Scalar>(&self, u: &[Planar<T>]) -> Planar<T> {
+        let u = self.between(u);
         Planar::new(u.x, u.z + self.coordinate)
     }
 
@@ -68,7 +68,7 @@ impl ContactPoint {
             elastic,
             damping,
             friction,
-        } = law.forces(self.place(w), self.between(&w.motion.v));
+        } = law.forces(self.place(&w.motion.u), self.between(&w.motion.v));
         ContactForces {
             elastic: elastic * self.measure,
             damping: damping * self.measure,
@@ -79,11 +79,12 @@ impl ContactPoint {
     /// Penetration depth and its rate [m, m/s].
     pub fn depth(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
         let law = &system.model.contacts[self.number];
-        [law.depth(self.place(w)), -self.between(&w.motion.v).dot(law.normal)]
+        let (depth, normal) = law.depth(self.place(&w.motion.u));
+        [depth, -self.between(&w.motion.v).dot(normal)]
     }
 }
 
-/// Passes the forces of walls on a node to `each`, with the balance entry of their work; none for stored energy.
+/// Passes the contact forces on a node to `each`, with the balance entry of their work; none for stored energy.
 #[inline]
 pub fn forces<T: Scalar>(
     system: &System,
@@ -105,7 +106,7 @@ pub fn forces<T: Scalar>(
     }
 }
 
-/// Energy stored in walls [J].
+/// Energy stored in contacts [J].
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let each = system.touching.iter().map(|one| {
         let [depth, _] = one.depth(system, w);
@@ -114,21 +115,59 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     each.sum()
 }
 
-/// Results for a wall: normal force, friction force along its face, and largest depth [N, N, m]; a negative depth is
-/// the distance.
-pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> [f64; 3] {
+/// Results of a contact.
+pub struct ContactResult {
+    /// Sum of the forces normal to the face [N].
+    pub normal: f64,
+    /// Sum of the friction forces along the face [N].
+    pub friction: f64,
+    /// Largest depth [m]; if negative, the smallest distance.
+    pub depth: f64,
+    /// Resultant force on the beam [N].
+    pub force: Planar<f64>,
+}
+
+/// Results of the contact with this number.
+pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> ContactResult {
     let law = &system.model.contacts[number];
-    let mut felt = [0.0, 0.0, f64::NEG_INFINITY];
+    let mut felt = ContactResult {
+        normal: 0.0,
+        friction: 0.0,
+        depth: f64::NEG_INFINITY,
+        force: Planar::default(),
+    };
     for one in system.touching.iter().filter(|one| one.number == number) {
         let f = one.forces(system, w);
-        felt[0] += (f.elastic + f.damping).dot(law.normal);
-        felt[1] += f.friction.dot(law.normal.normal());
-        felt[2] = felt[2].max(one.depth(system, w)[0]);
+        let (depth, normal) = law.depth(one.place(&w.motion.u));
+        felt.normal += (f.elastic + f.damping).dot(normal);
+        felt.friction += f.friction.dot(normal.normal());
+        felt.depth = felt.depth.max(depth);
+        felt.force += f.elastic + f.damping + f.friction;
     }
     felt
 }
 
-/// Largest depth at any wall, and its rate [m, m/s]; zero without contact.
+/// Distance of each contact point from a circle, plus a quarter of its bend radius: no longer motion can pass over the circle.
+fn free_ways<'a>(system: &'a System, u: &'a [Planar<f64>]) -> impl Iterator<Item = (&'a ContactPoint, f64)> {
+    system.touching.iter().filter_map(|one| {
+        let law = &system.model.contacts[one.number];
+        let (depth, _) = law.depth(one.place(u));
+        Some((one, 0.25 * law.bend_radius()? - depth.min(0.0)))
+    })
+}
+
+/// Longest step that cannot pass over a circle [s].
+pub fn longest_step(system: &System, w: &Workspace<f64>) -> f64 {
+    let each = free_ways(system, &w.motion.u).map(|(one, way)| way / one.between(&w.motion.v).squared().sqrt());
+    each.fold(f64::INFINITY, f64::min)
+}
+
+/// True if the beam may pass over a circle between two states of displacements.
+pub fn may_pass_over(system: &System, from: &[Planar<f64>], to: &[Planar<f64>]) -> bool {
+    free_ways(system, from).any(|(one, way)| (one.between(to) - one.between(from)).squared() > way * way)
+}
+
+/// Largest depth at any obstacle, and its rate [m, m/s]; zero without contact.
 pub fn deepest(system: &System, w: &Workspace<f64>) -> [f64; 2] {
     let depths = system.touching.iter().map(|one| one.depth(system, w));
     depths.fold([0.0; 2], |a, b| if b[0] > a[0] { b } else { a })

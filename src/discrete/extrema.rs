@@ -78,7 +78,7 @@ pub enum MonitoredQuantity {
     Outermost,
     /// Largest `|q| √r'/(r A)` of a tube, r the density over `ρ_0` at its minimum [m/(s Pa^(1/2))]. Times `√ρ_0` it is the Mach number.
     Mach,
-    /// Largest depth behind the face of a wall [m].
+    /// Largest depth behind the face of an obstacle [m].
     Depth,
 }
 

@@ -1,31 +1,56 @@
-//! Contact of the beam with fixed walls.
+//! Contact of the beam with fixed walls and circles.
 
 use crate::case::schema::{Case, Contact as Written};
 use crate::numerics::{Planar, Scalar, ramp};
 
-/// `[E61]` A wall: the half-plane behind the face through `x_0` with the outward normal n. The surface of the beam is
-/// at the distance r from its center line. The contact acts where the surface is behind the face by
-/// `g = n·(x_0 - x) + r > 0`, per length or at one place. k is the stiffness, d the smoothing length:
+/// Distance from the center below which the normal of a circle fades, in radii: no force depends on it, since `1 + 1e-16 = 1`.
+const CORE: f64 = 1e-8;
+
+/// Shape of an obstacle: depth g of the beam's surface behind the face, and outward normal n of the face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactFace {
+    /// The half-plane behind the face through `x_0`: `g = n·(x_0 - x) + r`.
+    Wall {
+        /// `x_0` [m].
+        point: Planar<f64>,
+        /// `n`, of length 1.
+        normal: Planar<f64>,
+    },
+    /// `[E85]` A circle of radius R around c, s = 1 for a disc beside the beam and -1 for a room around it:
+    ///
+    /// ```text
+    /// g = s (R - |x - c|) + r      n = s (x - c)/|x - c| = -∂g/∂x      R → ∞ is a wall
+    /// ```
+    Circle {
+        /// `c` [m].
+        center: Planar<f64>,
+        /// `R` [m].
+        radius: f64,
+        /// `s`.
+        side: f64,
+    },
+}
+
+/// `[E61]` An obstacle. The surface of the beam is at the distance r from its center line. The contact acts where the surface is behind
+/// the face, `g > 0`, per length or at one place. k is the stiffness, d the smoothing length:
 ///
 /// ```text
 /// f = k s(g) [m(1 + c g_t) n - μ m(1 + c g_t) v_t/√(v_t² + v_0²) t]      s(g) = g²/(2d) up to d, g - d/2 beyond      m(1) = 1
 /// E = k S(g),  S' = s      D = k s [(m - 1) g_t + μ m v_t²/√(v_t² + v_0²)]
 /// ```
 ///
-/// t is along the face. `m(y)` is y, smoothly kept above 0: a wall never pulls. k s(g) stores energy. Damping (Hunt &
+/// t is along the face. `m(y)` is y, smoothly kept above 0: an obstacle never pulls. k s(g) stores energy. Damping (Hunt &
 /// Crossley, J. Appl. Mech. 42 (1975) 440) and friction dissipate it: D ≥ 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ContactWall {
+pub struct ContactLaw {
     /// Name.
     pub name: String,
     /// Place `θ/l_s` of the contact; none: along the whole beam.
     pub at: Option<f64>,
-    /// `x_0` [m].
-    pub point: Planar<f64>,
+    /// Shape.
+    pub face: ContactFace,
     /// `r` [m].
     pub reach: f64,
-    /// `n`, of length 1.
-    pub normal: Planar<f64>,
     /// `k` [Pa]; at one place [N/m].
     pub stiffness: f64,
     /// `d` [m].
@@ -49,7 +74,7 @@ pub struct ContactForces<T> {
     pub friction: Planar<T>,
 }
 
-impl ContactWall {
+impl ContactLaw {
     /// Returns all contacts of a case.
     pub fn all(case: &Case) -> Vec<Self> {
         let reach = 0.5 * case.beam.height_m;
@@ -57,20 +82,27 @@ impl ContactWall {
     }
 
     fn new(written: &Written, reach: f64) -> Self {
-        let [x, z] = written.normal;
-        let length = x.hypot(z);
+        let planar = |[x, z]: [f64; 2]| Planar { x, z };
+        let face = match &written.circle {
+            Some(circle) => ContactFace::Circle {
+                center: planar(circle.center_m),
+                radius: circle.radius_m,
+                side: if circle.inside { -1.0 } else { 1.0 },
+            },
+            None => {
+                let [x, z] = written.normal.unwrap_or([1.0, 0.0]);
+                let length = x.hypot(z);
+                ContactFace::Wall {
+                    point: planar(written.point_m.unwrap_or_default()),
+                    normal: planar([x / length, z / length]),
+                }
+            }
+        };
         Self {
             name: written.name.clone(),
             at: written.at,
-            point: Planar {
-                x: written.point_m[0],
-                z: written.point_m[1],
-            },
+            face,
             reach: written.reach_m.unwrap_or(reach),
-            normal: Planar {
-                x: x / length,
-                z: z / length,
-            },
             stiffness: written.stiffness_pa.or(written.stiffness_n_m).unwrap_or(0.0),
             smoothing: written.smoothing_m,
             damping: written.damping_s_m,
@@ -79,22 +111,50 @@ impl ContactWall {
         }
     }
 
-    /// True if the wall dissipates energy.
+    /// Term of its shape.
+    pub fn kind(&self) -> &'static str {
+        match self.face {
+            ContactFace::Wall { .. } => "wall",
+            ContactFace::Circle { .. } => "circle",
+        }
+    }
+
+    /// Radius of the circle on which the center line of the beam lies in contact [m]; none for walls.
+    pub fn bend_radius(&self) -> Option<f64> {
+        match self.face {
+            ContactFace::Wall { .. } => None,
+            ContactFace::Circle { radius, side, .. } => Some(radius + side * self.reach),
+        }
+    }
+
+    /// True if the contact dissipates energy.
     pub fn is_lossy(&self) -> bool {
         self.damping > 0.0 || self.friction > 0.0
     }
 
-    /// Depth of the beam's surface behind the face for a point of the center line [m]; negative in front of the face.
+    /// Depth of the beam's surface behind the face for a point of the center line [m], negative in front of the face, and normal.
     #[inline]
-    pub fn depth<T: Scalar>(&self, at: Planar<T>) -> T {
-        (Planar::constant(self.point) - at).dot(Planar::constant(self.normal)) + self.reach
+    pub fn depth<T: Scalar>(&self, at: Planar<T>) -> (T, Planar<T>) {
+        match self.face {
+            ContactFace::Wall { point, normal } => {
+                let normal = Planar::constant(normal);
+                ((Planar::constant(point) - at).dot(normal) + self.reach, normal)
+            }
+            ContactFace::Circle { center, radius, side } => {
+                let off = at - Planar::constant(center);
+                let core = CORE * radius;
+                let distance = (off.squared() + core * core).sqrt();
+                let depth = (distance - radius) * -side + self.reach;
+                (depth, off.times(T::constant(side) / distance))
+            }
+        }
     }
 
     /// Contact forces on a moving point.
     #[inline]
     pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> ContactForces<T> {
-        let normal = Planar::constant(self.normal);
-        let elastic = self.depth(at).lift(|g| ramp(g, self.smoothing)) * self.stiffness;
+        let (depth, normal) = self.depth(at);
+        let elastic = depth.lift(|g| ramp(g, self.smoothing)) * self.stiffness;
         let mut pressed = ContactForces {
             elastic: normal.times(elastic),
             damping: Planar::zero(),
@@ -140,12 +200,16 @@ fn not_below(x: f64) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    const WALL: ContactWall = ContactWall {
+    const NORMAL: Planar<f64> = Planar { x: -0.6, z: 0.8 };
+    const POINT: Planar<f64> = Planar { x: 0.1, z: 0.0 };
+    const WALL: ContactLaw = ContactLaw {
         name: String::new(),
         at: None,
-        point: Planar { x: 0.1, z: 0.0 },
+        face: ContactFace::Wall {
+            point: POINT,
+            normal: NORMAL,
+        },
         reach: 0.0,
-        normal: Planar { x: -0.6, z: 0.8 },
         stiffness: 1e5,
         smoothing: 1e-3,
         damping: 2.0,
@@ -153,28 +217,45 @@ mod tests {
         slow: 1e-3,
     };
 
-    /// Goal: no force in front of the wall, and no tension behind it. The energy is the work of the elastic part.
+    /// Circles around a center along the normal have the wall as tangent at the same point.
+    fn tangent(radius: f64, side: f64) -> ContactLaw {
+        let center = POINT - NORMAL * (side * radius);
+        let face = ContactFace::Circle { center, radius, side };
+        ContactLaw { face, ..WALL.clone() }
+    }
+
+    /// Goal: no force in front of the face, and no tension behind it. The energy is the work of the elastic part.
     /// Damping and friction only dissipate.
     #[test]
-    fn a_wall_presses_and_never_pulls() {
-        let face = WALL.normal.normal();
+    fn an_obstacle_presses_and_never_pulls() {
+        for law in [WALL, tangent(0.2, 1.0), tangent(0.2, -1.0)] {
+            presses(&law);
+        }
+    }
+
+    fn presses(law: &ContactLaw) {
+        let face = NORMAL.normal();
         for depth in [-1.0, 0.0, 1e-5, 5e-4, 1e-3, 2e-3, 0.1] {
-            let at = WALL.point - WALL.normal * depth;
-            assert!((WALL.depth(at) - depth).abs() < 1e-15);
+            let at = POINT - NORMAL * depth;
+            if law.depth(at).0 > depth + 1e-9 {
+                assert!(depth < -0.1, "beyond the center of a room");
+                continue;
+            }
+            assert!((law.depth(at).0 - depth).abs() < 1e-15);
             for (inwards, along) in [(0.0, 0.0), (10.0, 1.0), (-0.1, -1.0), (-0.4, 1e-4), (-10.0, 5.0)] {
-                let velocity = WALL.normal * -inwards + face * along;
-                let f = WALL.forces(at, velocity);
-                let whole = (f.elastic + f.damping).dot(WALL.normal);
+                let velocity = NORMAL * -inwards + face * along;
+                let f = law.forces(at, velocity);
+                let whole = (f.elastic + f.damping).dot(NORMAL);
                 assert!(
-                    whole >= -1e-12 && (depth > 0.0 || whole == 0.0),
+                    whole >= -1e-12 && (depth > 0.0 || whole < 1e-20),
                     "{depth} {inwards}: {whole}"
                 );
                 assert!(f.damping.dot(velocity) <= 0.0 && f.friction.dot(velocity) <= 0.0);
                 assert!(f.friction.squared().sqrt() <= 0.3 * whole + 1e-12);
             }
             let h = 1e-7;
-            let power = (WALL.energy(depth + h) - WALL.energy(depth - h)) / (2.0 * h);
-            let elastic = WALL.forces(at, Planar::default()).elastic.dot(WALL.normal);
+            let power = (law.energy(depth + h) - law.energy(depth - h)) / (2.0 * h);
+            let elastic = law.forces(at, Planar::default()).elastic.dot(NORMAL);
             assert!(
                 (power - elastic).abs() < 1e-3 * (1.0 + elastic),
                 "{depth}: {power} {elastic}"

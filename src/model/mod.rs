@@ -44,7 +44,7 @@ pub use beam::Section;
 pub use bladder::AreaLaw;
 pub use bladder_wall_contact::WallClosing;
 pub use compression::Compression;
-pub use contact::ContactWall;
+pub use contact::{ContactFace, ContactLaw};
 pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
@@ -80,8 +80,8 @@ pub struct Model {
     pub attachments: Vec<AttachedBody>,
     /// Stiffness of the foundation across and along [N/m^2].
     pub foundation: [Option<Profile>; 2],
-    /// Walls for contact.
-    pub contacts: Vec<ContactWall>,
+    /// Walls and circles for contact.
+    pub contacts: Vec<ContactLaw>,
     /// Branches of a relaxing solid.
     pub relaxation: Vec<Branch>,
     /// Ambient fluid.
@@ -202,7 +202,7 @@ impl Model {
                 .foundation
                 .as_ref()
                 .map_or([None, None], |one| one.stiffness().map(|(_, profile)| profile.cloned())),
-            contacts: ContactWall::all(case),
+            contacts: ContactLaw::all(case),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),

@@ -8,7 +8,7 @@ use crate::discrete::angle_unwrapping::AngleUnwrapping;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::discrete::ledger::{self, EnergyBalance, Invariants};
 use crate::discrete::quantities::{self, Observable, ObservableRow, StateView, probes, stations};
-use crate::discrete::{CompleteState, System, TimeData};
+use crate::discrete::{CompleteState, System, TimeData, contact_points};
 use crate::error::Result;
 use crate::model::mapping::tube_length;
 
@@ -94,6 +94,8 @@ pub struct Observer {
     /// End of the last step, or start of the first step after a switch.
     before: Option<MonitoredValues>,
     turning: Vec<f64>,
+    /// Longest step that cannot pass over a disc [s].
+    pub longest_step: f64,
     readings: StepReadings,
     valves: ValveFlows,
     /// Accumulated observations.
@@ -113,6 +115,7 @@ impl Observer {
             limits: Limits::new(case, system),
             before: None,
             turning: vec![],
+            longest_step: f64::INFINITY,
             readings: StepReadings::new(case),
             valves: ValveFlows::new(case, system),
             seen: Observed {
@@ -168,6 +171,7 @@ impl Observer {
         let (system, now, w) = dae.evaluate(t, y, yp);
         let glance = MonitoredValues::new(system, now, t, w);
         self.readings.arrive(t, true, system, now, w);
+        self.longest_step = contact_points::longest_step(system, &w);
         self.watch(system, now, w, &glance, integrals);
         self.seen.range.take(&self.limits, None, &glance);
         self.before = Some(glance);
@@ -186,6 +190,7 @@ impl Observer {
             return beyond;
         }
         self.readings.arrive(t, false, system, now, w);
+        self.longest_step = contact_points::longest_step(system, &w);
         self.watch(system, now, w, &glance, integrals);
         if let Some(before) = self.before.filter(|before| before.t < t) {
             self.seen.range.take(&self.limits, Some(&before), &glance);

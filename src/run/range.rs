@@ -10,7 +10,7 @@ use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
-use crate::model::{Wet, audit};
+use crate::model::{ContactLaw, Wet, audit};
 
 /// Fiber strain above which a run warns.
 pub const STRAIN: f64 = 0.5;
@@ -30,8 +30,8 @@ const MOTION_ENDS: f64 = 1e3;
 /// Validity limits of a case.
 #[derive(Clone, Debug)]
 pub struct Limits {
-    /// Half of the beam's height [m].
-    pub half_height: f64,
+    /// Depth behind the face of an obstacle above which a run warns: half the beam's height, or half the bend radius at a circle [m].
+    pub depth: f64,
     length: f64,
     modulus: f64,
     /// Area change at which a bladder fills the half section of its segment [m^2].
@@ -71,7 +71,7 @@ pub struct Range {
     pressed: Passed,
     #[serde(default)]
     touched: Passed,
-    /// Depth of the beam behind a wall at a start that is not an equilibrium [m].
+    /// Depth of the beam behind the face of an obstacle at a start that is not an equilibrium [m].
     #[serde(default)]
     begun: f64,
     #[serde(default)]
@@ -133,7 +133,12 @@ impl Limits {
             largest.map(|largest| pitch * section.half_height - largest)
         };
         Self {
-            half_height: 0.5 * case.beam.height_m,
+            depth: system
+                .model
+                .contacts
+                .iter()
+                .filter_map(ContactLaw::bend_radius)
+                .fold(0.5 * case.beam.height_m, |least, radius| least.min(0.5 * radius)),
             length: system.model.length,
             modulus: spans::softest_modulus(case),
             swelling: wet.map_or(f64::INFINITY, |wet| {
@@ -273,7 +278,7 @@ impl Limits {
             MonitoredQuantity::Flow => larger(seen.reynolds.largest, value * self.reynolds_per_flow, REYNOLDS),
             MonitoredQuantity::Mach => larger(seen.mach.largest, value * self.mach_per_flow, MACH),
             MonitoredQuantity::Outermost => value > 0.95,
-            MonitoredQuantity::Depth => larger(seen.touched.largest, value, self.half_height),
+            MonitoredQuantity::Depth => larger(seen.touched.largest, value, self.depth),
             MonitoredQuantity::Pressed => larger(seen.pressed.largest, value, self.convex_up_to),
             _ => false,
         }
@@ -299,7 +304,7 @@ impl Range {
         self.pressed
             .take(MonitoredQuantity::Pressed, 1.0, limits.convex_up_to, before, now, 0);
         self.touched
-            .take(MonitoredQuantity::Depth, 1.0, limits.half_height, before, now, 0);
+            .take(MonitoredQuantity::Depth, 1.0, limits.depth, before, now, 0);
         self.unphysical.take(&limits.unphysical, now, now.t);
         if now.t == 0.0 && !limits.at_rest {
             self.begun = self.begun.max(now.value_and_rate(MonitoredQuantity::Depth)[0]);
@@ -332,18 +337,18 @@ impl Range {
         }
         if self.begun > 0.0 {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam begins {} behind the face of a wall, which pushes it out. Begin in front of the \
-                 wall, or with /start/equilibrium.",
+                "contact: the beam begins {} behind the face of an obstacle, which pushes it out. Begin in front of the \
+                 face, or with /start/equilibrium.",
                 quantity(self.begun, "m", 4)
             )));
         }
         if let Some(began) = self.touched.began {
             all.push(Code::BeyondRange.warning(format!(
-                "contact: the beam is pressed {} into a wall at t = {:.4} s (limit half its height, {}; exceeded from \
-                 t = {began:.4} s on). Use a stiffer wall.",
+                "contact: the beam is pressed {} into an obstacle at t = {:.4} s (limit half its height or half the \
+                 bend radius at a circle, {}; exceeded from t = {began:.4} s on). Use a stiffer contact.",
                 quantity(self.touched.largest, "m", 4),
                 self.touched.t,
-                quantity(limits.half_height, "m", 4)
+                quantity(limits.depth, "m", 4)
             )));
         }
         if let Some(began) = self.pressed.began {

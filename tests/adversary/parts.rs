@@ -1,4 +1,4 @@
-//! Parts of a scene: walls, and in the network check valves, pumps, vessels and syringes, of fluid that may be compressed.
+//! Parts of a scene: walls and circles, and in the network check valves, pumps, vessels and syringes, of fluid that may be compressed.
 
 use serde_json::{Value, json};
 
@@ -22,6 +22,24 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
             fluid.extend(further::compression(r, pressure));
         }
         supplied(r, b, case);
+    }
+    if walled && r.one_in(2) {
+        let radius = b.length * r.log(0.05, 1e2);
+        let inside = r.one_in(3) && radius > b.length;
+        round(&mut case["contacts"][0], radius, inside);
+    }
+}
+
+/// Turns a wall into a circle that is tangent to it.
+fn round(contact: &mut Value, radius: f64, inside: bool) {
+    let part = |key: &str| [0, 1].map(|axis| contact[key][axis].as_f64().expect("a number"));
+    let (point, normal) = (part("point_m"), part("normal"));
+    let size = normal[0].hypot(normal[1]);
+    let back = if inside { radius } else { -radius } / size;
+    let center = [0, 1].map(|axis| point[axis] + back * normal[axis]);
+    contact["circle"] = json!({"center_m": center, "radius_m": radius, "inside": inside});
+    for key in ["point_m", "normal"] {
+        contact.as_object_mut().expect("a contact").remove(key);
     }
 }
 

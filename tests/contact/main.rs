@@ -1,8 +1,9 @@
-//! Walls that the beam comes to lie against, [E61] and [E62], against laws of one body integrated by themselves, statics and balances.
+//! Walls and circles that the beam comes to lie against, [E61], [E62] and [E85], against laws of one body integrated by themselves, statics and balances.
 
 mod bodies;
 #[path = "../common/chance.rs"]
 mod chance;
+mod circles;
 #[path = "../differences/mod.rs"]
 mod differences;
 mod resting;
@@ -77,6 +78,9 @@ fn the_jacobian_is_that_of_the_residual() {
     let walls = json!([
         {"name": "floor", "point_m": [0.01, 0.2], "normal": [-2, 1], "stiffness_pa": 100, "reach_m": 0, "smoothing_m": 0.05, "damping_s_m": 1,
          "friction_coefficient": 0.4, "friction_velocity_m_s": 0.3},
+        {"name": "disc", "circle": {"center_m": [0.2, 0.6], "radius_m": 0.25}, "stiffness_pa": 80, "reach_m": 0.02, "smoothing_m": 0.05, "damping_s_m": 1,
+         "friction_coefficient": 0.4, "friction_velocity_m_s": 0.3},
+        {"name": "room", "circle": {"center_m": [0.1, 0.5], "radius_m": 0.4, "inside": true}, "at": 0.9, "stiffness_n_m": 30, "reach_m": 0, "smoothing_m": 0.05},
         {"name": "stop", "point_m": [-0.01, 1], "normal": [1, 0], "at": 0.83, "stiffness_n_m": 40, "reach_m": 0, "smoothing_m": 0.02, "damping_s_m": 0.5}
     ]);
     for (effects, formulation) in [
@@ -142,6 +146,29 @@ fn what_is_not_clear_is_refused() {
     };
     let auto = || json!("auto");
     refused(with("normal", json!([0, 0])), auto(), "/contacts/0/normal");
+    refused(with("normal", json!(null)), auto(), "/contacts/0");
+    let circle = |center: f64, radius: f64, inside: bool| json!({"center_m": [center, 0.5], "radius_m": radius, "inside": inside});
+    refused(with("circle", circle(-0.2, 0.1, false)), auto(), "/contacts/0/circle");
+    let round = |circle: Value| json!({"name": "c", "circle": circle, "stiffness_pa": 1e3, "reach_m": 0.1, "smoothing_m": 1e-3});
+    for radius in [1e-7, 1e7, 1e300] {
+        let pointer = "/contacts/0/circle/radius_m";
+        refused(round(circle(-0.2, radius, false)), auto(), pointer);
+    }
+    for radius in [0.0, -1.0] {
+        refused(
+            round(circle(-0.2, radius, false)),
+            auto(),
+            "/contacts/0/circle/radius_m",
+        );
+    }
+    refused(round(circle(1e300, 0.1, false)), auto(), "/contacts/0/circle/center_m");
+    refused(round(circle(0.0, 0.1, true)), auto(), "/contacts/0/circle/radius_m");
+    refused(round(json!({"center_m": [0, 0]})), auto(), "/contacts/0/circle");
+    refused(
+        round(json!({"center_m": [0], "radius_m": 1})),
+        auto(),
+        "/contacts/0/circle/center_m",
+    );
     refused(with("stiffness_n_m", json!(10)), auto(), "/contacts/0");
     refused(
         with("friction_coefficient", json!(0.3)),

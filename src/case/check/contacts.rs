@@ -1,15 +1,74 @@
-//! Checks of walls: direction of the normal, stiffness, and friction.
+//! Checks of contacts: shape, stiffness, and friction.
 
 use std::collections::HashMap;
 
 use crate::case::faults::Violations;
-use crate::case::schema::Case;
+use crate::case::numbers::digits;
+use crate::case::schema::{Case, Contact};
 use crate::error::{Code, Violation};
+
+/// Largest radius and distance of a circle, in lengths of the beam: rounding errors of depths are below 1e-9 lengths. Its inverse is
+/// the smallest radius.
+const LARGEST: f64 = 1e6;
+
+/// Checks that a contact has a unique shape of a plausible size.
+fn shape(case: &Case, contact: &Contact, pointer: &str, faults: &mut Violations) {
+    let mut fault = |code, key: &str, what: &str, allowed: Option<String>, hint: &str| {
+        let fault = Violation::new(code, format!("{pointer}{key}"), what).hint(hint);
+        faults.push(allowed.into_iter().fold(fault, Violation::allowed));
+    };
+    let Some(circle) = &contact.circle else {
+        match (&contact.point_m, &contact.normal) {
+            (Some(_), Some(normal)) if normal.iter().all(|x| *x == 0.0) => {
+                let hint = "[1, 0] is a wall below the beam, [-1, 0] one above it";
+                fault(Code::Together, "/normal", "a normal of length zero", None, hint);
+            }
+            (Some(_), Some(_)) => {}
+            _ => {
+                let hint = "give point_m and normal of a wall, or circle";
+                fault(Code::Missing, "", "a contact without a shape", None, hint);
+            }
+        }
+        return;
+    };
+    if contact.point_m.is_some() || contact.normal.is_some() {
+        let hint = "remove point_m and normal, or circle; a further obstacle is a further contact";
+        let what = "a contact that is both a wall and a circle";
+        fault(Code::Together, "/circle", what, None, hint);
+    }
+    let length = case.beam.length_m;
+    let [smallest, largest] = [length / LARGEST, length * LARGEST];
+    if circle.radius_m > largest || (0.0 < circle.radius_m && circle.radius_m < smallest) {
+        let what = format!("a circle with a radius of {} m", digits(circle.radius_m));
+        let hint = "radius_m is in meters; a circle without visible curvature is a wall: give point_m and normal";
+        let allowed = format!(
+            "{} to {} m, from a millionth to a million lengths of the beam",
+            digits(smallest),
+            digits(largest)
+        );
+        fault(Code::Implausible, "/circle/radius_m", &what, Some(allowed), hint);
+    } else if circle.center_m.iter().any(|x| x.abs() > largest) {
+        let what = "a center more than a million lengths of the beam away";
+        let hint = "center_m is in meters";
+        fault(Code::Implausible, "/circle/center_m", what, None, hint);
+    }
+    let reach = contact.reach_m.unwrap_or(0.5 * case.beam.height_m);
+    if circle.inside && circle.radius_m <= reach {
+        let what = format!(
+            "the beam reaches {} m from its center line, which the circle does not contain",
+            digits(reach)
+        );
+        let allowed = Some(format!("more than {} m", digits(reach)));
+        let hint = "increase the radius, or give a smaller reach_m";
+        fault(Code::Together, "/circle/radius_m", &what, allowed, hint);
+    }
+}
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     let mut known = HashMap::new();
     for (i, contact) in case.contacts.iter().enumerate() {
         let pointer = format!("/contacts/{i}");
+        shape(case, contact, &pointer, faults);
         let mut fault = |key: &str, what: &str, hint: &str| {
             let at = if key.is_empty() {
                 pointer.clone()
@@ -18,19 +77,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             };
             faults.push(Violation::new(Code::Together, at, what).hint(hint));
         };
-        if contact.normal.iter().all(|x| *x == 0.0) {
-            fault(
-                "normal",
-                "a normal of length zero",
-                "[1, 0] is a wall below the beam, [-1, 0] one above it",
-            );
-        }
         match (contact.stiffness_pa, contact.at, contact.stiffness_n_m) {
             (Some(_), None, None) | (None, Some(_), Some(_)) => {}
             _ => fault(
                 "",
-                "a wall without a unique stiffness",
-                "give stiffness_pa for a wall along the whole beam, or at and stiffness_n_m for contact at one place",
+                &format!("a {} without a unique stiffness", contact.kind()),
+                "give stiffness_pa for contact along the whole beam, or at and stiffness_n_m for contact at one place",
             ),
         }
         if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {

@@ -1,12 +1,12 @@
-//! Walls that the beam may touch.
+//! Walls and circles that the beam may touch.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::is_zero;
+use super::{is_false, is_zero};
 
-/// A wall that does not move: the half-plane behind a point, seen against a normal. It presses on the beam all along with
-/// `stiffness_pa`, or at one place with `at` and `stiffness_n_m`. A beam that is away from it feels nothing.
+/// An obstacle that does not move: a wall, the half-plane behind `point_m`, seen against `normal`, or a `circle`. It presses on the
+/// beam all along with `stiffness_pa`, or at one place with `at` and `stiffness_n_m`. A beam that is away from it feels nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
@@ -14,9 +14,14 @@ pub struct Contact {
     #[schemars(length(min = 1))]
     pub name: String,
     /// A point of the wall's face, x and z [m].
-    pub point_m: [f64; 2],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub point_m: Option<[f64; 2]>,
     /// Direction out of the wall, towards the free side, x and z; of any length but 0.
-    pub normal: [f64; 2],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal: Option<[f64; 2]>,
+    /// A circle, in place of `point_m` and `normal`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub circle: Option<Circle>,
     /// Distance of the contact surface from the center line of the beam [m]; absent: half its height, its surface.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0))]
@@ -49,4 +54,25 @@ pub struct Contact {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub friction_velocity_m_s: Option<f64>,
+}
+
+impl Contact {
+    /// Term of its shape.
+    pub fn kind(&self) -> &'static str {
+        if self.circle.is_some() { "circle" } else { "wall" }
+    }
+}
+
+/// A circle that does not move: a disc beside the beam, or a round room around it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// Its center, x and z [m].
+    pub center_m: [f64; 2],
+    /// Its radius [m].
+    #[schemars(extend("exclusiveMinimum" = 0))]
+    pub radius_m: f64,
+    /// True if the beam is inside the circle, which surrounds it.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub inside: bool,
 }

@@ -90,7 +90,7 @@ pub struct Case {
     /// Elastic foundation along the beam. Absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foundation: Option<Foundation>,
-    /// Walls that the beam may come to lie against.
+    /// Walls and circles that the beam may come to lie against.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(length(max = 100))]
     pub contacts: Vec<Contact>,
@@ -198,6 +198,10 @@ fn given<'a, T, const N: usize>(
 }
 
 /// True if a number is 0, the default that a case may omit.
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

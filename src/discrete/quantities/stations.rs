@@ -1,4 +1,4 @@
-//! Quantities of each port, accumulator, wall and reaction, and, for states at rest, of each bladder.
+//! Quantities of each port, accumulator, contact and reaction, and, for states at rest, of each bladder.
 
 use super::evaluate::StateView;
 use super::probes::{HistoryColumn, key};
@@ -7,16 +7,18 @@ use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
 use crate::discrete::{System, contact_points};
 
-/// Columns of all ports, accumulators, walls and reactions of a system; with `at_rest` those of a state at rest.
+/// Columns of all ports, accumulators, contacts and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
     let mut all = of_network(system, at_rest);
     all.extend(reactions::columns(system));
-    let walls = system.model.contacts.iter().map(|wall| &wall.name);
-    for (name, short) in short("contact", walls) {
+    let contacts = &system.model.contacts;
+    let names = short("contact", contacts.iter().map(|one| &one.name));
+    for (law, (name, short)) in contacts.iter().zip(names) {
+        let kind = law.kind();
         let column = |what: &str, unit, about: &str| HistoryColumn {
             name: format!("{short}_{what}"),
             unit,
-            about: format!("{about} the wall \"{name}\""),
+            about: format!("{about} the {kind} \"{name}\""),
         };
         all.push(column("normal_force", "N", "force on the beam out of"));
         if !at_rest {
@@ -27,6 +29,14 @@ pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
             "m",
             "largest depth, below 0 least distance, behind the face of",
         ));
+        if law.bend_radius().is_some() {
+            all.push(column("force_x", "N", "resultant force across on the beam by"));
+            all.push(column(
+                "force_z",
+                "N",
+                "resultant force along the straight beam on the beam by",
+            ));
+        }
     }
     all
 }
@@ -119,13 +129,17 @@ pub fn values(look: &StateView, integrals: Option<&[f64]>, out: &mut [f64]) {
     };
     network_values(look, integrals, &mut put);
     reactions::values(look, &mut put);
-    for wall in 0..look.system.model.contacts.len() {
-        let [normal, friction, depth] = contact_points::felt(look.system, &look.w, wall);
-        put(normal);
+    for (number, law) in look.system.model.contacts.iter().enumerate() {
+        let felt = contact_points::felt(look.system, &look.w, number);
+        put(felt.normal);
         if integrals.is_some() {
-            put(friction);
+            put(felt.friction);
         }
-        put(depth);
+        put(felt.depth);
+        if law.bend_radius().is_some() {
+            put(felt.force.x);
+            put(felt.force.z);
+        }
     }
 }
 

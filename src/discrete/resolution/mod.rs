@@ -78,6 +78,17 @@ fn of_beam_and_bladders(case: &Case, system: &System, later: bool) -> Vec<MeshFi
         let on = |cells: usize| (shape.left_out(segments * cells), shape.what()).into();
         all.push(finding(shape.pointer.clone(), cells, along, on));
     }
+    // a circle is not touched between two nodes of a chord
+    for (k, law) in system.model.contacts.iter().enumerate() {
+        let (None, Some(radius)) = (law.at, law.bend_radius()) else {
+            continue;
+        };
+        let on = |cells: usize| {
+            let turn = system.model.length / (segments * cells) as f64 / radius;
+            (0.125 * turn * turn, "the distance from its center between two nodes").into()
+        };
+        all.push(finding(format!("/contacts/{k}/circle"), cells, along, on));
+    }
     for begun in InitialShape::all(case, system) {
         let on = |cells: usize| {
             let cells = segments * cells;

@@ -40,7 +40,10 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
         return obstacle(format!("/loads/{k} acts across the beam"), HINT);
     }
     if let Some(wall) = case.contacts.first() {
-        return obstacle(format!("the wall \"{}\" may push the beam sideways", wall.name), HINT);
+        return obstacle(
+            format!("the {} \"{}\" may push the beam sideways", wall.kind(), wall.name),
+            HINT,
+        );
     }
     let pushed = |a: &Attachment| {
         let across = [&a.force_x_n, &a.force_normal_n];
@@ -111,12 +114,13 @@ pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
     )
 }
 
-/// Obstacle: a dashpot or a lossy wall, which acts only on moving masses.
+/// Obstacle: a dashpot or a lossy contact, which acts only on moving masses.
 pub fn solid_inertia(case: &Case) -> Option<Obstacle> {
     if let Some(wall) = lossy(case) {
         return obstacle(
             format!(
-                "the wall \"{}\" has damping or friction, which has no effect without inertia",
+                "the {} \"{}\" has damping or friction, which has no effect without inertia",
+                wall.kind(),
                 wall.name
             ),
             "remove them, or leave solid_inertia on",
@@ -140,7 +144,7 @@ pub fn rotary_inertia(case: &Case, sheared: bool) -> Option<Obstacle> {
     )
 }
 
-/// Obstacle: axial motion that the remaining equations do not determine, or that an attachment, a wall or ambient fluid
+/// Obstacle: axial motion that the remaining equations do not determine, or that an attachment, a contact or ambient fluid
 /// resists.
 pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     let inert = case
@@ -155,7 +159,7 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     }
     if let Some(wall) = lossy(case) {
         return obstacle(
-            format!("the wall \"{}\" has damping or friction", wall.name),
+            format!("the {} \"{}\" has damping or friction", wall.kind(), wall.name),
             "remove them, or leave axial_inertia on",
         );
     }
@@ -182,7 +186,7 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
     )
 }
 
-/// First wall with damping or friction.
+/// First contact with damping or friction.
 fn lossy(case: &Case) -> Option<&Contact> {
     let lossy = |wall: &&Contact| wall.damping_s_m > 0.0 || wall.friction_coefficient > 0.0;
     case.contacts.iter().find(lossy)
@@ -205,7 +209,8 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
     }
     if let Some(wall) = case.contacts.first() {
         let what = format!(
-            "the wall \"{}\" may push the beam axially, so the loads alone do not determine the normal force",
+            "the {} \"{}\" may push the beam axially, so the loads alone do not determine the normal force",
+            wall.kind(),
             wall.name
         );
         return obstacle(what, HINT);

@@ -8,7 +8,7 @@ use crate::case::spans;
 use crate::case::wiring::{PortQuantity, Wiring, WiringPoint, WiringTube};
 use crate::case::{Case, ResolvedEnd, Rotation, Translation};
 use crate::functions::{Profile, Signal};
-use crate::model::{ContactWall, ResolvedNetwork};
+use crate::model::{ContactFace, ContactLaw, ResolvedNetwork};
 use crate::output::numbers::{quantity, significant, trimmed};
 
 /// Number of places along the beam at which a load is drawn.
@@ -58,30 +58,36 @@ pub fn to_json(case: &Case) -> Option<Value> {
         "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0, end_s), end(&case.ends.tip.resolve(), case.ends.tip.form().0, end_s)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
-        "walls": ContactWall::all(case).iter().map(wall).collect::<Vec<_>>(),
+        "obstacles": ContactLaw::all(case).iter().map(obstacle).collect::<Vec<_>>(),
     }))
 }
 
-/// A wall: its face and its description.
-fn wall(wall: &ContactWall) -> Value {
-    let stiffness = match wall.at {
-        None => format!("all along, {}", q(wall.stiffness, "Pa")),
+/// A wall or a circle: its face and its description.
+fn obstacle(law: &ContactLaw) -> Value {
+    let stiffness = match law.at {
+        None => format!("all along, {}", q(law.stiffness, "Pa")),
         Some(at) => format!(
             "at {} of the length, {}",
             trimmed(&significant(at, 3)),
-            q(wall.stiffness, "N/m")
+            q(law.stiffness, "N/m")
         ),
     };
-    let lossy = [("damping", wall.damping), ("friction", wall.friction)];
+    let lossy = [("damping", law.damping), ("friction", law.friction)];
     let lossy = lossy
         .iter()
         .filter(|(_, size)| *size > 0.0)
         .map(|(what, _)| format!(", with {what}"));
-    json!({
-        "point": [wall.point.x, wall.point.z],
-        "normal": [wall.normal.x, wall.normal.z],
-        "words": format!("“{}”: {stiffness}{}", wall.name, lossy.collect::<String>()),
-    })
+    let words = format!("“{}”: {stiffness}{}", law.name, lossy.collect::<String>());
+    match law.face {
+        ContactFace::Wall { point, normal } => {
+            json!({"point": [point.x, point.z], "normal": [normal.x, normal.z], "words": words})
+        }
+        ContactFace::Circle { center, radius, side } => {
+            let around = if side < 0.0 { ", around the beam" } else { "" };
+            let words = format!("{words}, radius {}{around}", q(radius, "m"));
+            json!({"center": [center.x, center.z], "radius": radius, "words": words})
+        }
+    }
 }
 
 fn q(x: f64, unit: &str) -> String {

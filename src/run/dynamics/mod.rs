@@ -349,7 +349,7 @@ impl Run<'_> {
                 let stride = self.strides.at(from);
                 let stepped = solver
                     .limit(stride.largest)
-                    .and_then(|()| solver.step(stop.t.min(stride.to)));
+                    .and_then(|()| solver.step(stop.t.min(stride.to).min(from + self.observer.longest_step)));
                 self.spent(|wall| &mut wall.steps);
                 let step = match stepped {
                     Ok(step) => step,

@@ -1,6 +1,7 @@
 //! Motion without inertia to the next equilibrium, where walls turn the path too sharply to be followed.
 
 use super::path::{self, NextAction, PATIENCE, PathError, PathFollower, PathSoFar, difference};
+use crate::discrete::contact_points;
 use crate::sundials::KinsolError;
 
 /// First resistance [1/s^2], and its factors after a failed and after a successful step.
@@ -19,9 +20,25 @@ const MOST: usize = 600;
 const SHARES: [f64; 3] = [1.0 / 16.0, 1.0 / 128.0, 1.0 / 1024.0];
 
 impl PathFollower<'_> {
-    /// True if the beam can touch a wall.
+    /// True if the beam can touch an obstacle.
     fn has_walls(&mut self) -> bool {
         !self.solver.dae_mut().statics().system().touching.is_empty()
+    }
+
+    /// True if the beam may pass over a circle between two points.
+    pub(super) fn may_pass_over(&mut self, last: &[f64], next: &[f64]) -> bool {
+        let n = self.n;
+        let statics = self.solver.dae_mut().statics();
+        let mut contacts = statics.system().model.contacts.iter();
+        if contacts.all(|law| law.bend_radius().is_none()) {
+            return false;
+        }
+        let rates = vec![0.0; n];
+        let [from, to] = [last, next].map(|x| {
+            let (_, _, w) = statics.beam().evaluate(x[n], &x[..n], &rates);
+            w.motion.u.clone()
+        });
+        contact_points::may_pass_over(statics.system(), &from, &to)
     }
 
     /// Moves to rest at a fixed share of the loads, against a resistance that falls as the motion slows down:
@@ -42,7 +59,7 @@ impl PathFollower<'_> {
             self.solver.dae_mut().statics().resist(0.0, &[]);
             let moved = self.norm(&difference(&next, x));
             let iterations = match solved {
-                Ok(iterations) if moved <= LONGEST => iterations,
+                Ok(iterations) if moved <= LONGEST && !self.may_pass_over(x, &next) => iterations,
                 other => {
                     failure = other.err().unwrap_or(failure);
                     rho *= HARDER;

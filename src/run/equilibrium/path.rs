@@ -186,6 +186,12 @@ impl PathFollower<'_> {
             if let Ok(iterations) = solved
                 && off <= ASTRAY
             {
+                if self.may_pass_over(&last, &x) {
+                    self.path.rejected += 1;
+                    (passed, growth) = (false, 1.0);
+                    step *= 0.5;
+                    continue;
+                }
                 if !arrives && passes(x[n]) {
                     passed = true;
                     step *= (target - last[n]) / (x[n] - last[n]);

@@ -38,18 +38,23 @@ function factorControl(label, start, act) {
   return el("label", {}, label, slider, shown);
 }
 
-/** Faces of walls, where displacements along are drawn as they are. */
-function paintWalls(ctx, view, scene, factor, [s1, s3]) {
+/** Faces of walls and circles, where displacements along are drawn as they are. */
+function paintObstacles(ctx, view, scene, factor, [s1, s3]) {
   if (factor.along !== 1) return;
   ctx.save();
   ctx.strokeStyle = css("--faint");
   ctx.lineWidth = 3;
-  for (const { point, normal } of scene.walls || []) {
+  for (const { point, normal, center, radius } of scene.obstacles || []) {
     const far = 4 * scene.length;
     const at = (k) => [view.X(point[1] - s3 + k * far * normal[0]), view.Y((point[0] - s1 - k * far * normal[1]) * factor.across)];
     ctx.beginPath();
-    ctx.moveTo(...at(-1));
-    ctx.lineTo(...at(1));
+    if (center) {
+      const size = radius * view.scale;
+      ctx.ellipse(view.X(center[1] - s3), view.Y((center[0] - s1) * factor.across), size, size * factor.across, 0, 0, 2 * Math.PI);
+    } else {
+      ctx.moveTo(...at(-1));
+      ctx.lineTo(...at(1));
+    }
     ctx.stroke();
   }
   ctx.restore();
@@ -96,6 +101,14 @@ function showAnimation(host, scene, motion, clock) {
         if (y > bounds.y1) bounds.y1 = y;
       }
     }
+    // A disc is seen as a whole unless it is larger than the beam.
+    for (const { center, radius } of scene.obstacles || []) {
+      if (!center || factor.along !== 1 || radius > scene.length || Math.hypot(...center) > 3 * scene.length) continue;
+      bounds.x0 = Math.min(bounds.x0, center[1] - radius);
+      bounds.x1 = Math.max(bounds.x1, center[1] + radius);
+      bounds.y0 = Math.min(bounds.y0, (center[0] - radius) * factor.across);
+      bounds.y1 = Math.max(bounds.y1, (center[0] + radius) * factor.across);
+    }
     bounds.y0 -= scene.height * 0.8;
     bounds.y1 += scene.height * 0.8;
     view = viewOf(Math.max(canvas.clientWidth, 280), bounds, 460);
@@ -128,7 +141,7 @@ function showAnimation(host, scene, motion, clock) {
       ctx.setTransform(1, 0, 0, 1, 0, 0);
       ctx.drawImage(ghost, 0, 0);
       ctx.restore();
-      paintWalls(ctx, view, scene, factor, shift(f));
+      paintObstacles(ctx, view, scene, factor, shift(f));
       const pressure = scale ? (b) => motion.ofBladder[f * motion.bladders + b] / scale.limit : null;
       paintBeam(ctx, view, shape(f, w), scene, layout, pressure);
     });

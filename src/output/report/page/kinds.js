@@ -84,7 +84,8 @@ function sceneWords(scene, layout) {
     if (end.moment) out.push([push.cloneNode(true), which, `moment: ${end.moment}`]);
     if (end.follower) out.push([push.cloneNode(true), which, `forces that turn with it, ${end.follower}`]);
   });
-  for (const one of scene.walls || []) out.push([wall.cloneNode(true), "Wall", one.words]);
+  const circle = swatch(svg("circle", { cx: 13, cy: 7, r: 5.5, style: `fill:none;stroke:${css("--faint")};stroke-width:3` }));
+  for (const one of scene.obstacles || []) out.push(one.center ? [circle.cloneNode(true), "Circle", one.words] : [wall.cloneNode(true), "Wall", one.words]);
   for (const load of scene.loads) out.push([push.cloneNode(true), "Load", load.words]);
   return out;
 }
