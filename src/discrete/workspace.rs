@@ -277,7 +277,7 @@ impl<T: Scalar> Workspace<T> {
         let zeros = |n: usize| vec![T::zero(); n];
         let vectors = |n: usize| vec![Planar::zero(); n];
         let (n, c) = (system.mesh.nodes, system.mesh.cells);
-        let s = system.fluid.as_ref().map_or(0, |_| system.mesh.segments);
+        let s = system.fluid.as_ref().map_or(0, |fluid| fluid.bladders / 2);
         let relaxation = &system.layout.relaxation;
         let sheared = system.layout.turning.angle.len();
         let bent = fourth_order::bends_its_cells(system);

@@ -210,7 +210,10 @@ impl Wet {
         network: ResolvedNetwork,
         effects: &EffectSet,
     ) -> Self {
-        let area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
+        let mut area = AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry));
+        if network.is_dry() {
+            area.per_pressure = network.usual_compliance(case.time.end_s);
+        }
         let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);

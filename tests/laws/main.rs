@@ -13,6 +13,7 @@ mod foundation;
 mod jacobian;
 #[path = "../common/kinematics.rs"]
 mod kinematics;
+mod network;
 mod nonlinear;
 mod reactions;
 #[path = "../common/scene.rs"]

@@ -1,5 +1,6 @@
 //! Accumulators: vessels that store fluid under pressure.
 
+use super::ResolvedNetwork;
 use crate::case::schema::{Accumulator as Written, AccumulatorKind};
 use crate::numerics::Scalar;
 
@@ -164,6 +165,20 @@ impl AccumulatorLaw {
                 };
                 ambient * of_gas * (worked - share)
             }
+        }
+    }
+}
+
+impl ResolvedNetwork {
+    /// Mean compliance of the accumulators at ambient pressure; without any, that which the most conductive link fills in a time [s]. Scale
+    /// of volumes in a network without bladders [m^3/Pa].
+    pub(in crate::model) fn usual_compliance(&self, time: f64) -> f64 {
+        let vessels = self.accumulators.iter().map(|one| one.law.compliance(0.0));
+        let sum: f64 = vessels.filter(|compliance| *compliance > 0.0).sum();
+        if sum > 0.0 {
+            sum / self.accumulators.len() as f64
+        } else {
+            self.bladder_mobility * time
         }
     }
 }
