@@ -137,6 +137,12 @@ impl MonitoredValues {
         };
         if fluid.cells > 0 {
             self.bladders(system, wet, fluid, w);
+        } else if !w.fluid.junction.is_empty() {
+            // without rates, extrema are those at the steps
+            let (low, high) = extremes(&w.fluid.junction, |_| true);
+            self.lowest = low;
+            self.moving[MonitoredQuantity::High as usize] = [w.fluid.junction[high], 0.0];
+            self.moving[MonitoredQuantity::Low as usize] = [w.fluid.junction[low], 0.0];
         }
         if let Some((flow, tube)) = evaluate::largest_flow(system, now, w) {
             self.moving[MonitoredQuantity::Flow as usize] = flow;

@@ -200,17 +200,14 @@ impl PiecewiseCurve {
         self.values.iter().fold(0.0, |most, value| value.abs().max(most))
     }
 
-    /// Largest rate between the points.
-    pub fn steepest_rise(&self) -> f64 {
-        let at = |i: usize| {
-            [
-                self.at[i],
-                self.at[i + 1],
-                self.extremes(i)[2].clamp(self.at[i], self.at[i + 1]),
-            ]
-        };
-        let rates = (0..self.second.len()).flat_map(|i| at(i).map(|x| self.piece(i, x).rate));
-        rates.fold(f64::NEG_INFINITY, f64::max)
+    /// Smallest and largest rate between the points.
+    pub fn rates(&self) -> [f64; 2] {
+        let within = |i: usize| self.extremes(i)[2].clamp(self.at[i], self.at[i + 1]);
+        let places = |i: usize| [self.at[i], within(i), self.at[i + 1]];
+        let rates = (0..self.second.len()).flat_map(|i| places(i).map(|x| self.piece(i, x).rate));
+        rates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rate| {
+            [low.min(rate), high.max(rate)]
+        })
     }
 
     /// Smallest nonzero distance between two points.

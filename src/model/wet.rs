@@ -154,7 +154,7 @@ impl Wet {
 
     /// True if a bladder exists.
     pub fn has(&self, bladder: usize) -> bool {
-        self.storage[bladder] != Storage::Absent
+        self.storage.get(bladder) != Some(&Storage::Absent)
     }
 
     /// Area stored per pressure at ambient pressure [m^2/Pa], with compression.

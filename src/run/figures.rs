@@ -38,7 +38,7 @@ impl FigureAccumulator {
     /// Creates the figures of a case and its system.
     pub fn new(case: &Case, system: &System) -> Self {
         let turbines = case.network.as_ref().is_some_and(|n| !n.turbines.is_empty());
-        let has = [system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0), turbines];
+        let has = [system.fluid.is_some(), turbines];
         Self {
             window_start: case.time.end_s - case.time.window() * (1.0 + SAME),
             window_time: 0.0,

@@ -134,7 +134,10 @@ impl Limits {
         Self {
             half_height: 0.5 * case.beam.height_m,
             length: system.model.length,
-            modulus: spans::softest_modulus(case),
+            modulus: match case.bladders {
+                Some(_) => spans::softest_modulus(case),
+                None => f64::INFINITY,
+            },
             swelling: wet.map_or(f64::INFINITY, |wet| {
                 (0..wet.per_row)
                     .filter_map(|j| room(j, wet))

@@ -1,4 +1,5 @@
 //! Networks without bladders, pumps with a curve, [E87], and elevations, [E88]: closed forms, Kirchhoff's laws, balances, differences.
+//! The remaining error is that in time: at rtol 1e-9, 1e-6. Flows without storage are exact.
 
 use std::path::Path;
 
@@ -92,7 +93,7 @@ fn two_tanks_drain_into_each_other() {
     let head = RHO * G * height;
     let tau = 1e9 * ca * cb / (ca + cb);
     let (memory, summary) = run(&tanks(height));
-    let times = memory.column("t_s").unwrap();
+    let times = memory.column("t").unwrap();
     let [a, b] = ["a", "b"].map(|at| memory.column(&format!("accumulator_{at}_pressure")).unwrap());
     for ((t, a), b) in times.iter().zip(&a).zip(&b) {
         let drop = (2e4 - head) * (-t / tau).exp();
@@ -103,9 +104,10 @@ fn two_tanks_drain_into_each_other() {
     near("work", last(&memory, "work_loads"), -head * lifted, 1e-6);
     let lost = (2e4 - head).powi(2) * (1.0 - (-6.0 / tau).exp()) * 0.5 * ca * cb / (ca + cb);
     near("losses", last(&memory, "dissipated_tubes"), lost, 1e-6);
-    assert!(summary.balances.energy_residual_relative.abs() < 1e-7);
+    assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
     // gravity of the loads replaces the standard one
     let mut moon = tanks(height);
+    moon["effects"]["solid_inertia"] = json!("off");
     moon["loads"] = json!([{"gravity": {"x_m_s2": -1.2, "z_m_s2": 0.5}}]);
     let moon = run(&moon).0;
     let level = last(&moon, "accumulator_a_pressure") - last(&moon, "accumulator_b_pressure");
@@ -177,9 +179,14 @@ fn a_ring_of_tubes_obeys_kirchhoff() {
         let flow = last(&memory, &format!("tube_{}_flow", k + 1));
         near("flow", flow, (levels[i] - levels[j]) / r, 1e-10);
     }
-    assert!(summary.balances.energy_residual_relative.abs() < 1e-9);
-    assert!(memory.column("max_pressure_pa").is_none() && memory.column("least_opening").is_none());
-    assert_eq!(last(&memory, "tip_u1_m"), 0.0);
+    assert!(summary.balances.energy_residual_relative.abs() < 1e-6);
+    let highest = [1, 2]
+        .map(|k| levels[k] - RHO * G * heights[k])
+        .into_iter()
+        .fold(f64::NEG_INFINITY, f64::max);
+    near("highest", last(&memory, "max_pressure"), highest, 1e-10);
+    assert!(memory.column("least_opening").is_none());
+    assert_eq!(last(&memory, "tip_u1"), 0.0);
 }
 
 /// Monotone cubics in Hermite's form, with the slopes of Fritsch and Butland, and straight continuations.
@@ -260,7 +267,7 @@ fn a_pump_works_where_its_curve_meets_the_tube() {
         near(&what, last(&memory, "work_loads"), -head * low, 1e-6);
         let work = factor * pchip(&FLOWS, &PRESSURES, low) * low - outlet * low;
         near(&what, last(&memory, "work_ports"), work, 1e-6);
-        assert!(summary.balances.energy_residual_relative.abs() < 1e-7, "{what}");
+        assert!(summary.balances.energy_residual_relative.abs() < 1e-6, "{what}");
     }
 }
 
@@ -296,7 +303,7 @@ fn surging(outlet: f64) -> Value {
 /// operating point on the rising branch; inertia cannot be omitted there.
 #[test]
 fn a_rising_curve_is_unstable_as_greitzer_says() {
-    // 4e-5 m^3/s at the pressure of the curve, less 1e7 q in the tube
+    // an outlet through which 4e-5 m^3/s flows at the pressure of the curve, less that in the tube
     let (x, y) = ([0.0, 2e-5, 6e-5, 8e-5, 1.2e-4], [1e4, 1.1e4, 2e4, 2e4, 0.0]);
     let flow = 4e-5;
     let pressure = pchip(&x, &y, flow) - 1e7 * flow;
@@ -411,7 +418,7 @@ fn balances_close_and_the_jacobian_is_that_of_the_residual() {
             let mut case = shipped();
             change(&mut case);
             case["effects"] = effects.clone();
-            case["solver"] = json!({"rtol": 1e-8});
+            case["solver"] = json!({"rtol": 1e-9});
             case["companion"] = json!("off");
             case["time"] = json!({"end_s": 4});
             for seed in 1..=3 {

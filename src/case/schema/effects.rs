@@ -193,7 +193,7 @@ impl Effect {
         matches!(self, Self::TubeInertia | Self::BladderInertia | Self::UnsteadyFriction)
     }
 
-    /// True if the effect concerns bladders, or what happens between them and the beam.
+    /// True if the effect concerns bladders, or their coupling with the beam.
     pub const fn of_bladders(self) -> bool {
         matches!(
             self,

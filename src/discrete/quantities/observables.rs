@@ -201,10 +201,10 @@ observables! {
         "axial displacement of the tip";
     TipAngle: "tip_angle" ["rad"], "tip angle", "tip angle", Tip, Studied, always, QuantitySource::State(|look| look.tip_angle()),
         "slope angle phi of the tip, counted over full turns";
-    MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, filled, QuantitySource::State(|look| look.max_pressure()),
-        "pressure of the cell with the highest pressure";
-    MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, filled, QuantitySource::State(|look| look.min_pressure()),
-        "pressure of the cell with the lowest pressure";
+    MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, wet, QuantitySource::State(|look| look.max_pressure()),
+        "highest pressure of all cells of bladders; without bladders, of all junctions";
+    MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, wet, QuantitySource::State(|look| look.min_pressure()),
+        "lowest pressure of all cells of bladders; without bladders, of all junctions";
     TurbinePower: "turbine_power" ["W"], "turbine power", "turbine power", Power, Studied, wet, QuantitySource::State(|look| look.turbine_power()),
         "power of all turbines";
     LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, filled, QuantitySource::State(|look| look.least_opening()),

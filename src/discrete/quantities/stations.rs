@@ -79,9 +79,9 @@ fn of_network(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
         }));
         let tubes = tubes(fluid).filter(|_| !at_rest);
         all.extend(tubes.map(|(_, number)| HistoryColumn {
-            name: format!("tube_{}_flow", network.tube(number) + 1),
+            name: format!("tube_{}_flow", network.links[number].order + 1),
             unit: "m^3/s",
-            about: format!("flow through tube {} in its direction", network.tube(number) + 1),
+            about: format!("flow through tube {} in its direction", network.links[number].order + 1),
         }));
     }
     if at_rest {

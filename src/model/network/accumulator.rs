@@ -170,8 +170,8 @@ impl AccumulatorLaw {
 }
 
 impl ResolvedNetwork {
-    /// Mean compliance of the accumulators at ambient pressure; without any, that which the most conductive link fills in a time [s]. Scale
-    /// of volumes in a network without bladders [m^3/Pa].
+    /// Scale of volumes per pressure in a network without bladders [m^3/Pa]: the mean compliance of its accumulators. Without any, it is
+    /// the largest conductance times a duration [s].
     pub(in crate::model) fn usual_compliance(&self, time: f64) -> f64 {
         let vessels = self.accumulators.iter().map(|one| one.law.compliance(0.0));
         let sum: f64 = vessels.filter(|compliance| *compliance > 0.0).sum();

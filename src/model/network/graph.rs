@@ -15,11 +15,25 @@ use crate::model::mapping::TABLE_TUBE_RATIO;
 
 /// An attachment to a point.
 enum Thing<'a> {
-    Tube { to: WiringPoint, tube: &'a WiringTube<'a> },
-    Turbine { to: WiringPoint, index: usize },
-    Pressure { port: usize },
-    Source { name: String, feed: Feed },
-    Accumulator { index: usize },
+    Tube {
+        to: WiringPoint,
+        tube: &'a WiringTube<'a>,
+        order: usize,
+    },
+    Turbine {
+        to: WiringPoint,
+        index: usize,
+    },
+    Pressure {
+        port: usize,
+    },
+    Source {
+        name: String,
+        feed: Feed,
+    },
+    Accumulator {
+        index: usize,
+    },
 }
 
 /// Graph of a network with permeabilities scaled by `factor`, and with a gravity [m/s^2].
@@ -63,7 +77,8 @@ pub(super) fn graph(
     for (at, thing) in things {
         let from = nodes[&at];
         match thing {
-            Thing::Tube { to, tube } => network.links.push(Link {
+            Thing::Tube { to, tube, order } => network.links.push(Link {
+                order,
                 from,
                 to: nodes[&to],
                 resistance: resistance(tube),
@@ -133,9 +148,9 @@ fn radius(tube: &WiringTube) -> f64 {
 /// All attachments, sorted by point; adds prescribed pressures to the ports.
 fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(WiringPoint, Thing<'a>)> {
     let mut things = vec![];
-    for tube in wiring.chain_tubes.iter().chain(&wiring.tubes) {
+    for (order, tube) in wiring.chain_tubes.iter().chain(&wiring.tubes).enumerate() {
         let [from, to] = tube.points;
-        things.push((from, Thing::Tube { to, tube }));
+        things.push((from, Thing::Tube { to, tube, order }));
     }
     for port in wiring.chain_ports.iter().chain(&wiring.ports) {
         let name = port.name.map_or_else(|| wiring.label(port.at), str::to_owned);
@@ -217,6 +232,7 @@ fn nodes(
 /// Link from a bladder's end to a junction or a port.
 fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
     Link {
+        order: 0,
         from: cell,
         to: here,
         resistance: 0.0,
@@ -234,6 +250,7 @@ fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
 fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usize, rectifier: &Rectifier, head: f64) {
     match rectifier {
         Rectifier::Ideal => network.links.push(Link {
+            order: 0,
             from,
             to,
             resistance: 1.0 / network.turbines[index].conductance,

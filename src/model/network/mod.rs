@@ -73,6 +73,8 @@ pub enum LinkKind {
 /// A check valve is in series with all of these, [E7].
 #[derive(Clone, Debug)]
 pub struct Link {
+    /// Place of a tube among those of the case, tubes of chains first; 0 for other links.
+    pub order: usize,
     /// Start of positive flow.
     pub from: NetworkNode,
     /// End of positive flow.
@@ -308,11 +310,10 @@ impl ResolvedNetwork {
                 Feed::Flow(flow) => flow.largest_integral(end),
                 Feed::Volume(volume) => volume.largest(end).value,
             };
-            let stores = match self.is_dry() {
-                true => self.compliance_at(source.into, wet),
-                false => wet.compliance() * wet.bladder_length,
+            let filled = match self.is_dry() {
+                true => volume / self.compliance_at(source.into, wet),
+                false => volume / (wet.compliance() * wet.bladder_length),
             };
-            let filled = volume / stores;
             let mut links = self.links.iter().filter(|l| inside(l.from) || inside(l.to));
             let lets_out = |l: &Link| matches!((l.from, l.to), (NetworkNode::Port(_), _) | (_, NetworkNode::Port(_)));
             let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none();

@@ -50,10 +50,12 @@ impl PumpLaw {
         self.curve.as_ref().map_or(signal, |curve| signal * curve.0.largest())
     }
 
-    /// Largest increase of its pressure per flow until `end` [s], in [Pa s/m^3]; 0 or less for a falling curve.
+    /// Largest increase of its pressure per flow until `end` [s], in [Pa s/m^3]; 0 for a falling curve.
     pub fn steepest_rise(&self, end: f64) -> f64 {
-        let rise = self.curve.as_ref().map_or(0.0, |curve| curve.0.steepest_rise());
-        rise * self.pressure.largest(end).value
+        let Some(curve) = &self.curve else { return 0.0 };
+        let (factor, rates) = (self.pressure.range(0.0, end), curve.0.rates());
+        let rises = rates.map(|rate| (factor.low * rate).max(factor.high * rate));
+        rises.into_iter().fold(0.0, f64::max)
     }
 }
 
