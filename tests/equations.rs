@@ -264,7 +264,7 @@ const INDEX: [(&str, &str, &str); 86] = [
     ),
     (
         "[E87]",
-        "tests/laws/network.rs",
+        "tests/laws/pump_curves.rs",
         "a_pump_works_where_its_curve_meets_the_tube",
     ),
     ("[E88]", "tests/laws/network.rs", "two_tanks_drain_into_each_other"),

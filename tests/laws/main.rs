@@ -15,6 +15,7 @@ mod jacobian;
 mod kinematics;
 mod network;
 mod nonlinear;
+mod pump_curves;
 mod reactions;
 #[path = "../common/scene.rs"]
 mod scene;
