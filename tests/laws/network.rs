@@ -213,6 +213,9 @@ fn a_column_of_gas_is_barometric() {
     );
 }
 
+/// A change of a case.
+type Change<'a> = &'a dyn Fn(&mut Value);
+
 /// The shipped case.
 fn shipped() -> Value {
     serde_json::from_str(include_str!("../../cases/raised-tank.json")).unwrap()
@@ -236,7 +239,7 @@ fn balances_close_and_the_jacobian_is_that_of_the_residual() {
         case["network"]["turbines"] = json!([{"from": {"junction": "vessel"}, "to": {"junction": "outlet"},
             "conductance": {"m3_s_pa": 1e-9}, "rectifier": {"check_valves": valve}}]);
     };
-    let changes: [(&str, &dyn Fn(&mut Value)); 4] = [
+    let changes: [(&str, Change); 4] = [
         ("plain", &plain),
         ("check valve", &checked),
         ("gas", &compressed),

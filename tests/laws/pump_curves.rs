@@ -295,4 +295,6 @@ fn mistakes_are_explained() {
         case["network"]["ports"][0] = json!({"at": {"junction": "in"}, "flow_m3_s": 1e6});
     };
     refused(&flow, "/network/ports/0/flow_m3_s", "pumps deliver");
+    let along = |case: &mut Value| case["effects"]["flow_along_bladders"] = json!("on");
+    refused(&along, "/effects/flow_along_bladders", "no bladders");
 }

@@ -75,6 +75,10 @@ impl<'a> Chooser<'a> {
                 let hint = format!("leave it out, or set {off} to \"on\"");
                 (format!("{effect} is on, but {off}, which it needs, is off"), hint)
             }
+            DecisionCause::Filled(false) if self.case.network.is_some() => (
+                format!("{effect} is on, but the case has no bladders"),
+                "give /bladders, or leave the effect out".into(),
+            ),
             DecisionCause::Given(false) if effect == Effect::Compressibility => (
                 format!("{effect} is on, but the fluid is incompressible"),
                 "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
@@ -170,7 +174,7 @@ impl<'a> Chooser<'a> {
             Effect::Fluid if self.case.fluid.is_none() || self.case.network_bladders().is_none() => {
                 Err(DecisionCause::Filled(false))
             }
-            _ if bladders.is_none() && effect.of_bladders() => Err(DecisionCause::Given(false)),
+            _ if bladders.is_none() && effect.of_bladders() => Err(DecisionCause::Filled(false)),
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => {
                 Err(DecisionCause::NoKinks)
             }
