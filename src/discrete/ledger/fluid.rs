@@ -278,7 +278,9 @@ fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
             let pressure = pump_pressure(link, pump, now, w, k);
             add(&mut rates, EnergyRate::Ports, volume * pressure);
         }
-        add(&mut rates, EnergyRate::Loads, w.fluid.flow[k] * link.head * now.gravity);
+        if link.head != 0.0 {
+            add(&mut rates, EnergyRate::Loads, w.fluid.flow[k] * link.head * now.gravity);
+        }
         let [in_valve, in_bladders, rest] = match &link.flow {
             None => {
                 let between = volume * driving(link, now, w, k) - in_halves;
