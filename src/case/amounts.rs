@@ -11,7 +11,7 @@ use super::wording::short;
 const LONGEST: usize = 60;
 
 /// Standard gravity [m/s^2].
-pub(super) const GRAVITY: f64 = 9.806_65;
+pub const GRAVITY: f64 = 9.806_65;
 
 /// Units that headings of tables do not accept, because some are ambiguous there: SI unit, spellings, factor to the SI unit.
 const OTHERS: [(&str, &[&str], f64); 37] = [

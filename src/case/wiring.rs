@@ -2,7 +2,7 @@
 
 use super::check;
 use super::faults::Violations;
-use super::schema::{Accumulator, BladderEnd, Case, CheckValve, CrossSection, Pump, TubeDefaults, Turbine};
+use super::schema::{Accumulator, BladderEnd, Case, CheckValve, CrossSection, Elevation, Pump, TubeDefaults, Turbine};
 use crate::error::Result;
 use crate::functions::Signal;
 
@@ -87,6 +87,8 @@ pub struct Wiring<'a> {
     pub per_row: usize,
     /// Names of the junctions.
     pub junctions: &'a [String],
+    /// Heights of junctions.
+    pub elevations: &'a [Elevation],
     /// Bladders of every chain.
     pub chains: Vec<Vec<usize>>,
     /// Tubes of the chains.
@@ -115,6 +117,13 @@ impl<'a> Wiring<'a> {
             true => Ok(wiring),
             false => Err(case.source.error(faults.placed(&case.source))),
         }
+    }
+
+    /// Height of a point above the bladders [m].
+    pub fn elevation(&self, point: WiringPoint) -> f64 {
+        let WiringPoint::Junction(j) = point else { return 0.0 };
+        let own = self.elevations.iter().find(|one| one.junction == self.junctions[j]);
+        own.map_or(0.0, |one| one.elevation_m)
     }
 
     /// Name of a point: `inlet of bladder -3`, or that of the junction.

@@ -15,7 +15,7 @@ use crate::model::mapping::network_coordinate;
 pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let case = resources::load(&asked.case)?;
     let model = Model::new(&case)?;
-    let Some(wet) = &model.wet else {
+    let Some(wet) = model.wet.as_ref().filter(|wet| wet.per_row > 0) else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
     let map = network_coordinate(&case, wet);

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 use super::angle_unwrapping::tip_angle;
 use super::quantities::evaluate;
 use super::workspace::Motion;
-use super::{CompleteState, System, TimeData, Workspace, contact_points, crossing, ledger};
+use super::{CompleteState, FluidMesh, System, TimeData, Workspace, contact_points, crossing, ledger};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
-use crate::model::Kinematics;
+use crate::model::{Kinematics, Wet};
 use crate::numerics::Planar;
 
 /// A value and its rate in time.
@@ -131,10 +131,30 @@ impl MonitoredValues {
     }
 
     fn fluid(&mut self, system: &System, now: &TimeData, w: &Workspace<f64>) {
+        self.moving[MonitoredQuantity::Opening as usize] = [1.0, 0.0];
         let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
-            self.moving[MonitoredQuantity::Opening as usize] = [1.0, 0.0];
             return;
         };
+        if fluid.cells > 0 {
+            self.bladders(system, wet, fluid, w);
+        } else if !w.fluid.junction.is_empty() {
+            // without rates, extrema are those at the steps
+            let (low, high) = extremes(&w.fluid.junction, |_| true);
+            self.lowest = low;
+            self.moving[MonitoredQuantity::High as usize] = [w.fluid.junction[high], 0.0];
+            self.moving[MonitoredQuantity::Low as usize] = [w.fluid.junction[low], 0.0];
+        }
+        if let Some((flow, tube)) = evaluate::largest_flow(system, now, w) {
+            self.moving[MonitoredQuantity::Flow as usize] = flow;
+            self.tube = tube;
+        }
+        if let Some((fast, tube)) = evaluate::largest_mach(system, now, w) {
+            self.moving[MonitoredQuantity::Mach as usize] = fast;
+            self.fast = tube;
+        }
+    }
+
+    fn bladders(&mut self, system: &System, wet: &Wet, fluid: &FluidMesh, w: &Workspace<f64>) {
         let mut set = |which: MonitoredQuantity, moving: Moving| self.moving[which as usize] = moving;
         let rate = |cell: usize| ledger::pressure_rate(wet, fluid, w, cell);
         let there = |cell: usize| system.has_cell(cell);
@@ -162,14 +182,6 @@ impl MonitoredValues {
                 cells.map(rate).sum::<f64>() / count
             };
             set(MonitoredQuantity::Pressed, [sum, wet.pair(j).map(mean).iter().sum()]);
-        }
-        if let Some((flow, tube)) = evaluate::largest_flow(system, now, w) {
-            set(MonitoredQuantity::Flow, flow);
-            self.tube = tube;
-        }
-        if let Some((fast, tube)) = evaluate::largest_mach(system, now, w) {
-            self.moving[MonitoredQuantity::Mach as usize] = fast;
-            self.fast = tube;
         }
     }
 }

@@ -121,6 +121,7 @@ impl FluidMesh {
                 pumps.push(number);
                 pumps.len() - 1
             });
+            let pump_curve = link.pump.as_ref().and_then(|pump| pump.curve.clone());
             Some(MeshLink {
                 number: Some(number),
                 from,
@@ -129,9 +130,13 @@ impl FluidMesh {
                 resistance: link.resistance,
                 of_pump: link.pump.as_ref().map_or(0.0, |pump| pump.resistance),
                 pump,
+                head: link.head,
                 check_valve: link.check_valve,
                 kind: Some(link.kind),
-                flow: law(link, [from, to]).map(&mut flow),
+                flow: law(link, [from, to])
+                    .or_else(|| pump_curve.as_ref().map(|_| FlowLaw::default()))
+                    .map(&mut flow),
+                pump_curve,
             })
         });
         let mut links: Vec<MeshLink> = links.collect();
@@ -145,6 +150,8 @@ impl FluidMesh {
                 resistance: 0.0,
                 of_pump: 0.0,
                 pump: None,
+                pump_curve: None,
+                head: 0.0,
                 check_valve: None,
                 kind: None,
                 flow: Some(flow(wet.along(from / cells_per_bladder).unwrap_or(along).over(ds))),
@@ -227,7 +234,7 @@ impl FluidMesh {
     /// Stores the volumes at the start for bladders and lumped networks that keep theirs. `areas` may have another number of cells per
     /// bladder; their means are used.
     pub fn keep(&mut self, areas: &[f64], wet: &Wet) {
-        let given = areas.len() / self.bladders;
+        let given = areas.len().checked_div(self.bladders).unwrap_or(0);
         let mean = |bladder: usize| areas[bladder * given..(bladder + 1) * given].iter().sum::<f64>() / given as f64;
         let length = self.ds * self.cells_per_bladder as f64;
         for bladder in 0..self.bladders {

@@ -1,6 +1,6 @@
 //! Links, sources and vessels of a network on the mesh.
 
-use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, LinkKind};
+use crate::model::network::{AccumulatorLaw, CheckValveLaw, FlowLaw, LinkKind, PumpCharacteristic};
 
 /// End of a link on the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +30,10 @@ pub struct MeshLink {
     pub of_pump: f64,
     /// Number of the link's pump among all pumps.
     pub pump: Option<usize>,
+    /// Characteristic of the link's pump; none for a linear pump.
+    pub pump_curve: Option<PumpCharacteristic>,
+    /// Hydrostatic pressure difference between its ends [Pa].
+    pub head: f64,
     /// Check valve of the link.
     pub check_valve: Option<CheckValveLaw>,
     /// Kind of the link; none for a face between cells.
@@ -51,7 +55,7 @@ impl LinkEnd {
 impl MeshLink {
     /// True if the link is only a resistance.
     pub fn is_plain(&self) -> bool {
-        self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none()
+        self.flow.is_none() && self.check_valve.is_none() && self.pump.is_none() && self.head == 0.0
     }
 
     /// Total resistance with open valves [Pa s/m^3].

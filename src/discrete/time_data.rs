@@ -128,7 +128,9 @@ pub struct TimeData {
     pub source_flow: Vec<f64>,
     /// Volume injected by each source with prescribed volume [m^3]; 0 for other sources.
     pub source_volume: Vec<f64>,
-    /// Pressure of each pump without flow [Pa].
+    /// Part of gravity that acts on the fluid, [`crate::model::ResolvedNetwork::gravity`].
+    pub gravity: f64,
+    /// Pressure of each pump without flow [Pa], or the factor of its curve.
     pub pump_pressure: Vec<f64>,
 }
 
@@ -160,6 +162,7 @@ impl TimeData {
             port_pressure_rate: vec![0.0; ports],
             source_flow: vec![0.0; sources],
             source_volume: vec![0.0; sources],
+            gravity: 0.0,
             pump_pressure: vec![0.0; system.fluid.as_ref().map_or(0, |fluid| fluid.pumps.len())],
         }
     }
@@ -343,6 +346,7 @@ impl TimeData {
                 }
             }
         }
+        self.gravity = wet.network.gravity.as_ref().map_or(0.0, |part| part.jet(clock).value);
         for (value, &link) in self.pump_pressure.iter_mut().zip(&fluid.pumps) {
             let pump = wet.network.links[link].pump.as_ref();
             *value = pump.map_or(0.0, |pump| pump.pressure.jet(clock).value);

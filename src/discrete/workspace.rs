@@ -264,6 +264,14 @@ impl<T> CouplingVariables<T> {
 }
 
 impl FluidState<f64> {
+    /// Pressures of cells; without bladders, of junctions [Pa].
+    pub fn pressures(&self) -> &[f64] {
+        match self.pressure.is_empty() {
+            true => &self.junction,
+            false => &self.pressure,
+        }
+    }
+
     /// Area changes of cells [m^2].
     pub fn area_changes(&self) -> &[f64] {
         match self.swelling.is_empty() {
@@ -279,7 +287,7 @@ impl<T: Scalar> Workspace<T> {
         let zeros = |n: usize| vec![T::zero(); n];
         let vectors = |n: usize| vec![Planar::zero(); n];
         let (n, c) = (system.mesh.nodes, system.mesh.cells);
-        let s = system.fluid.as_ref().map_or(0, |_| system.mesh.segments);
+        let s = system.fluid.as_ref().map_or(0, |fluid| fluid.bladders / 2);
         let relaxation = &system.layout.relaxation;
         let sheared = system.layout.turning.angle.len();
         let bent = fourth_order::bends_its_cells(system);

@@ -195,6 +195,21 @@ impl PiecewiseCurve {
         if high > low { beyond / (high - low) } else { 0.0 }
     }
 
+    /// Largest magnitude of the points' values.
+    pub fn largest(&self) -> f64 {
+        self.values.iter().fold(0.0, |most, value| value.abs().max(most))
+    }
+
+    /// Smallest and largest rate between the points.
+    pub fn rates(&self) -> [f64; 2] {
+        let within = |i: usize| self.extremes(i)[2].clamp(self.at[i], self.at[i + 1]);
+        let places = |i: usize| [self.at[i], within(i), self.at[i + 1]];
+        let rates = (0..self.second.len()).flat_map(|i| places(i).map(|x| self.piece(i, x).rate));
+        rates.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], rate| {
+            [low.min(rate), high.max(rate)]
+        })
+    }
+
     /// Smallest nonzero distance between two points.
     pub fn smallest_spacing(&self) -> Option<f64> {
         let spacings = self.at.windows(2).map(|w| w[1] - w[0]);

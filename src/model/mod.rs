@@ -111,7 +111,7 @@ impl Model {
         let network = ResolvedNetwork::from_case(case)?;
         let mut effects = EffectSet::whole(case, network.as_ref());
         if case.effects != Effects::Full {
-            let whole = case.bladders.as_ref().zip(network.clone());
+            let whole = case.network_bladders().zip(network.clone());
             let whole = whole.map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
             effects = EffectSet::choose(
                 case,
@@ -172,8 +172,7 @@ impl Model {
 
     fn from_parts(case: &Case, section: Section, network: Option<ResolvedNetwork>, effects: EffectSet) -> Self {
         let mut wet = case
-            .bladders
-            .as_ref()
+            .network_bladders()
             .zip(network)
             .filter(|_| effects.has(Effect::Fluid))
             .map(|(bladders, network)| Wet::new(case, bladders, &section, network, &effects));
@@ -215,7 +214,7 @@ impl Model {
 
     /// True if a segment has a bladder.
     fn has_bladders(&self, segment: usize) -> bool {
-        let wet = self.wet.as_ref();
+        let wet = self.wet.as_ref().filter(|wet| wet.per_row > 0);
         wet.is_some_and(|wet| wet.pair(segment).into_iter().any(|bladder| wet.has(bladder)))
     }
 

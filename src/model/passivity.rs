@@ -35,7 +35,7 @@ pub fn assess(model: &Model) -> Option<Passivity> {
         let parts = model.uniform_parts().filter_map(|part| assess(&part));
         return parts.reduce(|a, b| if b.least < a.least { b } else { a });
     }
-    let wet = model.wet.as_ref()?;
+    let wet = model.wet.as_ref().filter(|wet| wet.per_row > 0)?;
     let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
     let all = signs.map(|(m, n)| at(model, wet, m, n));
     all.into_iter().reduce(|a, b| if b.least < a.least { b } else { a })

@@ -13,6 +13,9 @@ use crate::model::network::Feed;
 /// Smallest strain that sets the scales of axial motion.
 const LEAST_STRAIN: f64 = 1e-6;
 
+/// Smallest scale of pressures without bladders [Pa].
+const LEAST_PRESSURE: f64 = 1e-3;
+
 /// Sizes for relative tolerances, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
@@ -203,8 +206,11 @@ impl Scales {
             d.pressure = d.pressure.max(pressure);
             for pump in wet.network.links.iter().filter_map(|link| link.pump.as_ref()) {
                 let held = case.held_at_start(&pump.pressure).abs();
-                d.pressure = d.pressure.max(pump.pressure.largest(case.time.end_s).value).max(held);
+                let largest = pump.pressure.largest(case.time.end_s).value.max(held);
+                d.pressure = d.pressure.max(pump.largest(largest));
             }
+            let heads = wet.network.links.iter().map(|link| link.head.abs());
+            d.pressure = heads.fold(d.pressure, f64::max);
             for one in &wet.network.accumulators {
                 d.pressure = d.pressure.max(one.start_pressure.abs());
             }
@@ -224,7 +230,11 @@ impl Scales {
             let moment = moment_of_loads + ei * started / (l * l);
             let sealed =
                 (wet.area[0].force_mean * force_of_loads + wet.area[0].moment_mean * moment) / wet.compliance();
-            d.pressure = d.pressure.max(sealed).max(1e-7 * case.beam.young_modulus_pa);
+            let least = match wet.network.is_dry() {
+                true => wet.network.pumped_pressure(wet, case.time.end_s).max(LEAST_PRESSURE),
+                false => 1e-7 * case.beam.young_modulus_pa,
+            };
+            d.pressure = d.pressure.max(sealed).max(least);
             curvature = wet.coupling.curvature(&wet.area, 0.0, d.pressure, 0.0).abs();
             stretch = wet.coupling.stretch(&wet.area, 0.0, d.pressure, 0.0).abs();
         }

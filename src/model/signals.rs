@@ -43,6 +43,7 @@ impl Model {
             sources.for_each(|source| replace(source.feed.signal_mut()));
             let pumps = network.links.iter_mut().filter_map(|link| link.pump.as_mut());
             pumps.for_each(|pump| replace(&mut pump.pressure));
+            network.gravity.iter_mut().for_each(replace);
             let valves = network.links.iter_mut().filter_map(|link| link.opening.as_mut());
             valves.for_each(|signal| visit(signal, true));
         }
@@ -116,5 +117,6 @@ pub fn each_signal(
         network.sources.iter().map(|s| s.feed.signal()).for_each(&mut visit);
         let pumps = network.links.iter().filter_map(|link| link.pump.as_ref());
         pumps.map(|pump| &pump.pressure).for_each(&mut visit);
+        network.gravity.iter().for_each(&mut visit);
     }
 }

@@ -78,6 +78,9 @@ impl LumpedNetwork {
             if link.pump.is_some() {
                 return Err("a pump needs pressure differences".into());
             }
+            if link.head != 0.0 {
+                return Err("points of different heights need pressure differences".into());
+            }
             if link.opening.as_ref().is_some_and(|o| !o.is_constant()) {
                 return Err("a valve moves".into());
             }

@@ -313,7 +313,12 @@ fn driving(case: &Case, network: &ResolvedNetwork) -> f64 {
         .chain(stored)
         .fold((0.0_f64, 0.0_f64), |(low, high), p| (low.min(p), high.max(p)));
     let pumps = network.links.iter().filter_map(|link| link.pump.as_ref());
-    high - low + pumps.map(|pump| pump.pressure.largest(end).value).sum::<f64>()
+    let heads = network.links.iter().map(|link| link.head.abs());
+    high - low
+        + pumps
+            .map(|pump| pump.largest(pump.pressure.largest(end).value))
+            .sum::<f64>()
+        + heads.sum::<f64>()
 }
 
 /// Steady flow through tubes in series under a pressure difference [m^3/s].

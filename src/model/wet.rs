@@ -179,7 +179,7 @@ impl Wet {
 
     /// True if a bladder exists.
     pub fn has(&self, bladder: usize) -> bool {
-        self.storage[bladder] != Storage::Absent
+        self.storage.get(bladder) != Some(&Storage::Absent)
     }
 
     /// Area stored per pressure at ambient pressure [m^2/Pa], with compression.
@@ -235,7 +235,11 @@ impl Wet {
         network: ResolvedNetwork,
         effects: &EffectSet,
     ) -> Self {
-        let area = [AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry)); 2];
+        let mut area = [AreaLaw::new(case, bladders, section, effects.has(Effect::Asymmetry)); 2];
+        if network.is_dry() {
+            let compliance = network.usual_compliance(case.time.end_s);
+            area.iter_mut().for_each(|law| law.per_pressure = compliance);
+        }
         let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);

@@ -140,7 +140,10 @@ impl Limits {
                 .filter_map(ContactLaw::bend_radius)
                 .fold(0.5 * case.beam.height_m, |least, radius| least.min(0.5 * radius)),
             length: system.model.length,
-            modulus: spans::softest_modulus(case),
+            modulus: match case.bladders {
+                Some(_) => spans::softest_modulus(case),
+                None => f64::INFINITY,
+            },
             swelling: wet.map_or(f64::INFINITY, |wet| {
                 (0..wet.per_row)
                     .filter_map(|j| room(j, wet))

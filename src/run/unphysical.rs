@@ -62,7 +62,7 @@ impl Unphysical {
     }
 
     fn place(&self, (in_bladder, place): (bool, usize)) -> String {
-        if in_bladder {
+        if in_bladder && self.per_row > 0 {
             return format!("bladder {}", bladder_label(place, self.per_row));
         }
         self.places.get(place).cloned().unwrap_or_else(|| "the network".into())

@@ -1,4 +1,5 @@
-//! Parts of a scene: walls and circles, and in the network check valves, pumps, vessels and syringes, of fluid that may be compressed.
+//! Parts of a scene: walls and circles, and in the network check valves, pumps, vessels at any height and syringes, of fluid that may be
+//! compressed.
 
 use serde_json::{Value, json};
 
@@ -134,5 +135,19 @@ fn supplied(r: &mut Random, b: &Beam, case: &mut Value) {
         let duration = b.times.end * r.between(0.1, 0.9);
         case["network"]["ports"] = json!([{"name": "syringe", "at": {"junction": "vessel"},
             "volume_m3": {"ramp": {"from": 0.0, "to": short(volume), "start_s": 0.0, "duration_s": short(duration), "shape": "smooth"}}}]);
+    }
+    // half of the pumps get a curve, which may rise; the vessel may be at another height
+    for tube in case["network"]["tubes"].as_array_mut().expect("tubes") {
+        if !tube["pump"].is_null() && r.one_in(2) {
+            let flow = conductance * pressure;
+            let points = [0.0, 0.3, 0.7, 1.0].map(|x| short(flow * x));
+            let pressures = [1.0, r.between(0.5, 1.2), r.between(0.2, 1.0), 0.0].map(|x| short(pressure * x));
+            tube["pump"] = json!({"curve": {"flow_m3_s": points, "pressure_pa": pressures, "factor": signals::load(r, b.times, 1.0)}});
+        }
+    }
+    let density = case["fluid"]["density_kg_m3"].as_f64().unwrap_or(0.0);
+    if density > 1.0 && r.one_in(3) {
+        let height = (pressure * r.between(-1.0, 1.0) / (9.81 * density)).clamp(-1e4, 1e4);
+        case["network"]["elevations"] = json!([{"junction": "vessel", "elevation_m": short(height)}]);
     }
 }

@@ -135,7 +135,7 @@ fn a_finished_run_in_a_glance() {
     ╭─ wiring-2 ──────────────────────────────────────────────────── finished ─╮
     │ tip         at the end: u₁ 123 ± 5 µm · u₃ 1.25 mm                       │
     │             largest: u₁ 123.0 ± 1.4 µm · u₃ 1.25 mm                      │
-    │ pressure    largest in a bladder: 9.0 ± 0.3 kPa                          │
+    │ pressure    largest in the fluid: 9.0 ± 0.3 kPa                          │
     │ errors      ± by a companion run: 2 cells per segment, 4 per bladder,    │
     │             rtol 1·10⁻⁴ · 6.20 s                                         │
     │ balances    relative residuals: energy 3.0·10⁻⁸                          │
@@ -174,7 +174,7 @@ fn a_failure_says_why_and_warnings_come_first() {
     │             explain W003)                                │
     │ tip         at the end: u₁ 123 µm · u₃ 1.25 mm           │
     │             largest: u₁ 123 µm · u₃ 1.25 mm              │
-    │ pressure    largest in a bladder: 9.01 kPa               │
+    │ pressure    largest in the fluid: 9.01 kPa               │
     │ balances    relative residuals: energy 3.0·10⁻⁸ ·        │
     │             volume –                                     │
     │ integrator  12 345 steps, mostly of order 4 ·            │

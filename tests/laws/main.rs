@@ -14,7 +14,9 @@ mod foundation;
 mod jacobian;
 #[path = "../common/kinematics.rs"]
 mod kinematics;
+mod network;
 mod nonlinear;
+mod pump_curves;
 mod reactions;
 #[path = "../common/scene.rs"]
 mod scene;

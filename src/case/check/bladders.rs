@@ -5,7 +5,7 @@ use slcbeam_section::finite::energy::monomials;
 use super::coefficients;
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
-use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, LowerRow, StrainEnergy};
+use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, LowerRow, StrainEnergy, TurbineConductance};
 use crate::case::spans;
 use crate::case::wiring::bladder_index;
 use crate::error::numbers::counted;
@@ -32,12 +32,36 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     }
 }
 
-/// Rejects values that require bladders, in a case without bladders.
+/// Rejects values that require bladders, in a case without bladders. A network of junctions needs none.
 fn dry(case: &Case, faults: &mut Violations) {
+    let joined = case
+        .network
+        .as_ref()
+        .map(|network| network.tubes.len() + network.turbines.len());
+    match joined {
+        Some(0) => {
+            let fault = Violation::new(
+                Code::Together,
+                "/network",
+                "a network without bladders, tubes and turbines",
+            );
+            faults.push_at_key(fault.hint("add \"bladders\" or tubes between junctions, or remove \"network\""));
+        }
+        Some(_) if case.fluid.is_none() => {
+            let fault = Violation::new(Code::Together, "/network", "a network without a fluid to fill it");
+            faults.push_at_key(fault.hint("add \"fluid\", or remove \"network\" for a dry beam"));
+        }
+        _ => {}
+    }
+    let turbines = case.network.iter().flat_map(|network| &network.turbines).enumerate();
+    for (i, _) in turbines.filter(|(_, one)| matches!(one.conductance, TurbineConductance::Kappa { .. })) {
+        let what = "kappa, a multiple of the conductance of a bladder, without bladders";
+        let fault = Violation::new(Code::Together, format!("/network/turbines/{i}/conductance"), what);
+        faults.push_at_key(fault.hint("give \"m3_s_pa\""));
+    }
     let present = [
-        ("/fluid", case.fluid.is_some()),
-        ("/tubes", case.tubes.is_some()),
-        ("/network", case.network.is_some()),
+        ("/fluid", case.fluid.is_some() && joined.is_none()),
+        ("/tubes", case.tubes.is_some() && joined.is_none()),
         ("/start/pressures", !case.start.pressures.is_empty()),
     ];
     for (pointer, _) in present.iter().filter(|(_, present)| *present) {
@@ -50,6 +74,15 @@ fn dry(case: &Case, faults: &mut Violations) {
 /// Index of a bladder by its number; reports a fault if there is none.
 pub(super) fn existing(number: i64, case: &Case, pointer: &str, faults: &mut Violations) -> Option<usize> {
     let per_row = case.segments();
+    if case.bladders.is_none() {
+        let fault = Violation::new(
+            Code::Wiring,
+            pointer,
+            format!("there is no bladder {number}: the case has no bladders"),
+        );
+        faults.push(fault.hint("add \"bladders\", or name a junction"));
+        return None;
+    }
     let index = bladder_index(number, per_row);
     if let Some(index) = index.filter(|index| !spans::has_bladder(case, *index)) {
         let (cause, hint) = match spans::rows(case)[index / per_row] {

@@ -140,8 +140,8 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     }
     for (i, tube) in network.tubes.iter().enumerate() {
         all.push((format!("/network/tubes/{i}/opening"), Role::Opening, &tube.opening));
-        let pump = tube.pump.iter().map(|pump| &pump.pressure_pa);
-        all.extend(pump.map(|signal| (format!("/network/tubes/{i}/pump/pressure_pa"), Role::Other, signal)));
+        let pump = tube.pump.iter().filter_map(|pump| pump.signal());
+        all.extend(pump.map(|(key, signal)| (format!("/network/tubes/{i}/pump/{key}"), Role::Other, signal)));
     }
     for (i, port) in network.ports.iter().enumerate() {
         let given = [

@@ -6,9 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::network::ConnectionTable;
 use super::time::END;
 use crate::case::faults::Violations;
-use crate::case::schema::Case;
+use crate::case::schema::{Case, Elevation, Network};
 use crate::case::wiring::WiringPoint;
-use crate::error::{Code, Violation};
+use crate::case::wording::nearest;
+use crate::error::{Code, Violation, listed};
 use crate::functions::signals::Signal;
 
 /// Openings below this value count as closed.
@@ -48,6 +49,36 @@ pub(super) fn check(case: &Case, joined: &ConnectionTable, faults: &mut Violatio
         faults.push(
             fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
         );
+    }
+}
+
+/// Reports a name that is not that of a junction.
+pub(super) fn undeclared(junctions: &[String], name: &str, pointer: &str, faults: &mut Violations) {
+    let names: Vec<&str> = junctions.iter().map(String::as_str).collect();
+    let what = format!("junction \"{name}\" is not declared");
+    let fault = Violation::new(Code::Wiring, format!("{pointer}/junction"), what);
+    faults.push(Violation {
+        nearest: nearest(name, names.iter().copied()),
+        allowed: (!names.is_empty()).then(|| listed(names)),
+        ..fault.hint("declare it under /network/junctions")
+    });
+}
+
+/// Checks that each elevation is that of another junction.
+pub(super) fn elevations(network: &Network, faults: &mut Violations) {
+    for (i, one) in network.elevations.iter().enumerate() {
+        let pointer = format!("/network/elevations/{i}");
+        if !network.junctions.contains(&one.junction) {
+            undeclared(&network.junctions, &one.junction, &pointer, faults);
+        }
+        let same = |other: &Elevation| other.junction == one.junction;
+        if let Some(first) = network.elevations[..i].iter().position(same) {
+            let what = format!(
+                "a second elevation of junction \"{}\", the first is /network/elevations/{first}",
+                one.junction
+            );
+            faults.push(Violation::new(Code::Wiring, pointer, what));
+        }
     }
 }
 

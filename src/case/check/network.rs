@@ -3,16 +3,15 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::bladders::{PER_ROW, existing, two_permeabilities};
-use super::junctions;
 use super::tubes::{loss_coefficient, radius, roughness, size};
+use super::{junctions, tubes};
 use crate::case::faults::Violations;
 use crate::case::numbers::plain;
 use crate::case::schema::{self, BladderEnd, Case, ChainEnd, CheckValve, Endpoint, Network, Rectifier, TubeDefaults};
 use crate::case::wiring::{
     PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringPort, WiringTube, bladder_index, bladder_label,
 };
-use crate::case::wording::nearest;
-use crate::error::{Code, Violation, listed};
+use crate::error::{Code, Violation};
 use crate::functions::signals::Signal;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
@@ -43,10 +42,10 @@ pub struct ConnectionTable<'a> {
 
 /// Resolves the network without its faulty parts, and reports the faults.
 pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, ConnectionTable<'a>) {
-    let Some((bladders, network)) = case.bladders.as_ref().zip(case.network.as_ref()) else {
+    let Some(network) = &case.network else {
         return Default::default();
     };
-    let per_row = bladders.per_row;
+    let per_row = case.bladders.as_ref().map_or(0, |bladders| bladders.per_row);
     let mut rules = Rules {
         case,
         network,
@@ -56,9 +55,11 @@ pub fn resolve<'a>(case: &'a Case, faults: &mut Violations) -> (Wiring<'a>, Conn
         faults,
     };
     rules.junction_names();
+    junctions::elevations(network, rules.faults);
     let mut wiring = Wiring {
         per_row,
         junctions: &network.junctions,
+        elevations: &network.elevations,
         tubes: rules.tubes(),
         ports: rules.ports(),
         turbines: rules.turbines(),
@@ -131,7 +132,7 @@ impl<'a> Rules<'a, '_> {
             (None, None, Some(name)) => {
                 let place = self.network.junctions.iter().position(|known| known == name);
                 if place.is_none() {
-                    self.undeclared(name, pointer);
+                    junctions::undeclared(&self.network.junctions, name, pointer, self.faults);
                 }
                 return place.map(WiringPoint::Junction);
             }
@@ -144,17 +145,6 @@ impl<'a> Rules<'a, '_> {
         self.faults
             .push_at_key(Violation::new(Code::Wiring, pointer, what).allowed(form));
         None
-    }
-
-    fn undeclared(&mut self, name: &str, pointer: &str) {
-        let names: Vec<&str> = self.network.junctions.iter().map(String::as_str).collect();
-        let what = format!("junction \"{name}\" is not declared");
-        let fault = Violation::new(Code::Wiring, format!("{pointer}/junction"), what);
-        self.faults.push(Violation {
-            nearest: nearest(name, names.iter().copied()),
-            allowed: (!names.is_empty()).then(|| listed(names)),
-            ..fault.hint("declare it under /network/junctions")
-        });
     }
 
     /// Resolves the two points of a tube or turbine, which must differ.
@@ -183,6 +173,9 @@ impl<'a> Rules<'a, '_> {
             let points = self.branch([&tube.from, &tube.to], Some(&tube.opening), &pointer, "tube");
             if let Some(valve) = &tube.check_valve {
                 self.valve(valve, &format!("{pointer}/check_valve"));
+            }
+            if let Some(pump) = &tube.pump {
+                tubes::pump(self.case, pump, &format!("{pointer}/pump"), self.faults);
             }
             if tube.permeability_m4.is_some() && tube.cross_section.is_some() {
                 two_permeabilities(&pointer, self.faults);

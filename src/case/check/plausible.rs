@@ -151,7 +151,7 @@ fn look(pointer: &str, value: f64, range: &Range, faults: &mut Violations) {
     faults.push_beside(&[], fault.allowed(allowed.trim_end()).hint(range.hint));
 }
 
-/// Checks ratios of lengths: length to height of the beam, and length of tubes to length of the beam.
+/// Checks ratios of lengths: length to height of the beam, and length of tubes at bladders to length of the beam.
 pub(super) fn proportions(case: &Case, faults: &mut Violations) {
     let beam = &case.beam;
     let slenderness = beam.length_m / beam.height_m;
@@ -161,6 +161,9 @@ pub(super) fn proportions(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(Code::Implausible, "/beam/length_m", what);
         let fault = fault.allowed(format!("up to {most} times the height"));
         faults.push_beside(&["/beam/height_m"], fault.hint(MILLIMETRES));
+    }
+    if case.bladders.is_none() {
+        return;
     }
     let shared = case
         .tubes

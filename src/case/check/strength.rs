@@ -61,9 +61,16 @@ const ROOM: [&str; 8] = [
 /// Speed of sound in air [m/s]: no stream of the model is faster.
 const SOUND: f64 = 343.0;
 
+const PRESSURES: &str = "pressures are in Pa; a kPa is 1e3, a bar 1e5";
+const FLOWS: &str = "flows are in m^3/s; a ml/s is 1e-6";
+const VOLUMES: &str = "volumes are in m^3; a ml is 1e-6";
+
 /// Bounds computed from the dimensions of the beam.
 struct Bounds {
     pressure: Bound,
+    /// Flow and volume of a port in a network without bladders.
+    flow: Bound,
+    volume: Bound,
     force: Bound,
     moment: Bound,
     force_along: Bound,
@@ -92,13 +99,18 @@ impl Bounds {
         };
         let newtons = "forces are in N; is this in mN?";
         Self {
-            pressure: bound(
-                MOST * beam.young_modulus_pa,
-                &BEAM[..1],
-                "Pa",
-                "ten times Young's modulus",
-                "pressures are in Pa; a kPa is 1e3, a bar 1e5",
-            ),
+            pressure: match case.bladders {
+                Some(_) => bound(
+                    MOST * beam.young_modulus_pa,
+                    &BEAM[..1],
+                    "Pa",
+                    "ten times Young's modulus",
+                    PRESSURES,
+                ),
+                None => bound(1e10, &[], "Pa", "pumps generate", PRESSURES),
+            },
+            flow: bound(1e3, &[], "m^3/s", "pumps deliver", FLOWS),
+            volume: bound(1e6, &[], "m^3", "vessels contain", VOLUMES),
             force: bound(force, &BEAM[..5], "N", strain, newtons),
             moment: bound(
                 moment,
@@ -215,29 +227,38 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let pointer = format!("/network/tubes/{i}/check_valve/cracking_pressure_pa");
             look(pointer, valve.cracking_pressure_pa, &bounds.pressure);
         }
-        if let Some(pump) = &tube.pump {
-            let pointer = format!("/network/tubes/{i}/pump/pressure_pa");
-            look(pointer, size_of(&pump.pressure_pa, end), &bounds.pressure);
+        if let Some((key, signal)) = tube.pump.as_ref().and_then(|pump| pump.signal()) {
+            let points = tube.pump.iter().filter_map(|pump| pump.curve.as_ref());
+            let points = points.flat_map(|curve| &curve.pressure_pa).map(|p| p.abs());
+            let largest = points.reduce(f64::max).unwrap_or(1.0) * size_of(signal, end);
+            look(format!("/network/tubes/{i}/pump/{key}"), largest, &bounds.pressure);
         }
     }
-    if let Some(bladders) = &case.bladders {
-        flows(case, bladders, faults);
+    match &case.bladders {
+        Some(bladders) => flows(case, bladders, faults),
+        None => {
+            let found = inlets(case);
+            for (pointer, signal) in found.flows {
+                look(pointer, size_of(signal, end), &bounds.flow);
+            }
+            for (pointer, signal) in found.volumes {
+                look(pointer, size_of(signal, end), &bounds.volume);
+            }
+        }
     }
 }
 
 /// Rejects flows that fill the bladders faster than sound crosses the beam. Without a pressure port, also rejects volumes larger than those
 /// that ten times Young's modulus presses into bladders and accumulators.
 fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
-    const FLOW: &str = "flows are in m^3/s; a ml/s is 1e-6";
-    const VOLUME: &str = "volumes are in m^3; a ml is 1e-6";
     let (beam, end) = (&case.beam, case.time.end_s);
     let found = inlets(case);
     let volume = bladders.height_m * bladders.width_m * bladders.length_m * 2.0 * bladders.per_row as f64;
     let sound = (beam.young_modulus_pa / beam.density_kg_m3).sqrt();
     let largest = FASTEST_FILL * volume * sound / beam.height_m;
-    let of_flows = found.flows.iter().map(|(at, signal)| (at, size_of(signal, end), FLOW));
+    let of_flows = found.flows.iter().map(|(at, signal)| (at, size_of(signal, end), FLOWS));
     let of_volumes = found.volumes.iter();
-    let of_volumes = of_volumes.map(|(at, signal)| (at, signal.largest(end).rate, VOLUME));
+    let of_volumes = of_volumes.map(|(at, signal)| (at, signal.largest(end).rate, VOLUMES));
     for (pointer, size, hint) in of_flows.chain(of_volumes) {
         if size > largest && size.is_finite() {
             let (size, volume) = (digits(size), digits(volume));
@@ -275,7 +296,7 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         if size > room {
             let what = format!("{} m^3 injected into {beyond}", digits(size));
             let allowed = format!("up to {} m^3", digits(room));
-            refuse(faults, pointer, &ROOM, what, allowed, VOLUME);
+            refuse(faults, pointer, &ROOM, what, allowed, VOLUMES);
         }
     }
     let all: Vec<&Signal> = found.flows.iter().map(|(_, signal)| *signal).collect();
@@ -286,7 +307,7 @@ fn flows(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     {
         let what = format!("flows inject {} m^3 into {beyond}", digits(left));
         let allowed = format!("up to {} m^3 by the end of the run", digits(room));
-        refuse(faults, pointer, &ROOM, what, allowed, FLOW);
+        refuse(faults, pointer, &ROOM, what, allowed, FLOWS);
     }
 }
 

@@ -1,7 +1,10 @@
-//! Properties of a tube: its own values, or the defaults of `/tubes`.
+//! Properties of a tube: its own values, or the defaults of `/tubes`. Checks of its pump.
 
-use crate::case::schema::{self, CrossSection, TubeDefaults};
+use crate::case::faults::Violations;
+use crate::case::numbers::plain;
+use crate::case::schema::{self, Case, CrossSection, TubeDefaults};
 use crate::case::wiring::PermeabilitySource;
+use crate::error::{Code, Violation};
 
 /// Default loss of a tube, in dynamic pressures of its mean velocity: sharp entrance 0.5, exit 1.
 const SHARP_EDGED: f64 = 1.5;
@@ -32,4 +35,49 @@ pub(super) fn size<'a>(tube: &'a schema::Tube, usual: Option<&TubeDefaults>) -> 
         .or_else(|| tube.cross_section.as_ref().map(PermeabilitySource::CrossSection))
         .or_else(|| usual.map(PermeabilitySource::usual))?;
     Some((tube.length_m.or_else(|| usual.map(|tubes| tubes.length_m))?, bore))
+}
+
+/// Checks that a pump has one law, and that its curve is one.
+pub(super) fn pump(case: &Case, pump: &schema::Pump, pointer: &str, faults: &mut Violations) {
+    if pump.pressure_pa.is_some() == pump.curve.is_some() {
+        let what = match pump.curve {
+            None => "a pump without pressure",
+            Some(_) => "a pump with both a pressure and a curve",
+        };
+        let fault = Violation::new(Code::Wiring, pointer, what);
+        faults.push(fault.allowed("exactly one of pressure_pa and curve"));
+    }
+    let Some(curve) = &pump.curve else { return };
+    if pump.resistance_pa_s_m3 > 0.0 {
+        let what = "a resistance beside a curve, which contains the decrease of the pressure";
+        let fault = Violation::new(Code::Wiring, format!("{pointer}/resistance_pa_s_m3"), what);
+        faults.push(fault.hint("remove the resistance"));
+    }
+    let (flows, pressures) = (&curve.flow_m3_s, &curve.pressure_pa);
+    if flows.len() != pressures.len() {
+        let what = format!("{} flows for {} pressures", flows.len(), pressures.len());
+        let fault = Violation::new(Code::Count, format!("{pointer}/curve/flow_m3_s"), what);
+        faults.push(fault.allowed(pressures.len().to_string()));
+    }
+    if let Some(k) = flows.windows(2).position(|pair| pair[0] >= pair[1]) {
+        let what = format!("flow {} after flow {}", plain(flows[k + 1]), plain(flows[k]));
+        let fault = Violation::new(Code::Wiring, format!("{pointer}/curve/flow_m3_s/{}", k + 1), what);
+        faults.push(fault.allowed("ascending flows"));
+    }
+    let steep = flows.windows(2).zip(pressures.windows(2));
+    let steep = steep.map(|(q, p)| (p[1] - p[0]) / (q[1] - q[0]) / (q[1] - q[0]));
+    if steep.into_iter().any(|bend| !(6.0 * bend).is_finite()) && faults.is_empty() {
+        let fault = Violation::new(
+            Code::Wiring,
+            format!("{pointer}/curve/flow_m3_s"),
+            "flows too close to each other",
+        );
+        faults.push(fault.hint("flows are in m^3/s; a ml/s is 1e-6"));
+    }
+    let massless = case.fluid.as_ref().is_some_and(|fluid| fluid.density_kg_m3 == 0.0);
+    if massless && pressures.windows(2).any(|pair| pair[0] < pair[1]) {
+        let what = "a curve that rises with flow, for a fluid without mass";
+        let fault = Violation::new(Code::Together, format!("{pointer}/curve"), what);
+        faults.push(fault.hint("give /fluid/density_kg_m3: only inertia determines the flow where the pressure rises"));
+    }
 }

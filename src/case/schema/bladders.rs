@@ -142,6 +142,30 @@ pub struct Bladders {
     pub kink_width: f64,
 }
 
+/// Placeholder for the bladders of a network without any; its sizes only scale unknowns.
+pub static NO_BLADDERS: Bladders = Bladders {
+    per_row: 0,
+    length_m: 1.0,
+    height_m: 1.0,
+    width_m: 1.0,
+    permeability_m4: None,
+    cross_section: None,
+    area_per_pressure_m2_per_pa: 1.0,
+    area_per_moment_m2_per_n_m: AreaPerMoment {
+        opening: 0.0,
+        closing: 0.0,
+    },
+    area_per_force_m2_per_n: AreaPerForce {
+        tension: 0.0,
+        compression: 0.0,
+    },
+    lower: LowerRow::Mirrored,
+    coupling: Coupling::Reciprocal,
+    strain_energy: None,
+    closing: None,
+    kink_width: 1.0,
+};
+
 /// The lower row of bladders.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]

@@ -193,6 +193,21 @@ impl Effect {
         matches!(self, Self::TubeInertia | Self::BladderInertia | Self::UnsteadyFriction)
     }
 
+    /// True if the effect concerns bladders, or their coupling with the beam.
+    pub const fn of_bladders(self) -> bool {
+        matches!(
+            self,
+            Self::PressureToCurvature
+                | Self::PressureToStretch
+                | Self::MomentToArea
+                | Self::ForceToArea
+                | Self::Asymmetry
+                | Self::FlowAlongBladders
+                | Self::BladderInertia
+                | Self::NonlinearSection
+        )
+    }
+
     /// Names of the effects, joined by `separator`.
     pub fn names(effects: &[Self], separator: &str) -> String {
         let names: Vec<&str> = effects.iter().map(|effect| effect.name()).collect();

@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use slcbeam_section::input::Section;
 
+use crate::case::amounts::GRAVITY;
 use crate::case::faults::CaseSource;
 use crate::case::origins::Origins;
 use crate::case::presets::Preset;
@@ -63,10 +64,10 @@ pub struct Case {
     pub section: Option<Section>,
     /// The solid.
     pub beam: Beam,
-    /// The fluid that fills bladders and tubes. Absent together with `bladders`: a dry beam.
+    /// The fluid that fills bladders and tubes. Absent together with `bladders` and `network`: a dry beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fluid: Option<Fluid>,
-    /// The two rows of bladders. Absent: a dry beam.
+    /// The two rows of bladders. Absent: a dry beam, beside the network if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bladders: Option<Bladders>,
     /// Parts of the beam, root to tip, with values of their own. Absent: a uniform beam.
@@ -76,7 +77,7 @@ pub struct Case {
     /// Default properties of tubes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tubes: Option<TubeDefaults>,
-    /// Connections of the bladders. Absent: every bladder is sealed singly.
+    /// Connections of the bladders, or of junctions alone. Absent: every bladder is sealed singly.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub network: Option<Network>,
     /// Distributed forces and moments, body force, gravity. They add.
@@ -151,6 +152,22 @@ impl Case {
         self.bladders
             .as_ref()
             .map_or(self.mesh.segments.unwrap_or(10), |bladders| bladders.per_row)
+    }
+
+    /// Bladders of the network, [`NO_BLADDERS`] for a network without; none for a dry beam without network.
+    pub fn network_bladders(&self) -> Option<&Bladders> {
+        let network = self.network.as_ref();
+        self.bladders.as_ref().or(network.map(|_| &NO_BLADDERS))
+    }
+
+    /// Acceleration of the fluid by gravity [m/s^2]: that of the loads, else standard gravity.
+    pub fn gravity(&self) -> f64 {
+        let given = self.loads.iter().filter_map(|load| match load {
+            Load::Gravity { x_m_s2, z_m_s2 } => Some([*x_m_s2, *z_m_s2]),
+            _ => None,
+        });
+        let sum = given.reduce(|a, b| [a[0] + b[0], a[1] + b[1]]);
+        sum.map_or(GRAVITY, |[x, z]| x.hypot(z))
     }
 
     /// Value of a signal at which the beam rests when the run begins: 0, or the value in the equilibrium of the start.

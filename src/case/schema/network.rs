@@ -31,7 +31,7 @@ pub struct TubeDefaults {
     pub roughness_m: Option<f64>,
 }
 
-/// Connections of the bladders: any graph of tubes between bladder ends and junctions.
+/// Any graph of tubes between bladder ends and junctions; without bladders, between junctions alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Network {
@@ -45,6 +45,9 @@ pub struct Network {
     /// Names of junctions, points without storage where several tubes meet.
     #[serde(default)]
     pub junctions: Vec<String>,
+    /// Heights of junctions; absent: 0, the height of all bladders.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub elevations: Vec<Elevation>,
     /// Single tubes between any two points.
     #[serde(default)]
     pub tubes: Vec<Tube>,
@@ -57,6 +60,17 @@ pub struct Network {
     /// Conductances that harvest energy, between two points.
     #[serde(default)]
     pub turbines: Vec<Turbine>,
+}
+
+/// Height of a junction with its ports and vessels. Gravity then drives flow: that of the loads, else 9.80665 m/s^2.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Elevation {
+    /// Name of a junction listed under `/network/junctions`.
+    pub junction: String,
+    /// Height above the bladders [m].
+    #[schemars(range(min = -10000.0, max = 10000.0))]
+    pub elevation_m: f64,
 }
 
 /// Bladders joined outlet to inlet in the order given.
@@ -249,16 +263,43 @@ pub struct CheckValve {
     pub smoothing_pa: f64,
 }
 
-/// A pump in a tube, which adds `pressure_pa - resistance_pa_s_m3 q` in the tube's direction.
+/// A pump in a tube, which adds `pressure_pa - resistance_pa_s_m3 q`, or the pressure of its curve, in the tube's direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pump {
-    /// Pressure that it adds where nothing flows, over time [Pa].
-    pub pressure_pa: Signal,
-    /// Decrease of its pressure per flow [Pa s/m^3]: the slope of its curve.
+    /// Pressure that it adds where nothing flows, over time [Pa]; instead of `curve`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure_pa: Option<Signal>,
+    /// Decrease of its pressure per flow [Pa s/m^3], beside `pressure_pa`.
     #[serde(default, skip_serializing_if = "is_zero")]
     #[schemars(range(min = 0.0))]
     pub resistance_pa_s_m3: f64,
+    /// Its pressure over its flow; instead of `pressure_pa`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub curve: Option<PumpCurve>,
+}
+
+impl Pump {
+    /// Signal of its pressure, or of the factor of its curve, with its pointer below the pump.
+    pub fn signal(&self) -> Option<(&'static str, &Signal)> {
+        let curve = self.curve.as_ref().map(|curve| ("curve/factor", &curve.factor));
+        curve.or_else(|| Some(("pressure_pa", self.pressure_pa.as_ref()?)))
+    }
+}
+
+/// Pressure of a pump over its flow: monotone cubics through the points, straight beyond them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PumpCurve {
+    /// Flows in the direction of the tube, ascending [m^3/s].
+    #[schemars(length(min = 2, max = 10000))]
+    pub flow_m3_s: Vec<f64>,
+    /// Pressure that the pump adds at each flow [Pa].
+    #[schemars(length(min = 2, max = 10000))]
+    pub pressure_pa: Vec<f64>,
+    /// Factor of all pressures over time.
+    #[serde(default = "Signal::one", skip_serializing_if = "Signal::is_one")]
+    pub factor: Signal,
 }
 
 /// A vessel that takes in fluid as its pressure rises.

@@ -241,7 +241,7 @@ fn pressure(summary: &Summary) -> Option<String> {
         .or(pressure.window_max_abs)
         .map(|p| figure(summary, (name, "window_max_abs"), p, "Pa"));
     let window = window.map_or(String::new(), |p| format!("{BETWEEN}in the window {p}"));
-    Some(format!("largest in a bladder: {largest}{window}"))
+    Some(format!("largest in the fluid: {largest}{window}"))
 }
 
 fn energy(summary: &Summary) -> Option<String> {

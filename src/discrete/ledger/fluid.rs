@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::{ENERGY_RATES, EnergyRate, Rates, add, add_all, compressed, tubes};
 use crate::case::schema::Effect;
 use crate::discrete::fluid_mesh::{LinkEnd, MeshBridge};
-use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, through_bridge};
+use crate::discrete::residual::fluid::{driving, look_along, over_bridge, pressure_at, pump_pressure, through_bridge};
 use crate::discrete::residual::rows::{driven, mean_force, mean_moment};
 use crate::discrete::residual::{nonlinear, von_karman};
 use crate::discrete::{FluidMesh, System, TimeData, Workspace, injected_volume};
@@ -80,7 +80,8 @@ pub fn foreshorten(system: &System, now: &TimeData, w: &mut Workspace<f64>) {
         }
     }
     let stretch_rate = |w: &Workspace<f64>, j| {
-        system.model.wet.as_ref().map_or(0.0, |wet| {
+        let wet = system.model.wet.as_ref().filter(|wet| wet.per_row > 0);
+        wet.map_or(0.0, |wet| {
             SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j)).0
         })
     };
@@ -111,7 +112,9 @@ pub fn rates<'a>(
         }
     }
     move |w, node| {
-        let Some(wet) = &system.model.wet else { return [0.0; 2] };
+        let Some(wet) = system.model.wet.as_ref().filter(|wet| wet.per_row > 0) else {
+            return [0.0; 2];
+        };
         let j = system.mesh.segments_of_node(node).0;
         let (stretch, curvature) = SegmentRates::new(system, wet, w, j).strain_rates(wet.strains_of(j));
         [stretch, curvature + nonlinear::end_rate(system, w, node)]
@@ -256,6 +259,7 @@ pub fn flows(system: &System, now: &TimeData, w: &mut Workspace<f64>, out: &mut 
         );
         add(out, EnergyRate::Rectifiers, 2.0 * (qf * forward + qb * backward));
         let q = through_bridge(wet, fluid, b, now, w);
+        add(out, EnergyRate::Loads, q * bridge.head * now.gravity);
         cross(from, to, [q, q, 0.0], out);
     }
 }
@@ -267,7 +271,11 @@ fn along_links(fluid: &FluidMesh, now: &TimeData, w: &Workspace<f64>) -> Rates {
         let volume = w.fluid.at_mean_density(k, w.fluid.flow[k]);
         let in_halves = volume * volume * link.half_cells;
         if let Some(pump) = link.pump {
-            add(&mut rates, EnergyRate::Ports, volume * now.pump_pressure[pump]);
+            let pressure = pump_pressure(link, pump, now, w, k);
+            add(&mut rates, EnergyRate::Ports, volume * pressure);
+        }
+        if link.head != 0.0 {
+            add(&mut rates, EnergyRate::Loads, w.fluid.flow[k] * link.head * now.gravity);
         }
         let [in_valve, in_bladders, rest] = match &link.flow {
             None => {

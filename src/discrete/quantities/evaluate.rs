@@ -28,8 +28,8 @@ impl Extremes {
                 .map_or(0, |(i, _)| i)
         };
         Self {
-            high: place(&w.fluid.pressure, 1.0),
-            low: place(&w.fluid.pressure, -1.0),
+            high: place(w.fluid.pressures(), 1.0),
+            low: place(w.fluid.pressures(), -1.0),
             closed: system.most_closed(w.fluid.area_changes()),
             angle: tip_angle(system, now, w),
         }
@@ -84,11 +84,11 @@ impl StateView<'_> {
     }
 
     pub(super) fn max_pressure(&self) -> f64 {
-        self.w.fluid.pressure[self.at.high]
+        self.w.fluid.pressures().get(self.at.high).copied().unwrap_or(0.0)
     }
 
     pub(super) fn min_pressure(&self) -> f64 {
-        self.w.fluid.pressure[self.at.low]
+        self.w.fluid.pressures().get(self.at.low).copied().unwrap_or(0.0)
     }
 
     /// Least relative opening of a bladder, `(h_b w_b + a1)/(h_b w_b)`.

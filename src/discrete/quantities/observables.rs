@@ -86,6 +86,10 @@ fn wet(system: &System) -> bool {
     system.fluid.is_some()
 }
 
+fn filled(system: &System) -> bool {
+    system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0)
+}
+
 fn attached(system: &System) -> bool {
     !system.attached.is_empty() || !system.foundation.is_empty()
 }
@@ -198,12 +202,12 @@ observables! {
     TipAngle: "tip_angle" ["rad"], "tip angle", "tip angle", Tip, Studied, always, QuantitySource::State(|look| look.tip_angle()),
         "slope angle phi of the tip, counted over full turns";
     MaxPressure: "max_pressure" ["Pa"], "largest pressure", "the largest pressure", Pressure, Headline, wet, QuantitySource::State(|look| look.max_pressure()),
-        "pressure of the cell with the highest pressure";
+        "highest pressure of all cells of bladders; without bladders, of all junctions";
     MinPressure: "min_pressure" ["Pa"], "smallest pressure", "the smallest pressure", Pressure, Studied, wet, QuantitySource::State(|look| look.min_pressure()),
-        "pressure of the cell with the lowest pressure";
+        "lowest pressure of all cells of bladders; without bladders, of all junctions";
     TurbinePower: "turbine_power" ["W"], "turbine power", "turbine power", Power, Studied, wet, QuantitySource::State(|look| look.turbine_power()),
         "power of all turbines";
-    LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, wet, QuantitySource::State(|look| look.least_opening()),
+    LeastOpening: "least_opening" ["1"], "least opening of a bladder", "least opening of a bladder", State, Recorded, filled, QuantitySource::State(|look| look.least_opening()),
         "smallest bladder cross-section over that at rest; 0 is closed";
     PortFlow: "port_flow" ["m^3/s"], "flow through ports", "the flow through ports", Ports, Recorded, open, QuantitySource::State(port_flow),
         "flow through all ports into the networks";

@@ -128,7 +128,7 @@ pub fn values<'a>(look: &'a StateView) -> impl Iterator<Item = f64> + 'a {
 }
 
 fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
-    let wet = system.fluid.is_some();
+    let wet = system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0);
     let of = move |probe| {
         TABLE
             .into_iter()

@@ -5,7 +5,8 @@ use super::probes::{HistoryColumn, key};
 use super::reactions;
 use crate::case::wiring::bladder_label;
 use crate::discrete::ledger::ports;
-use crate::discrete::{System, contact_points};
+use crate::discrete::{FluidMesh, System, contact_points};
+use crate::model::network::LinkKind;
 
 /// Columns of all ports, accumulators, contacts and reactions of a system; with `at_rest` those of a state at rest.
 pub fn columns(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
@@ -79,10 +80,45 @@ fn of_network(system: &System, at_rest: bool) -> Vec<HistoryColumn> {
             "volume held beyond that at ambient pressure by",
         ));
     }
+    if network.is_dry() {
+        let names = plain_junctions(fluid).map(|k| &network.junctions[fluid.junctions[k]]);
+        all.extend(short("junction", names).into_iter().map(|(name, short)| HistoryColumn {
+            name: format!("{short}_pressure"),
+            unit: "Pa",
+            about: format!("pressure of the junction \"{name}\""),
+        }));
+        let tubes = tubes(fluid).filter(|_| !at_rest);
+        all.extend(tubes.map(|(_, number)| HistoryColumn {
+            name: format!("tube_{}_flow", network.links[number].order + 1),
+            unit: "m^3/s",
+            about: format!("flow through tube {} in its direction", network.links[number].order + 1),
+        }));
+    }
     if at_rest {
         all.extend(bladders(wet.per_row));
     }
     all
+}
+
+/// Junctions of the mesh without accumulator.
+fn plain_junctions(fluid: &FluidMesh) -> impl Iterator<Item = usize> + '_ {
+    let stores = |k: &usize| {
+        fluid
+            .accumulators
+            .iter()
+            .any(|one| one.junction == *k && one.number.is_some())
+    };
+    (0..fluid.junctions.len()).filter(move |k| !stores(k))
+}
+
+/// Links of the mesh that are tubes, each with its number in the network.
+fn tubes(fluid: &FluidMesh) -> impl Iterator<Item = (usize, usize)> + '_ {
+    let all = fluid
+        .links
+        .iter()
+        .enumerate()
+        .filter(|(_, link)| link.kind == Some(LinkKind::Tube));
+    all.filter_map(|(k, link)| Some((k, link.number?)))
 }
 
 /// Mean pressure of every bladder; only for states at rest, because runs record pressures as fields.
@@ -104,18 +140,11 @@ pub fn integrated(system: &System) -> Vec<Option<usize>> {
     (0..columns(system, false).len()).map(volume).collect()
 }
 
-/// Columns of a run for flows and pressures of ports and for pressures in accumulators: their indices, and their names with units.
+/// Columns of a run for all flows and pressures of the network: their indices, and their names with units.
 pub fn of_fluid(system: &System) -> impl Iterator<Item = (usize, String)> {
-    let ports = 4 * system.model.wet.as_ref().map_or(0, ports::count);
-    let is_flow_or_pressure = move |place: usize| {
-        if place < ports {
-            place % 4 < 2
-        } else {
-            (place - ports).is_multiple_of(2)
-        }
-    };
     let all = of_network(system, false).into_iter().enumerate();
-    all.filter(move |(place, _)| is_flow_or_pressure(*place))
+    // not powers and volumes
+    all.filter(|(_, one)| matches!(one.unit, "Pa" | "m^3/s"))
         .map(|(place, one)| (place, key(&one.name, one.unit)))
 }
 
@@ -162,6 +191,12 @@ fn network_values(look: &StateView, integrals: Option<&[f64]>, put: &mut impl Fn
     for (one, &volume) in vessels.filter(|(one, _)| one.number.is_some()) {
         put(look.w.fluid.junction[one.junction]);
         put(volume);
+    }
+    if wet.network.is_dry() {
+        plain_junctions(fluid).for_each(|k| put(look.w.fluid.junction[k]));
+        if integrals.is_some() {
+            tubes(fluid).for_each(|(k, _)| put(look.w.fluid.flow[k]));
+        }
     }
     if integrals.is_none() {
         look.w.fluid.mean_pressure.iter().for_each(|&pressure| put(pressure));

@@ -235,13 +235,34 @@ pub fn flows<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     }
 }
 
-/// Driving pressure of a link: the pressure drop plus the pressure of its pump.
+/// `[E88]` Driving pressure of a link between points of the heights z: the pressure drop D, the weight of the fluid, and the pressure of
+/// its pump:
+///
+/// ```text
+/// D + r̄ ρ_0 g (z_a - z_b) + p_pump
+/// ```
+///
+/// r̄ is the mean density of [E64] relative to `ρ_0`, 1 for an incompressible fluid. With `h_a - h_b = -ρ_0 g (z_a - z_b)` nothing flows:
+/// `dp = -ρ g dz` for every law of the density. The weight works `ρ_0 g (z_a - z_b) q`, which counts as work of loads.
 #[inline]
 pub fn driving<T: Scalar>(link: &MeshLink, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
-    let drop = w.fluid.drop[k];
+    let mut driving = w.fluid.drop[k];
+    if link.head != 0.0 {
+        driving += w.fluid.at_ambient_density(k, T::constant(link.head * now.gravity));
+    }
     match link.pump {
-        None => drop,
-        Some(pump) => drop + now.pump_pressure[pump],
+        None => driving,
+        Some(pump) => driving + pump_pressure(link, pump, now, w, k),
+    }
+}
+
+/// Pressure that the pump of a link adds, [E87], without the linear resistance.
+#[inline]
+pub fn pump_pressure<T: Scalar>(link: &MeshLink, pump: usize, now: &TimeData, w: &Workspace<T>, k: usize) -> T {
+    let signal = now.pump_pressure[pump];
+    match &link.pump_curve {
+        None => T::constant(signal),
+        Some(curve) => curve.pressure(w.fluid.at_mean_density(k, w.fluid.flow[k])) * signal,
     }
 }
 
@@ -296,8 +317,12 @@ pub fn over_bridge<T: Scalar>(
     now: &TimeData,
     w: &Workspace<T>,
 ) -> ((T, T), Option<T>) {
-    let MeshBridge { from, to, .. } = fluid.bridges[k];
-    let (drop, density) = along(wet, from, to, now, w);
+    let MeshBridge { number, from, to } = fluid.bridges[k];
+    let (mut drop, density) = along(wet, from, to, now, w);
+    let head = wet.network.bridges[number].head;
+    if head != 0.0 {
+        drop += density.unwrap_or(T::constant(1.0)) * (head * now.gravity);
+    }
     (bridge_drops(drop, w.fluid.bridge[k]), density)
 }
 

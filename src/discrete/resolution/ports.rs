@@ -112,7 +112,7 @@ pub fn ports(case: &Case, model: &Model, wet: &Wet) -> Vec<PortEffect> {
     let pumps = at_bladders.filter_map(|(k, tube)| {
         Some(PortEffect {
             pointer: format!("/network/tubes/{k}/pump"),
-            depths: depths(&tube.pump.as_ref()?.pressure_pa, false),
+            depths: depths(tube.pump.as_ref()?.signal()?.1, false),
             falls: 0.0,
             lag: 0.0,
         })

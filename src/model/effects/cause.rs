@@ -27,7 +27,7 @@ pub enum DecisionCause {
     Massless,
     /// The case gives the effect's data, or does not.
     Given(bool),
-    /// The case gives bladders and fluid, or does not.
+    /// The case gives what the effect needs of bladders and fluid, or does not.
     Filled(bool),
     /// Requires another effect, which is off.
     Needs(Effect),
@@ -167,8 +167,8 @@ impl Display for DecisionCause {
             Self::FedJunction => f.write_str("left out: the flow of a port enters a junction of tubes only"),
             Self::Given(true) => f.write_str("given"),
             Self::Given(false) => f.write_str("not given"),
-            Self::Filled(true) => f.write_str("bladders and fluid are given"),
-            Self::Filled(false) => f.write_str("no bladders, no fluid"),
+            Self::Filled(true) => f.write_str("fluid is given"),
+            Self::Filled(false) => f.write_str("no bladders or no fluid"),
             Self::Needs(Effect::NetworkPressureDifferences) => f.write_str("each network has one pressure"),
             Self::Needs(effect) => write!(f, "no {}", effect.name().replace('_', " ")),
             Self::NoKinks => {

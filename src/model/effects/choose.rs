@@ -75,6 +75,10 @@ impl<'a> Chooser<'a> {
                 let hint = format!("leave it out, or set {off} to \"on\"");
                 (format!("{effect} is on, but {off}, which it needs, is off"), hint)
             }
+            DecisionCause::Filled(false) if self.case.network.is_some() => (
+                format!("{effect} is on, but the case has no bladders"),
+                "give /bladders, or leave the effect out".into(),
+            ),
             DecisionCause::Given(false) if effect == Effect::Compressibility => (
                 format!("{effect} is on, but the fluid is incompressible"),
                 "give bulk_modulus_pa or gas_fraction of the liquid, or a gas, in /fluid; or leave it out".into(),
@@ -128,6 +132,15 @@ impl<'a> Chooser<'a> {
             Choice::Auto if effect == Effect::TubeInertia && self.asked_with_inertia() => {
                 (true, DecisionCause::Kept(Keeps::AskedWithInertia))
             }
+            Choice::Auto
+                if effect == Effect::TubeInertia && !self.feeds_junction() && self.obstacle(effect).is_some() =>
+            {
+                (
+                    true,
+                    self.obstacle(effect)
+                        .map_or(DecisionCause::Full, DecisionCause::Obstacle),
+                )
+            }
             Choice::Auto if effect.by_name(self.case.formulation) => (false, DecisionCause::Unasked),
             Choice::Auto if effect.of_inertia() && self.feeds_junction() => (false, DecisionCause::FedJunction),
             Choice::Auto => match self.scene {
@@ -158,7 +171,10 @@ impl<'a> Chooser<'a> {
             _ if effect.of_flow() && self.fluid().is_some_and(|fluid| fluid.density_kg_m3 == 0.0) => {
                 Err(DecisionCause::Massless)
             }
-            Effect::Fluid if self.case.fluid.is_none() || bladders.is_none() => Err(DecisionCause::Filled(false)),
+            Effect::Fluid if self.case.fluid.is_none() || self.case.network_bladders().is_none() => {
+                Err(DecisionCause::Filled(false))
+            }
+            _ if bladders.is_none() && effect.of_bladders() => Err(DecisionCause::Filled(false)),
             Effect::Asymmetry if bladders.is_some_and(|b| b.coupling == Coupling::Reciprocal) => {
                 Err(DecisionCause::NoKinks)
             }
@@ -208,6 +224,7 @@ impl<'a> Chooser<'a> {
             Effect::Flow => network.and_then(obstacles::flow),
             Effect::NetworkPressureDifferences => network.and_then(obstacles::network_pressure_differences),
             Effect::Compressibility => network.and_then(obstacles::compressibility),
+            Effect::TubeInertia => network.and_then(|network| obstacles::tube_inertia(case, network)),
             _ => None,
         }
     }
@@ -277,6 +294,7 @@ impl<'a> Chooser<'a> {
             Effect::Flow => {
                 let count = |n: &ResolvedNetwork| (n.sealed().filter(|s| *s).count(), n.component_of_bladder.len());
                 match self.network.map_or((0, 0), count) {
+                    (_, 0) => kept(Keeps::Dissipation),
                     _ if scene.fed() => kept(Keeps::Fed),
                     (sealed, all) if sealed == all => (true, DecisionCause::Sealed(all)),
                     // without loads across, only the flow bends the beam, however small

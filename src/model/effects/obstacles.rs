@@ -3,7 +3,7 @@
 use crate::case::schema::{Attachment, Case, Contact, Formulation, Load};
 use crate::case::{ResolvedEnd, Rotation, Translation, spans};
 use crate::functions::profile::Profile;
-use crate::model::network::{AccumulatorLaw, Feed};
+use crate::model::network::{AccumulatorLaw, Feed, Link};
 use crate::model::{LumpedNetwork, ResolvedNetwork};
 
 /// Reason that an effect must stay, with a remedy.
@@ -270,7 +270,26 @@ pub fn flow(network: &ResolvedNetwork) -> Option<Obstacle> {
     if network.links.iter().any(|link| link.pump.is_some()) {
         return obstacle("a pump drives the flow", "remove the pump, or leave flow on");
     }
+    if network.gravity.is_some() {
+        return obstacle(
+            "gravity drives the flow",
+            "remove /network/elevations, or leave flow on",
+        );
+    }
     None
+}
+
+/// Obstacle: a pump whose pressure increases with flow by more than its tube resists, so that only inertia determines the flow.
+pub fn tube_inertia(case: &Case, network: &ResolvedNetwork) -> Option<Obstacle> {
+    let rises = |link: &Link| {
+        let pump = link.pump.as_ref();
+        pump.is_some_and(|pump| pump.steepest_rise(case.time.end_s) >= link.resistance)
+    };
+    network.links.iter().find(|link| rises(link))?;
+    obstacle(
+        "the pressure of a pump increases with flow by more than its tube resists",
+        "give a falling curve or a narrower tube, or leave tube_inertia on",
+    )
 }
 
 /// Obstacle: a rigid tank, which stores only compressed fluid.

@@ -1,5 +1,6 @@
 //! Accumulators: vessels that store fluid under pressure.
 
+use super::ResolvedNetwork;
 use crate::case::schema::{Accumulator as Written, AccumulatorKind};
 use crate::numerics::Scalar;
 
@@ -164,6 +165,20 @@ impl AccumulatorLaw {
                 };
                 ambient * of_gas * (worked - share)
             }
+        }
+    }
+}
+
+impl ResolvedNetwork {
+    /// Scale of volumes per pressure in a network without bladders [m^3/Pa]: the mean compliance of its accumulators. Without any, it is
+    /// the largest conductance times a duration [s].
+    pub(in crate::model) fn usual_compliance(&self, time: f64) -> f64 {
+        let vessels = self.accumulators.iter().map(|one| one.law.compliance(0.0));
+        let sum: f64 = vessels.filter(|compliance| *compliance > 0.0).sum();
+        if sum > 0.0 {
+            sum / self.accumulators.len() as f64
+        } else {
+            self.bladder_mobility * time
         }
     }
 }

@@ -4,31 +4,51 @@
 use std::collections::BTreeMap;
 
 use super::{
-    AccumulatorElement, AccumulatorLaw, AlongBladder, Bridge, CheckValveLaw, Feed, LinearPump, LinearTurbine, Link,
-    LinkKind, NetworkNode, PrescribedFlow, PressurePort, ResolvedNetwork, TubeFlow, bladder_permeability, components,
+    AccumulatorElement, AccumulatorLaw, AlongBladder, Bridge, CheckValveLaw, Feed, LinearTurbine, Link, LinkKind,
+    NetworkNode, PrescribedFlow, PressurePort, PumpLaw, ResolvedNetwork, TubeFlow, bladder_permeability, components,
 };
 use crate::case::schema::{Bladders, Fluid, Rectifier, TurbineConductance};
 use crate::case::wiring::{PermeabilitySource, PortQuantity, Wiring, WiringPoint, WiringTube};
+use crate::functions::signals::Signal;
 use crate::model::duct;
 use crate::model::mapping::TABLE_TUBE_RATIO;
 
 /// An attachment to a point.
 enum Thing<'a> {
-    Tube { to: WiringPoint, tube: &'a WiringTube<'a> },
-    Turbine { to: WiringPoint, index: usize },
-    Pressure { port: usize },
-    Source { name: String, feed: Feed },
-    Accumulator { index: usize },
+    Tube {
+        to: WiringPoint,
+        tube: &'a WiringTube<'a>,
+        order: usize,
+    },
+    Turbine {
+        to: WiringPoint,
+        index: usize,
+    },
+    Pressure {
+        port: usize,
+    },
+    Source {
+        name: String,
+        feed: Feed,
+    },
+    Accumulator {
+        index: usize,
+    },
 }
 
-/// Graph of a network with permeabilities scaled by `factor`.
-pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Bladders) -> ResolvedNetwork {
+/// Graph of a network with permeabilities scaled by `factor`, and with a gravity [m/s^2].
+pub(super) fn graph(
+    wiring: &Wiring,
+    [factor, gravity]: [f64; 2],
+    fluid: &Fluid,
+    bladders: &Bladders,
+) -> ResolvedNetwork {
     let viscosity = fluid.viscosity_pa_s;
     let permeability = bladder_permeability(bladders);
     let chain_tubes = wiring.chain_tubes.len();
     let mut network = ResolvedNetwork {
         bladder_mobility: permeability * factor / viscosity,
-        along_bladders: AlongBladder::new(bladders, fluid),
+        along_bladders: AlongBladder::new(bladders, fluid).filter(|_| bladders.per_row > 0),
         chains: wiring.chains.clone(),
         tubes: chain_tubes + wiring.tubes.len(),
         ..ResolvedNetwork::default()
@@ -51,10 +71,14 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
     let nodes = nodes(wiring, &things, &mut network);
     // R = μ l_c/q1c
     let resistance = |tube: &WiringTube| viscosity * tube.length_m / (self::permeability(tube.bore) * factor);
+    // weight per volume of the fluid
+    let weight = fluid.density_kg_m3 * gravity;
+    let head = |from: WiringPoint, to: WiringPoint| weight * (wiring.elevation(from) - wiring.elevation(to));
     for (at, thing) in things {
         let from = nodes[&at];
         match thing {
-            Thing::Tube { to, tube } => network.links.push(Link {
+            Thing::Tube { to, tube, order } => network.links.push(Link {
+                order,
                 from,
                 to: nodes[&to],
                 resistance: resistance(tube),
@@ -63,16 +87,15 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 radius: radius(tube),
                 tube: Some(TubeFlow::new(tube, radius(tube), fluid)),
                 check_valve: tube.check_valve.map(CheckValveLaw::from),
-                pump: tube.pump.map(|pump| LinearPump {
-                    pressure: pump.pressure_pa.clone(),
-                    resistance: pump.resistance_pa_s_m3,
-                }),
+                pump: tube.pump.map(PumpLaw::new),
+                head: head(at, to),
             }),
             Thing::Turbine { to, index } => join(
                 &mut network,
                 [from, nodes[&to]],
                 index,
                 &wiring.turbines[index].1.rectifier,
+                head(at, to),
             ),
             Thing::Pressure { port } => {
                 if let NetworkNode::Cell { .. } = from {
@@ -92,6 +115,17 @@ pub(super) fn graph(wiring: &Wiring, factor: f64, fluid: &Fluid, bladders: &Blad
                 }
             }
         }
+    }
+    if bladders.per_row == 0 {
+        // conductance of the widest link, over the placeholder's length
+        let conductances = network.links.iter().map(|link| 1.0 / link.resistance);
+        let turbines = network.turbines.iter().map(|turbine| turbine.conductance);
+        network.bladder_mobility = conductances.chain(turbines).fold(0.0, f64::max);
+    }
+    let heads = network.links.iter().map(|link| link.head);
+    let heads = heads.chain(network.bridges.iter().map(|bridge| bridge.head));
+    if heads.into_iter().any(|head| head != 0.0) {
+        network.gravity = Some(Signal::one());
     }
     components::find(&mut network, 2 * bladders.per_row);
     network
@@ -114,9 +148,9 @@ fn radius(tube: &WiringTube) -> f64 {
 /// All attachments, sorted by point; adds prescribed pressures to the ports.
 fn things<'a>(wiring: &'a Wiring<'a>, ports: &mut Vec<PressurePort>) -> Vec<(WiringPoint, Thing<'a>)> {
     let mut things = vec![];
-    for tube in wiring.chain_tubes.iter().chain(&wiring.tubes) {
+    for (order, tube) in wiring.chain_tubes.iter().chain(&wiring.tubes).enumerate() {
         let [from, to] = tube.points;
-        things.push((from, Thing::Tube { to, tube }));
+        things.push((from, Thing::Tube { to, tube, order }));
     }
     for port in wiring.chain_ports.iter().chain(&wiring.ports) {
         let name = port.name.map_or_else(|| wiring.label(port.at), str::to_owned);
@@ -198,6 +232,7 @@ fn nodes(
 /// Link from a bladder's end to a junction or a port.
 fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
     Link {
+        order: 0,
         from: cell,
         to: here,
         resistance: 0.0,
@@ -207,13 +242,15 @@ fn opening(cell: NetworkNode, here: NetworkNode) -> Link {
         tube: None,
         check_valve: None,
         pump: None,
+        head: 0.0,
     }
 }
 
 /// Adds a turbine between two points, with a bridge of check valves if it has one.
-fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usize, rectifier: &Rectifier) {
+fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usize, rectifier: &Rectifier, head: f64) {
     match rectifier {
         Rectifier::Ideal => network.links.push(Link {
+            order: 0,
             from,
             to,
             resistance: 1.0 / network.turbines[index].conductance,
@@ -223,12 +260,14 @@ fn join(network: &mut ResolvedNetwork, [from, to]: [NetworkNode; 2], index: usiz
             tube: None,
             check_valve: None,
             pump: None,
+            head,
         }),
         Rectifier::CheckValves(valve) => network.bridges.push(Bridge {
             from,
             to,
             turbine: index,
             valve: valve.into(),
+            head,
         }),
     }
 }

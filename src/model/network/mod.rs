@@ -9,6 +9,7 @@
 //! check_valve        check valves and relief valves
 //! ends               ends of tubes with inertia
 //! accumulator        vessels that store fluid under pressure
+//! pump               pressure of a pump over its flow
 //! ```
 
 mod accumulator;
@@ -17,6 +18,7 @@ mod check_valve;
 mod components;
 mod ends;
 mod graph;
+mod pump;
 pub mod tube;
 mod unsteady_friction;
 
@@ -31,6 +33,7 @@ pub use bladder_flow::AlongBladder;
 pub use check_valve::CheckValveLaw;
 pub use components::Component;
 pub use ends::TubeEnd;
+pub use pump::{PumpCharacteristic, PumpLaw};
 pub use tube::{FlowLaw, TubeFlow};
 pub use unsteady_friction::{BRANCHES, Ladder};
 
@@ -70,6 +73,8 @@ pub enum LinkKind {
 /// A check valve is in series with all of these, [E7].
 #[derive(Clone, Debug)]
 pub struct Link {
+    /// Place of a tube among those of the case, tubes of chains first; 0 for other links.
+    pub order: usize,
     /// Start of positive flow.
     pub from: NetworkNode,
     /// End of positive flow.
@@ -87,16 +92,9 @@ pub struct Link {
     /// Check valve.
     pub check_valve: Option<CheckValveLaw>,
     /// Pump.
-    pub pump: Option<LinearPump>,
-}
-
-/// A pump with a linear curve: its pressure decreases with flow.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LinearPump {
-    /// `p_pump`, pressure at zero flow [Pa].
-    pub pressure: Signal,
-    /// `R_pump`, decrease of the pressure per flow [Pa s/m^3].
-    pub resistance: f64,
+    pub pump: Option<PumpLaw>,
+    /// Hydrostatic pressure difference `ρ g (z_from - z_to)` [Pa], [E88].
+    pub head: f64,
 }
 
 impl Link {
@@ -174,6 +172,8 @@ pub struct Bridge {
     pub turbine: usize,
     /// Law of one valve.
     pub valve: CheckValveLaw,
+    /// Hydrostatic pressure difference between its terminals, as of a link [Pa].
+    pub head: f64,
 }
 
 /// A turbine: conductance and name.
@@ -206,6 +206,8 @@ pub struct ResolvedNetwork {
     pub bridges: Vec<Bridge>,
     /// Accumulators, each at its own junction.
     pub accumulators: Vec<AccumulatorElement>,
+    /// Part of gravity that acts on the fluid: 1, or the load factor of an equilibrium; none if all points are equally high.
+    pub gravity: Option<Signal>,
     /// True if prescribed volumes inject no flow: for equilibria.
     pub still: bool,
     /// True if time steps resolve prescribed volumes even without other reasons: for runs, which integrate their work.
@@ -225,16 +227,22 @@ pub struct ResolvedNetwork {
 }
 
 impl ResolvedNetwork {
-    /// Network of the bladders of a case; none for a dry beam.
+    /// Network of a case; none for a dry beam without network.
     ///
     /// # Errors
     /// Returns the errors of [`Wiring::from_case`].
     pub fn from_case(case: &Case) -> Result<Option<Self>> {
-        let Some((fluid, bladders)) = case.fluid.as_ref().zip(case.bladders.as_ref()) else {
+        let Some((fluid, bladders)) = case.fluid.as_ref().zip(case.network_bladders()) else {
             return Ok(None);
         };
         let factor = case.network.as_ref().map_or(1.0, |network| network.permeability_factor);
-        Ok(Some(graph::graph(&Wiring::from_case(case)?, factor, fluid, bladders)))
+        let wiring = Wiring::from_case(case)?;
+        Ok(Some(graph::graph(&wiring, [factor, case.gravity()], fluid, bladders)))
+    }
+
+    /// True if there are no bladders.
+    pub fn is_dry(&self) -> bool {
+        self.component_of_bladder.is_empty()
     }
 
     /// True if no port or source touches the component.
@@ -288,7 +296,7 @@ impl ResolvedNetwork {
 
     /// True if sources or pumps drive flow at a pressure that is unknown in advance.
     pub fn pumped(&self) -> bool {
-        !self.sources.is_empty() || self.links.iter().any(|link| link.pump.is_some())
+        !self.sources.is_empty() || self.gravity.is_some() || self.links.iter().any(|link| link.pump.is_some())
     }
 
     /// Upper bound of the pressure by sources [Pa]. Each fills one bladder alone, or drives its flow through all links
@@ -302,7 +310,10 @@ impl ResolvedNetwork {
                 Feed::Flow(flow) => flow.largest_integral(end),
                 Feed::Volume(volume) => volume.largest(end).value,
             };
-            let filled = volume / (wet.compliance() * wet.bladder_length);
+            let filled = match self.is_dry() {
+                true => volume / self.compliance_at(source.into, wet),
+                false => volume / (wet.compliance() * wet.bladder_length),
+            };
             let mut links = self.links.iter().filter(|l| inside(l.from) || inside(l.to));
             let lets_out = |l: &Link| matches!((l.from, l.to), (NetworkNode::Port(_), _) | (_, NetworkNode::Port(_)));
             let steady = |l: &Link| l.check_valve.is_none() && l.opening.is_none();

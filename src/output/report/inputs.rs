@@ -142,7 +142,7 @@ fn of_network<'a>(network: &'a ResolvedNetwork, all: &mut Vec<Input<'a>>) {
         if let Some(pump) = &link.pump {
             all.push(Input {
                 label: format!("pump of link {}", k + 1),
-                unit: "Pa",
+                unit: if pump.curve.is_none() { "Pa" } else { "1" },
                 signal: &pump.pressure,
             });
         }

@@ -123,9 +123,13 @@ fn wiring(case: &Case) -> Option<Value> {
             0.0 => "check valve".to_owned(),
             cracking => format!("check valve, opens at {}", q(cracking, "Pa")),
         });
-        let pump = tube
-            .pump
-            .map(|pump| format!("pump, {}", describe(&pump.pressure_pa, "Pa")));
+        let pump =
+            tube.pump
+                .and_then(|pump| Some((&pump.curve, pump.signal()?.1)))
+                .map(|(curve, signal)| match curve {
+                    None => format!("pump, {}", describe(signal, "Pa")),
+                    Some(_) => format!("pump with a curve, factor {}", describe(signal, "1")),
+                });
         let all: Vec<String> = [valve(tube.opening), check, pump].into_iter().flatten().collect();
         (!all.is_empty()).then(|| all.join("; "))
     };

@@ -166,7 +166,7 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     if wet.strain_energy.is_some() {
         z[means.nonlinear_area.clone()].copy_from_slice(&w.coupling.nonlinear_area);
     }
-    let cells = w.fluid.area.len() / (2 * wet.per_row);
+    let cells = w.fluid.area.len().checked_div(2 * wet.per_row).unwrap_or(1);
     // as many cells as before, or one for all cells of a bladder
     let merged = cells / fluid.cells_per_bladder;
     let mut unknown = l.area.start;

@@ -43,7 +43,9 @@ impl EffectScene<'_> {
     /// Upper bound of the deviation of flow from a slow change, for angular frequencies of `ω` [1/s] or more, relative
     /// to its drive. 1 if stored pressure is released.
     pub(super) fn departure_of_flow(&self, omega: f64) -> f64 {
-        let signals = self.inertia_ratio(omega);
+        let signals = self
+            .inertia_ratio_of(self.of_network.iter(), omega)
+            .max(self.inertia_ratio(omega));
         if self.begins_pressed(false) {
             signals.max(1.0)
         } else {
@@ -86,7 +88,7 @@ impl EffectScene<'_> {
                 let Some(component) = network.component_of(here) else {
                     continue;
                 };
-                all[component].through |= link.pump.is_some();
+                all[component].through |= link.pump.is_some() || link.head != 0.0;
                 if let NetworkNode::Port(port) = other {
                     let port = &network.ports[port];
                     let before = reached[component].get_or_insert(port);

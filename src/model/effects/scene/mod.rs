@@ -47,6 +47,8 @@ pub struct EffectScene<'a> {
     driven_along: Vec<SignalExcitation>,
     /// Paces of all other signals.
     others: Vec<SignalExcitation>,
+    /// Paces of the signals of a network without bladders.
+    of_network: Vec<SignalExcitation>,
     instability: OnceCell<Option<String>>,
     least: OnceCell<ResponseBounds>,
     tubes: OnceCell<Tubes>,
@@ -83,23 +85,20 @@ impl<'a> EffectScene<'a> {
                 *signal = Signal::Constant(0.0);
             }
         }
-        let mut others = vec![];
         let attachments = AttachedBody::all(case);
         let around = AmbientFluid::from_case(case);
-        each_signal(
-            &undriven,
-            &loads,
-            &attachments,
-            around.as_ref(),
-            wet.map(|wet| &wet.network),
-            |signal| {
-                others.extend(SignalExcitation::from_signal(
-                    signal,
-                    case.time.end_s,
-                    case.held_at_start(signal),
-                ));
-            },
-        );
+        let excitations = |network: Option<&ResolvedNetwork>| {
+            let mut all = vec![];
+            each_signal(&undriven, &loads, &attachments, around.as_ref(), network, |signal| {
+                let held = case.held_at_start(signal);
+                all.extend(SignalExcitation::from_signal(signal, case.time.end_s, held));
+            });
+            all
+        };
+        // a network without bladders does not move the beam; its signals are the last
+        let network = wet.map(|wet| &wet.network);
+        let others = excitations(network.filter(|network| !network.is_dry()));
+        let of_network = excitations(network).split_off(others.len());
         let unsheared = beta * beta * (section.bending_stiffness / mass).sqrt();
         let in_shear = FRAC_PI_2 / length * (section.shear_stiffness / mass).sqrt();
         let softened = 1.0 + (unsheared / in_shear).powi(2);
@@ -112,6 +111,7 @@ impl<'a> EffectScene<'a> {
             around,
             driven_along,
             others,
+            of_network,
             instability: OnceCell::new(),
             least: OnceCell::new(),
             tubes: OnceCell::new(),
@@ -256,7 +256,9 @@ impl<'a> EffectScene<'a> {
 
     /// True if upper and lower row are mirror images, with tubes, ports and start.
     pub fn mirrored(&self) -> bool {
-        let Some(wet) = self.wet else { return true };
+        let Some(wet) = self.wet.filter(|wet| wet.per_row > 0) else {
+            return true;
+        };
         let network = &wet.network;
         let plain = network.junctions.is_empty() && network.bridges.is_empty() && network.sources.is_empty();
         let oriented = |link: &Link| link.check_valve.is_some() || link.pump.is_some();
@@ -311,6 +313,7 @@ impl<'a> EffectScene<'a> {
             n.ports.iter().any(|p| pressed(&p.pressure))
                 || !n.sources.is_empty()
                 || !n.turbines.is_empty()
+                || n.gravity.is_some()
                 || n.links.iter().any(|link| link.pump.is_some())
                 || n.accumulators.iter().any(|one| one.start_pressure != 0.0)
         })

@@ -187,7 +187,7 @@ impl EffectScene<'_> {
         } else {
             fastest
         };
-        let bladders = match circuit.through {
+        let bladders = match circuit.through || wet.per_row == 0 {
             true => f64::INFINITY,
             false => 2.0 * wet.per_row as f64 * rate * circuit.least,
         };
