@@ -17,7 +17,9 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, NetworkNode};
 use crate::model::scales::DriveScales;
-use crate::model::{AmbientFluid, AttachedBody, DistributedLoad, ResolvedNetwork, Scales, Section, Wet, each_signal};
+use crate::model::{
+    AmbientFluid, AttachedBody, DistributedLoad, FrameRotation, ResolvedNetwork, Scales, Section, Wet, each_signal,
+};
 
 use pace::SignalExcitation;
 use response_bounds::ResponseBounds;
@@ -91,6 +93,7 @@ impl<'a> EffectScene<'a> {
             &loads,
             &attachments,
             around.as_ref(),
+            FrameRotation::from_case(case).as_ref(),
             wet.map(|wet| &wet.network),
             |signal| {
                 others.extend(SignalExcitation::from_signal(
@@ -137,6 +140,7 @@ impl<'a> EffectScene<'a> {
             &self.loads,
             &self.attachments,
             self.around.as_ref(),
+            FrameRotation::from_case(self.case).as_ref(),
             self.network(),
             visit,
         );
