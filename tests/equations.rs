@@ -21,7 +21,7 @@ use slcbeam::run::record::Memory;
 use slcbeam::run::summary::{Balances, Status};
 
 /// Tag, file, test.
-const INDEX: [(&str, &str, &str); 84] = [
+const INDEX: [(&str, &str, &str); 85] = [
     ("[E1]", "tests/equations.rs", "the_section_of_the_papers_beam"),
     ("[E2]", "tests/equations.rs", "areas_take_the_slope_of_their_sign"),
     (
@@ -261,6 +261,11 @@ const INDEX: [(&str, &str, &str); 84] = [
         "[E84]",
         "tests/laws/foundation.rs",
         "a_beam_on_a_foundation_bends_as_its_closed_form",
+    ),
+    (
+        "[E86]",
+        "tests/laws/rotating_frame.rs",
+        "a_beam_on_a_hub_moves_as_in_axes_at_rest",
     ),
 ];
 

@@ -15,6 +15,7 @@ mod jacobian;
 mod kinematics;
 mod nonlinear;
 mod reactions;
+mod rotating_frame;
 #[path = "../common/scene.rs"]
 mod scene;
 #[path = "../common/secant.rs"]
