@@ -264,6 +264,11 @@ const INDEX: &[(&str, &str, &str)] = &[
     ),
     ("[E85]", "tests/contact/circles.rs", "a_cantilever_lies_on_a_former"),
     (
+        "[E86]",
+        "tests/laws/rotating_frame.rs",
+        "a_beam_on_a_hub_moves_as_in_axes_at_rest",
+    ),
+    (
         "[E87]",
         "tests/laws/pump_curves.rs",
         "a_pump_works_where_its_curve_meets_the_tube",

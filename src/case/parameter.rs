@@ -12,7 +12,7 @@ use super::{parse, section};
 use crate::error::{Error, Result};
 
 /// Parts of a case that describe the physical model, not the computation.
-const PARTS: [&str; 13] = [
+const PARTS: [&str; 14] = [
     "beam",
     "fluid",
     "bladders",
@@ -24,6 +24,7 @@ const PARTS: [&str; 13] = [
     "foundation",
     "contacts",
     "surroundings",
+    "rotating_frame",
     "ends",
     "start",
 ];

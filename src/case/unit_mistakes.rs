@@ -35,6 +35,16 @@ pub fn unit<'n>(key: &str, value: &Value, known: impl Iterator<Item = &'n str> +
     if let Some(meant) = frequency.next() {
         return Some((meant.to_owned(), conversion(meant, value, 1.0 / TAU, "rad/s")));
     }
+    let mut rotation = known.clone().filter(|name| *name == "angular_velocity_rad_s");
+    let speeds = [
+        ("rpm", "rpm", TAU / 60.0),
+        ("hz", "Hz", TAU),
+        ("deg_s", "deg/s", TAU / 360.0),
+    ];
+    let speed = speeds.into_iter().find(|(end, ..)| key.ends_with(&format!("_{end}")));
+    if let Some((meant, (_, name, size))) = rotation.next().zip(speed) {
+        return Some((meant.to_owned(), conversion(meant, value, size, name)));
+    }
     if let Some(meant) = key
         .strip_suffix("_cst")
         .and_then(|stem| nearest(&format!("{stem}_pa_s"), of("pa_s")))

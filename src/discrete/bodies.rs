@@ -1,7 +1,8 @@
 //! Attached bodies with rotary inertia, on a mesh.
 
 use super::attached::share;
-use super::residual::solid;
+use super::ledger::EnergyRate;
+use super::residual::{rotating_frame, solid};
 use super::{BeamMesh, System, TimeData, Workspace};
 use crate::case::{ResolvedEnd, Rotation};
 use crate::model::{AttachedBody, Kinematics};
@@ -156,13 +157,26 @@ impl MeshedBody {
             let second = Planar::zero();
             return Arm { first, second };
         }
-        let sections = &w.shape.sections.angle;
-        let angle = self.mean(|cell| sections.get(cell).copied().unwrap_or(w.shape.d3[cell].x));
         let second = Planar::constant(self.offset) * -1.0;
         Arm {
-            first: first + second.times(angle),
+            first: first + second.times(self.small_angle(w)),
             second,
         }
+    }
+
+    /// Angle for small rotations.
+    fn small_angle<T: Scalar>(&self, w: &Workspace<T>) -> T {
+        let sections = &w.shape.sections.angle;
+        self.mean(|cell| sections.get(cell).copied().unwrap_or(w.shape.d3[cell].x))
+    }
+
+    /// Position of the mass center relative to the place, `q` [m].
+    fn center<T: Scalar>(&self, system: &System, w: &Workspace<T>, arm: &Arm<T>) -> Planar<T> {
+        if system.model.kinematics == Kinematics::FiniteRotation {
+            return -arm.second;
+        }
+        let angle = self.small_angle(w);
+        Planar::constant(self.offset) + (arm.first - arm.second.times(angle * 0.5)).times(angle)
     }
 
     /// `φ_t` of the body's cells.
@@ -205,15 +219,35 @@ impl MeshedBody {
         if moves && self.inertia > 0.0 {
             couple += self.speeding(system, w) * self.inertia;
         }
-        if self.is_eccentric() {
-            let arm = self.arm(system, w);
-            couple -= arm.first.dot(Planar::constant(now.point_force[self.number].weight));
-            if moves {
-                let own = self.between(&w.motion.a) * self.mass - self.force(system, w);
-                couple += arm.first.dot(own);
-            }
+        if self.is_eccentric() || system.model.frame.is_some() {
+            couple -= self.given_couple(system, now, w);
+        }
+        if self.is_eccentric() && moves {
+            let own = self.between(&w.motion.a) * self.mass - self.force(system, w);
+            couple += self.arm(system, w).first.dot(own);
         }
         couple
+    }
+
+    /// Couple of the weight and of a rotating frame, in the direction of growing φ [N m].
+    fn given_couple<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> T {
+        let arm = self.arm(system, w);
+        let weight = Planar::constant(now.point_force[self.number].weight);
+        let place = |node| rotating_frame::place(system, w, node);
+        let Some((before, after)) = place(self.node).zip(place(self.node + 1)) else {
+            return arm.first.dot(weight);
+        };
+        let at = before * self.hats[0] + after * self.hats[1] + self.center(system, w, &arm);
+        let v = self.between(&w.motion.v) + arm.first.times(self.turning(system, w));
+        let force = weight + rotating_frame::acceleration(system, now, at, v) * self.mass;
+        arm.first.dot(force) - T::constant(self.inertia * now.frame_rotation.rate)
+    }
+
+    /// Additional force of a rotating frame at the place, beyond that on a mass without offset [N].
+    fn force_of_frame<T: Scalar>(&self, system: &System, now: &TimeData, w: &Workspace<T>) -> Planar<T> {
+        let arm = self.arm(system, w);
+        let v = arm.first.times(self.turning(system, w));
+        rotating_frame::acceleration(system, now, self.center(system, w, &arm), v) * self.mass
     }
 
     /// Adds the impulses [kg m/s] of nodes by velocity jumps.
@@ -260,23 +294,22 @@ impl MeshedBody {
         (arm.first * (self.mass * turning), about)
     }
 
-    /// Power of the weight beyond that of a mass at the place [W].
-    pub fn weight_power(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
-        let Motion { arm, turning, .. } = self.motion(system, w);
-        arm.first.dot(now.point_force[self.number].weight) * turning
+    /// Power of the couple by weight and frame [W].
+    pub fn power_of_couple(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
+        self.given_couple(system, now, w) * self.turning(system, w)
     }
 
     /// External terms of the balances: a force in the balance of momentum of nodes, and a torque about the place in the balance of
-    /// angular momentum. The torque is that of the weight, and of the motion under small rotations [N, N m].
+    /// angular momentum. The torque is that of weight and frame, and of the motion under small rotations [N, N m].
     pub fn outside(&self, system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f64>, f64) {
         let Motion { arm, v, turning } = self.motion(system, w);
-        let of_weight = arm.first.dot(now.point_force[self.number].weight);
+        let given = self.given_couple(system, now, w);
         if !system.layout.inertia {
-            return (Planar::default(), of_weight);
+            return (Planar::default(), given);
         }
         let moved = v + arm.first * turning;
         let of_motion = self.mass * turning * arm.second.dot(moved);
-        (self.force(system, w), of_weight + of_motion)
+        (self.force(system, w), given + of_motion)
     }
 
     /// Interpolates values of the two adjacent nodes at the place.
@@ -285,15 +318,23 @@ impl MeshedBody {
     }
 }
 
-/// Passes the force of each eccentric body on a node to `each`.
+/// Passes the forces of each eccentric body on a node to `each`, with the balance entry of their work; none for stored energy.
 #[inline]
-pub fn forces<T: Scalar>(system: &System, w: &Workspace<T>, node: usize, mut each: impl FnMut(Planar<T>)) {
-    if !system.layout.inertia {
-        return;
-    }
+pub fn forces<T: Scalar>(
+    system: &System,
+    now: &TimeData,
+    w: &Workspace<T>,
+    node: usize,
+    each: &mut impl FnMut(Option<EnergyRate>, Planar<T>),
+) {
     for body in system.bodies.iter().filter(|body| body.is_eccentric()) {
-        if body.node == node || body.node + 1 == node {
-            each(body.force(system, w) * body.hats[node - body.node]);
+        let near = body.node == node || body.node + 1 == node;
+        if near && system.layout.inertia {
+            each(None, body.force(system, w) * body.hats[node - body.node]);
+        }
+        if near && system.model.frame.is_some() {
+            let force = body.force_of_frame(system, now, w);
+            each(Some(EnergyRate::Loads), force * body.hats[node - body.node]);
         }
     }
 }

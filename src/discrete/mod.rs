@@ -80,11 +80,12 @@ pub struct System {
     pub masses: Vec<f64>,
     /// Lengths over which mass and surroundings act on the nodes [m].
     pub lengths: Vec<f64>,
-    /// True if only loads, ends and sections act on nodes: the beam has no surroundings, attachments or contacts.
+    /// True if only loads, ends and sections act on nodes: the beam has no surroundings, rotating frame, attachments
+    /// or contacts.
     pub stands_alone: bool,
     /// True if a distributed load turns with the beam.
     pub followed: bool,
-    /// True if any load is a distributed moment.
+    /// True if any load is a distributed moment, or the frame rotates sections with rotary inertia.
     pub has_moments: bool,
     /// True if there is material damping.
     pub damped: bool,
@@ -284,7 +285,8 @@ impl System {
             .collect();
         let has_moments = loads
             .iter()
-            .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ));
+            .any(|l| matches!(l.kind, LoadKind::MomentX | LoadKind::MomentZ))
+            || (model.frame.is_some() && model.effects.has(Effect::RotaryInertia));
         let followed = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Normal | LoadKind::Tangential));
@@ -297,8 +299,9 @@ impl System {
         let foundation = sampled_load::foundation(&model, &mesh);
         let nothing_attached =
             !followed && foundation.is_empty() && attached.is_empty() && bodies.is_empty() && touching.is_empty();
+        let surrounded = model.surroundings.is_some() || model.frame.is_some();
         Self {
-            stands_alone: nothing_attached && !model.section.resists_motion() && model.surroundings.is_none(),
+            stands_alone: nothing_attached && !model.section.resists_motion() && !surrounded,
             model,
             probes: MeshProbe::all(case, &mesh),
             mesh,

@@ -112,6 +112,8 @@ pub struct TimeData {
     pub stream: Planar<f64>,
     /// Rate of the stream velocity [m/s^2].
     pub stream_rate: Planar<f64>,
+    /// Angular velocity of the rotating frame [rad/s]; zero without one.
+    pub frame_rotation: Jet,
     /// Normal forces from loads alone, by statics; empty if the beam can stretch.
     pub statics: Statics,
     /// Conductance of each link [m^3/(s Pa)].
@@ -154,6 +156,7 @@ impl TimeData {
             point_force: vec![PointForces::default(); system.model.attachments.len()],
             stream: Planar::default(),
             stream_rate: Planar::default(),
+            frame_rotation: Jet::default(),
             statics: Statics::new(system),
             conductance: vec![0.0; links],
             resistance: vec![0.0; links],
@@ -255,6 +258,9 @@ impl TimeData {
             let [x, z] = [x, z].map(jet);
             self.stream = Planar::new(x.value, z.value);
             self.stream_rate = Planar::new(x.rate, z.rate);
+        }
+        if let Some(frame) = &system.model.frame {
+            self.frame_rotation = jet(&frame.angular_velocity);
         }
         self.statics.update(system, self.frame(1), clock);
         self.network(system, clock, first);

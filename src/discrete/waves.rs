@@ -72,7 +72,8 @@ pub fn least_damping_ratio(system: &System) -> f64 {
 }
 
 fn of_solid(system: &System) -> f64 {
-    if !system.attached.is_empty() || !system.touching.is_empty() || !system.foundation.is_empty() {
+    let attached = !system.attached.is_empty() || !system.touching.is_empty() || !system.foundation.is_empty();
+    if attached || system.model.frame.is_some() {
         return 0.0;
     }
     let s = &system.model.section;

@@ -6,7 +6,9 @@ use std::f64::consts::PI;
 use nalgebra::Matrix2;
 
 use super::network::LinkKind;
-use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, each_signal, parametric_growth, relaxation_times};
+use super::{
+    AmbientFluid, AttachedBody, DistributedLoad, FrameRotation, Model, each_signal, parametric_growth, relaxation_times,
+};
 use crate::case::relaxation::{self, dynamic_modulus};
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, ChainEnd};
@@ -256,6 +258,7 @@ pub fn forcing_frequency(case: &Case) -> Option<f64> {
         &loads,
         &AttachedBody::all(case),
         around.as_ref(),
+        FrameRotation::from_case(case).as_ref(),
         None,
         &mut hear,
     );

@@ -1,9 +1,10 @@
 //! Distributed loads.
 
 use super::Section;
-use crate::case::schema::{Distributed, Load as Written};
+use crate::case::schema::{Case, Distributed, Load as Written};
 use crate::functions::profile::Profile;
 use crate::functions::signals::Signal;
+use crate::numerics::Planar;
 
 /// Quantity prescribed by a load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,6 +49,25 @@ pub struct DistributedLoad {
     pub signal: Signal,
     /// Shape along the beam.
     pub profile: Profile,
+}
+
+/// Rotation of the axes of a case.
+#[derive(Clone, Debug)]
+pub struct FrameRotation {
+    /// Axis of rotation [m].
+    pub center: Planar<f64>,
+    /// Angular velocity in the sense of growing φ [rad/s].
+    pub angular_velocity: Signal,
+}
+
+impl FrameRotation {
+    /// Rotation of the axes of a case, if given.
+    pub fn from_case(case: &Case) -> Option<Self> {
+        case.rotating_frame.as_ref().map(|written| Self {
+            center: Planar::new(written.center_m[0], written.center_m[1]),
+            angular_velocity: written.angular_velocity_rad_s.clone(),
+        })
+    }
 }
 
 impl DistributedLoad {

@@ -48,7 +48,7 @@ pub use contact::{ContactFace, ContactLaw};
 pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
-pub use loads::DistributedLoad;
+pub use loads::{DistributedLoad, FrameRotation};
 pub use network::{AlongBladder, ResolvedNetwork};
 pub use scales::Scales;
 pub use signals::each_signal;
@@ -86,6 +86,8 @@ pub struct Model {
     pub relaxation: Vec<Branch>,
     /// Ambient fluid.
     pub surroundings: Option<AmbientFluid>,
+    /// Rotation of the axes.
+    pub frame: Option<FrameRotation>,
     /// Fluid and bladders; none for a dry beam.
     pub wet: Option<Wet>,
     /// Characteristic size of every kind of unknown.
@@ -206,6 +208,7 @@ impl Model {
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),
             surroundings: AmbientFluid::from_case(case),
+            frame: FrameRotation::from_case(case),
             wet,
             scales,
             still: false,

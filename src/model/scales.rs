@@ -108,6 +108,23 @@ impl DriveScales {
                 d.hear(&l.signal, end);
             }
         }
+        if let Some(frame) = &case.rotating_frame {
+            let most = frame.angular_velocity_rad_s.largest(end);
+            let speed = most.value.max(case.held_at_start(&frame.angular_velocity_rad_s).abs());
+            let [across, along, distance] = frame.reach(length);
+            let (m, square) = (section.mass_per_length, speed * speed);
+            let attached: f64 = case.attachments.iter().map(|one| one.mass_kg).sum();
+            let [transverse, axial] = [
+                square * across + most.rate * distance,
+                square * along + most.rate * across,
+            ];
+            d.transverse_load += m * transverse;
+            d.axial_load += m * axial;
+            d.transverse_force += attached * transverse;
+            d.axial_force += attached * axial;
+            d.frequency = d.frequency.max(speed);
+            d.hear(&frame.angular_velocity_rad_s, end);
+        }
         for attachment in AttachedBody::all(case) {
             for force in &attachment.forces {
                 if force.acting == ForceDirection::Weight {

@@ -1,12 +1,12 @@
 //! Iteration over all signals of a model, and their replacement.
 
-use super::{AmbientFluid, AttachedBody, DistributedLoad, Model, ResolvedNetwork};
+use super::{AmbientFluid, AttachedBody, DistributedLoad, FrameRotation, Model, ResolvedNetwork};
 use crate::case::{ResolvedEnd, Rotation, Translation};
 use crate::functions::{Jet, Signal, SmoothTime};
 
 impl Model {
-    /// Replaces all signals: those of valves by `opening`; those of ends, loads, streams, ports, sources and pumps by
-    /// `load`.
+    /// Replaces all signals: those of valves by `opening`; those of ends, loads, streams, a frame, ports, sources and pumps
+    /// by `load`.
     pub fn replace_signals(&mut self, load: impl Fn(&Signal) -> Signal, opening: impl Fn(&Signal) -> Signal) {
         self.each_signal_mut(|signal, valve| *signal = if valve { opening(signal) } else { load(signal) });
     }
@@ -36,6 +36,9 @@ impl Model {
         forces.for_each(|force| replace(&mut force.signal));
         let stream = self.surroundings.as_mut().and_then(|around| around.stream.as_mut());
         stream.into_iter().flatten().for_each(&mut replace);
+        self.frame
+            .iter_mut()
+            .for_each(|frame| replace(&mut frame.angular_velocity));
         if let Some(wet) = &mut self.wet {
             let network = &mut wet.network;
             network.ports.iter_mut().for_each(|port| replace(&mut port.pressure));
@@ -70,18 +73,20 @@ impl Model {
             &self.loads,
             &self.attachments,
             self.surroundings.as_ref(),
+            self.frame.as_ref(),
             self.wet.as_ref().map(|wet| &wet.network),
             visit,
         );
     }
 }
 
-/// Visits all signals: of ends, loads, attachments, a stream, valves, ports, sources and pumps.
+/// Visits all signals: of ends, loads, attachments, a stream, a frame, valves, ports, sources and pumps.
 pub fn each_signal(
     ends: &[ResolvedEnd; 2],
     loads: &[DistributedLoad],
     attachments: &[AttachedBody],
     around: Option<&AmbientFluid>,
+    frame: Option<&FrameRotation>,
     network: Option<&ResolvedNetwork>,
     mut visit: impl FnMut(&Signal),
 ) {
@@ -107,6 +112,7 @@ pub fn each_signal(
     }
     let stream = around.and_then(|around| around.stream.as_ref());
     stream.into_iter().flatten().for_each(&mut visit);
+    frame.iter().for_each(|frame| visit(&frame.angular_velocity));
     if let Some(network) = network {
         network
             .links

@@ -5,8 +5,8 @@ use crate::discrete::time_data::PointForces;
 use crate::numerics::Planar;
 
 /// Number of kinds of excitation: distributed loads along x and z and their moments; forces at ends and points along x and z;
-/// follower forces; moments and slopes of ends; motions of ends along x and z; pressures and flows of ports.
-pub(super) const KINDS: usize = 10;
+/// follower forces; moments and slopes of ends; motions of ends along x and z; pressures and flows of ports; rotation of the frame.
+pub(super) const KINDS: usize = 11;
 
 /// Magnitude of each kind of excitation at an instant.
 pub(super) fn sizes(now: &TimeData) -> [f64; KINDS] {
@@ -32,5 +32,6 @@ pub(super) fn sizes(now: &TimeData) -> [f64; KINDS] {
         end(&|k| ends[k].u[0].map_or(0.0, |u| u.value)),
         end(&|k| ends[k].u[1].map_or(0.0, |u| u.value)),
         largest(&now.port_pressure).max(largest(&now.source_flow)),
+        now.frame_rotation.value.abs(),
     ]
 }

@@ -1,4 +1,4 @@
-//! Further effects of a scene: what is attached, what is around, a solid that relaxes, is curved at rest or shears, fluid that is compressed.
+//! Further effects of a scene: what is attached, what is around, axes that turn, a solid that relaxes, is curved at rest or shears, fluid that is compressed.
 
 use std::f64::consts::PI;
 
@@ -47,6 +47,33 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
     }
     if r.one_in(4) {
         case["foundation"] = json!({"stiffness_x_n_m2": short(b.ei / b.length.powi(4) * r.log(1.0, 1e3))});
+    }
+    if !around && r.one_in(4) {
+        rotating_frame(r, b, case);
+    }
+}
+
+/// A hub that turns up to a few times as fast as the beam swings; what would not turn with it is taken away.
+fn rotating_frame(r: &mut Random, b: &Beam, case: &mut Value) {
+    let speed = (b.ei / b.mass).sqrt() / (b.length * b.length) * r.log(0.03, 6.0);
+    let hub = json!([
+        short(b.length * r.between(-0.2, 0.2)),
+        short(-b.length * r.between(0.0, 1.0))
+    ]);
+    let turns = match r.below(3) {
+        0 => short(speed * r.sign()),
+        _ => signals::motion(r, b.times, speed),
+    };
+    case["rotating_frame"] = json!({"angular_velocity_rad_s": turns});
+    if r.one_in(2) {
+        case["rotating_frame"]["center_m"] = hub;
+    }
+    let fields = case.as_object_mut().expect("a case");
+    fields.remove("formulation");
+    let loads = fields["loads"].as_array_mut().expect("loads");
+    loads.retain(|load| load.get("gravity").is_none());
+    if let Some(damping) = case["beam"].get_mut("damping").and_then(Value::as_object_mut) {
+        damping.remove("drag_n_s_m2");
     }
 }
 

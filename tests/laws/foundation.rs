@@ -15,12 +15,12 @@ use slcbeam::run::summary::Status;
 
 use crate::differences::worst_difference;
 
-fn parse(value: &Value) -> Case {
+pub fn parse(value: &Value) -> Case {
     case::parse(&value.to_string(), Path::new("mine.json"), Path::new(""), &[]).unwrap()
 }
 
 /// A beam of unit stiffness, length and mass per length.
-fn unit(cells: usize, ends: &Value, more: &Value) -> Value {
+pub fn unit(cells: usize, ends: &Value, more: &Value) -> Value {
     let mut case = json!({
         "name": "unit", "ends": ends,
         "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4,
@@ -35,7 +35,7 @@ fn unit(cells: usize, ends: &Value, more: &Value) -> Value {
 }
 
 /// Value of a column in the equilibrium under all loads.
-fn at_rest(case: &Value, name: &str) -> f64 {
+pub fn at_rest(case: &Value, name: &str) -> f64 {
     let case = parse(case);
     let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
     assert!(path.fault.is_none(), "{:?}", path.fault);
@@ -45,7 +45,7 @@ fn at_rest(case: &Value, name: &str) -> f64 {
     path.last().row[at.unwrap()]
 }
 
-fn order(errors: [f64; 2]) -> f64 {
+pub fn order(errors: [f64; 2]) -> f64 {
     (errors[0] / errors[1]).abs().log2()
 }
 

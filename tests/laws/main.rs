@@ -18,6 +18,7 @@ mod network;
 mod nonlinear;
 mod pump_curves;
 mod reactions;
+mod rotating_frame;
 #[path = "../common/scene.rs"]
 mod scene;
 #[path = "../common/secant.rs"]

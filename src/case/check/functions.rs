@@ -1,4 +1,4 @@
-//! Checks of functions of time and place: valid tables, values in range, no jumps of motions, streams or volumes.
+//! Checks of functions of time and place: valid tables, values in range, no jumps of motions, streams, rotations or volumes.
 
 use super::time::END;
 use crate::case::faults::Violations;
@@ -22,6 +22,7 @@ const STEEPEST: f64 = 1e8;
 enum Role {
     Motion,
     Stream,
+    Rotation,
     Volume,
     Opening,
     Other,
@@ -33,6 +34,7 @@ impl Role {
         match self {
             Self::Motion => Some(["motion", "velocity"]),
             Self::Stream => Some(["stream", "force"]),
+            Self::Rotation => Some(["angular velocity", "angular acceleration"]),
             Self::Volume => Some(["volume", "flow"]),
             Self::Opening | Self::Other => None,
         }
@@ -53,7 +55,8 @@ pub fn overshoots(case: &Case) -> Vec<(String, f64)> {
     signals.chain(profiles).filter(|(_, by)| *by > SWINGS).collect()
 }
 
-/// All signals, each with its pointer and a flag: true if the signal may jump. Motions, streams and volumes must not jump.
+/// All signals, each with its pointer and a flag: true if the signal may jump. Motions, streams, rotations and volumes must
+/// not jump.
 pub fn controls(case: &Case) -> Vec<(String, bool, &Signal)> {
     let all = signals(case).into_iter();
     all.map(|(at, role, signal)| (at, role.of_jumps().is_none(), signal))
@@ -121,6 +124,10 @@ fn signals(case: &Case) -> Vec<(String, Role, &Signal)> {
     }
     for (key, signal) in case.surroundings.iter().flat_map(|around| around.stream()) {
         all.push((format!("/surroundings/{key}"), Role::Stream, signal));
+    }
+    if let Some(frame) = &case.rotating_frame {
+        let at = "/rotating_frame/angular_velocity_rad_s".to_string();
+        all.push((at, Role::Rotation, &frame.angular_velocity_rad_s));
     }
     let Some(network) = &case.network else {
         return all;

@@ -13,6 +13,7 @@ mod plausible;
 mod probes;
 pub mod rarely_intended;
 mod relaxation;
+mod rotating_frame;
 mod size;
 mod spans;
 mod start;
@@ -28,7 +29,7 @@ use crate::error::{Code, Violation};
 type Rule = fn(&Case, &mut Violations);
 
 /// All rules, each with the sections of the case that it compares.
-const RULES: [(Rule, &[&str]); 19] = [
+const RULES: &[(Rule, &[&str])] = &[
     (name, &[]),
     (plausible::sizes, &[]),
     (plausible::proportions, &["beam", "tubes", "network"]),
@@ -43,13 +44,23 @@ const RULES: [(Rule, &[&str]); 19] = [
     (contacts::check, &[]),
     (probes::check, &[]),
     (relaxation::check, &["beam"]),
+    (rotating_frame::check, &["beam", "loads", "surroundings"]),
     (probes::step, &["step_response", "time"]),
     (functions::check, &["time"]),
     (start::check, &["beam", "bladders", "ends", "start", "time"]),
     (time::check, &[]),
     (
         strength::check,
-        &["beam", "bladders", "network", "loads", "ends", "start", "time"],
+        &[
+            "beam",
+            "bladders",
+            "network",
+            "loads",
+            "ends",
+            "start",
+            "time",
+            "rotating_frame",
+        ],
     ),
     (coefficients::check, &["beam", "bladders", "tubes"]),
     (spans::axes, &["beam", "bladders", "mesh", "spans"]),

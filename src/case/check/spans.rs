@@ -95,6 +95,13 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
             }
         }
     }
+    if case.beam.line_height() != 0.0
+        && let Some(k) = case.contacts.iter().position(|contact| contact.reach_m.is_none())
+    {
+        let what = "contact of a beam whose line is not at mid-height";
+        let fault = Violation::new(Code::Together, format!("/contacts/{k}"), what);
+        faults.push(fault.hint("give reach_m: the distance of the touching surface from the beam's line"));
+    }
     if !spans::is_eccentric(case) {
         return;
     }

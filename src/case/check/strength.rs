@@ -76,6 +76,7 @@ struct Bounds {
     force_along: Bound,
     moment_along: Bound,
     body: Bound,
+    rotation: Bound,
     curvature: Bound,
     stream: Bound,
 }
@@ -128,6 +129,13 @@ impl Bounds {
                 "first moments per length are in N",
             ),
             body: bound(force / mass, &BEAM, "m/s^2", strain, "accelerations are in m/s^2"),
+            rotation: bound(
+                force / mass,
+                &BEAM,
+                "m/s^2 at the far end of the beam",
+                "the acceleration that strains the beam by 1000 %",
+                "angular velocities are in rad/s; 1 rpm is 0.1047 rad/s",
+            ),
             curvature: bound(
                 2.0 * MOST / beam.height_m,
                 &BEAM[1..2],
@@ -212,6 +220,14 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     if let Some(around) = &case.surroundings {
         for (key, signal) in around.stream() {
             look(format!("/surroundings/{key}"), size_of(signal, end), &bounds.stream);
+        }
+    }
+    if let Some(frame) = &case.rotating_frame {
+        let most = frame.angular_velocity_rad_s.reaches(end);
+        let pointer = "/rotating_frame/angular_velocity_rad_s";
+        let [.., distance] = frame.reach(case.beam.length_m);
+        for acceleration in [most.value * most.value * distance, most.rate * distance] {
+            look(pointer.into(), acceleration.min(f64::MAX), &bounds.rotation);
         }
     }
     for (i, attachment) in case.attachments.iter().enumerate() {

@@ -74,6 +74,30 @@ impl Load {
     }
 }
 
+/// Axes that turn in the plane of the beam: lengths, directions, ends, springs and walls of the case refer to them and turn with them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotatingFrame {
+    /// Axis of rotation, x and z; absent: the root of the straight beam [m].
+    #[serde(default, skip_serializing_if = "RotatingFrame::is_at_root")]
+    pub center_m: [f64; 2],
+    /// Angular velocity, without jumps; above 0 it turns the frame as a growing phi turns the beam, from z to x [rad/s].
+    pub angular_velocity_rad_s: Signal,
+}
+
+impl RotatingFrame {
+    fn is_at_root(center: &[f64; 2]) -> bool {
+        *center == [0.0; 2]
+    }
+
+    /// Largest distance of the straight beam from the axis across, along, and in any direction [m].
+    pub fn reach(&self, length: f64) -> [f64; 3] {
+        let [x, z] = self.center_m;
+        let along = z.abs().max((length - z).abs());
+        [x.abs(), along, x.hypot(along)]
+    }
+}
+
 /// `signal(t) * profile(theta/l_s)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -98,6 +98,9 @@ pub struct Case {
     /// Medium around the beam. Absent: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub surroundings: Option<Surroundings>,
+    /// Rotation of the axes of the case. Absent: axes at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotating_frame: Option<RotatingFrame>,
     /// Conditions at the root (theta = 0) and the tip (theta = length).
     pub ends: Ends,
     /// State at t = 0; what is not given is zero.

@@ -1,6 +1,7 @@
 //! Reactions of driven ends by two methods, whose difference is a mesh error.
 
 use crate::case::schema::Effect;
+use crate::discrete::residual::rotating_frame;
 use crate::discrete::{CompleteState, MeshedAttachment, MeshedBody, System, TimeData};
 use crate::model::Kinematics;
 
@@ -47,7 +48,10 @@ pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
             }
             let inertia = if l.inertia { system.sections.mass[node] } else { 0.0 };
             let carried = (w.motion.a[node] * inertia + w.motion.v[node] * section.drag) * system.lengths[node];
-            let half_cell = carried - now.force[node] * length;
+            let mut half_cell = carried - now.force[node] * length;
+            if let Some(force) = rotating_frame::force(system, now, &w, node) {
+                half_cell -= force * (system.sections.mass[node] * system.lengths[node] / system.masses[node]);
+            }
             let n = &w.forces.section;
             let reaction = half_cell[axis] + outward * n[near][axis];
             let difference = reaction - outward * (n[near][axis] + beyond * (n[near][axis] - n[next][axis]));

@@ -69,7 +69,7 @@ pub fn flows(
 /// Work and torque of bodies that rotate with the beam; their own momentum is not an external force.
 fn bodies(system: &System, now: &TimeData, w: &Workspace<f64>, out: &mut Rates) {
     for body in &system.bodies {
-        add(out, EnergyRate::Loads, body.weight_power(system, now, w));
+        add(out, EnergyRate::Loads, body.power_of_couple(system, now, w));
         let (force, torque) = body.outside(system, now, w);
         let arm = body.at_place(|i| arms(system, w, i).0);
         let arm_rate = body.at_place(|i| arms(system, w, i).1);

@@ -10,6 +10,7 @@ pub mod fourth_order;
 pub mod momentum;
 pub mod nonlinear;
 pub mod relaxation;
+pub mod rotating_frame;
 pub mod rows;
 pub mod solid;
 pub mod timoshenko;

@@ -1,6 +1,6 @@
 //! Momentum balance of nodes, and the forces on them.
 
-use super::{ambient_fluid, fourth_order};
+use super::{ambient_fluid, fourth_order, rotating_frame};
 use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace, bodies, contact_points};
@@ -118,6 +118,9 @@ pub fn outer_forces<T: Scalar>(
         );
         each(Some(EnergyRate::Loads), force);
     }
+    if let Some(force) = rotating_frame::force(system, now, w, node) {
+        each(Some(EnergyRate::Loads), force);
+    }
     if let Some(&[across, along]) = system.foundation.get(node) {
         let u = w.motion.u[node];
         each(None, Planar::new(u.x * -across, u.z * -along));
@@ -129,7 +132,7 @@ pub fn outer_forces<T: Scalar>(
         each(Some(EnergyRate::Damping), attached.dashpot(w) * weight);
     }
     if !system.bodies.is_empty() {
-        bodies::forces(system, w, node, |force| each(None, force));
+        bodies::forces(system, now, w, node, &mut each);
     }
     if !system.touching.is_empty() {
         contact_points::forces(system, w, node, &mut each);

@@ -210,14 +210,19 @@ pub fn normal_force<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T
     force
 }
 
-/// Couple per length of distributed moments: `d3·m b1`, for small rotations `m b1_z + g φ m b1_x`, `[E26]`.
+/// Couple per length of distributed moments: `d3·m b1`, for small rotations `m b1_z + g φ m b1_x`, `[E26]`; and of a rotating frame,
+/// `m y11 W'`.
 #[inline]
 pub fn couple<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, c: usize) -> T {
-    match system.model.kinematics {
+    let given = match system.model.kinematics {
         Kinematics::Bar => T::zero(),
         Kinematics::Linear => T::constant(now.moment[c].z),
         Kinematics::SmallRotation => w.shape.d3[c].x * now.moment[c].x + now.moment[c].z,
         Kinematics::FiniteRotation => w.shape.d3[c].x * now.moment[c].x + w.shape.d3[c].z * now.moment[c].z,
+    };
+    match system.model.frame.is_some() && system.model.effects.has(Effect::RotaryInertia) {
+        true => given + system.sections.rotary[c] * now.frame_rotation.rate,
+        false => given,
     }
 }
 

@@ -238,7 +238,9 @@ impl Display for Keeps {
             Self::Dissipation => "it is the only dissipation of the fluid",
             Self::UnevenStart => "the initial pressure differs along a bladder",
             Self::FiniteStrain => "the section is nonlinear at these loads",
-            Self::Attachments => "no bound is known for attachments, foundations and loads that turn with the beam",
+            Self::Attachments => {
+                "no bound is known for attachments, foundations, rotating frames and loads that turn with the beam"
+            }
             Self::Contacts => "no bound is known for walls",
             Self::Gas => "the fluid is a gas",
             Self::Surroundings => "no bound is known for ambient fluid",

@@ -216,7 +216,7 @@ impl<'a> Chooser<'a> {
         match effect {
             Effect::TransverseMotion => obstacles::transverse_motion(case),
             Effect::FiniteRotation => obstacles::finite_rotation(case),
-            Effect::AxialForceOnBending => obstacles::axial_force_on_bending(turning),
+            Effect::AxialForceOnBending => obstacles::axial_force_on_bending(case, turning),
             Effect::AxialStretch => obstacles::axial_stretch(case, across, turning),
             Effect::SolidInertia => obstacles::solid_inertia(case),
             Effect::AxialInertia => obstacles::axial_inertia(case, turning),
@@ -250,8 +250,10 @@ impl<'a> Chooser<'a> {
             None => choice,
         };
         let case = self.case;
-        let unbounded =
-            !case.attachments.is_empty() || case.foundation.is_some() || case.loads.iter().any(Load::follows);
+        let unbounded = !case.attachments.is_empty()
+            || case.foundation.is_some()
+            || case.rotating_frame.is_some()
+            || case.loads.iter().any(Load::follows);
         match effect {
             _ if unbounded && by_motion(effect) => kept(Keeps::Attachments),
             _ if !self.case.contacts.is_empty() && by_motion(effect) => kept(Keeps::Contacts),

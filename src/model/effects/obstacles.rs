@@ -45,6 +45,9 @@ pub fn transverse_motion(case: &Case) -> Option<Obstacle> {
             HINT,
         );
     }
+    if case.rotating_frame.is_some() {
+        return obstacle("the rotating frame accelerates the beam across", HINT);
+    }
     let pushed = |a: &Attachment| {
         let across = [&a.force_x_n, &a.force_normal_n];
         across.into_iter().flatten().any(|signal| !signal.is_zero())
@@ -105,8 +108,12 @@ pub fn finite_rotation(case: &Case) -> Option<Obstacle> {
     )
 }
 
-/// Obstacle: finite rotations, which turn the normal force with the beam.
-pub fn axial_force_on_bending(finite_rotation: bool) -> Option<Obstacle> {
+/// Obstacle: a rotating frame, or finite rotations, which turn the normal force with the beam.
+pub fn axial_force_on_bending(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
+    if case.rotating_frame.is_some() {
+        let what = "centrifugal forces of the rotating frame stiffen the beam by its normal force";
+        return obstacle(what, "leave axial_force_on_bending on");
+    }
     let turns = finite_rotation.then_some("finite_rotation is on, which rotates the normal force with the beam")?;
     obstacle(
         turns,
@@ -157,6 +164,10 @@ pub fn axial_inertia(case: &Case, finite_rotation: bool) -> Option<Obstacle> {
             "switch finite_rotation off too, or leave axial_inertia on",
         );
     }
+    if case.rotating_frame.is_some() {
+        let what = "Coriolis forces of the rotating frame couple axial and transverse motion";
+        return obstacle(what, "leave axial_inertia on");
+    }
     if let Some(wall) = lossy(case) {
         return obstacle(
             format!("the {} \"{}\" has damping or friction", wall.kind(), wall.name),
@@ -206,6 +217,10 @@ pub fn axial_stretch(case: &Case, transverse_motion: bool, finite_rotation: bool
             "finite_rotation is on, which couples stretch and bending",
             "switch finite_rotation off too",
         );
+    }
+    if case.rotating_frame.is_some() {
+        let what = "centrifugal forces of the rotating frame depend on the motion, so the loads alone do not determine the normal force";
+        return obstacle(what, HINT);
     }
     if let Some(wall) = case.contacts.first() {
         let what = format!(

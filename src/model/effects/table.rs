@@ -56,7 +56,7 @@ pub fn given(effect: Effect, case: &Case, network: Option<&ResolvedNetwork>) -> 
         Pumps => network.is_some_and(|n| n.links.iter().any(|l| l.pump.is_some())),
         Accumulators => network.is_some_and(|n| !n.accumulators.is_empty()),
         Turbines => network.is_some_and(|n| !n.turbines.is_empty()),
-        Loads => case.loads.iter().any(|load| !gravity(load)),
+        Loads => case.loads.iter().any(|load| !gravity(load)) || case.rotating_frame.is_some(),
         Gravity => case.loads.iter().any(gravity),
         Attachments => !case.attachments.is_empty() || case.foundation.is_some(),
         Contacts => !case.contacts.is_empty(),

@@ -85,7 +85,12 @@ fn loads(case: &Case) -> Vec<Input<'_>> {
             signal,
         })
     });
-    distributed.chain(attached).collect()
+    let frame = case.rotating_frame.iter().map(|frame| Input {
+        label: "angular velocity of the frame".into(),
+        unit: "rad/s",
+        signal: &frame.angular_velocity_rad_s,
+    });
+    distributed.chain(attached).chain(frame).collect()
 }
 
 fn of_end<'a>(name: &str, end: &'a ResolvedEnd, all: &mut Vec<Input<'a>>) {

@@ -375,9 +375,9 @@ fn a_fault_of_an_argument_is_shown_in_the_argument() {
     1 | /slover/rtol=1e-3
       | ^^^^^^^^^^^^
       = allowed: $schema, name, about, preset, section, beam, fluid, bladders, spans, tubes, network,
-                 loads, attachments, foundation, contacts, surroundings, ends, start, formulation,
-                 plausibility, effects, effects_tolerance, mesh, time, solver, companion, probes,
-                 step_response
+                 loads, attachments, foundation, contacts, surroundings, rotating_frame, ends, start,
+                 formulation, plausibility, effects, effects_tolerance, mesh, time, solver, companion,
+                 probes, step_response
       = nearest: did you mean "solver"?
 
     fault[E006]: -1 is out of range

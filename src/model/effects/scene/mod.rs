@@ -17,7 +17,9 @@ use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::{Link, NetworkNode};
 use crate::model::scales::DriveScales;
-use crate::model::{AmbientFluid, AttachedBody, DistributedLoad, ResolvedNetwork, Scales, Section, Wet, each_signal};
+use crate::model::{
+    AmbientFluid, AttachedBody, DistributedLoad, FrameRotation, ResolvedNetwork, Scales, Section, Wet, each_signal,
+};
 
 use pace::SignalExcitation;
 use response_bounds::ResponseBounds;
@@ -89,10 +91,19 @@ impl<'a> EffectScene<'a> {
         let around = AmbientFluid::from_case(case);
         let excitations = |network: Option<&ResolvedNetwork>| {
             let mut all = vec![];
-            each_signal(&undriven, &loads, &attachments, around.as_ref(), network, |signal| {
-                let held = case.held_at_start(signal);
-                all.extend(SignalExcitation::from_signal(signal, case.time.end_s, held));
-            });
+            let frame = FrameRotation::from_case(case);
+            each_signal(
+                &undriven,
+                &loads,
+                &attachments,
+                around.as_ref(),
+                frame.as_ref(),
+                network,
+                |signal| {
+                    let held = case.held_at_start(signal);
+                    all.extend(SignalExcitation::from_signal(signal, case.time.end_s, held));
+                },
+            );
             all
         };
         // a network without bladders does not move the beam; its signals are the last
@@ -137,6 +148,7 @@ impl<'a> EffectScene<'a> {
             &self.loads,
             &self.attachments,
             self.around.as_ref(),
+            FrameRotation::from_case(self.case).as_ref(),
             self.network(),
             visit,
         );
