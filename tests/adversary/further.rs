@@ -51,6 +51,27 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
     if !around && r.one_in(4) {
         rotating_frame(r, b, case);
     }
+    if r.one_in(4) {
+        unlike_halves(r, b, case);
+    }
+}
+
+/// A neutral axis beside mid-height, with the beam's line there or at mid-height, and a softer lower row.
+fn unlike_halves(r: &mut Random, b: &Beam, case: &mut Value) {
+    let published = case.pointer("/bladders/coupling/published").is_some();
+    let relaxes = case["beam"].get("viscoelasticity").is_some();
+    case.as_object_mut().expect("a case").remove("formulation");
+    case["beam"]["neutral_axis_m"] = short(b.height * r.between(-0.3, 0.3));
+    if !relaxes && r.one_in(2) {
+        case["beam"]["reference_axis_m"] = json!(0);
+    }
+    let area = case
+        .pointer("/bladders/area_per_pressure_m2_per_pa")
+        .and_then(Value::as_f64);
+    if let Some(area) = area.filter(|_| !published) {
+        let row = json!({"area_per_pressure_m2_per_pa": short(area * r.log(1.0, 5.0))});
+        case["bladders"]["lower"] = json!({"unlike": row});
+    }
 }
 
 /// A hub that turns up to a few times as fast as the beam swings; what would not turn with it is taken away.

@@ -335,6 +335,14 @@ fn mistakes_are_explained() {
         ),
         (
             explained(
+                json!({"neutral_axis_m": 0.002}),
+                json!({}),
+                json!({"contacts": [{"name": "wall", "point_m": [0.05, 0], "normal": [-1, 0], "stiffness_pa": 1e4, "smoothing_m": 1e-3}]}),
+            ),
+            ["/contacts/0", "reach_m"],
+        ),
+        (
+            explained(
                 json!({"neutral_axis_m": 0.002, "reference_axis_m": 0}),
                 json!({}),
                 json!({"formulation": "published"}),
