@@ -291,14 +291,21 @@ pub fn keys_meant_by(word: &str) -> Vec<&'static str> {
     if !own.is_empty() {
         return own;
     }
-    pieces(word).iter().flat_map(keys).collect()
+    unique(pieces(word).iter().flat_map(keys))
+}
+
+fn unique(keys: impl Iterator<Item = &'static str>) -> Vec<&'static str> {
+    keys.fold(vec![], |mut all, key| {
+        if !all.contains(&key) {
+            all.push(key);
+        }
+        all
+    })
 }
 
 /// Keys that a text means as a whole; spaces and `_` are equivalent.
 pub fn of_whole(word: &str) -> Vec<&'static str> {
-    let mut own: Vec<&'static str> = pieces(word).iter().take(2).flat_map(keys).collect();
-    own.dedup();
-    own
+    unique(pieces(word).iter().take(2).flat_map(keys))
 }
 
 fn keys(piece: &String) -> impl Iterator<Item = &'static str> + use<'_> {

@@ -88,6 +88,9 @@ impl<'a> KnownKeys<'a> {
             near = all_nearest(key, self.names().filter(fits));
         }
         let close = near.first().is_some_and(|(similarity, _)| *similarity >= CLOSE);
+        if let Some(inside) = self.inside(key).filter(|_| !close) {
+            return KeyMeaning::elsewhere(belongs(&[inside.as_str()]));
+        }
         let homes = self.homes(key);
         if close {
             let mut meant = self.of_near(&near);
@@ -179,6 +182,22 @@ impl<'a> KnownKeys<'a> {
             nearest: None,
             hint: Some(hint),
         }
+    }
+
+    /// Pointer to a key in a value of this object, such as a kind of signal.
+    fn inside(&self, key: &str) -> Option<String> {
+        let has = |schema: &Value| {
+            let schema = resolved(schema);
+            let branches = ["oneOf", "anyOf"]
+                .into_iter()
+                .filter_map(|kind| schema[kind].as_array())
+                .flatten();
+            std::iter::once(schema)
+                .chain(branches)
+                .any(|one| one["properties"].get(key).is_some())
+        };
+        let own = self.properties.iter().find(|(_, schema)| has(schema));
+        own.map(|(name, _)| child(&child(self.pointer, name), key))
     }
 
     /// Pointers to a key in other objects.

@@ -17,7 +17,7 @@ use slcbeam::run::summary::{Status, Summary};
 use slcbeam_section::cell::Cell;
 use slcbeam_section::coefficients::Options as Meshes;
 use slcbeam_section::finite::{Drive, FiniteCell};
-use slcbeam_section::input::Section;
+use slcbeam_section::input::{Row, Section};
 
 const CASE: &str = include_str!("../../cases/section-finite.json");
 const PRESSURE: &str = "/network/chains/1/ends/0/pressure_pa/ramp/to";
@@ -81,6 +81,46 @@ fn a_beam_under_pressure_bends_as_its_cell() {
             (linear / exact - 1.0).abs() > linear_is_off,
             "{pressure}: {linear} {exact}"
         );
+    }
+}
+
+/// Source: [E48]. Goal: as above with one row of bladders, whose polynomial has terms of its own, for bending and stretch of the neutral
+/// axis; energy closes, and the Jacobian belongs to the residual.
+#[test]
+fn a_beam_with_one_row_bends_as_its_cell() {
+    let section: Value = serde_json::from_str(CASE).unwrap();
+    let mut section: Section = serde_json::from_value(section["section"].clone()).unwrap();
+    (section.three_d, section.bladders.lower) = (false, Row::None);
+    let meshes = Meshes {
+        meshes: 2,
+        ..Meshes::default()
+    };
+    let law = section.material.law.unwrap();
+    let cell = FiniteCell::new(&section, Cell::new(&section, &section.meshes(&meshes).unwrap()[1]), law).unwrap();
+    let rest = cell.equilibrium(Drive::Load([0.0; 2]), [0.0; 2]).unwrap().tangent;
+    let axis = rest[0][1] / rest[0][0];
+    let pressure = 15e3;
+    let network = format!(
+        r#"/network={{"chains":[{{"bladders":[1,2,3,4,5,6,7,8,9,10],"ends":[{{"pressure_pa":{{"ramp":{{"to":{pressure},"duration_s":1}}}}}},"sealed"]}}]}}"#
+    );
+    let sets = ["/section/three_d=false", r#"/section/bladders/lower="none""#, &network];
+    let bent = cell.equilibrium(Drive::Load([0.0; 2]), [pressure, 0.0]).unwrap().strain;
+    let (angle, warning) = at_rest(&sets, "tip_angle");
+    let linear = at_rest(&[&sets[..], &[OFF]].concat(), "tip_angle").0;
+    let exact = -bent[1] * 0.08;
+    assert_eq!(warning, None);
+    assert!((angle / exact - 1.0).abs() < 0.01, "{angle} {exact}");
+    assert!((linear / exact - 1.0).abs() > 0.05, "{linear} {exact}");
+    // on an arc of the stretched line
+    let chord = |curvature: f64, stretch: f64| 0.08 * stretch * (curvature * 0.08).sin() / (curvature * 0.08) - 0.08;
+    let exact = chord(bent[1], 1.0 + bent[0] + axis * bent[1]);
+    let along = at_rest(&sets, "tip_u3").0;
+    assert!((along - exact).abs() < 0.02 * exact.abs(), "{along} {exact}");
+    let energy = run(&sets).balances.energy_residual_relative;
+    assert!(energy.abs() < 1e-4, "{energy:.1e}");
+    let mut dae = BeamDae::new(System::new(&read(&sets)).unwrap());
+    for (seed, size) in [(1, 0.1), (2, 0.03)] {
+        assert!(worst_difference(&mut dae, seed, size) < 1e-6);
     }
 }
 

@@ -102,7 +102,7 @@ impl RotatingFrame {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Distributed {
-    /// Time function.
+    /// A number, or a function of time such as a sine, ramp or table.
     pub signal: Signal,
     /// Shape along the beam, a function of `theta/l_s`; absent: 1.
     #[serde(default = "Profile::one")]
@@ -113,9 +113,9 @@ pub struct Distributed {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ends {
-    /// theta = 0.
+    /// Conditions at the root, theta = 0: "clamped", "pinned", "free" or an object.
     pub root: End,
-    /// theta = l_s.
+    /// Conditions at the tip, theta = l_s: "free", "clamped", "pinned" or an object.
     pub tip: End,
 }
 

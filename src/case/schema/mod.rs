@@ -62,7 +62,7 @@ pub struct Case {
     /// has the section beside its numbers, which stand as they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub section: Option<Section>,
-    /// The solid.
+    /// The beam: length, cross-section and material.
     pub beam: Beam,
     /// The fluid that fills bladders and tubes. Absent together with `bladders` and `network`: a dry beam.
     #[serde(default, skip_serializing_if = "Option::is_none")]

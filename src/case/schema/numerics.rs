@@ -125,12 +125,12 @@ pub struct Time {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Thinning {
-    /// All.
+    /// All output times.
     #[default]
     All,
-    /// None.
+    /// Only those of the window.
     Window,
-    /// Every so manyth.
+    /// Every n-th output time.
     Every(#[schemars(range(min = 1))] u64),
 }
 
