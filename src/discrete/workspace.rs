@@ -302,6 +302,7 @@ impl<T: Scalar> Workspace<T> {
         let wet = system.model.wet.as_ref();
         let compressed = usize::from(wet.is_some_and(|wet| wet.compression.is_some()));
         let nonlinear = usize::from(system.model.strain_energy().is_some());
+        let viscous = usize::from(system.mesh.fourth && system.damped) * sheared;
         // Constant values are set here.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
         Self {
@@ -344,11 +345,7 @@ impl<T: Scalar> Workspace<T> {
                 normal: zeros(c),
                 viscous_normal: zeros(c),
                 shear: zeros(c),
-                viscous_shear: zeros(if system.mesh.fourth && system.damped {
-                    sheared
-                } else {
-                    0
-                }),
+                viscous_shear: zeros(viscous),
                 arc_section: vectors(if bent { sheared } else { 0 }),
                 section: vectors(c),
                 formulation: vectors(if system.model.published() { n } else { 0 }),
