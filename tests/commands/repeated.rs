@@ -10,7 +10,7 @@ use tempfile::TempDir;
 use crate::interruption::summary;
 use crate::program::{command, say};
 
-const CASE: &str = "cases/ecoflex-actuator.json";
+const CASE: &str = "cases/tour-wiring.json";
 const CHECKPOINTS: &str = "/time/checkpoint_interval_s=0.01";
 
 fn run(out: &Path, more: &[&str]) -> i32 {
@@ -37,13 +37,13 @@ fn a_repeated_run_leaves_nothing_of_the_first() {
     let left: Vec<String> = names(&out).into_iter().filter(|name| left(name)).collect();
     assert_eq!(left, ["fields.npz"]);
     let told = summary(&out);
-    let reason = told["effects"]["solid_inertia"]["reason"].as_str().expect("a reason");
+    let reason = told["effects"]["tube_losses"]["reason"].as_str().expect("a reason");
     assert!(reason.starts_with("measured: without it "), "{reason}");
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(page.contains("measured: without it "), "the page says why");
     let case = fs::read_to_string(out.join("case.json")).expect("a case");
     let case: serde_json::Value = serde_json::from_str(&case).expect("JSON");
-    assert_eq!(case["effects"]["solid_inertia"], "on");
+    assert_eq!(case["effects"]["tube_losses"], "on");
     let checksums = told["tables_crc32"].as_object().expect("checksums");
     for name in checksums.keys() {
         assert!(out.join(name).exists(), "{name}");

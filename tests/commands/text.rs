@@ -300,7 +300,7 @@ fn messages_and_keys_are_explained() {
         (
             "EI",
             [
-                "EI (symbol): mass per length, axial and bending stiffness",
+                "EI (symbol): bending stiffness [N m²]",
                 "E1 in docs/model.md",
             ],
         ),

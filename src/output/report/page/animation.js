@@ -11,6 +11,7 @@ function unpackMotion(m) {
   if (out.cells && data.scene?.bladders) {
     const half = data.scene.bladders.per_row;
     const of = Array.from(out.bladder, (signed) => (signed > 0 ? signed - 1 : half - signed - 1));
+    out.present = of.map((b) => data.scene.bladders.present[b]);
     const number = new Float64Array(2 * half);
     for (const b of of) number[b]++;
     out.ofBladder = new Float32Array(out.frames * 2 * half);

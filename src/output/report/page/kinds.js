@@ -124,7 +124,8 @@ function showRun() {
     body.append(player(clock, (c) => {
       const all = [["time", quantity(c.time, "s", 4)], ["tip across", quantity(settled(motion.u1[c.index * motion.nodes + tip], scene.length), "m")], ["tip along", quantity(settled(motion.u3[c.index * motion.nodes + tip], scene.length), "m")]];
       if (motion.pressure) {
-        const [low, high] = extent(motion.pressure.subarray(c.index * motion.cells, (c.index + 1) * motion.cells));
+        const now = motion.pressure.subarray(c.index * motion.cells, (c.index + 1) * motion.cells);
+        const [low, high] = extent(now.filter((_, cell) => !motion.present || motion.present[cell]));
         all.push(["pressure", `${quantity(settled(low, motion.pressureScale.most), "Pa")} to ${quantity(settled(high, motion.pressureScale.most), "Pa")}`]);
       }
       return all;
