@@ -206,4 +206,18 @@ pub const STEPS: [(f64, f64); 4] = [
 
 /// Relative change of a parameter in a difference. The differentiated function is smooth and in closed form, so that the fourth order
 /// leaves a relative error of 1e-12.
-pub const CHANGE: f64 = 1e-3;
+const CHANGE: f64 = 1e-3;
+/// Largest motion of a contact by that change, relative to the length over which its force begins.
+const WITHIN_SMOOTHING: f64 = 1e-3;
+
+/// Relative change of a parameter in a difference: 1e-3, and less where contact forces would change their law within it.
+pub fn change(case: &Case) -> f64 {
+    let contacts = case.contacts.iter();
+    let least = contacts.map(|contact| {
+        let largest = contact
+            .coordinates()
+            .fold(case.beam.length_m, |most, x| most.max(x.abs()));
+        WITHIN_SMOOTHING * contact.smoothing_m / largest
+    });
+    least.fold(CHANGE, f64::min)
+}

@@ -1,7 +1,7 @@
 //! Equations with a slightly changed parameter, and derivatives by that parameter.
 
 use super::BeamDae;
-use crate::case::parameter::{CHANGE, STEPS};
+use crate::case::parameter::STEPS;
 use crate::discrete::{System, TimeData, Workspace};
 
 /// Change of an unknown, relative to 1 + |unknown|, for differences of quantities of a state: small compared with the width of smoothed
@@ -12,16 +12,24 @@ const NUDGE: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub struct PerturbedSystems {
     beams: Box<[BeamDae; 4]>,
+    /// ε.
+    change: f64,
     out: Vec<f64>,
 }
 
 impl PerturbedSystems {
-    /// Creates the perturbed equations of `of`. The systems have a changed parameter, but the same unknowns and scales.
-    pub fn new(of: &BeamDae, systems: [System; 4]) -> Self {
+    /// Creates the perturbed equations of `of`, with the relative change ε of the parameter. The systems have the same unknowns and scales.
+    pub fn new(of: &BeamDae, systems: [System; 4], change: f64) -> Self {
         Self {
             beams: Box::new(systems.map(|system| of.with_system(system))),
+            change,
             out: vec![],
         }
+    }
+
+    /// Relative change ε of the parameter.
+    pub fn change(&self) -> f64 {
+        self.change
     }
 
     /// The equations in the order of [`STEPS`].
@@ -33,7 +41,7 @@ impl PerturbedSystems {
     /// its first argument is the index in [`STEPS`]:
     ///
     /// ```text
-    /// ∂f/∂σ = (8 (f(p(1+ε)) - f(p(1-ε))) - (f(p(1+2ε)) - f(p(1-2ε)))) / 12ε        ε = 1e-3
+    /// ∂f/∂σ = (8 (f(p(1+ε)) - f(p(1-ε))) - (f(p(1+2ε)) - f(p(1-2ε)))) / 12ε        ε = 1e-3, with contacts 1e-3 d/L if that is less
     /// ```
     ///
     /// The error is `ε⁴ f⁽⁵⁾/30`: 4e-12 of f if f is proportional to 1/p, only rounding errors (3e-13 of the largest term) if f is a
@@ -50,7 +58,7 @@ impl PerturbedSystems {
             value(pair, &mut self.beams[pair], &mut first)?;
             value(pair + 1, &mut self.beams[pair + 1], &mut self.out)?;
             for ((out, f), g) in out.iter_mut().zip(&first).zip(&self.out) {
-                let part = STEPS[pair].1 * (f - g) / CHANGE;
+                let part = STEPS[pair].1 * (f - g) / self.change;
                 *out = if pair == 2 { part } else { *out + part };
             }
         }

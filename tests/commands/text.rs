@@ -297,13 +297,7 @@ fn messages_and_keys_are_explained() {
         ("tip_angle", ["tip_angle (column): ", "[rad], a column of history.csv"]),
         ("harvested_energy_j", ["energy harvested [J]", "summary.json"]),
         ("port_inlet_of_bladder_1_flow", ["port_NAME_flow (result): ", "flow in"]),
-        (
-            "EI",
-            [
-                "EI (symbol): bending stiffness [N m²]",
-                "E1 in docs/model.md",
-            ],
-        ),
+        ("EI", ["EI (symbol): bending stiffness [N m²]", "E1 in docs/model.md"]),
         ("Re", ["Reynolds number of a tube", "E52"]),
         ("drained", ["(word): bladders whose pressure", "drained"]),
         ("Probe", ["/probes: ", "Probe/at"]),

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use slcbeam::case::Case;
 use slcbeam::case::parameter::Parameter;
 use slcbeam::discrete::{System, resolution};
-use slcbeam::run::equilibrium::{EquilibriumOptions, columns, follow, system};
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, follow, system};
 use slcbeam::run::record::Control;
 
 use super::{beam, parse, run};
@@ -77,6 +77,49 @@ fn a_disc_presses_the_tip_by_its_penalty_law() {
     let [less, more] =
         [0.0499, 0.0501].map(|radius| AtRest::new(&parameter.changed(&case, radius).unwrap()).read("tip_u1"));
     assert!(((more - less) / 2e-4 + 500.0 / 503.0).abs() < 1e-3, "{less} {more}");
+}
+
+/// Goal: derivatives of forces and tip by radius and center of a disc, which several nodes touch within the smoothing, are those of
+/// differences of whole equilibria.
+#[test]
+fn derivatives_by_a_disc_are_those_of_differences() {
+    let case = |radius: f64, center: f64| {
+        let one = disc(
+            [center, 0.6],
+            radius,
+            json!({"stiffness_pa": 1e5, "reach_m": 0.025, "smoothing_m": 1e-3}),
+        );
+        parse(&beam(
+            json!("clamped"),
+            json!({"free": {"force_x_n": -3}}),
+            json!([one]),
+        ))
+    };
+    let own = case(0.2, -0.3);
+    let options = EquilibriumOptions::at(1.0);
+    let path = follow(&own, &options, &mut |_| Control::Continue).unwrap();
+    for (pointer, step) in [
+        ("/contacts/0/circle/radius_m", [2e-6, 0.0]),
+        ("/contacts/0/circle/center_m/0", [0.0, 2e-6]),
+    ] {
+        let by = Parameter::find(&own, pointer).unwrap();
+        let found = differentiate(&own, &options, &path, std::slice::from_ref(&by)).unwrap();
+        let [more, less] = [1.0, -1.0].map(|sign| AtRest::new(&case(0.2 + sign * step[0], -0.3 + sign * step[1])));
+        for name in [
+            "tip_u1",
+            "contact_disc_force_x",
+            "contact_disc_force_z",
+            "reaction_root_couple",
+        ] {
+            let place = more.columns.iter().position(|(one, _)| one == name).unwrap();
+            let difference = (more.read(name) - less.read(name)) / 4e-6;
+            let derivative = found[0].row[place];
+            assert!(
+                (derivative / difference - 1.0).abs() < 1e-3,
+                "{pointer} {name}: {derivative:e} {difference:e}"
+            );
+        }
+    }
 }
 
 /// A cantilever of n cells, tangent at its root to a disc below, of which the tip is pulled down.

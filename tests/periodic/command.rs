@@ -33,6 +33,30 @@ fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
+/// Goal: a cycle along the beam alone has multipliers, without modes across.
+#[test]
+fn a_bar_has_multipliers() {
+    let dir = TempDir::new().unwrap();
+    let sine = r#"/ends/root={"clamped":{"u3_m":{"sine":{"amplitude":1e-4,"frequency_hz":20}}}}"#;
+    let bar = [
+        "floquet",
+        "cases/stretch-dry.json",
+        "--set",
+        sine,
+        "--set",
+        r#"/effects={"transverse_motion":"off"}"#,
+    ];
+    let said = say(
+        &[&bar[..], &["--set", "/beam/damping/axial_time_s=0.001"], &COARSE].concat(),
+        dir.path(),
+    );
+    assert_eq!(said.code, 0, "{}", said.err);
+    assert_eq!(
+        json(&dir.path().join("floquet.json"))["floquet"]["verdict"]["stability"],
+        "stable"
+    );
+}
+
 #[test]
 fn floquet_tells_whether_a_cycle_is_stable() {
     let dir = TempDir::new().unwrap();

@@ -80,6 +80,23 @@ impl Rest {
     }
 }
 
+/// Compares a polynomial with its cell in directions without symmetry, inside the ellipsoid.
+fn between(section: &Section, energy: &StrainEnergy) {
+    let cell = cell(section, 1);
+    let rest = Rest::from_cell(&cell);
+    for direction in [
+        [0.6, 0.3, 0.4, 0.1],
+        [-0.3, 0.5, 0.6, 0.2],
+        [0.1, -0.2, -0.3, 0.8],
+        [-0.4, -0.4, 0.4, -0.3],
+    ] {
+        let y: [f64; 4] =
+            std::array::from_fn(|i| direction[i] * energy.limits[i][usize::from(direction[i] > 0.0)].abs());
+        let off = rest.off(energy, &cell, y);
+        assert!(off < 5e-3, "{y:?}: {off}");
+    }
+}
+
 #[test]
 fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitted_to() {
     for law in [
@@ -90,20 +107,7 @@ fn the_polynomial_is_the_energy_of_the_cell_between_the_states_that_it_was_fitte
         let section = section(Some(law));
         let energy = section.strain_energy().unwrap().unwrap();
         assert!(energy.error < 1e-2, "{law:?}: {}", energy.error);
-        let cell = cell(&section, 1);
-        let rest = Rest::from_cell(&cell);
-        // directions without symmetry, inside the ellipsoid
-        for direction in [
-            [0.6, 0.3, 0.4, 0.1],
-            [-0.3, 0.5, 0.6, 0.2],
-            [0.1, -0.2, -0.3, 0.8],
-            [-0.4, -0.4, 0.4, -0.3],
-        ] {
-            let y: [f64; 4] =
-                std::array::from_fn(|i| direction[i] * energy.limits[i][usize::from(direction[i] > 0.0)].abs());
-            let off = rest.off(&energy, &cell, y);
-            assert!(off < 5e-3, "{law:?} {y:?}: {off}");
-        }
+        between(&section, &energy);
     }
 }
 
@@ -161,18 +165,6 @@ fn one_row_and_unlike_rows_have_their_own_terms() {
     for section in [one_row, unlike] {
         let energy = section.strain_energy().unwrap().unwrap();
         assert!(!energy.mirrored && energy.error < 1e-2, "{}", energy.error);
-        let cell = cell(&section, 1);
-        let rest = Rest::from_cell(&cell);
-        for direction in [
-            [0.6, 0.3, 0.4, 0.1],
-            [-0.3, 0.5, 0.6, 0.2],
-            [0.1, -0.2, -0.3, 0.8],
-            [-0.4, -0.4, 0.4, -0.3],
-        ] {
-            let y: [f64; 4] =
-                std::array::from_fn(|i| direction[i] * energy.limits[i][usize::from(direction[i] > 0.0)].abs());
-            let off = rest.off(&energy, &cell, y);
-            assert!(off < 5e-3, "{y:?}: {off}");
-        }
+        between(&section, &energy);
     }
 }

@@ -10,6 +10,8 @@ use crate::error::{Code, Violation};
 /// Largest radius and distance of a circle, in lengths of the beam: rounding errors of depths are below 1e-9 lengths. Its inverse is
 /// the smallest radius.
 const LARGEST: f64 = 1e6;
+/// Smallest velocity over which friction is smoothed [m/s].
+const SLOWEST: f64 = 1e-9;
 
 /// Checks that a contact has a unique shape of a plausible size.
 fn shape(case: &Case, contact: &Contact, pointer: &str, faults: &mut Violations) {
@@ -84,6 +86,20 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 &format!("a {} without a unique stiffness", contact.kind()),
                 "give stiffness_pa for contact along the whole beam, or at and stiffness_n_m for contact at one place",
             ),
+        }
+        if contact.reach_m.is_some_and(|reach| reach > case.beam.length_m) {
+            fault(
+                "reach_m",
+                "the touching surface is farther from the beam's line than the beam is long",
+                "reach_m is in meters; absent: half the height",
+            );
+        }
+        if contact.friction_velocity_m_s.is_some_and(|v| v < SLOWEST) {
+            fault(
+                "friction_velocity_m_s",
+                "a friction velocity below 1e-9 m/s",
+                "give about a hundredth of the sliding velocity",
+            );
         }
         if contact.friction_coefficient > 0.0 && contact.friction_velocity_m_s.is_none() {
             fault(

@@ -47,7 +47,7 @@ pub(super) fn check(case: &Case, joined: &ConnectionTable, faults: &mut Violatio
         );
         let fault = Violation::new(Code::Wiring, format!("/network/junctions/{i}"), what);
         faults.push(
-            fault.hint("open a branch or attach a bladder: a junction stores nothing, so its pressure is undefined"),
+            fault.hint("open a branch, or attach a bladder, accumulator or pressure port: a junction stores nothing, so its pressure is undefined"),
         );
     }
 }

@@ -57,6 +57,17 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// Coordinates and lengths of its shape [m].
+    pub fn coordinates(&self) -> impl Iterator<Item = f64> {
+        let point = self
+            .point_m
+            .into_iter()
+            .chain(self.circle.as_ref().map(|circle| circle.center_m))
+            .flatten();
+        let lengths = [self.circle.as_ref().map(|circle| circle.radius_m), self.reach_m];
+        point.chain(lengths.into_iter().flatten())
+    }
+
     /// Term of its shape.
     pub fn kind(&self) -> &'static str {
         if self.circle.is_some() { "circle" } else { "wall" }

@@ -3,7 +3,7 @@
 use super::stages::{StageEquilibrium, begin, grow};
 use super::state::EquilibriumState;
 use super::{EquilibriumOptions, Path};
-use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::parameter::{Parameter, STEPS, change};
 use crate::case::schema::Case;
 use crate::dae::{Dae as _, Seeds, StaticBeam};
 use crate::error::{Error, Result};
@@ -49,12 +49,13 @@ pub fn differentiate(
     path: &Path,
     parameters: &[Parameter],
 ) -> Result<Vec<EquilibriumSensitivity>> {
+    let change = change(case);
     let direction = |parameter: &Parameter| {
         let own = parameter.clone();
         ParameterDirection {
             name: format!("--sensitivity {}", parameter.pointer),
-            step: CHANGE * parameter.value,
-            moved: Box::new(move |steps| own.changed(case, own.value * (1.0 + steps * CHANGE))),
+            step: change * parameter.value,
+            moved: Box::new(move |steps| own.changed(case, own.value * (1.0 + steps * change))),
         }
     };
     let directions: Vec<ParameterDirection> = parameters.iter().map(direction).collect();

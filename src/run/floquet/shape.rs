@@ -74,6 +74,16 @@ impl DryBendingModes {
         }
         let masses = system.masses[free.clone()].to_vec();
         let reduced = DMatrix::from_fn(n, n, |i, j| stiffness[(i, j)] / (masses[i] * masses[j]).sqrt());
+        if n == 0 {
+            // nothing moves across
+            let tangents = tangents(system, state);
+            return Self {
+                frequencies: vec![],
+                shapes: vec![],
+                masses,
+                tangents,
+            };
+        }
         let eigen = SymmetricEigen::new(reduced);
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));

@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use super::linearise::{Linearised, at_equilibrium, linearise};
 use super::{Mode, failed};
 use crate::case::Case;
-use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::parameter::{Parameter, STEPS, change};
 use crate::dae::Dae as _;
 use crate::error::{Error, Result};
 use crate::spectral::{self, EigenPair, EigenvalueOptions};
@@ -52,8 +52,9 @@ pub fn differentiate(
     let of = |parameter: &Parameter| -> Result<ModeSensitivity> {
         let mut a = vec![0.0; about.a.len()];
         let mut b = a.clone();
+        let step = change(case);
         for (steps, weight) in STEPS {
-            let case = parameter.changed(case, parameter.value * (1.0 + steps * CHANGE))?;
+            let case = parameter.changed(case, parameter.value * (1.0 + steps * step))?;
             let changed = match at_rest_under {
                 Some(at) => at_equilibrium(&case, at)?,
                 None => linearise(&case, about.at, None)?,
@@ -62,7 +63,7 @@ pub fn differentiate(
                 let what = "a small change of it changes the unknowns or the sparsity pattern";
                 return Err(Error::Usage(format!("--sensitivity {}: {what}", parameter.pointer)));
             }
-            let weight = weight / (CHANGE * parameter.value);
+            let weight = weight / (step * parameter.value);
             add(&mut a, weight, about, &changed, &changed.a);
             add(&mut b, weight, about, &changed, &changed.b);
         }

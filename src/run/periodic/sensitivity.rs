@@ -4,7 +4,7 @@ use super::balanced_cycle::Settled;
 use super::record::one_period;
 use super::scene::{PeriodicScene, fault};
 use crate::case::Case;
-use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::parameter::{Parameter, STEPS, change};
 use crate::dae::{BeamDae, Dae, EvaluationError, PerturbedSystems};
 use crate::error::{Error, Result};
 use crate::numerics::krylov;
@@ -99,18 +99,18 @@ fn perturbed(case: &Case, scene: &PeriodicScene, parameters: &[Parameter]) -> Re
             ))
         };
         let of = |(step, _): (f64, f64)| {
-            let case = parameter.changed(case, parameter.value * (1.0 + step * CHANGE))?;
+            let case = parameter.changed(case, parameter.value * (1.0 + step * change(case)))?;
             let system = scene.like(&case)?;
             let system = system.ok_or_else(|| refuse("changes the set of unknowns"))?;
             let own = scene.drive.period / scene.periods as f64;
             let asked = (!scene.drive.driven).then_some(own);
             match drive(&case, &system.model, asked) {
-                Ok(drive) if (drive.period / own - 1.0).abs() <= SAME_PERIOD * CHANGE => Ok(system),
+                Ok(drive) if (drive.period / own - 1.0).abs() <= SAME_PERIOD * change(&case) => Ok(system),
                 _ => Err(refuse("changes the period; use the difference of two cycles")),
             }
         };
         let [a, b, c, d] = STEPS.map(of);
-        let mut changed = PerturbedSystems::new(&dae, [a?, b?, c?, d?]);
+        let mut changed = PerturbedSystems::new(&dae, [a?, b?, c?, d?], change(case));
         for beam in changed.beams_mut() {
             beam.enter_smooth_interval(0.5 * scene.drive.period);
         }
@@ -128,7 +128,7 @@ fn kept(
     changed: &mut PerturbedSystems,
 ) -> Result<Vec<f64>> {
     let mut part = vec![0.0; scene.conserved.len()];
-    let cases = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * CHANGE)));
+    let cases = STEPS.map(|(step, _)| parameter.changed(case, parameter.value * (1.0 + step * change(case))));
     let [a, b, c, d] = cases;
     let cases = [a?, b?, c?, d?];
     changed.derivative(&mut part, |j, beam, out| {

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::figures::{DerivativeAccumulator, FigureSensitivity};
 use super::kept::StoredSensitivities;
-use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::parameter::{self, Parameter, STEPS};
 use crate::case::schema::Case;
 use crate::dae::{BeamDae, Dae as _, PerturbedSystems};
 use crate::discrete::quantities::probes::{self, HistoryColumn};
@@ -89,6 +89,7 @@ impl<'a> ForwardSensitivities<'a> {
     pub fn new(case: &Case, dae: BeamDae, by: DerivativeParameters<'a>) -> Result<(Self, BeamDae)> {
         let (mut perturbed, mut all_cases, mut all_stops) = (vec![], vec![], vec![]);
         let parameters = by.parameters;
+        let change = parameter::change(case);
         let own = schedule::stops(case, &dae.system().model);
         for (k, parameter) in parameters.iter().enumerate() {
             let refuse = |what: &str| {
@@ -105,7 +106,7 @@ impl<'a> ForwardSensitivities<'a> {
                 Some(changed) => changed(k, value),
                 None => parameter.changed(case, value),
             };
-            let [a, b, c, d] = STEPS.map(|(step, _)| changed(parameter.value * (1.0 + step * CHANGE)));
+            let [a, b, c, d] = STEPS.map(|(step, _)| changed(parameter.value * (1.0 + step * change)));
             let cases = [a?, b?, c?, d?];
             let [a, b, c, d] = cases.each_ref().map(like);
             let systems = [a?, b?, c?, d?];
@@ -117,7 +118,7 @@ impl<'a> ForwardSensitivities<'a> {
                     "changes the order of switching times, or moves one past the end of the run",
                 ));
             }
-            perturbed.push(PerturbedSystems::new(&dae, systems));
+            perturbed.push(PerturbedSystems::new(&dae, systems, change));
             all_cases.push(cases);
             all_stops.push(stops);
         }
@@ -290,13 +291,14 @@ impl<'a> ForwardSensitivities<'a> {
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let mut moved = [0.0];
+            let change = perturbed.change();
             let never = perturbed.derivative(&mut moved, |j, _, out| {
                 out[0] = stops[j][stop].t;
                 Ok::<(), std::convert::Infallible>(())
             });
             let never = never.and_then(|()| {
                 perturbed.derivative(&mut restated, |j, beam, out| {
-                    let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
+                    let (change, own) = (STEPS[j].0 * change, stops[j][stop].t);
                     let from = moved_by([change, own - t], [&before.state, &before.rates, &before.s[k]]);
                     out.copy_from_slice(&from);
                     beam.enter_smooth_interval(middle(&stops[j], stop));
@@ -325,8 +327,9 @@ impl<'a> ForwardSensitivities<'a> {
         for (k, perturbed) in dae.perturbed_mut().iter_mut().enumerate() {
             let stops = &self.stops[k];
             let (left, right) = (&before.s[k], &self.s[k]);
+            let change = perturbed.change();
             let never = perturbed.derivative(&mut jumped, |j, beam, out| {
-                let (change, own) = (STEPS[j].0 * CHANGE, stops[j][stop].t);
+                let (change, own) = (STEPS[j].0 * change, stops[j][stop].t);
                 let by = [change, own - t];
                 let from = moved_by(by, [&before.state, &before.rates, left]);
                 let to = moved_by(by, [state[0], state[1], right]);

@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::outcome::DerivativeSource;
 use super::problem::OptimizationProblem;
 use crate::case::Case;
-use crate::case::parameter::{CHANGE, Parameter, STEPS};
+use crate::case::parameter::{Parameter, STEPS, change};
 use crate::error::{Error, Result};
 use crate::run::dynamics::{self, Outcome};
 use crate::run::record::Unrecorded;
@@ -121,7 +121,7 @@ fn exactly(
 fn at_an_end(problem: &OptimizationProblem, values: &[f64]) -> bool {
     let Ok(case) = problem.with(values) else { return false };
     let beyond = |one: &Parameter| {
-        let to = |(step, _): &(f64, f64)| one.changed(&case, one.value * (1.0 + step * CHANGE)).is_err();
+        let to = |(step, _): &(f64, f64)| one.changed(&case, one.value * (1.0 + step * change(&case))).is_err();
         STEPS.iter().any(to)
     };
     problem.parameters(values).iter().any(beyond)

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use super::basis::{Amplitude, loaded};
 use super::estimate::ForwardModel;
 use super::in_time::interrupted;
-use crate::case::parameter::CHANGE;
+use crate::case::parameter::change;
 use crate::case::schema::{Case, Probe};
 use crate::case::wiring::bladder_label;
 use crate::error::{Error, Result};
@@ -168,10 +168,10 @@ impl ForwardModel for AtRest<'_> {
             let from = amplitudes.to_vec();
             ParameterDirection {
                 name: format!("--load {}", amplitude.name),
-                step: CHANGE,
+                step: change(own),
                 moved: Box::new(move |steps| {
                     let mut there = from.clone();
-                    there[k] += steps * CHANGE;
+                    there[k] += steps * change(own);
                     Ok(with(own, all, &there, since))
                 }),
             }
