@@ -162,6 +162,11 @@ const ENDS: f64 = 0.5;
 /// Relative reduction above which a warning is issued.
 const WARNING_LIMIT: f64 = 0.05;
 
+/// Relative excess of areas per moment and force of a plane cell with bladders of this size and length, if it exceeds the limit.
+pub fn plane_cell_excess(size: f64, length: f64) -> Option<f64> {
+    Some(ENDS * size / length).filter(|excess| *excess > WARNING_LIMIT)
+}
+
 fn plane_cell(case: &Case) -> Option<String> {
     let bladders = case.bladders.as_ref()?;
     let areas = [
@@ -173,8 +178,8 @@ fn plane_cell(case: &Case) -> Option<String> {
     let plane = |pointer: &str| case.origins.get(pointer) == Some(Origin::Section { three_d: false });
     // without side walls the ends are open
     let of_plane = areas.into_iter().any(plane) && bladders.length_m < case.beam.width_m;
-    let off = ENDS * bladders.height_m.max(bladders.width_m) / bladders.length_m;
-    (of_plane && off > WARNING_LIMIT).then(|| {
+    let off = plane_cell_excess(bladders.height_m.max(bladders.width_m), bladders.length_m)?;
+    of_plane.then(|| {
         Code::PlaneCell.warning(format!(
             "coefficients of a plane cell leave out the ends of bladders: areas per moment and force are about {:.0} % too \
              large (limit {:.0} %). Set \"three_d\": true in /section",

@@ -23,6 +23,8 @@ pub(super) struct Sizes {
     /// Densities of solid and fluid [kg/m³].
     densities: [Option<f64>; 2],
     pub bladders: Option<InBeam>,
+    /// Bladders of a lower row with sizes of its own.
+    lower: Option<InBeam>,
     /// Radius of tubes [m].
     radius: Option<f64>,
 }
@@ -50,7 +52,14 @@ impl Sizes {
             }),
             _ => None,
         };
+        let own = |key: &str| number(&format!("/bladders/lower/unlike/{key}"));
+        let lower = bladders.map(|upper| InBeam {
+            height: own("height_m").unwrap_or(upper.height),
+            width: own("width_m").unwrap_or(upper.width),
+            ..upper
+        });
         Some(Self {
+            lower,
             modulus: number("/beam/young_modulus_pa")?,
             section: [number("/beam/height_m")?, number("/beam/width_m")?],
             densities: [number("/beam/density_kg_m3"), number("/fluid/density_kg_m3")],
@@ -80,15 +89,12 @@ impl Sizes {
         Some(self.area_per_force()? / self.section[0])
     }
 
-    /// `1/(E w_s h_s)`, to which areas per normal force of bladders of one size are proportional [1/N].
-    fn per_force(&self) -> f64 {
-        let [h, w] = self.section;
-        1.0 / (self.modulus * w * h)
-    }
-
-    /// `1/(E w_s h_s²)`, to which areas per bending moment of bladders of one size are proportional [1/(N m)].
-    fn per_moment(&self) -> f64 {
-        self.per_force() / self.section[0]
+    /// These sizes with the bladders of the lower row.
+    fn of_lower(&self) -> Self {
+        Self {
+            bladders: self.lower,
+            ..*self
+        }
     }
 
     /// `l_b h_b w_b/(w_s h_s)`, to which the length of a segment per p/E is proportional [m].
@@ -140,6 +146,12 @@ const fn law(pointer: &'static str, scale: fn(&Sizes) -> Option<f64>, shape: fn(
     Law { pointer, scale, shape }
 }
 
+/// `h_b³ w_b³/(h_b² + w_b²)`, to which permeabilities are proportional [m⁴].
+fn permeability(s: &Sizes) -> Option<f64> {
+    let b = s.bladders?;
+    Some((b.height * b.width).powi(3) / (b.height.powi(2) + b.width.powi(2)))
+}
+
 fn ratio(_: &Sizes) -> Option<f64> {
     Some(1.0)
 }
@@ -151,7 +163,7 @@ fn ratio(_: &Sizes) -> Option<f64> {
 /// a_p ~ h_b w_b/E          aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
 /// q1b ~ h_b³ w_b³/(h_b² + w_b²)                        q1c ~ r_c⁴
 /// ```
-pub(super) const LAWS: [Law; 23] = [
+pub(super) const LAWS: [Law; 24] = [
     law("/beam/axial_stiffness_factor", ratio, Sizes::whole),
     law("/beam/bending_stiffness_factor", ratio, Sizes::whole),
     law("/beam/neutral_axis_m", |s| Some(s.section[0]), Sizes::whole),
@@ -188,28 +200,28 @@ pub(super) const LAWS: [Law; 23] = [
     ),
     law(
         "/bladders/lower/unlike/area_per_pressure_m2_per_pa",
-        |s| Some(s.modulus.recip()),
-        |_| None,
+        |s| s.of_lower().area_per_pressure(),
+        |s| s.of_lower().cell(),
     ),
     law(
         "/bladders/lower/unlike/area_per_moment_m2_per_n_m/opening",
-        |s| Some(s.per_moment()),
-        Sizes::outline,
+        |s| s.of_lower().area_per_moment(),
+        |s| s.of_lower().whole(),
     ),
     law(
         "/bladders/lower/unlike/area_per_moment_m2_per_n_m/closing",
-        |s| Some(s.per_moment()),
-        Sizes::outline,
+        |s| s.of_lower().area_per_moment(),
+        |s| s.of_lower().whole(),
     ),
     law(
         "/bladders/lower/unlike/area_per_force_m2_per_n/tension",
-        |s| Some(s.per_force()),
-        Sizes::outline,
+        |s| s.of_lower().area_per_force(),
+        |s| s.of_lower().whole(),
     ),
     law(
         "/bladders/lower/unlike/area_per_force_m2_per_n/compression",
-        |s| Some(s.per_force()),
-        Sizes::outline,
+        |s| s.of_lower().area_per_force(),
+        |s| s.of_lower().whole(),
     ),
     law(
         "/bladders/coupling/published/slope_per_pressure_rad",
@@ -241,13 +253,13 @@ pub(super) const LAWS: [Law; 23] = [
         |s| Some(s.modulus),
         Sizes::whole,
     ),
+    law("/bladders/permeability_m4", permeability, |s| {
+        s.bladders.map(|b| vec![b.height / b.width])
+    }),
     law(
-        "/bladders/permeability_m4",
-        |s| {
-            let b = s.bladders?;
-            Some((b.height * b.width).powi(3) / (b.height.powi(2) + b.width.powi(2)))
-        },
-        |s| s.bladders.map(|b| vec![b.height / b.width]),
+        "/bladders/lower/unlike/permeability_m4",
+        |s| permeability(&s.of_lower()),
+        |s| s.lower.map(|b| vec![b.height / b.width]),
     ),
     law("/tubes/permeability_m4", |s| Some(s.radius?.powi(4)), |_| None),
 ];

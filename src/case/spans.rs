@@ -10,6 +10,9 @@ use super::schema::{AreaPerForce, AreaPerMoment, Beam, Bladders, Case, LowerRow,
 /// Relative deviation of a span's length from whole segments that counts as rounding.
 const WHOLE: f64 = 1e-6;
 
+/// `kGA/(E A)` of a full rectangle, nearly incompressible: 5/6 of a third.
+const FULL_SHEAR: f64 = 5.0 / 18.0;
+
 /// Beam and bladders of one segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmentValues {
@@ -259,6 +262,10 @@ fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64) -> SegmentValues
         beam.bending_stiffness_factor = own(&span.beam.bending_stiffness_factor, 1.0, beam.bending_stiffness_factor);
         beam.neutral_axis_m = own(&span.beam.neutral_axis_m, 0.0, beam.neutral_axis_m);
         beam.mass_factor = beam.mass_factor.filter(|_| span.beam.mass_factor.is_some());
+        if span.beam.shear_stiffness_n.is_none() {
+            let full = FULL_SHEAR * beam.young_modulus_pa * beam.height_m * beam.width_m;
+            beam.shear_stiffness_n = beam.shear_stiffness_n.map(|_| full);
+        }
     }
     SegmentValues {
         rows,

@@ -12,7 +12,7 @@ use slcbeam_section::three::Spatial;
 
 use super::arguments::CaseArguments;
 use super::interrupt::WallArguments;
-use crate::case::{self, section};
+use crate::case::{self, inherited, section};
 use crate::error::{Error, Result};
 use crate::output::columns::table;
 use crate::output::folder::replace;
@@ -119,7 +119,10 @@ fn write_case(written: &section::SectionFile, path: &Path, asked: &CoefficientsA
     replace(path, &format!("{case:#}\n"))?;
     super::print(&match asked.json {
         true => format!("{:#}\n", json!({"case": path})),
-        false => format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display()),
+        false => {
+            let next = format!("wrote {}\nnext: slcbeam check {0}; slcbeam run {0}\n", path.display());
+            next + &open_ends(own, &written.coefficients()?.numbers)
+        }
     })?;
     Ok(ExitCode::SUCCESS)
 }
@@ -159,6 +162,21 @@ fn in_space(row: &Row, plane: &Numbers, spatial: &Spatial) -> Option<(f64, f64)>
     let (i, j, sense) = row.entry?;
     let ratio = (spatial.compliance[i][j] / plane.compliance[i][j]).powf(sense);
     Some((ratio.recip() - 1.0, row.value * ratio)).filter(|_| ratio.is_finite() && ratio != 0.0)
+}
+
+/// Text about the ends of bladders, which a plane cell omits.
+fn open_ends(section: &Section, numbers: &Numbers) -> String {
+    let rows = numbers.upper.iter().chain(&numbers.lower);
+    let along = section.bladders.along();
+    let size = rows.map(|row| along.max(row.area_m2 / along)).fold(0.0, f64::max);
+    let open = !section.three_d && section.bladders.length_m < section.width_m;
+    let excess = inherited::plane_cell_excess(size, section.bladders.length_m).filter(|_| open);
+    excess.map_or_else(String::new, |excess| {
+        format!(
+            "\nW022: the plane cell omits the ends of bladders. Areas per moment and force are about {:.0} % too large. Set \"three_d\": true\n",
+            100.0 * excess
+        )
+    })
 }
 
 /// Text about a neutral axis beside mid-height.
@@ -259,4 +277,5 @@ fn in_words(section: &Section, found: &Coefficients, spatial: Option<&Spatial>) 
         found.asymmetry,
         table("< | N | M | p upper | p lower", matrix)
     ) + &beside_mid_height(section, &found.numbers)
+        + &open_ends(section, &found.numbers)
 }

@@ -101,14 +101,15 @@ impl FluidMesh {
             match along.filter(|_| cells > 0 && (own.is_some() || !at_junction)) {
                 None => own,
                 Some(along) => {
-                    let usual = along.over(0.5 * cells as f64 * ds);
-                    let parts = bladders.iter().filter_map(|bladder| wet.along(*bladder));
-                    let inertance = match wet.segments.is_empty() {
-                        true => usual.inertance,
-                        false => parts.map(|along| along.over(0.5 * ds).inertance).sum(),
-                    };
-                    let mut part = usual;
-                    part.inertance = inertance;
+                    let own_parts: Vec<_> = bladders.iter().filter_map(|bladder| wet.along(*bladder)).collect();
+                    let first = own_parts
+                        .first()
+                        .copied()
+                        .filter(|first| own_parts.iter().all(|one| one == first));
+                    let mut part = first.unwrap_or(along).over(0.5 * cells as f64 * ds);
+                    if first.is_none() {
+                        part.inertance = own_parts.iter().map(|along| along.over(0.5 * ds).inertance).sum();
+                    }
                     Some(own.unwrap_or_default().behind(&part))
                 }
             }

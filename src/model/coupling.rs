@@ -68,7 +68,9 @@ impl CouplingLaw {
                 stretch_per_pressure, ..
             } => (upper + lower) * stretch_per_pressure,
             Self::Reciprocal { length_ratio } => {
-                (laws[0].force_slope(force) * upper + laws[1].force_slope(force) * lower) * length_ratio
+                // of equal rows exactly the slope times the sum of the pressures
+                let [above, below] = [0, 1].map(|row| laws[row].force_slope(force));
+                ((above + below) * 0.5 * (upper + lower) + (above - below) * 0.5 * (upper - lower)) * length_ratio
             }
         }
     }

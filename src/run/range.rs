@@ -128,9 +128,16 @@ impl Limits {
         let pitch = system.mesh.segment_length;
         let room = |j: usize, wet: &Wet| {
             let section = system.model.sections.get(j).unwrap_or(&system.model.section);
-            let there = wet.pair(j).into_iter().filter(|bladder| wet.has(*bladder));
-            let largest = there.map(|bladder| wet.area_at_rest_of(bladder)).reduce(f64::max);
-            largest.map(|largest| pitch * section.half_height - largest)
+            let there = || {
+                wet.pair(j)
+                    .into_iter()
+                    .filter(|bladder| wet.has(*bladder))
+                    .map(|bladder| wet.area_at_rest_of(bladder))
+            };
+            // the rows share the section by their areas
+            let all: f64 = there().sum();
+            let room = |area: f64| pitch * 2.0 * section.half_height * (area / all) - area;
+            there().map(room).reduce(f64::min)
         };
         Self {
             depth: system

@@ -1,7 +1,7 @@
 //! What holds to round-off.
 
 use slcbeam::case::Case;
-use slcbeam::case::parameter::{CHANGE, Parameter, STEPS};
+use slcbeam::case::parameter::{Parameter, STEPS, change};
 use slcbeam::dae::{BeamDae, Dae, EvaluationError, PerturbedSystems, Seeds};
 use slcbeam::discrete::{System, start};
 use slcbeam::integrate::{AbsoluteTolerances, StartOptions, consistent_sensitivities, consistent_start};
@@ -17,11 +17,11 @@ fn with_parameter(case: &Case, pointer: &str) -> BeamDae {
     let parameter = Parameter::find(case, pointer).unwrap();
     let systems = STEPS.map(|(step, _)| {
         let changed = parameter
-            .changed(case, parameter.value * (1.0 + step * CHANGE))
+            .changed(case, parameter.value * (1.0 + step * change(case)))
             .unwrap();
         dae.system().like(&changed).unwrap().expect("the same unknowns")
     });
-    let perturbed = PerturbedSystems::new(&dae, systems);
+    let perturbed = PerturbedSystems::new(&dae, systems, change(case));
     dae.with_perturbed(vec![perturbed])
 }
 
@@ -124,8 +124,9 @@ fn difference_formula_is_of_fourth_order() {
     let mut dae = with_parameter(&case, "/beam/density_kg_m3");
     let slope = |dae: &mut BeamDae, f: fn(f64) -> f64| {
         let mut out = [0.0];
+        let change = dae.perturbed_mut()[0].change();
         let done = dae.perturbed_mut()[0].derivative(&mut out, |j, _, out| {
-            out[0] = f(1.0 + CHANGE * STEPS[j].0);
+            out[0] = f(1.0 + change * STEPS[j].0);
             Ok::<(), ()>(())
         });
         assert_eq!(done, Ok(()));

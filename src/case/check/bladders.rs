@@ -2,7 +2,7 @@
 
 use slcbeam_section::finite::energy::monomials;
 
-use super::coefficients;
+use super::{coefficients, plausible};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
 use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, LowerRow, StrainEnergy, TurbineConductance};
@@ -188,7 +188,11 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
                 format!("at most {} m, the height of the beam", rounded(beam.height_m)),
             ),
         };
-        refuse("height_m", &["/beam/height_m", "/bladders/lower"], what, allowed);
+        let at = match &bladders.lower {
+            LowerRow::Unlike(row) if row.height_m.is_some() => "lower/unlike/height_m",
+            _ => "height_m",
+        };
+        refuse(at, &["/beam/height_m", "/bladders/lower"], what, allowed);
     }
     if exceeds(bladders.length_m, beam.width_m) {
         let what = format!(
@@ -304,6 +308,7 @@ fn lower_row(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         }),
         ..case.clone()
     };
+    plausible::sizes(&alone, &mut found);
     coefficients::check(&alone, &mut found);
     if let Some(first) = found.first() {
         let key = first.pointer.trim_start_matches("/bladders/");

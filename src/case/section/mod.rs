@@ -32,6 +32,8 @@ const COARSE_IN_SPACE: f64 = 0.06;
 const ENERGY: &str = "/bladders/strain_energy";
 /// Pointer of the lower row.
 const LOWER: &str = "/bladders/lower";
+/// Pointer of the neutral axis.
+const AXIS: &str = "/beam/neutral_axis_m";
 /// Pointer of the number of bladders per row.
 const PER_ROW: &str = "/bladders/per_row";
 /// Pointer of the same number in the case of a result.
@@ -192,7 +194,24 @@ fn contradictions(case: &Value, values: &Value) -> Vec<Violation> {
         let fault = || Violation::new(Code::Range, pointer, format!("{given}, but the section has {own}"));
         ((given / own - 1.0).abs() > ROUND_OFF).then(|| fault().allowed(own.to_string()).hint(hint))
     });
-    contradictions.collect()
+    let axis = number(case, AXIS).filter(|given| {
+        let own = number(values, AXIS).unwrap_or(0.0);
+        (given - own).abs() > ROUND_OFF * own.abs()
+    });
+    let axis = axis.map(|given| {
+        let what = format!("{given}, which is not the neutral axis of the section");
+        Violation::new(Code::Range, AXIS, what).hint("leave it out; reference_axis_m moves the line of ends and loads")
+    });
+    let mirrored = json!("mirrored");
+    let own = values.pointer(LOWER).unwrap_or(&mirrored);
+    let lower = case
+        .pointer(LOWER)
+        .filter(|given| *given != own && values.get("bladders").is_some());
+    let lower = lower.map(|_| {
+        let what = "the section defines the lower row";
+        Violation::new(Code::Range, LOWER, what).hint("leave it out; change /section/bladders/lower")
+    });
+    contradictions.chain(axis).chain(lower).collect()
 }
 
 /// Reads a section at a pointer of its file.
