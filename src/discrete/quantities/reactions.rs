@@ -10,7 +10,7 @@ use crate::discrete::residual::momentum::end_tangent;
 
 /// A reaction quantity of an end or of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Told {
+enum ReactionKind {
     /// Force of an end's support or drive on the beam, transverse (0) or axial (1).
     End(usize, usize),
     /// Couple of an end's support or drive, positive in the direction of growing φ.
@@ -25,25 +25,25 @@ const ENDS: [&str; 2] = ["root", "tip"];
 const AXES: [&str; 2] = ["x", "z"];
 
 /// All reaction quantities of a system, ends first; a reduced model has those of the full one.
-fn all(system: &System) -> Vec<Told> {
+fn all(system: &System) -> Vec<ReactionKind> {
     let given = |motion: &Translation| matches!(motion, Translation::Displacement(_));
     let mut all = vec![];
     for (k, end) in system.model.ends.iter().enumerate() {
         let held = [&end.transverse, &end.axial].into_iter().enumerate();
         all.extend(
             held.filter(|(_, motion)| given(motion))
-                .map(|(axis, _)| Told::End(k, axis)),
+                .map(|(axis, _)| ReactionKind::End(k, axis)),
         );
         match &end.rotation {
-            Rotation::Slope(_) => all.push(Told::Couple(k)),
+            Rotation::Slope(_) => all.push(ReactionKind::Couple(k)),
             // the tip's angle is an observable of its own
-            Rotation::Moment(_) if k == 0 => all.push(Told::Angle(k)),
+            Rotation::Moment(_) if k == 0 => all.push(ReactionKind::Angle(k)),
             Rotation::Moment(_) => {}
         }
     }
     for (k, attachment) in system.model.attachments.iter().enumerate() {
         let holds = |axis: &usize| attachment.stiffness[*axis] > 0.0 || attachment.damping[*axis] > 0.0;
-        all.extend((0..2).filter(holds).map(|axis| Told::Attached(k, axis)));
+        all.extend((0..2).filter(holds).map(|axis| ReactionKind::Attached(k, axis)));
     }
     all
 }
@@ -52,12 +52,12 @@ fn all(system: &System) -> Vec<Told> {
 pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
     all(system).into_iter().map(|one| {
         let (name, unit, about) = match one {
-            Told::End(k, axis) => (
+            ReactionKind::End(k, axis) => (
                 format!("reaction_{}_{}", ENDS[k], AXES[axis]),
                 "N",
                 format!("force in {} of the support at the {} on the beam", AXES[axis], ENDS[k]),
             ),
-            Told::Couple(k) => (
+            ReactionKind::Couple(k) => (
                 format!("reaction_{}_couple", ENDS[k]),
                 "N m",
                 format!(
@@ -65,7 +65,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
                     ENDS[k]
                 ),
             ),
-            Told::Angle(k) => (
+            ReactionKind::Angle(k) => (
                 format!("turned_{}", ENDS[k]),
                 "rad",
                 format!(
@@ -73,7 +73,7 @@ pub fn columns(system: &System) -> impl Iterator<Item = HistoryColumn> {
                     ENDS[k]
                 ),
             ),
-            Told::Attached(k, axis) => (
+            ReactionKind::Attached(k, axis) => (
                 format!("reaction_attachment_{}_{}", k + 1, AXES[axis]),
                 "N",
                 format!(
@@ -93,8 +93,8 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
     let node = |end: usize| end * (system.mesh.nodes - 1);
     for one in all(system) {
         put(match one {
-            Told::End(k, axis) => reaction(system, now, w, node(k))[axis],
-            Told::Couple(k) => {
+            ReactionKind::End(k, axis) => reaction(system, now, w, node(k))[axis],
+            ReactionKind::Couple(k) => {
                 let part = |moments: &[f64]| moments.get(node(k)).copied().unwrap_or(0.0);
                 let f = &w.forces;
                 let moment = f.moment[node(k)] + f.viscous_moment[node(k)];
@@ -105,11 +105,11 @@ pub fn values(look: &StateView, put: &mut impl FnMut(f64)) {
                     + part(&f.offset_moment);
                 if k == 0 { moment } else { -moment }
             }
-            Told::Angle(k) => {
+            ReactionKind::Angle(k) => {
                 let tangent = end_tangent(system, now, w, node(k));
                 nearest(tangent.x.atan2(tangent.z), first_angle(system, now, w))
             }
-            Told::Attached(k, axis) => {
+            ReactionKind::Attached(k, axis) => {
                 let own = system.attached.iter().filter(|attached| attached.number == k);
                 own.map(|a| a.spring(w)[axis] + a.dashpot(w)[axis]).sum()
             }
