@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
-use slcbeam_section::coefficients::{Numbers, RowCoefficients};
+use slcbeam_section::coefficients::RowCoefficients;
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 
@@ -14,6 +14,9 @@ use super::{computed, parameter, sets};
 use crate::error::{Code, Violation};
 
 mod file;
+mod neutral_axis;
+
+use neutral_axis::AboutNeutralAxis;
 
 pub use file::{SectionFile, parse};
 pub(super) use file::{is_one, no_case};
@@ -366,41 +369,6 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
 
 /// Pointer of the length of a cell.
 const PITCH: &str = "/section/pitch_m";
-
-/// Stiffness and areas about the neutral axis, from the compliance about mid-height: with `M = M_n + d N`,
-///
-/// ```text
-/// d = -C_NM/C_MM      1/EA = C_NN - C_NM²/C_MM      1/EI = C_MM      φ_b l_b an_R = C_NR + d C_MR      φ_b l_b R am_R = C_MR
-/// ```
-struct AboutNeutralAxis {
-    /// `d` [m]; 0 if force and curvature are not coupled.
-    offset: f64,
-    axial_stiffness_factor: f64,
-}
-
-impl AboutNeutralAxis {
-    fn new(section: &Section, numbers: &Numbers) -> Self {
-        let c = &numbers.compliance;
-        if numbers.force_curvature_coupling.abs() <= ALIKE {
-            return Self {
-                offset: 0.0,
-                axial_stiffness_factor: numbers.axial_stiffness_factor,
-            };
-        }
-        let axial = c[0][0] - c[0][1] * c[0][1] / c[1][1];
-        let full = section.material.young_modulus_pa * section.height_m * section.width_m;
-        Self {
-            offset: -c[0][1] / c[1][1],
-            axial_stiffness_factor: 1.0 / (axial * full),
-        }
-    }
-
-    /// `am` and `an` of a row, `sign` its R.
-    fn slopes(&self, row: &RowCoefficients, sign: f64) -> (f64, f64) {
-        let of_moment = row.area_per_moment_m2_per_n_m;
-        (of_moment, row.area_per_force_m2_per_n + self.offset * sign * of_moment)
-    }
-}
 
 /// Number of bladders in a row.
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
