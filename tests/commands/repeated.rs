@@ -81,7 +81,7 @@ fn a_resumed_run_is_repeated_too() {
 fn samples_have_the_effects_of_the_run() {
     let dir = TempDir::new().expect("a folder");
     let out = dir.path().join("result");
-    let uncertain = "/network/chains/0/ends/0/pressure_pa/ramp/to=normal:20000:100";
+    let uncertain = "/ends/root/clamped/u1_m/sine/amplitude=normal:0.003:1e-5";
     assert_eq!(run(&out, &["--uncertain", uncertain, "--samples", "16"]), 0);
     let told = summary(&out);
     let energy = &told["bands"]["input_energy_j.window"];

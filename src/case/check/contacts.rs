@@ -87,10 +87,13 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
                 "give stiffness_pa for contact along the whole beam, or at and stiffness_n_m for contact at one place",
             ),
         }
-        if contact.reach_m.is_some_and(|reach| reach > case.beam.length_m) {
+        if contact
+            .reach_m
+            .is_some_and(|reach| reach > LARGEST * case.beam.length_m)
+        {
             fault(
                 "reach_m",
-                "the touching surface is farther from the beam's line than the beam is long",
+                "the touching surface is more than 1e6 beam lengths from the beam's line",
                 "reach_m is in meters; absent: half the height",
             );
         }
