@@ -357,7 +357,7 @@ fn mistakes_are_explained() {
         ),
         (
             explained(json!({}), json!({"lower": {"unlike": {"height_m": 0.02}}}), json!({})),
-            ["/bladders/height_m", "the height of the beam"],
+            ["/bladders/lower/unlike/height_m", "the height of the beam"],
         ),
         (
             explained(
