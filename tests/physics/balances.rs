@@ -157,6 +157,7 @@ fn balances_of_networks_close() {
         ("network-tour", 0.3),
         ("bladder-pump", 0.1),
         ("syringe-finger", 0.5),
+        ("raised-tank", 1.0),
     ] {
         closes(name, end);
     }
