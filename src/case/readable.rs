@@ -9,7 +9,7 @@ pub fn figure_name(figure: &str) -> String {
 }
 
 /// Endings of keys and their units, the longer ones first.
-const ENDS: [(&str, &str); 38] = [
+const ENDS: [(&str, &str); 39] = [
     ("m2_per_n_m", "m^2/(N m)"),
     ("m2_per_pa", "m^2/Pa"),
     ("m2_per_n", "m^2/N"),
@@ -22,6 +22,7 @@ const ENDS: [(&str, &str); 38] = [
     ("n_m2", "N/m^2"),
     ("n_m_rad", "N m/rad"),
     ("kg_m2", "kg m^2"),
+    ("rad_s", "rad/s"),
     ("kg_m3", "kg/m^3"),
     ("m3_s", "m^3/s"),
     ("m2_s", "m^2/s"),
