@@ -136,14 +136,19 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
     }
 }
 
+/// True if the beam or a span gives the height of an axis; otherwise all are at mid-height.
+pub fn gives_axes(case: &Case) -> bool {
+    let in_span = |span: &Span| span.beam.neutral_axis_m.is_some() || span.beam.reference_axis_m.is_some();
+    let in_beam = case.beam.neutral_axis_m != 0.0 || case.beam.reference_axis_m.is_some();
+    in_beam || case.spans.iter().any(in_span)
+}
+
 /// True if the neutral axis is beside the beam's line somewhere.
 pub fn is_eccentric(case: &Case) -> bool {
     let off = |beam: &Beam| beam.neutral_axis_m != beam.line_height();
-    let in_span = |span: &Span| span.beam.neutral_axis_m.is_some() || span.beam.reference_axis_m.is_some();
-    let graded = case.beam.neutral_axis_m != 0.0 || case.beam.reference_axis_m.is_some();
     match case.spans.is_empty() {
         true => off(&case.beam),
-        false => (graded || case.spans.iter().any(in_span)) && segments(case).iter().any(|one| off(&one.beam)),
+        false => gives_axes(case) && segments(case).iter().any(|one| off(&one.beam)),
     }
 }
 

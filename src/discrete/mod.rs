@@ -109,6 +109,11 @@ impl System {
         Self::starting(case, model, |model| Ok(model.clone()))?.accepted(case)
     }
 
+    /// True if the fluid fills bladders; false also for a network that only its ports bound.
+    pub fn has_bladders(&self) -> bool {
+        self.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0)
+    }
+
     /// Discretizes another model of a checked case; bladders keep their volume at the start of the case.
     pub fn with(case: &Case, model: Model) -> Result<Self> {
         Self::starting(case, model, |_| Model::new(case))

@@ -78,8 +78,8 @@ impl Section {
         values.iter().map(of).collect()
     }
 
-    /// Section with the mean mass and the mean compliances of some segments, the largest height and the largest offset: it has their extension by a constant
-    /// force, and their deflection by a constant moment.
+    /// Section with the mean mass and the mean compliances of some segments, the largest height and the largest offset: it has
+    /// their extension by a constant force, and their deflection by a constant moment.
     pub fn mean(of: &[Self]) -> Option<Self> {
         let first = of.first()?;
         if of.iter().all(|one| one == first) {

@@ -36,15 +36,15 @@ fn a_repeated_run_leaves_nothing_of_the_first() {
     let left = |name: &str| name.starts_with(".next") || name.starts_with("fields.") || name.starts_with("checkpoint");
     let left: Vec<String> = names(&out).into_iter().filter(|name| left(name)).collect();
     assert_eq!(left, ["fields.npz"]);
-    let told = summary(&out);
-    let reason = told["effects"]["tube_losses"]["reason"].as_str().expect("a reason");
+    let summary = summary(&out);
+    let reason = summary["effects"]["tube_losses"]["reason"].as_str().expect("a reason");
     assert!(reason.starts_with("measured: without it "), "{reason}");
     let page = fs::read_to_string(out.join("report.html")).expect("a page");
     assert!(page.contains("measured: without it "), "the page says why");
     let case = fs::read_to_string(out.join("case.json")).expect("a case");
     let case: serde_json::Value = serde_json::from_str(&case).expect("JSON");
     assert_eq!(case["effects"]["tube_losses"], "on");
-    let checksums = told["tables_crc32"].as_object().expect("checksums");
+    let checksums = summary["tables_crc32"].as_object().expect("checksums");
     for name in checksums.keys() {
         assert!(out.join(name).exists(), "{name}");
     }
@@ -83,8 +83,8 @@ fn samples_have_the_effects_of_the_run() {
     let out = dir.path().join("result");
     let uncertain = "/ends/root/clamped/u1_m/sine/amplitude=normal:0.003:1e-5";
     assert_eq!(run(&out, &["--uncertain", uncertain, "--samples", "16"]), 0);
-    let told = summary(&out);
-    let energy = &told["bands"]["input_energy_j.window"];
+    let summary = summary(&out);
+    let energy = &summary["bands"]["input_energy_j.window"];
     let of = |key: &str| energy[key].as_f64().unwrap_or_else(|| panic!("{key}: {energy}"));
     assert!(of("low") <= of("value") && of("value") <= of("high"), "{energy}");
 }

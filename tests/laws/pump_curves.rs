@@ -168,13 +168,13 @@ fn a_rising_curve_is_unstable_as_greitzer_says() {
         "{ours} {root}"
     );
     case["effects"]["tube_inertia"] = json!("off");
-    let Err(Error::Case(told)) = parse(&case).and_then(|case| System::new(&case)) else {
+    let Err(Error::Case(refused)) = parse(&case).and_then(|case| System::new(&case)) else {
         panic!("no inertia")
     };
     assert!(
-        told.violations[0].what.contains("increases with flow"),
+        refused.violations[0].what.contains("increases with flow"),
         "{:?}",
-        told.violations
+        refused.violations
     );
 }
 
@@ -208,14 +208,14 @@ fn mistakes_are_explained() {
     let refused = |change: &dyn Fn(&mut Value), pointer: &str, words: &str| {
         let mut case = pumped(2e8, 1e3);
         change(&mut case);
-        let Err(Error::Case(told)) = parse(&case).and_then(|case| System::new(&case)) else {
+        let Err(Error::Case(refused)) = parse(&case).and_then(|case| System::new(&case)) else {
             panic!("{pointer} is accepted")
         };
-        let found = told
+        let found = refused
             .violations
             .iter()
             .any(|v| v.pointer == pointer && v.what.contains(words));
-        assert!(found, "{pointer}: {:?}", told.violations);
+        assert!(found, "{pointer}: {:?}", refused.violations);
     };
     const PUMP: &str = "/network/tubes/0/pump";
     let elevate = |heights: Value| move |case: &mut Value| case["network"]["elevations"] = heights.clone();

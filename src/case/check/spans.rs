@@ -61,12 +61,10 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
 /// Checks the heights of the neutral axis and of the beam's line, and rejects settings of which the equations need both at one height.
 pub(super) fn axes(case: &Case, faults: &mut Violations) {
     let uniform = [("/beam".to_owned(), case.beam.clone())];
-    let known = case.spans.is_empty() || !spans::countable(case);
-    let graded = spans::uniform_cases(case).filter(|_| !known);
-    let all = uniform
-        .into_iter()
-        .chain(graded.map(|(_, span, uniform)| (format!("/spans/{span}/beam"), uniform.beam)));
-    for (at, beam) in all {
+    let graded = !case.spans.is_empty() && spans::countable(case) && spans::gives_axes(case);
+    let graded = graded.then(|| spans::uniform_cases(case)).into_iter().flatten();
+    let graded = graded.map(|(_, span, uniform)| (format!("/spans/{span}/beam"), uniform.beam));
+    for (at, beam) in uniform.into_iter().chain(graded) {
         let half = 0.5 * beam.height_m * (1.0 + WITHIN);
         let both = [
             (
@@ -241,10 +239,7 @@ fn lengths(case: &Case, faults: &mut Violations) {
         ));
         faults.push(fault.hint(format!("change this length, /beam/length_m or {number}")));
     }
-    let total: usize = counts
-        .iter()
-        .flatten()
-        .fold(0, |sum: usize, count| sum.saturating_add(*count));
+    let total: usize = counts.iter().flatten().sum();
     if let Some(k) = (0..counts.len()).find(|&k| whole && case.spans[k].length_m.is_none() && counts[k].is_none()) {
         let what = "nothing of the beam is left for the span without length_m";
         let fault = Violation::new(Code::Geometry, format!("/spans/{k}"), what);

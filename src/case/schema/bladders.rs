@@ -227,9 +227,9 @@ pub struct Closing {
     pub stiffness_pa: f64,
 }
 
-/// `P = sum P_k z^k`, `3 <= |k| <= degree`, with mirrored rows `k_2 + k_4` even: what a law at finite strain adds to the potential of the section [N]. `z` are
-/// the stretch and the curvature that loads make and half of sum and difference of the upper and the lower pressure, each over the
-/// largest of its limits.
+/// `P = sum P_k z^k`, `3 <= |k| <= degree`, with mirrored rows `k_2 + k_4` even: what a law at finite strain adds to
+/// the potential of the section [N]. `z` are the stretch and the curvature that loads make and half of sum and difference of the upper
+/// and the lower pressure, each over the largest of its limits.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StrainEnergy {

@@ -217,11 +217,12 @@ fn given<'a, T, const N: usize>(
     all.into_iter().filter_map(|(key, value)| Some((key, value.as_ref()?)))
 }
 
-/// True if a number is 0, the default that a case may omit.
+/// True if a choice is false, the default that a case may omit.
 fn is_false(value: &bool) -> bool {
     !value
 }
 
+/// True if a number is 0, the default that a case may omit.
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

@@ -2,7 +2,6 @@
 
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
-use slcbeam_section::coefficients::RowCoefficients;
 use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 
@@ -303,8 +302,7 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
         }
         (Some(upper), lower) => {
             let along = section.bladders.along();
-            let slopes = |row: &RowCoefficients, sign: f64| {
-                let (of_moment, of_force) = about.slopes(row, sign);
+            let slopes = |(of_moment, of_force): (f64, f64)| {
                 json!({
                     "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
                     "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
@@ -321,19 +319,15 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
                 "permeability_m4": c.permeability_m4,
                 "area_per_pressure_m2_per_pa": c.area_per_pressure_m2_per_pa,
             });
-            let (of_moment, of_force) = (c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n);
-            let mut own = json!({
-                "area_per_moment_m2_per_n_m": {"opening": of_moment, "closing": of_moment},
-                "area_per_force_m2_per_n": {"tension": of_force, "compression": of_force},
-            });
+            let mut own = slopes((c.area_per_moment_m2_per_n_m, c.area_per_force_m2_per_n));
             if !alike {
-                own = slopes(upper, 1.0);
+                own = slopes(about.slopes(upper, 1.0));
                 own["permeability_m4"] = upper.permeability_m4.into();
                 own["area_per_pressure_m2_per_pa"] = upper.area_per_pressure_m2_per_pa.into();
                 own["lower"] = match lower {
                     None => json!("none"),
                     Some(lower) => {
-                        let mut row = slopes(lower, -1.0);
+                        let mut row = slopes(about.slopes(lower, -1.0));
                         row["height_m"] = (lower.area_m2 / along).into();
                         row["area_per_pressure_m2_per_pa"] = lower.area_per_pressure_m2_per_pa.into();
                         row["permeability_m4"] = lower.permeability_m4.into();

@@ -136,7 +136,7 @@ impl BeamField {
 
     /// Fields of a system.
     pub fn recorded(system: &System) -> impl Iterator<Item = Self> {
-        let wet = system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0);
+        let wet = system.has_bladders();
         let shears = !system.layout.turning.angle.is_empty();
         Self::ALL.into_iter().filter(move |field| {
             (wet || field.axis() != FieldAxis::Network) && (shears || *field != Self::SectionAngle)
@@ -185,7 +185,7 @@ impl FieldAxis {
 
     /// Axes of a system.
     pub fn recorded(system: &System) -> impl Iterator<Item = Self> {
-        let wet = system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0);
+        let wet = system.has_bladders();
         Self::ALL
             .into_iter()
             .filter(move |axis| wet || matches!(axis, Self::Nodes | Self::Cells))

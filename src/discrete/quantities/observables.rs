@@ -87,7 +87,7 @@ fn wet(system: &System) -> bool {
 }
 
 fn filled(system: &System) -> bool {
-    system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0)
+    system.has_bladders()
 }
 
 fn attached(system: &System) -> bool {

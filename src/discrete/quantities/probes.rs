@@ -24,7 +24,6 @@ pub struct MeshProbe {
     cell: (usize, f64),
     /// Segment of the probe.
     segment: usize,
-    /// `h_s/2` [m].
     /// Heights of the upper and the lower surface above the beam's line [m].
     surfaces: [f64; 2],
     /// Young's modulus of the solid [Pa].
@@ -128,7 +127,7 @@ pub fn values<'a>(look: &'a StateView) -> impl Iterator<Item = f64> + 'a {
 }
 
 fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
-    let wet = system.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0);
+    let wet = system.has_bladders();
     let of = move |probe| {
         TABLE
             .into_iter()
@@ -195,7 +194,7 @@ impl MeshProbe {
         first_angle(look.system, look.now, &look.w) - h * (passed + rest) + turns
     }
 
-    /// `λ - 1 ± κ h_s/2`, κ relative to the rest curvature.
+    /// `λ - 1 + κ (±h_s/2 - z_r)`, κ relative to the rest curvature.
     fn surface(&self, look: &StateView, side: usize) -> f64 {
         let shape = &look.w.shape;
         self.of_cells(|c| shape.strain[c])
