@@ -626,8 +626,8 @@ fn circle(kappa: f64) -> (System, Workspace<f64>) {
     let (mut x, mut z) = (0.0, 0.0);
     for cell in 0..mesh.cells {
         let angle = -kappa * mesh.cell_coordinate(cell);
-        x += mesh.h * angle.sin();
-        z += mesh.h * angle.cos();
+        x += mesh.shortest * angle.sin();
+        z += mesh.shortest * angle.cos();
         // The clamped root is no unknown.
         y[l.lines[0].u.start + cell] = x;
         y[l.lines[1].u.start + cell] = z - mesh.node_coordinate(cell + 1);
@@ -644,7 +644,7 @@ fn a_circle_has_one_curvature() {
         let last = system.mesh.nodes - 1;
         assert!(w.shape.strain.iter().all(|e| e.abs() < 1e-12));
         // Round-off of an angle over h.
-        let error = 1e-13 / system.mesh.h + 1e-12 * kappa.abs();
+        let error = 1e-13 / system.mesh.shortest + 1e-12 * kappa.abs();
         assert!(
             w.shape.kappa[..last].iter().all(|k| (k - kappa).abs() < error),
             "{kappa}: {:?}",
@@ -668,9 +668,11 @@ fn a_circle_has_one_moment_and_no_shear() {
     }
     assert_eq!(w.forces.moment[last], 0.0);
     for c in 0..last - 1 {
-        assert!(w.forces.normal[c].abs() < 1e-12 * ea && w.forces.shear[c].abs() < 1e-9 * ei * kappa / system.mesh.h);
+        assert!(
+            w.forces.normal[c].abs() < 1e-12 * ea && w.forces.shear[c].abs() < 1e-9 * ei * kappa / system.mesh.shortest
+        );
     }
-    close(w.forces.shear[last - 1], ei * kappa / system.mesh.h, 1e-9);
+    close(w.forces.shear[last - 1], ei * kappa / system.mesh.shortest, 1e-9);
 }
 
 /// `[E16]` Weights of each segment's mean sum to one, and act back on a node as the mean of the segments beside it.
@@ -687,7 +689,7 @@ fn means_weigh_as_their_transpose() {
         for j in 0..mesh.segments {
             let first = j * mesh.cells_per_segment;
             if (first..=first + mesh.cells_per_segment).contains(&node) {
-                let weight = mesh.moment_weight(node - first) * mesh.segment_length / mesh.node_length(node);
+                let weight = mesh.moment_weight(node - first) * mesh.segment_lengths[j] / mesh.node_lengths[node];
                 transposed += weight * w.coupling.pressure_curvature[j];
             }
         }

@@ -67,7 +67,8 @@ fn in_spans(case: &Case) -> Option<String> {
             .iter()
             .filter(|law| !law.is_exact(&here, &usual) && belongs(&resolved, law));
         let moved = moved.filter(|law| own.pointer(law.pointer).is_none());
-        let used = moved.filter(|law| written.rows != SpanRows::None || law.pointer == "/beam/shear_stiffness_n");
+        // without bladders the section is full
+        let used = moved.filter(|_| written.rows != SpanRows::None);
         let before = names.len();
         names.extend(used.map(|law| law.pointer));
         if names.len() > before && !shaping.contains(&span) {

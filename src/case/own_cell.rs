@@ -8,7 +8,7 @@ use slcbeam_section::coefficients::Numbers;
 use slcbeam_section::input::{Bladder, Bladders, Material, Row, Section, Shape};
 
 use super::computed;
-use super::schema::Case;
+use super::schema::{Case, SpanLengths};
 
 /// Poisson's ratio.
 const RATIO: f64 = 0.49;
@@ -71,7 +71,7 @@ fn section(case: &Case, [young_modulus_pa, density_kg_m3]: [f64; 2]) -> Option<(
     let section = Section {
         height_m: beam.height_m,
         width_m: beam.width_m,
-        pitch_m: beam.length_m / of.per_row.max(1) as f64,
+        pitch_m: SpanLengths::new(case).pitch,
         material: Material {
             young_modulus_pa,
             poisson_ratio: RATIO,

@@ -6,9 +6,11 @@
 
 use std::collections::BTreeMap;
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use super::faults::is_below;
+use super::schema::{Span, SpanLengths};
 
 /// Relative difference of a ratio of dimensions above which two sections have different shapes.
 const SAME: f64 = 1e-3;
@@ -29,6 +31,18 @@ pub(super) struct Sizes {
     radius: Option<f64>,
 }
 
+/// Length of the segments to which the coefficients of a case in JSON belong [m].
+fn pitch(case: &Value, length: f64, per_row: f64) -> f64 {
+    let spans = case
+        .get("spans")
+        .filter(|spans| spans.as_array().is_some_and(|all| !all.is_empty()));
+    let spans = spans.and_then(|spans| Vec::<Span>::deserialize(spans).ok());
+    match spans {
+        None => length / per_row,
+        Some(spans) => SpanLengths::resolve(&spans, length, per_row as usize).pitch,
+    }
+}
+
 /// Bladders in the beam [m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct InBeam {
@@ -45,7 +59,7 @@ impl Sizes {
         let number = |pointer: &str| case.pointer(pointer).and_then(Value::as_f64).filter(|x| *x > 0.0);
         let bladders = match case.get("bladders") {
             Some(Value::Object(_)) => Some(InBeam {
-                pitch: number("/beam/length_m")? / number("/bladders/per_row")?,
+                pitch: pitch(case, number("/beam/length_m")?, number("/bladders/per_row")?),
                 length: number("/bladders/length_m")?,
                 height: number("/bladders/height_m")?,
                 width: number("/bladders/width_m")?,

@@ -1,14 +1,12 @@
 //! Values of beam and bladders along the axis: those of each segment, from the spans of a case.
 
+use std::iter;
 use std::ops::RangeInclusive;
 
 use serde_json::{Value, json};
 
 use super::scaling::CoefficientSizes;
-use super::schema::{AreaPerForce, AreaPerMoment, Beam, Bladders, Case, LowerRow, Span, SpanRows};
-
-/// Relative deviation of a span's length from whole segments that counts as rounding.
-const WHOLE: f64 = 1e-6;
+use super::schema::{AreaPerForce, AreaPerMoment, Beam, Bladders, Case, LowerRow, Span, SpanLengths, SpanRows};
 
 /// `kGA/(E A)` of a full rectangle, nearly incompressible: 5/6 of a third.
 const FULL_SHEAR: f64 = 5.0 / 18.0;
@@ -18,7 +16,7 @@ const FULL_SHEAR: f64 = 5.0 / 18.0;
 pub struct SegmentValues {
     /// Rows that have a bladder here: upper, lower.
     pub rows: [bool; 2],
-    /// Values of the solid.
+    /// Values of the solid. Its length is that of a beam of as many segments, all like this one.
     pub beam: Beam,
     /// Values of the bladders of the upper row and of the lower one; none for a dry beam.
     pub bladders: Option<[Bladders; 2]>,
@@ -40,36 +38,37 @@ pub fn countable(case: &Case) -> bool {
     POSSIBLE.contains(&case.segments())
 }
 
-/// Length of a segment [m].
-pub fn segment_length(case: &Case) -> f64 {
-    case.beam.length_m / case.segments() as f64
+/// Length of each segment [m].
+pub fn segment_lengths(case: &Case) -> Vec<f64> {
+    let (places, lengths) = (places(case), SpanLengths::new(case));
+    match places.len() == case.segments() {
+        true => places.into_iter().map(|(span, _)| lengths.pitch_of(span)).collect(),
+        // without spans, or with faulty ones
+        false => vec![lengths.pitch; case.segments()],
+    }
 }
 
-/// Number of segments of each span; none for a length that is not a whole number of segments, if nothing is left for a span without
-/// length, or if the number of all segments is not allowed.
-pub fn counts(case: &Case) -> Vec<Option<usize>> {
-    if !countable(case) {
-        return vec![None; case.spans.len()];
-    }
-    let pitch = segment_length(case);
-    let whole = |length: f64| {
-        let count = (length / pitch).round();
-        let fits = count >= 1.0 && count <= case.segments() as f64;
-        (fits && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
-    };
-    let given: Vec<Option<usize>> = case.spans.iter().map(|span| span.length_m.and_then(whole)).collect();
-    // each count is at most that of all segments, so that no sum overflows
-    let rest = case.segments().saturating_sub(given.iter().flatten().sum());
-    let rest = Some(rest).filter(|rest| *rest > 0);
-    let counts = case.spans.iter().zip(given);
-    counts
-        .map(|(span, given)| if span.length_m.is_none() { rest } else { given })
-        .collect()
+/// Place of the root end of each segment, and of the tip [m].
+pub fn segment_ends(case: &Case) -> Vec<f64> {
+    let lengths = segment_lengths(case);
+    let mut end = 0.0;
+    let ends = lengths.into_iter().map(|length| {
+        end += length;
+        end
+    });
+    iter::once(0.0).chain(ends).collect()
 }
 
 /// Span and place within it, from 0 to 1, of the middle of each segment; empty for a beam without spans or with faulty lengths.
 pub fn places(case: &Case) -> Vec<(usize, f64)> {
-    let all: Option<Vec<usize>> = counts(case).into_iter().collect();
+    if case.spans.is_empty() || !countable(case) {
+        return vec![];
+    }
+    // at most all segments, so that a list of them fits into memory
+    let counts: Option<Vec<usize>> = SpanLengths::new(case).counts.into_iter().collect();
+    let all = counts.filter(|counts| {
+        counts.iter().try_fold(0, |sum: usize, count| sum.checked_add(*count)) == Some(case.segments())
+    });
     let within = |(span, count): (usize, usize)| (0..count).map(move |k| (span, (k as f64 + 0.5) / count as f64));
     all.into_iter().flatten().enumerate().flat_map(within).collect()
 }
@@ -111,6 +110,10 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
         return vec![];
     }
     let mut beam = json!(case.beam);
+    let pitch = SpanLengths::new(case).pitch;
+    if case.spans.iter().any(|span| span.segments.is_some()) {
+        beam["length_m"] = (pitch * case.segments() as f64).into();
+    }
     if case.beam.neutral_axis_m != 0.0 {
         // the line stays where it is if the neutral axis of a span is elsewhere
         beam["reference_axis_m"] = case.beam.line_height().into();
@@ -119,12 +122,15 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
     let lower = lower_bladders(case);
     let whole = [case.bladders.as_ref(), lower.as_ref()].map(part);
     if case.spans.is_empty() {
-        return vec![values(case, &whole, &Span::default(), 0.5); case.segments()];
+        return vec![values(case, &whole, &Span::default(), 0.5, None); case.segments()];
     }
-    let places = places(case);
-    let all: Vec<SegmentValues> = places
-        .iter()
-        .map(|&(span, x)| values(case, &whole, &case.spans[span], x))
+    let all = places(case).into_iter().zip(segment_lengths(case));
+    let all: Vec<SegmentValues> = all
+        .map(|((span, x), length)| {
+            let own = Some(length).filter(|length| *length != pitch);
+            let of_beam = own.map(|length| length * case.segments() as f64);
+            values(case, &whole, &case.spans[span], x, of_beam)
+        })
         .collect();
     let rows = [case.bladders.is_some(); 2];
     let own = |bladders: &[Bladders; 2]| bladders.iter().all(|own| Some(own) == case.bladders.as_ref());
@@ -233,11 +239,13 @@ pub fn uniform_cases(case: &Case) -> impl Iterator<Item = (usize, usize, Case)> 
     })
 }
 
-/// Values at a place of a span, from those of a case in JSON with the bladders of the upper and of the lower row.
-fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64) -> SegmentValues {
+/// Values at a place of a span, from those of a case in JSON with the bladders of the upper and of the lower row. `length` is that of a
+/// beam with segments like this one [m], if they are not those of the case.
+fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64, length: Option<f64>) -> SegmentValues {
     let given = span.given();
     let mut numbers: Vec<(String, f64)> = given
         .map(|(part, key, profile)| (format!("/{part}/{key}"), profile.value(x)))
+        .chain(length.map(|length| ("/beam/length_m".to_owned(), length)))
         .collect();
     let own = &span.bladders;
     numbers.extend(slopes(&own.area_per_moment_m2_per_n_m, &own.area_per_force_m2_per_n));

@@ -27,7 +27,7 @@ impl AngleUnwrapping {
         if system.model.kinematics == Kinematics::FiniteRotation && w.shape.sections.angle.is_empty() {
             for (one, cell) in system.attached.iter().filter_map(|one| Some((one, one.turns_at()?))) {
                 attached.resize(system.attached.len(), 0.0);
-                attached[one.number] = root - system.mesh.h * w.shape.kappa[1..=cell].iter().sum::<f64>();
+                attached[one.number] = root - rotation(system, w, cell);
             }
         }
         Self { root, attached }
@@ -59,6 +59,16 @@ pub fn first_angle(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
 /// Angle `φ` of the tip, unwrapped along the beam.
 pub fn tip_angle(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
-    let interior: f64 = w.shape.kappa[1..last].iter().sum();
-    first_angle(system, now, w) - system.mesh.h * (interior + 0.5 * w.shape.kappa[last])
+    let beyond = system.mesh.node_lengths[last] * w.shape.kappa[last];
+    first_angle(system, now, w) - (rotation(system, w, last - 1) + beyond)
+}
+
+/// Rotation from the first cell to another, `Σ h_i κ_i` over the nodes between them.
+pub fn rotation(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
+    let lengths = &system.mesh.node_lengths[1..=cell];
+    lengths
+        .iter()
+        .zip(&w.shape.kappa[1..=cell])
+        .map(|(h, kappa)| h * kappa)
+        .sum()
 }

@@ -77,18 +77,18 @@ impl MeshedAttachment {
     }
 
     fn new(number: usize, attachment: &AttachedBody, sections: &MeshSections, mesh: &BeamMesh) -> Self {
-        let place = attachment.at * mesh.cells as f64;
+        let place = mesh.place(attachment.at);
         let (node, weights) = share(place, mesh.cells);
         let (first, last) = (0.5, mesh.cells as f64 - 0.5);
-        let beyond = |cell: usize, by: f64| by * mesh.h / sections.bending_of_cells[cell];
+        let beyond = |cell: usize, by: f64| by * mesh.lengths[cell] / sections.bending_of_cells[cell];
         let (cells, in_series) = if place <= first {
             ([(0, 1.0), (0, 0.0)], beyond(0, first - place))
         } else if place >= last {
             let cell = mesh.cells - 1;
             ([(cell, 1.0), (cell, 0.0)], beyond(cell, place - last))
         } else {
-            let cell = ((place - 0.5) as usize).min(mesh.cells - 2);
-            let (share, in_series) = sections.turning(cell, place - 0.5 - cell as f64, mesh.h);
+            let (cell, share) = mesh.between_midpoints(place);
+            let (share, in_series) = sections.turning(cell, share, mesh);
             ([(cell, 1.0 - share), (cell + 1, share)], in_series)
         };
         let nearest = (place as usize).min(mesh.cells - 1);
@@ -96,7 +96,7 @@ impl MeshedAttachment {
         let k = attachment.turning_stiffness;
         Self {
             number,
-            beyond: (nearest, nearest + usize::from(by > 0.0), by * mesh.h),
+            beyond: (nearest, nearest + usize::from(by > 0.0), by * mesh.lengths[nearest]),
             node,
             weights,
             stiffness: attachment.stiffness,
@@ -195,12 +195,11 @@ pub fn turning<T: Scalar>(
     w: &mut Workspace<T>,
     mut add: impl FnMut(T, usize, &mut Workspace<T>),
 ) {
-    let inverse = 1.0 / system.mesh.h;
     for attached in system.attached.iter().filter(|a| a.turning_stiffness > 0.0) {
-        let couple = attached.angle(system, now, w) * (attached.turning_stiffness * inverse);
+        let couple = attached.angle(system, now, w) * attached.turning_stiffness;
         for (cell, weight) in attached.cells {
             if weight > 0.0 {
-                add(couple * weight, cell, w);
+                add(couple * (weight * system.mesh.per_length[cell]), cell, w);
             }
         }
     }

@@ -83,7 +83,7 @@ impl MeshedBody {
         let turns = [&ends[0], &ends[1]].map(|end| matches!(end.rotation, Rotation::Moment(_)));
         let bodies = attachments.iter().enumerate().filter(|(_, one)| one.is_body());
         let body = |(number, one): (usize, &AttachedBody)| {
-            let place = one.at * mesh.cells as f64;
+            let place = mesh.place(one.at);
             let (node, hats) = share(place, mesh.cells);
             let (first, weights) = cells(place, mesh.cells, turns);
             Self {
@@ -132,7 +132,7 @@ impl MeshedBody {
         let mut beyond = 1.0 - self.weights[0];
         for (node, weight) in (self.first + 1..system.mesh.cells).zip(&self.weights[1..]) {
             if beyond != 0.0 {
-                turn += w.shape.kappa[node] * (beyond * -system.mesh.h);
+                turn += w.shape.kappa[node] * (beyond * -system.mesh.node_lengths[node]);
             }
             beyond -= weight;
         }
@@ -184,22 +184,22 @@ impl MeshedBody {
         self.mean(|c| match system.model.kinematics {
             _ if !w.shape.sections.angle.is_empty() => w.shape.angle_rate[c],
             Kinematics::FiniteRotation => solid::angle_rate(system, w, c),
-            _ => (w.motion.v[c + 1].x - w.motion.v[c].x) * (1.0 / system.mesh.h),
+            _ => (w.motion.v[c + 1].x - w.motion.v[c].x) * system.mesh.per_length[c],
         })
     }
 
     /// `φ_tt` of the body's cells, by [E13].
     fn speeding<T: Scalar>(&self, system: &System, w: &Workspace<T>) -> T {
-        let (inverse, v, a) = (1.0 / system.mesh.h, &w.motion.v, &w.motion.a);
+        let (inverse, v, a) = (&system.mesh.per_length, &w.motion.v, &w.motion.a);
         self.mean(|c| match system.model.kinematics {
             _ if !w.shape.sections.angle.is_empty() => w.shape.sections.acceleration[c],
             Kinematics::FiniteRotation => {
                 let (tangent, stretch) = (w.shape.tangent[c], w.shape.stretch[c]);
-                let stretching = tangent.dot((v[c + 1] - v[c]) * inverse);
-                let across = tangent.cross((a[c + 1] - a[c]) * inverse);
+                let stretching = tangent.dot((v[c + 1] - v[c]) * inverse[c]);
+                let across = tangent.cross((a[c + 1] - a[c]) * inverse[c]);
                 (across - stretching * solid::angle_rate(system, w, c) * 2.0) / stretch
             }
-            _ => (a[c + 1].x - a[c].x) * inverse,
+            _ => (a[c + 1].x - a[c].x) * inverse[c],
         })
     }
 
@@ -252,10 +252,10 @@ impl MeshedBody {
 
     /// Adds the impulses [kg m/s] of nodes by velocity jumps.
     pub fn add_impulses(&self, system: &System, w: &Workspace<f64>, jumps: &[Planar<f64>], all: &mut [Planar<f64>]) {
-        let inverse = 1.0 / system.mesh.h;
+        let inverse = &system.mesh.per_length;
         let turned = |c: usize| match system.model.kinematics {
-            Kinematics::FiniteRotation => w.shape.tangent[c].normal() * (-inverse / w.shape.stretch[c]),
-            _ => Planar { x: inverse, z: 0.0 },
+            Kinematics::FiniteRotation => w.shape.tangent[c].normal() * (-inverse[c] / w.shape.stretch[c]),
+            _ => Planar { x: inverse[c], z: 0.0 },
         };
         let first = self.arm(system, w).first;
         let turning = self.mean(|c| turned(c).dot(jumps[c + 1] - jumps[c]));
@@ -347,11 +347,10 @@ pub fn turning<T: Scalar>(
     w: &mut Workspace<T>,
     mut add: impl FnMut(T, usize, &mut Workspace<T>),
 ) {
-    let inverse = 1.0 / system.mesh.h;
     for body in &system.bodies {
-        let couple = body.couple(system, now, w) * inverse;
+        let couple = body.couple(system, now, w);
         for (cell, weight) in body.cells() {
-            add(couple * weight, cell, w);
+            add(couple * (weight * system.mesh.per_length[cell]), cell, w);
         }
     }
 }

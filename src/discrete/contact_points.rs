@@ -40,12 +40,12 @@ impl ContactPoint {
                     node,
                     weights: [1.0 - share, share],
                     measure,
-                    coordinate: place * mesh.h,
+                    coordinate: mesh.coordinate(place),
                 });
             };
             match contact.at {
-                Some(at) => push(at * mesh.cells as f64, 1.0),
-                None => (0..mesh.nodes).for_each(|i| push(i as f64, mesh.node_length(i))),
+                Some(at) => push(mesh.place(at), 1.0),
+                None => (0..mesh.nodes).for_each(|i| push(i as f64, mesh.node_lengths[i])),
             }
         }
         all.sort_by_key(|one| one.node);

@@ -13,8 +13,8 @@ pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
         return None;
     }
     let u = &w.motion.u[..=cells];
-    let h = system.mesh.h;
-    let at = |node: usize| Planar::new(u[node].x, u[node].z + h * node as f64);
+    let mesh = &system.mesh;
+    let at = |node: usize| Planar::new(u[node].x, u[node].z + mesh.node_coordinate(node));
     let whole = at(cells) - at(0);
     if (0..cells).all(|c| (at(c + 1) - at(c)).dot(whole) > 0.0) {
         return None;
@@ -29,7 +29,7 @@ pub fn first(system: &System, w: &Workspace<f64>) -> Option<[f64; 2]> {
             let apart = (at(second) - a).squared().sqrt();
             let near = apart <= 2.0 * longest;
             if near && let Some([s, t]) = meet([a, b], [at(second), at(second + 1)]) {
-                return Some([(first as f64 + s) * h, (second as f64 + t) * h]);
+                return Some([mesh.coordinate(first as f64 + s), mesh.coordinate(second as f64 + t)]);
             }
             second += if near {
                 1

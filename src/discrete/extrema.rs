@@ -250,7 +250,7 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
             relaxation::curvature_rate(system, now, w, last, given + now.rest_curvature_rate(last), 1.0)
         }
     };
-    w.shape.angle_rate[last - 1] - 0.5 * system.mesh.h * curvature_rate
+    w.shape.angle_rate[last - 1] - 0.5 * system.mesh.lengths[last - 1] * curvature_rate
 }
 
 /// Rate of the largest fibre strain at its node [1/s].

@@ -19,11 +19,10 @@ pub fn across(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<
     }
     residual::evaluate(system, now, y, &vec![0.0; y.len()], w);
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    let inverse = 1.0 / system.mesh.h;
     let mut before = now.ends[0].slope.map_or(0.0, |slope| slope.value);
     for (c, (angle, rate)) in own.unknowns().enumerate() {
         let d3 = w.shape.d3[c];
-        let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * inverse;
+        let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * system.mesh.per_length[c];
         let (line, turning) = if finite {
             (nearest(d3.x.atan2(d3.z), before), d3.cross(d3_t) / d3.squared())
         } else {
@@ -68,16 +67,16 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
 /// `h kGA δ_c + EI/h (2 δ_c - δ_{c-1} - δ_{c+1})` by Thomas' algorithm. On a fourth-order mesh, whose short waves are up to 5/3 as stiff,
 /// stiffnesses are increased by 4/3.
 fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
-    let (sections, h) = (&system.sections, system.mesh.h);
+    let (sections, mesh) = (&system.sections, &system.mesh);
     let stiffer = if system.mesh.fourth { 4.0 / 3.0 } else { 1.0 };
-    let bends = |node: usize| stiffer * sections.bending[node] / h;
+    let bends = |node: usize| stiffer * sections.bending[node] * mesh.per_node_length[node];
     let mut above = Vec::with_capacity(moments.len());
     let mut values: Vec<f64> = Vec::with_capacity(moments.len());
     for (c, moment) in moments.iter().enumerate() {
         let last = c + 1 == moments.len();
         // a given slope constrains the end's half cell, a given moment does not
         let beside = |end: usize, node: usize| match system.model.ends[end].rotation {
-            Rotation::Slope(_) => 2.0 * bends(node),
+            Rotation::Slope(_) => bends(node),
             Rotation::Moment(_) => 0.0,
         };
         let left = if c == 0 { beside(0, 0) } else { bends(c) };
@@ -86,7 +85,7 @@ fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
             (Some(value), Some(above)) => (left * value, left * above),
             _ => (0.0, 0.0),
         };
-        let pivot = stiffer * h * sections.shear[c] + left + right - coupled;
+        let pivot = stiffer * mesh.lengths[c] * sections.shear[c] + left + right - coupled;
         values.push((moment + before) / pivot);
         above.push(if last { 0.0 } else { right / pivot });
     }

@@ -1,6 +1,10 @@
 //! Staggered mesh of the beam: positions at nodes; stretch, angle, N and V at cell midpoints; curvature and M at nodes.
 
-/// Mesh with `K` equal cells in each of `segments` equal segments.
+use std::iter;
+
+use super::shapes::Cells;
+
+/// Mesh with `K` equal cells in each segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeamMesh {
     /// Number of segments, `n/2` if there are bladders.
@@ -11,25 +15,79 @@ pub struct BeamMesh {
     pub cells: usize,
     /// Number of nodes, `cells + 1`.
     pub nodes: usize,
-    /// Cell length `h` [m].
-    pub h: f64,
-    /// Length of a segment `l_seg` [m].
-    pub segment_length: f64,
+    /// Length of the shortest cells, `h` in a uniform mesh [m].
+    pub shortest: f64,
+    /// Length `h_c` of each cell [m].
+    pub lengths: Vec<f64>,
+    /// `1/h_c` of each cell [1/m].
+    pub per_length: Vec<f64>,
+    /// Length `h_i` of each node, half of the cells beside it [m].
+    pub node_lengths: Vec<f64>,
+    /// `1/h_i` of each node [1/m].
+    pub per_node_length: Vec<f64>,
+    /// Shares of the left and the right segment in the length of each node between two segments.
+    pub borders: Vec<[f64; 2]>,
+    /// Length of each segment `l_seg` [m].
+    pub segment_lengths: Vec<f64>,
+    /// Material coordinate of each node [m].
+    coordinates: Vec<f64>,
+    /// True if all cells have one length.
+    pub uniform: bool,
     /// True if the discretization error of the beam is of fourth order, [`super::residual::fourth_order`].
     pub fourth: bool,
 }
 
 impl BeamMesh {
-    /// Uniform mesh of a beam of the given length [m].
-    pub fn new(length: f64, segments: usize, cells_per_segment: usize) -> Self {
+    /// Mesh of a beam with segments of the given lengths [m], which has the given length in total.
+    pub fn new(length: f64, segment_lengths: Vec<f64>, cells_per_segment: usize) -> Self {
+        let segments = segment_lengths.len();
         let cells = segments * cells_per_segment;
+        let uniform = segment_lengths.windows(2).all(|pair| pair[0] == pair[1]);
+        let equal = length / cells as f64;
+        let cell_of = |segment: &f64| {
+            if uniform {
+                equal
+            } else {
+                segment / cells_per_segment as f64
+            }
+        };
+        let lengths: Vec<f64> = segment_lengths
+            .iter()
+            .flat_map(|segment| iter::repeat_n(cell_of(segment), cells_per_segment))
+            .collect();
+        let mut end = 0.0;
+        let summed = lengths.iter().map(|length| {
+            end += length;
+            end
+        });
+        let coordinates = match uniform {
+            true => (0..=cells).map(|node| node as f64 * equal).collect(),
+            false => iter::once(0.0).chain(summed).collect(),
+        };
+        let node_length = |node: usize| match [node.checked_sub(1), Some(node).filter(|node| *node < cells)] {
+            [Some(left), Some(right)] if lengths[left] == lengths[right] => lengths[left],
+            beside => 0.5 * beside.into_iter().flatten().map(|cell| lengths[cell]).sum::<f64>(),
+        };
+        let node_lengths: Vec<f64> = (0..=cells).map(node_length).collect();
+        let border = |pair: &[f64]| match pair[0] == pair[1] {
+            true => [0.5; 2],
+            false => [pair[0], pair[1]].map(|length| length / (pair[0] + pair[1])),
+        };
+        let inverse = |lengths: &[f64]| lengths.iter().map(|length| 1.0 / length).collect();
         Self {
             segments,
             cells_per_segment,
             cells,
             nodes: cells + 1,
-            h: length / cells as f64,
-            segment_length: length / segments as f64,
+            shortest: lengths.iter().copied().fold(f64::INFINITY, f64::min),
+            per_length: inverse(&lengths),
+            per_node_length: inverse(&node_lengths),
+            lengths,
+            node_lengths,
+            borders: segment_lengths.windows(2).map(border).collect(),
+            segment_lengths,
+            coordinates,
+            uniform,
             fourth: false,
         }
     }
@@ -46,16 +104,6 @@ impl BeamMesh {
     /// Minimum number of cells of a beam for an order.
     pub fn fewest(order: u8) -> usize {
         if order == 4 { 6 } else { 1 }
-    }
-
-    /// Length of a node: `h`, at the ends `h/2`.
-    #[inline]
-    pub fn node_length(&self, node: usize) -> f64 {
-        if node == 0 || node + 1 == self.nodes {
-            0.5 * self.h
-        } else {
-            self.h
-        }
     }
 
     /// `[E78]` Redistributes nodal loads of hat functions such that their work on a smooth motion has the order of the mesh:
@@ -98,13 +146,85 @@ impl BeamMesh {
         (left, right)
     }
 
+    /// Nodes at the ends of a segment.
+    pub fn ends_of_segment(&self, segment: usize) -> [usize; 2] {
+        [segment, segment + 1].map(|segment| segment * self.cells_per_segment)
+    }
+
     /// Material coordinate of a node [m].
+    #[inline]
     pub fn node_coordinate(&self, node: usize) -> f64 {
-        node as f64 * self.h
+        self.coordinates[node]
     }
 
     /// Material coordinate of a cell's midpoint [m].
     pub fn cell_coordinate(&self, cell: usize) -> f64 {
-        (cell as f64 + 0.5) * self.h
+        match self.uniform {
+            true => (cell as f64 + 0.5) * self.lengths[cell],
+            false => self.coordinates[cell] + 0.5 * self.lengths[cell],
+        }
+    }
+
+    /// Place in units of cells, from 0 to their number, of a place in units of the beam's length, from 0 to 1.
+    pub fn place(&self, at: f64) -> f64 {
+        if self.uniform {
+            return at * self.cells as f64;
+        }
+        let coordinate = at * self.coordinates[self.cells];
+        let cell = self
+            .coordinates
+            .partition_point(|node| *node <= coordinate)
+            .clamp(1, self.cells)
+            - 1;
+        cell as f64 + (coordinate - self.coordinates[cell]) * self.per_length[cell]
+    }
+
+    /// Material coordinate of a place in units of cells [m].
+    pub fn coordinate(&self, place: f64) -> f64 {
+        let cell = (place as usize).min(self.cells - 1);
+        match self.uniform {
+            true => place * self.lengths[cell],
+            false => self.coordinates[cell] + (place - cell as f64) * self.lengths[cell],
+        }
+    }
+
+    /// Cell, the next of which has its midpoint beyond a place in units of cells, and the place in units of the distance of both midpoints.
+    /// At the ends the place is not between them; the only cell of a mesh has share 0.
+    pub fn between_midpoints(&self, place: f64) -> (usize, f64) {
+        let last = self.cells.saturating_sub(2);
+        let cell = ((place - 0.5).max(0.0) as usize).min(last);
+        if self.cells == 1 || self.uniform {
+            return (
+                cell,
+                if self.cells == 1 {
+                    0.0
+                } else {
+                    place - 0.5 - cell as f64
+                },
+            );
+        }
+        let [here, next] = [cell, cell + 1].map(|cell| self.cell_coordinate(cell));
+        (cell, (self.coordinate(place) - here) / (next - here))
+    }
+
+    /// Cells in units of the beam's length.
+    pub fn shares(&self) -> Cells {
+        if self.uniform {
+            return Cells::equal(self.cells);
+        }
+        let total = self.coordinates[self.cells];
+        let relative = |lengths: &[f64]| lengths.iter().map(|length| length / total).collect();
+        Cells {
+            nodes: relative(&self.coordinates),
+            lengths: relative(&self.lengths),
+        }
+    }
+
+    /// Place of a node in units of the beam's length, from 0 to 1.
+    pub fn share(&self, node: usize) -> f64 {
+        match self.uniform {
+            true => node as f64 / self.cells as f64,
+            false => self.coordinates[node] / self.coordinates[self.cells],
+        }
     }
 }

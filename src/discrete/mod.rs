@@ -32,6 +32,7 @@ pub mod waves;
 pub mod workspace;
 
 use crate::case::schema::{Case, Effect};
+use crate::case::spans;
 use crate::error::{Code, Result, Violation};
 use crate::functions::Signal;
 use crate::model::loads::LoadKind;
@@ -275,8 +276,8 @@ impl System {
     }
 
     fn from_model(case: &Case, model: Model) -> Self {
-        let mesh =
-            BeamMesh::new(model.length, case.segments(), case.mesh.cells_per_segment).of_order(case.mesh.order());
+        let mesh = BeamMesh::new(model.length, spans::segment_lengths(case), case.mesh.cells_per_segment)
+            .of_order(case.mesh.order());
         let fluid = model
             .wet
             .as_ref()
@@ -295,7 +296,7 @@ impl System {
         let followed = loads
             .iter()
             .any(|l| matches!(l.kind, LoadKind::Normal | LoadKind::Tangential));
-        let mut lengths: Vec<_> = (0..mesh.nodes).map(|node| mesh.node_length(node)).collect();
+        let mut lengths = mesh.node_lengths.clone();
         mesh.lump(&mut lengths);
         let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
         let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);

@@ -118,7 +118,7 @@ fn bending(system: &System, now: &TimeData, w: &Workspace<f64>, readings: &mut F
     }
     for c in 0..last {
         let [known, read] = [moment, &readings.moment].map(|m| m[c] - m[c + 1]);
-        let more = (read - known) * w.shape.per_stretch[c] / mesh.h;
+        let more = (read - known) * w.shape.per_stretch[c] / mesh.shortest;
         readings.shear[c] = w.forces.shear[c] + more;
     }
 }

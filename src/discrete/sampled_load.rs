@@ -33,8 +33,8 @@ impl SampledLoad {
             LoadKind::ForceX | LoadKind::ForceZ | LoadKind::Normal | LoadKind::Tangential => {
                 forces_at_nodes(&load.profile, mesh)
             }
-            LoadKind::RestCurvature => shapes::at_nodes(&load.profile, mesh.cells),
-            LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, mesh.cells),
+            LoadKind::RestCurvature => shapes::at_nodes(&load.profile, &mesh.shares()),
+            LoadKind::MomentX | LoadKind::MomentZ => shapes::in_cells(&load.profile, &mesh.shares()),
         };
         let graded = match load.per {
             LoadMeasure::Mass(acceleration) => Some((&sections.mass, acceleration)),
@@ -69,7 +69,7 @@ pub fn foundation(model: &Model, mesh: &super::BeamMesh) -> Vec<[f64; 2]> {
     for (axis, profile) in model.foundation.iter().enumerate() {
         let Some(profile) = profile else { continue };
         for (node, value) in forces_at_nodes(profile, mesh).into_iter().enumerate() {
-            stiffness[node][axis] = value * mesh.node_length(node);
+            stiffness[node][axis] = value * mesh.node_lengths[node];
         }
     }
     stiffness
@@ -77,13 +77,13 @@ pub fn foundation(model: &Model, mesh: &super::BeamMesh) -> Vec<[f64; 2]> {
 
 /// Force per length `b_i` of each node.
 fn forces_at_nodes(profile: &Profile, mesh: &super::BeamMesh) -> Vec<f64> {
-    let mut values = shapes::at_nodes(profile, mesh.cells);
+    let mut values = shapes::at_nodes(profile, &mesh.shares());
     if !mesh.fourth {
         return values;
     }
     let scaled = |values: &mut [f64], by: &dyn Fn(f64) -> f64| {
         let all = values.iter_mut().enumerate();
-        all.for_each(|(node, value)| *value *= by(mesh.node_length(node)));
+        all.for_each(|(node, value)| *value *= by(mesh.node_lengths[node]));
     };
     scaled(&mut values, &|length| length);
     mesh.lump(&mut values);

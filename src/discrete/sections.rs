@@ -7,7 +7,7 @@ use crate::model::{Model, Section};
 /// compliances add, with those of their bladders:
 ///
 /// ```text
-/// EI_i = 2/(1/EI_left + 1/EI_right)        α_p,i = (α_p,left + α_p,right)/2        m_i = (m_left + m_right)/2
+/// 1/EI_i = s_l/EI_l + s_r/EI_r        α_p,i = s_l α_p,l + s_r α_p,r        m_i = s_l m_l + s_r m_r        s_l = h_l/(h_l + h_r)
 /// ```
 ///
 /// In a uniform beam all of them are equal.
@@ -36,13 +36,15 @@ pub struct MeshSections {
 impl MeshSections {
     /// Rotation between the midpoints of a cell and the next, at a place `s` of the way: its share before the place, and the compliance of
     /// both sides in parallel [rad/(N m)]. On each side it is uniform.
-    pub fn turning(&self, cell: usize, s: f64, h: f64) -> (f64, f64) {
+    pub fn turning(&self, cell: usize, s: f64, mesh: &BeamMesh) -> (f64, f64) {
         let [left, right] = [self.bending_of_cells[cell], self.bending_of_cells[cell + 1]];
+        let [half, other] = [mesh.lengths[cell], mesh.lengths[cell + 1]].map(|length| 0.5 * length);
         if left == right {
-            return (s, s * (1.0 - s) * h / left);
+            return (s, s * (1.0 - s) * (half + other) / left);
         }
-        let before = h * (s.min(0.5) / left + (s - 0.5).max(0.0) / right);
-        let whole = 0.5 * h * (1.0 / left + 1.0 / right);
+        let along = s * (half + other);
+        let before = along.min(half) / left + (along - half).max(0.0) / right;
+        let whole = half / left + other / right;
         (before / whole, before * (whole - before) / whole)
     }
 
@@ -54,35 +56,37 @@ impl MeshSections {
                 .map(|cell| value(of(cell / mesh.cells_per_segment)))
                 .collect()
         };
-        let nodes = |mean: &dyn Fn(&Section, &Section) -> f64| -> Vec<f64> {
-            let beside = |node| mesh.segments_of_node(node);
-            (0..mesh.nodes)
-                .map(beside)
-                .map(|(left, right)| mean(of(left), of(right)))
-                .collect()
+        let nodes = |mean: &dyn Fn([&Section; 2], [f64; 2]) -> f64| -> Vec<f64> {
+            let beside = |node| {
+                let (left, right) = mesh.segments_of_node(node);
+                let shares = mesh.borders.get(left).filter(|_| left != right);
+                ([of(left), of(right)], *shares.unwrap_or(&[0.5; 2]))
+            };
+            let each = (0..mesh.nodes).map(beside);
+            each.map(|(sections, shares)| mean(sections, shares)).collect()
         };
-        let half_sum = |value: fn(&Section) -> f64| {
-            nodes(&|left, right| match left == right {
+        let mean = |value: fn(&Section) -> f64| {
+            nodes(&|[left, right], shares| match left == right {
                 true => value(left),
-                false => 0.5 * (value(left) + value(right)),
+                false => shares[0] * value(left) + shares[1] * value(right),
             })
         };
         Self {
             axial: cells(|section| section.axial_stiffness),
-            bending: nodes(&|left, right| match left == right {
+            bending: nodes(&|[left, right], shares| match left == right {
                 true => left.bending_stiffness,
-                false => 2.0 / (1.0 / left.bending_stiffness + 1.0 / right.bending_stiffness),
+                false => 1.0 / (shares[0] / left.bending_stiffness + shares[1] / right.bending_stiffness),
             }),
             bending_of_cells: cells(|section| section.bending_stiffness),
-            farthest_fiber: nodes(&|left, right| left.farthest_fiber().max(right.farthest_fiber())),
+            farthest_fiber: nodes(&|[left, right], _| left.farthest_fiber().max(right.farthest_fiber())),
             offset: match cells(|section| section.offset) {
                 all if all.iter().all(|d| *d == 0.0) => vec![],
                 all => all,
             },
             shear: cells(|section| section.shear_stiffness),
             rotary: cells(Section::rotary_inertia),
-            mass: half_sum(|section| section.mass_per_length),
-            weighing: half_sum(|section| section.weighing_per_length),
+            mass: mean(|section| section.mass_per_length),
+            weighing: mean(|section| section.weighing_per_length),
         }
     }
 }

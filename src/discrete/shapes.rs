@@ -2,55 +2,90 @@
 
 use crate::functions::profile::{Integrals, Profile};
 
-/// `∫ f hat_i / ∫ hat_i` at every node; total and first moment equal those of `f`.
-pub fn at_nodes(profile: &Profile, cells: usize) -> Vec<f64> {
-    if let Some(value) = profile.uniform() {
-        return vec![value; cells + 1];
+/// Cells along a beam, in units of its length.
+#[derive(Clone, Debug)]
+pub struct Cells {
+    /// Places of the nodes, from 0 to 1.
+    pub nodes: Vec<f64>,
+    /// Lengths of the cells.
+    pub lengths: Vec<f64>,
+}
+
+impl Cells {
+    /// Cells of equal length.
+    pub fn equal(count: usize) -> Self {
+        Self {
+            nodes: (0..=count).map(|node| node as f64 / count as f64).collect(),
+            lengths: vec![1.0 / count as f64; count],
+        }
     }
-    let share = 1.0 / cells as f64;
+
+    /// Ends of each cell.
+    pub fn ends(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.nodes.windows(2).map(|pair| (pair[0], pair[1]))
+    }
+
+    /// Length of each node, half of the cells beside it, in units of the first cell.
+    fn node_lengths(&self) -> Vec<f64> {
+        let cell = |c: usize| self.lengths.get(c).map_or(0.0, |length| length / self.lengths[0]);
+        let node = |i: usize| 0.5 * (i.checked_sub(1).map_or(0.0, cell) + cell(i));
+        (0..self.nodes.len()).map(node).collect()
+    }
+}
+
+/// `∫ f hat_i / ∫ hat_i` at every node; total and first moment equal those of `f`.
+pub fn at_nodes(profile: &Profile, cells: &Cells) -> Vec<f64> {
+    if let Some(value) = profile.uniform() {
+        return vec![value; cells.nodes.len()];
+    }
     let mut values = against_hats(profile, cells);
-    values.iter_mut().for_each(|value| *value /= share);
-    values[0] *= 2.0;
-    values[cells] *= 2.0;
+    let lengths = cells.node_lengths().into_iter().map(|length| length * cells.lengths[0]);
+    values
+        .iter_mut()
+        .zip(lengths)
+        .for_each(|(value, length)| *value /= length);
     values
 }
 
 /// Mean of every cell.
-pub fn in_cells(profile: &Profile, cells: usize) -> Vec<f64> {
+pub fn in_cells(profile: &Profile, cells: &Cells) -> Vec<f64> {
     let integrals = Integrals::new(profile);
-    (0..cells)
-        .map(|c| within(c, cells))
-        .map(|(a, b)| integrals.mean(a, b))
-        .collect()
+    cells.ends().map(|(a, b)| integrals.mean(a, b)).collect()
 }
 
 /// Nodal velocities of the motion, linear within each cell, that is nearest to `f` in the mean square,
 ///
 /// ```text
-/// (v_{i-1} + 4 v_i + v_{i+1})/6 = m_i        (2 v_0 + v_1)/3 = m_0, likewise at the other end        m: the means of [`at_nodes`]
-/// h_i v_i = h_i m_i + Σ_j f_ij        f_ij = h (v_i - v_j)/6 with its neighbours
+/// Σ_c h_c (2 v_i + v_j)/6 = h_i m_i        c the cells beside node i, j their other nodes        m: the means of [`at_nodes`]
+/// h_i v_i = h_i m_i + Σ_j f_ij        f_ij = h_c (v_i - v_j)/6 with its neighbours
 /// ```
 ///
 /// limited to the range of `f` in the cells beside the node. Where the limit is exceeded, part of the flux f_ij is omitted (Zalesak, J.
 /// Comput. Phys. 31, 1979). The total always equals that of `f`. Linear functions, the motions of a rigid beam, are exact. The ends are
 /// second order, unlike those of the means. Jumps do not overshoot.
-pub fn nearest(profile: &Profile, cells: usize) -> Vec<f64> {
+pub fn nearest(profile: &Profile, cells: &Cells) -> Vec<f64> {
+    let count = cells.lengths.len();
     if let Some(value) = profile.uniform() {
-        return vec![value; cells + 1];
+        return vec![value; count + 1];
     }
     let means = at_nodes(profile, cells);
-    let high = nearest_lines(&means);
+    let ratios: Vec<f64> = cells.lengths.iter().map(|length| length / cells.lengths[0]).collect();
+    let lengths = cells.node_lengths();
+    let high = nearest_lines(&means, &ratios, &lengths);
     let ranges = ranges(profile, cells);
-    let length = |i: usize| if i == 0 || i == cells { 0.5 } else { 1.0 };
-    // Flux into the left node of each cell and out of its right one, in units of h.
-    let fluxes: Vec<f64> = high.windows(2).map(|v| (v[0] - v[1]) / 6.0).collect();
+    // Flux into the left node of each cell and out of its right one, in units of the first cell.
+    let fluxes: Vec<f64> = high
+        .windows(2)
+        .zip(&ratios)
+        .map(|(v, h)| h * (v[0] - v[1]) / 6.0)
+        .collect();
     let gains = |i: usize| {
-        let beside = [(i > 0).then(|| -fluxes[i - 1]), (i < cells).then(|| fluxes[i])];
+        let beside = [(i > 0).then(|| -fluxes[i - 1]), (i < count).then(|| fluxes[i])];
         let sum = |sign: f64| beside.iter().flatten().map(|f| (sign * f).max(0.0)).sum::<f64>();
         (sum(1.0), sum(-1.0))
     };
     // Admissible fraction of the fluxes into and out of each node.
-    let shares: Vec<(f64, f64)> = (0..=cells)
+    let shares: Vec<(f64, f64)> = (0..=count)
         .map(|i| {
             let (lowest, highest) = ranges[i];
             let (up, down) = gains(i);
@@ -62,8 +97,8 @@ pub fn nearest(profile: &Profile, cells: usize) -> Vec<f64> {
                 }
             };
             (
-                share(length(i) * (highest - means[i]), up),
-                share(length(i) * (means[i] - lowest), down),
+                share(lengths[i] * (highest - means[i]), up),
+                share(lengths[i] * (means[i] - lowest), down),
             )
         })
         .collect();
@@ -75,31 +110,29 @@ pub fn nearest(profile: &Profile, cells: usize) -> Vec<f64> {
         } else {
             left.1.min(right.0)
         };
-        values[c] += share * flux / length(c);
-        values[c + 1] -= share * flux / length(c + 1);
+        values[c] += share * flux / lengths[c];
+        values[c + 1] -= share * flux / lengths[c + 1];
     }
     values
 }
 
-/// Solves `(v_{i-1} + 4 v_i + v_{i+1})/6 = m_i` by Thomas' algorithm; rows are diagonally dominant.
-fn nearest_lines(means: &[f64]) -> Vec<f64> {
+/// Solves the first equation of [`nearest`] by Thomas' algorithm; rows are diagonally dominant.
+fn nearest_lines(means: &[f64], cells: &[f64], nodes: &[f64]) -> Vec<f64> {
     let mut values = means.to_vec();
     let last = values.len() - 1;
     let mut above = vec![0.0; last + 1];
     for i in 0..=last {
-        let (beside, middle) = if i == 0 || i == last {
-            (1.0 / 3.0, 2.0 / 3.0)
-        } else {
-            (1.0 / 6.0, 4.0 / 6.0)
-        };
+        let beside = |cell: Option<&f64>| cell.map_or(0.0, |length| length / (6.0 * nodes[i]));
+        let [left, right] = [i.checked_sub(1).and_then(|c| cells.get(c)), cells.get(i)].map(beside);
+        let middle = 2.0 * (left + right);
         let (before, coupled) = if i == 0 {
             (0.0, 0.0)
         } else {
             (values[i - 1], above[i - 1])
         };
-        let pivot = middle - beside * coupled;
-        values[i] = (values[i] - beside * before) / pivot;
-        above[i] = beside / pivot;
+        let pivot = middle - left * coupled;
+        values[i] = (values[i] - left * before) / pivot;
+        above[i] = right / pivot;
     }
     for i in (0..last).rev() {
         values[i] -= above[i] * values[i + 1];
@@ -108,11 +141,11 @@ fn nearest_lines(means: &[f64]) -> Vec<f64> {
 }
 
 /// Smallest and largest value in the cells beside each node, at the sampled places.
-fn ranges(profile: &Profile, cells: usize) -> Vec<(f64, f64)> {
+fn ranges(profile: &Profile, cells: &Cells) -> Vec<(f64, f64)> {
     let integrals = Integrals::new(profile);
-    let of_cells: Vec<(f64, f64)> = (0..cells)
-        .map(|c| {
-            let (a, b) = within(c, cells);
+    let of_cells: Vec<(f64, f64)> = cells
+        .ends()
+        .map(|(a, b)| {
             let places = places(&integrals, a, b).into_iter().chain([a, b]);
             places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
                 let value = profile.value(x);
@@ -120,9 +153,9 @@ fn ranges(profile: &Profile, cells: usize) -> Vec<(f64, f64)> {
             })
         })
         .collect();
-    (0..=cells)
+    (0..=of_cells.len())
         .map(|i| {
-            let (left, right) = (of_cells[i.saturating_sub(1)], of_cells[i.min(cells - 1)]);
+            let (left, right) = (of_cells[i.saturating_sub(1)], of_cells[i.min(of_cells.len() - 1)]);
             (left.0.min(right.0), left.1.max(right.1))
         })
         .collect()
@@ -137,17 +170,11 @@ pub fn places(integrals: &Integrals, a: f64, b: f64) -> Vec<f64> {
     between.chain(integrals.knots_in(a, b).iter().copied()).collect()
 }
 
-/// Range of a cell, as fractions of the length.
-pub fn within(cell: usize, cells: usize) -> (f64, f64) {
-    (cell as f64 / cells as f64, (cell + 1) as f64 / cells as f64)
-}
-
 /// `∫ f hat_i dx` over [0, 1].
-fn against_hats(profile: &Profile, cells: usize) -> Vec<f64> {
+fn against_hats(profile: &Profile, cells: &Cells) -> Vec<f64> {
     let integrals = Integrals::new(profile);
-    let mut values = vec![0.0; cells + 1];
-    for c in 0..cells {
-        let (a, b) = within(c, cells);
+    let mut values = vec![0.0; cells.nodes.len()];
+    for (c, (a, b)) in cells.ends().enumerate() {
         let (left, right) = integrals.hats(a, b);
         values[c] += left;
         values[c + 1] += right;

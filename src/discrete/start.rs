@@ -1,5 +1,6 @@
 //! The state at t = 0 (A.55-A.58, A.70).
 
+use super::shapes::Cells;
 use super::{System, TimeData, Workspace, initial_angles, residual, shapes};
 use crate::case::schema::Case;
 use crate::case::wiring::bladder_index;
@@ -20,7 +21,6 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
             .as_ref()
             .map_or(0.0, |p| p.value(system.mesh.node_coordinate(node) / length))
     };
-    let last = (system.mesh.nodes - 1) as f64;
     let given = [
         (&case.start.u1_m, &case.start.u1_rate_m_s),
         (&case.start.u3_m, &case.start.u3_rate_m_s),
@@ -28,7 +28,7 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
     for (axis, (line, (displacement, velocity))) in l.lines.iter().zip(given).enumerate() {
         let moving = velocity.as_ref().map(|v| velocities(system, v));
         for (node, u, v) in line.unknowns() {
-            let frame = now.carried(axis, node as f64 / last);
+            let frame = now.carried(axis, system.mesh.share(node));
             y[u] = at(displacement, node) - frame.value;
             if let Some(v) = v {
                 y[v] = moving.as_ref().map_or(0.0, |v| v[node]) - frame.rate;
@@ -55,14 +55,12 @@ pub fn state(system: &System, case: &Case, now: &TimeData) -> Vec<f64> {
 
 /// Velocities of nodes: nearest to the given ones; on a fourth-order mesh nodal values, if the profile is smooth.
 fn velocities(system: &System, given: &Profile) -> Vec<f64> {
-    let cells = system.mesh.cells;
-    let nearest = shapes::nearest(given, cells);
+    let cells = system.mesh.shares();
+    let nearest = shapes::nearest(given, &cells);
     if !system.mesh.fourth {
         return nearest;
     }
-    let at_nodes: Vec<f64> = (0..=cells)
-        .map(|node| given.value(node as f64 / cells as f64))
-        .collect();
+    let at_nodes: Vec<f64> = cells.nodes.iter().map(|place| given.value(*place)).collect();
     let most = at_nodes.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
     let apart = |(a, b): (&f64, &f64)| (a - b).abs() <= SMOOTH * most;
     match at_nodes.iter().zip(&nearest).all(apart) {
@@ -101,7 +99,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
     let k = fluid.cells_per_bladder;
     let mut pressure = vec![0.0; fluid.cells];
     for start in &case.start.pressures {
-        let means = shapes::in_cells(&start.pressure_pa, k);
+        let means = shapes::in_cells(&start.pressure_pa, &Cells::equal(k));
         for bladder in start.bladders.iter().filter_map(|b| bladder_index(*b, wet.per_row)) {
             pressure[fluid.cells_of(bladder)].copy_from_slice(&means);
         }
@@ -183,13 +181,12 @@ pub fn speed_up(system: &System, jumps: &[Planar<f64>], y: &mut [f64]) {
 /// Keeps displacements and velocities constant while the signals of ends change from one smooth branch to the next.
 pub fn change_frame(system: &System, before: &TimeData, after: &TimeData, y: &mut [f64]) {
     let l = &system.layout;
-    let last = (system.mesh.nodes - 1) as f64;
     for (axis, line) in l.lines.iter().enumerate() {
         let Some((before, after)) = before.frame(axis).zip(after.frame(axis)) else {
             continue;
         };
         for (node, u, v) in line.unknowns() {
-            let (old, new) = (before.at(node as f64 / last), after.at(node as f64 / last));
+            let (old, new) = (before.at(system.mesh.share(node)), after.at(system.mesh.share(node)));
             y[u] += (old.value - new.value) / l.scales[u];
             if let Some(v) = v {
                 y[v] += (old.rate - new.rate) / l.scales[v];

@@ -158,7 +158,7 @@ fn coupling(system: &System, w: &Workspace<f64>, c: usize) -> Matrix2<f64> {
     if !system.turns_with_its_line() || system.model.kinematics == Kinematics::Bar {
         return Matrix2::zeros();
     }
-    let mut inertia = system.sections.rotary[c] / system.mesh.h;
+    let mut inertia = system.sections.rotary[c] / system.mesh.lengths[c];
     let turned = system.model.kinematics == Kinematics::FiniteRotation && system.layout.lines[1].v.is_some();
     let n = if turned {
         -vector(w.shape.tangent[c].normal())

@@ -81,7 +81,7 @@ fn of_solid(system: &System) -> f64 {
     if swings && s.bending_damping_time == 0.0 {
         return 0.0;
     }
-    let (m, h, l) = (s.mass_per_length, system.mesh.h, system.model.length);
+    let (m, h, l) = (s.mass_per_length, system.mesh.shortest, system.model.length);
     let bending = (s.bending_stiffness / m).sqrt();
     let axial = (s.axial_stiffness / m).sqrt();
     let stiffer = stiffer(system);
@@ -127,7 +127,7 @@ fn stiffer(system: &System) -> [f64; 2] {
 /// Highest angular frequency on the mesh [1/s].
 pub fn highest_frequency(system: &System) -> f64 {
     let s = &system.model.section;
-    let h = system.mesh.h;
+    let h = system.mesh.shortest;
     let stiffer = stiffer(system);
     let bending = match system.layout.turning.rate {
         Some(_) => s.stiffening.sqrt() * shearing(system),
@@ -144,7 +144,7 @@ pub fn highest_frequency(system: &System) -> f64 {
 /// Upper limit of the angular frequency of sections that shear [1/s]: `ω² ≤ 4 kGA/(h² m) + kGA/(m y11) + 4 EI/(h² m y11)`, the sum of the
 /// limits of displacements and angles alone.
 fn shearing(system: &System) -> f64 {
-    let (s, h) = (&system.model.section, system.mesh.h);
+    let (s, h) = (&system.model.section, system.mesh.shortest);
     let (m, rotary) = (s.mass_per_length, s.mass_per_length * s.gyration_radius_squared);
     let per = 4.0 / (h * h);
     let [bending, shear] = stiffer(system).map(|more| more * more);

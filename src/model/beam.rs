@@ -78,14 +78,18 @@ impl Section {
         values.iter().map(of).collect()
     }
 
-    /// Section with the mean mass and the mean compliances of some segments, the largest height and the largest offset: it has
-    /// their extension by a constant force, and their deflection by a constant moment.
-    pub fn mean(of: &[Self]) -> Option<Self> {
+    /// Section with the mean mass and the mean compliances of segments of some lengths, the largest height and the largest offset: it
+    /// has their extension by a constant force, and their deflection by a constant moment.
+    pub fn mean(of: &[Self], lengths: &[f64]) -> Option<Self> {
         let first = of.first()?;
         if of.iter().all(|one| one == first) {
             return Some(*first);
         }
-        let mean = |value: &dyn Fn(&Self) -> f64| of.iter().map(value).sum::<f64>() / of.len() as f64;
+        let total: f64 = lengths.iter().sum();
+        let mean = |value: &dyn Fn(&Self) -> f64| {
+            let each = of.iter().zip(lengths);
+            each.map(|(one, length)| value(one) * length).sum::<f64>() / total
+        };
         let mass = mean(&|one| one.mass_per_length);
         Some(Self {
             mass_factor: mean(&|one| one.mass_factor),

@@ -100,7 +100,7 @@ pub struct Model {
 /// Section of a case; with spans, the mean of their sections.
 fn mean_section(case: &Case) -> Section {
     let sections = Section::of_segments(case, &spans::segments(case));
-    Section::mean(&sections).unwrap_or_else(|| Section::new(case))
+    Section::mean(&sections, &spans::segment_lengths(case)).unwrap_or_else(|| Section::new(case))
 }
 
 impl Model {
@@ -243,6 +243,8 @@ impl Model {
             let law = wet.segments[segment];
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
             wet.area_at_rest = law.area_at_rest[0];
+            // the length of a beam of such segments
+            model.length = wet.bladder_length * wet.per_row as f64 / law.length_ratio;
             let there = wet.pair(segment).map(|bladder| wet.storage[bladder]);
             for (row, storage) in wet.storage.chunks_mut(wet.per_row).zip(there) {
                 row.fill(storage);

@@ -17,6 +17,8 @@ pub struct SegmentLaw {
     pub strains: [AreaLaw; 2],
     /// Strains caused by pressure.
     pub coupling: CouplingLaw,
+    /// `φ_b l_b` [1].
+    pub length_ratio: f64,
     /// Cross-sections of both bladders at rest [m^2].
     pub area_at_rest: [f64; 2],
     /// Permeability of both bladders over that of [`ResolvedNetwork::bladder_mobility`].
@@ -35,6 +37,7 @@ impl SegmentLaw {
             area,
             strains: area,
             coupling: CouplingLaw::new(&values.beam, rows[0]),
+            length_ratio: rows[0].length_m * rows[0].per_row as f64 / values.beam.length_m,
             area_at_rest: rows.map(|bladders| bladders.height_m * bladders.width_m),
             mobility_ratio: rows.map(|bladders| network::bladder_permeability(bladders) / usual),
             along: rows.map(along),
@@ -117,6 +120,12 @@ impl Wet {
     /// `φ_b l_b` for a beam length.
     pub fn length_ratio(&self, length: f64) -> f64 {
         self.bladder_length * self.per_row as f64 / length
+    }
+
+    /// `φ_b l_b` of a segment, for a beam length.
+    pub fn length_ratio_of(&self, segment: usize, length: f64) -> f64 {
+        let own = self.segments.get(segment);
+        own.map_or_else(|| self.length_ratio(length), |law| law.length_ratio)
     }
 
     /// Area law of a bladder.

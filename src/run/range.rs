@@ -125,7 +125,6 @@ impl Limits {
             let (bending, stretch) = audit::convex_up_to(&system.model, wet);
             bending.min(stretch)
         });
-        let pitch = system.mesh.segment_length;
         let room = |j: usize, wet: &Wet| {
             let section = system.model.sections.get(j).unwrap_or(&system.model.section);
             let there = || {
@@ -136,6 +135,7 @@ impl Limits {
             };
             // the rows share the section by their areas
             let all: f64 = there().sum();
+            let pitch = system.mesh.segment_lengths[j];
             let room = |area: f64| pitch * 2.0 * section.half_height * (area / all) - area;
             there().map(room).reduce(f64::min)
         };

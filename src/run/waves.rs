@@ -309,7 +309,8 @@ fn make_reciprocal(model: &mut Model) {
         wet.coupling = CouplingLaw::Reciprocal { length_ratio };
         wet.strains = wet.area;
         for law in &mut wet.segments {
-            law.coupling = wet.coupling;
+            let length_ratio = law.length_ratio;
+            law.coupling = CouplingLaw::Reciprocal { length_ratio };
             law.strains = law.area;
         }
     }

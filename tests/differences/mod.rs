@@ -10,7 +10,7 @@ pub fn worst_difference(dae: &mut BeamDae, seed: u64, size: f64) -> f64 {
     let n = dae.len();
     let mut random = Random(seed);
     // Neighbouring nodes may move against each other by a fifth of a cell: beyond that a cell folds over.
-    let (layout, h) = (&dae.system().layout, dae.system().mesh.h);
+    let (layout, h) = (&dae.system().layout, dae.system().mesh.shortest);
     let displacements = layout.lines[0].u.start..layout.lines[1].u.end;
     let reach = |i: usize| {
         if displacements.contains(&i) {

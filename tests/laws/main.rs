@@ -23,6 +23,7 @@ mod rotating_frame;
 mod scene;
 #[path = "../common/secant.rs"]
 mod secant;
+mod segments;
 mod sloshing;
 mod spans;
 mod surroundings;

@@ -34,7 +34,7 @@ pub fn run(value: &Value) -> (Memory, Summary) {
 }
 
 /// The published beam of 0.1 m with ten segments: a chain of bladders is pumped up, gravity acts across the beam.
-fn pumped(chain: &[i32], gravity: f64, spans: &Value) -> Value {
+pub fn pumped(chain: &[i32], gravity: f64, spans: &Value) -> Value {
     json!({
         "name": "pumped", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.3},
         "bladders": {"coupling": "reciprocal"},
@@ -140,7 +140,7 @@ fn unknowns_and_their_jacobian() {
 }
 
 /// A dry beam of unit stiffness and mass per length with these spans.
-fn dry(segments: usize, spans: &Value) -> Value {
+pub fn dry(segments: usize, spans: &Value) -> Value {
     json!({
         "name": "dry", "ends": {"root": "clamped", "tip": {"free": {"force_x_n": 1e-3}}},
         "beam": {"length_m": 1.0, "height_m": 0.01, "width_m": 0.01, "young_modulus_pa": 1.2e9, "density_kg_m3": 1e4,
@@ -150,7 +150,7 @@ fn dry(segments: usize, spans: &Value) -> Value {
 }
 
 /// Static deflection of the tip.
-fn deflection(case: &Value) -> f64 {
+pub fn deflection(case: &Value) -> f64 {
     let case = parse(case);
     let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
     let at = columns(&system(&case, 1.0).unwrap())
@@ -160,7 +160,7 @@ fn deflection(case: &Value) -> f64 {
 }
 
 /// Observed order of an error between a mesh and one of twice the cells.
-fn order(errors: [f64; 2]) -> f64 {
+pub fn order(errors: [f64; 2]) -> f64 {
     (errors[0] / errors[1]).abs().log2()
 }
 
@@ -276,11 +276,39 @@ fn mistakes_are_explained() {
         (
             json!([{"length_m": 0.05}]),
             [
-                "the spans are 0.05 m long together, the beam 0.1 m (5 of 10 segments)",
+                "the spans are 0.05 m long together, the beam 0.1 m",
                 "omit that of one span",
             ],
         ),
         (json!([{}, {}]), ["2 spans without length", "rest of the beam"]),
+        (
+            json!([{"length_m": 0.015, "segments": 4}, {"segments": 5}]),
+            [
+                "the spans have 9 segments together, /bladders/per_row is 10",
+                "allowed: /bladders/per_row 9",
+            ],
+        ),
+        (
+            json!([{"length_m": 0.015, "segments": 10}, {}]),
+            [
+                "the spans have 10 segments and 1 span without a number of them",
+                "/bladders/per_row of at least 11",
+            ],
+        ),
+        (
+            json!([{"length_m": 0.015, "segments": 4}, {"length_m": 0.02}, {}]),
+            [
+                "0.02 m is not a whole number of segments of 0.0141666667 m (6 segments are left",
+                "give \"segments\" of this span",
+            ],
+        ),
+        (
+            json!([{"length_m": 0.015, "segments": 4}, {}]),
+            [
+                "/spans/0",
+                "the width of a bladder is 0.0078 m in this span, the length of a segment 0.00375 m",
+            ],
+        ),
         (
             json!([{"length_m": 0.02, "rows": "lower"}, {}]),
             ["there is no bladder 1: /spans/0 has none", "/spans/0/rows"],

@@ -67,7 +67,7 @@ fn a_matrix_turns_with_the_beam() {
         let n = dae.len();
         let vectors = dae.vectors();
         assert!(!vectors.is_empty(), "{form}");
-        let (h, scales) = (dae.system().mesh.h, dae.system().layout.scales.clone());
+        let (h, scales) = (dae.system().mesh.shortest, dae.system().layout.scales.clone());
         let state = |random: &mut Random| -> Vec<f64> { (0..n).map(|_| 0.1 * random.between(-1.0, 1.0)).collect() };
         let (mut y, mut yp) = (state(&mut random), state(&mut random));
         for i in vectors.iter().flat_map(|v| v.across.clone().chain(v.along.clone())) {

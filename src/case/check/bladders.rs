@@ -5,7 +5,9 @@ use slcbeam_section::finite::energy::monomials;
 use super::{coefficients, plausible};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded;
-use crate::case::schema::{Beam, Bladders, Case, Coupling, Formulation, LowerRow, StrainEnergy, TurbineConductance};
+use crate::case::schema::{
+    Beam, Bladders, Case, Coupling, Formulation, LowerRow, ROUNDING, StrainEnergy, TurbineConductance,
+};
 use crate::case::spans;
 use crate::case::wiring::bladder_index;
 use crate::error::numbers::counted;
@@ -150,7 +152,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         let fault = Violation::new(Code::Geometry, format!("/bladders/{key}"), what).allowed(allowed);
         faults.push_beside(beside, fault);
     };
-    let segment = beam.length_m / bladders.per_row.max(1) as f64;
+    let segment = longest_segment(case);
     // Tolerance for rounding errors of decimal fractions.
     let exceeds = |size: f64, room: f64| size > room * (1.0 + 1e-9);
     if exceeds(bladders.width_m, segment) {
@@ -163,7 +165,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
             "width_m",
             &["/beam/length_m", PER_ROW],
             what,
-            format!("at most {} m each, the length of a segment", rounded(segment)),
+            format!("at most {} m each, the length of the longest segment", rounded(segment)),
         );
     }
     let stacked = match &bladders.lower {
@@ -320,9 +322,18 @@ fn lower_row(case: &Case, bladders: &Bladders, faults: &mut Violations) {
     }
 }
 
+/// Length of the longest segment [m]; each segment of a span is checked by itself.
+fn longest_segment(case: &Case) -> f64 {
+    let lengths = match spans::countable(case) {
+        true => spans::segment_lengths(case),
+        false => vec![],
+    };
+    lengths.into_iter().fold(0.0, f64::max)
+}
+
 /// True if a bladder is wider than a segment is long.
 fn exceeds_segment(case: &Case, bladders: &Bladders) -> bool {
-    bladders.width_m > spans::segment_length(case) * (1.0 + 1e-9)
+    bladders.width_m > longest_segment(case) * (1.0 + ROUNDING)
 }
 
 /// Checks a strain energy: number of coefficients, limits on both sides of zero, reciprocal coupling, conservative formulation.

@@ -3,13 +3,10 @@
 use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
-use crate::case::schema::{Case, Formulation, Span, SpanRows};
+use crate::case::schema::{Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
-
-/// Tolerance for rounding errors of decimal fractions.
-const WITHIN: f64 = 1e-9;
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     // a number of segments that is not allowed is reported by the schema
@@ -46,12 +43,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         values(case, faults);
     }
     if faults.is_empty() {
-        let all = spans::segments(case);
-        for ((span, _), values) in spans::places(case).into_iter().zip(&all) {
+        let (all, lengths) = (spans::segments(case), spans::segment_lengths(case));
+        for ((span, _), (values, length)) in spans::places(case).into_iter().zip(all.iter().zip(lengths)) {
             let rows = values.present().collect::<Vec<_>>();
-            if let Some(what) = bladders::too_large(&values.beam, rows.into_iter(), spans::segment_length(case)) {
+            if let Some(what) = bladders::too_large(&values.beam, rows.into_iter(), length) {
                 let fault = Violation::new(Code::Geometry, format!("/spans/{span}"), what);
-                faults.push(fault.hint("give smaller bladders or a larger section in this span"));
+                faults.push(fault.hint("give fewer segments, smaller bladders or a larger section in this span"));
                 break;
             }
         }
@@ -65,7 +62,7 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
     let graded = graded.then(|| spans::uniform_cases(case)).into_iter().flatten();
     let graded = graded.map(|(_, span, uniform)| (format!("/spans/{span}/beam"), uniform.beam));
     for (at, beam) in uniform.into_iter().chain(graded) {
-        let half = 0.5 * beam.height_m * (1.0 + WITHIN);
+        let half = 0.5 * beam.height_m * (1.0 + ROUNDING);
         let both = [
             (
                 "neutral_axis_m",
@@ -134,10 +131,11 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
 /// Applies the rules for values of a beam to the uniform beam of each span, and reports the first fault of each span.
 fn values(case: &Case, faults: &mut Violations) {
     let mut known = vec![];
-    for (_, span, uniform) in spans::uniform_cases(case) {
+    for (_, span, mut uniform) in spans::uniform_cases(case) {
         if known.contains(&span) {
             continue;
         }
+        uniform.beam.length_m = case.beam.length_m;
         let mut own = Violations::default();
         if !case.plausibility.is_on() {
             own.take_as_meant();
@@ -170,33 +168,44 @@ fn values(case: &Case, faults: &mut Violations) {
 
 /// Checks that bodies with rotary inertia or an offset keep away from borders: their couple is distributed to cells of one section.
 fn near_borders(case: &Case, faults: &mut Violations) {
-    let cell = 1.0 / (case.segments() * case.mesh.cells_per_segment.max(1)) as f64;
-    let places = spans::places(case);
-    let borders = places.windows(2).enumerate().filter(|(_, pair)| pair[0].0 != pair[1].0);
-    let borders: Vec<f64> = borders.map(|(k, _)| (k + 1) as f64 / case.segments() as f64).collect();
+    let (places, lengths) = (spans::places(case), spans::segment_lengths(case));
+    let (total, per_segment) = (case.beam.length_m, case.mesh.cells_per_segment.max(1) as f64);
+    let mut end = 0.0;
+    let mut borders = vec![];
+    for (k, pair) in places.windows(2).enumerate() {
+        end += lengths[k] / total;
+        if pair[0].0 != pair[1].0 {
+            let cells = [lengths[k], lengths[k + 1]].map(|length| length / total / per_segment);
+            borders.push((end, cells));
+        }
+    }
     for (k, one) in case.attachments.iter().enumerate() {
         let turns = one.rotary_inertia_kg_m2 > 0.0 || one.offset_across_m != 0.0 || one.offset_along_m != 0.0;
-        let near = |border: &&f64| (one.at - **border).abs() < 2.0 * cell;
+        let room = |(border, cells): &(f64, [f64; 2])| 2.0 * cells[usize::from(one.at > *border)];
+        let near = |border: &&(f64, [f64; 2])| (one.at - border.0).abs() < room(border);
         if let Some(border) = borders.iter().find(near).filter(|_| turns) {
             let what = format!(
                 "a body that turns with the beam, near the border of spans at {}",
-                plain(*border)
+                plain(border.0)
             );
             let fault = Violation::new(Code::Geometry, format!("/attachments/{k}/at"), what);
             let fault = fault.allowed(format!(
                 "at least 2 cells ({} of the length) from the border",
-                plain(2.0 * cell)
+                plain(room(border))
             ));
             faults.push(fault.hint("move the attachment, use more cells per segment, or leave out inertia and offset"));
         }
     }
 }
 
-/// Checks that the spans are whole segments and fill the beam.
+/// Checks that the spans fill the beam with whole segments.
 fn lengths(case: &Case, faults: &mut Violations) {
-    let (pitch, segments) = (spans::segment_length(case), case.segments());
-    let counts = spans::counts(case);
-    let open: Vec<usize> = (0..counts.len())
+    let number = match case.bladders {
+        Some(_) => "/bladders/per_row",
+        None => "/mesh/segments",
+    };
+    let (all, segments, whole) = (SpanLengths::new(case), case.segments(), case.beam.length_m);
+    let open: Vec<usize> = (0..case.spans.len())
         .filter(|&k| case.spans[k].length_m.is_none())
         .collect();
     if let [_, second, ..] = open[..] {
@@ -205,55 +214,93 @@ fn lengths(case: &Case, faults: &mut Violations) {
         faults.push(fault.allowed("one span without length_m: it is the rest of the beam"));
         return;
     }
-    let mut whole = true;
-    for (k, (span, count)) in case.spans.iter().zip(&counts).enumerate() {
-        let Some(length) = span.length_m.filter(|_| count.is_none()) else {
-            continue;
-        };
-        whole = false;
-        let key = format!("/spans/{k}/length_m");
-        if length > case.beam.length_m {
-            let what = format!("{} m is longer than the beam", plain(length));
-            let fault = Violation::new(Code::Geometry, key, what);
-            faults.push_beside(
-                &["/beam/length_m"],
-                fault.allowed(format!("at most {} m", plain(case.beam.length_m))),
-            );
-            continue;
-        }
-        let nearest = (length / pitch).round().max(1.0) * pitch;
-        let number = match case.bladders {
-            Some(_) => "/bladders/per_row",
-            None => "/mesh/segments",
-        };
-        let what = format!(
-            "{} m is not a whole number of segments of {} m (/beam/length_m {} m over {number} {segments})",
-            plain(length),
-            plain(pitch),
-            plain(case.beam.length_m)
+    let given: f64 = case.spans.iter().filter_map(|span| span.length_m).sum();
+    let longer = |span: &Span| span.length_m.is_some_and(|length| length > whole * (1.0 + ROUNDING));
+    for k in (0..case.spans.len()).filter(|k| longer(&case.spans[*k])) {
+        let what = format!("{} m is longer than the beam", plain(all.lengths[k]));
+        let fault = Violation::new(Code::Geometry, format!("/spans/{k}/length_m"), what);
+        faults.push_beside(
+            &["/beam/length_m"],
+            fault.allowed(format!("at most {} m", plain(whole))),
         );
-        let fault = Violation::new(Code::Geometry, key, what).allowed(format!(
-            "multiples of {} m; nearest {}",
-            plain(pitch),
-            plain(nearest)
-        ));
-        faults.push(fault.hint(format!("change this length, /beam/length_m or {number}")));
     }
-    let total: usize = counts.iter().flatten().sum();
-    if let Some(k) = (0..counts.len()).find(|&k| whole && case.spans[k].length_m.is_none() && counts[k].is_none()) {
+    if case.spans.iter().any(longer) {
+        return;
+    }
+    if let Some(k) = open.first().filter(|_| given >= whole * (1.0 - ROUNDING)) {
         let what = "nothing of the beam is left for the span without length_m";
         let fault = Violation::new(Code::Geometry, format!("/spans/{k}"), what);
         faults.push(fault.hint("shorten other spans, or remove this one"));
         return;
     }
-    if whole && (total != segments || counts.contains(&None)) {
+    if open.is_empty() && (given - whole).abs() > ROUNDING * whole {
         let what = format!(
-            "the spans are {} m long together, the beam {} m ({total} of {segments} segments)",
-            plain(total as f64 * pitch),
-            plain(case.beam.length_m)
+            "the spans are {} m long together, the beam {} m",
+            plain(given),
+            plain(whole)
         );
         let fault = Violation::new(Code::Geometry, "/spans", what);
         faults.push(fault.hint("change a length_m, or omit that of one span: it is then the rest of the beam"));
+        if case.spans.iter().any(|span| span.segments.is_some()) {
+            return;
+        }
+    }
+    counts(case, &all, number, segments, faults);
+}
+
+/// Checks the numbers of segments of spans whose lengths fill the beam.
+fn counts(case: &Case, all: &SpanLengths, number: &str, segments: usize, faults: &mut Violations) {
+    let counted_spans = || case.spans.iter().filter_map(|span| span.segments);
+    let given = counted_spans().fold(0, usize::saturating_add);
+    let others = case.spans.iter().filter(|span| span.segments.is_none()).count();
+    if (others == 0 && given != segments) || (others > 0 && given.saturating_add(others) > segments) {
+        let what = match others {
+            0 => format!(
+                "the spans have {} together, {number} is {segments}",
+                counted(given as u64, "segment")
+            ),
+            _ => format!(
+                "{number} is {segments}, but the spans have {} and {} without a number of them",
+                counted(given as u64, "segment"),
+                counted(others as u64, "span")
+            ),
+        };
+        let fault = Violation::new(Code::Geometry, "/spans", what);
+        let allowed = match others {
+            0 => format!("{number} {given}"),
+            _ => format!("{number} of at least {}", given.saturating_add(others)),
+        };
+        faults.push(
+            fault
+                .allowed(allowed)
+                .hint(format!("change {number} or the segments of a span")),
+        );
+        return;
+    }
+    let (pitch, own) = (all.pitch, all.left);
+    for k in (0..case.spans.len()).filter(|k| all.counts[*k].is_none()) {
+        let (length, key) = match case.spans[k].length_m {
+            Some(length) => (length, format!("/spans/{k}/length_m")),
+            None => (all.lengths[k], format!("/spans/{k}")),
+        };
+        let nearest = (length / pitch).round().max(1.0) * pitch;
+        let of = match given {
+            0 => format!(
+                "(/beam/length_m {} m over {number} {segments})",
+                plain(case.beam.length_m)
+            ),
+            _ => format!("({own} segments are left for spans without a number of them)"),
+        };
+        let what = format!(
+            "{} m is not a whole number of segments of {} m {of}",
+            plain(length),
+            plain(pitch)
+        );
+        let fault = Violation::new(Code::Geometry, key, what);
+        let fault = fault.allowed(format!("multiples of {} m; nearest {}", plain(pitch), plain(nearest)));
+        faults.push(fault.hint(format!(
+            "give \"segments\" of this span, or change its length, /beam/length_m or {number}"
+        )));
     }
 }
 

@@ -3,10 +3,16 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AreaPerForce, AreaPerMoment, given};
+use super::{AreaPerForce, AreaPerMoment, Case, given};
 use crate::functions::profile::Profile;
 
-/// A part of the beam with values of its own, a whole number of segments long. Values that it does not give are those of `beam` and
+/// Relative deviation of a span's length from whole segments that counts as rounding.
+const WHOLE: f64 = 1e-6;
+
+/// Relative deviation of lengths that counts as rounding of decimal fractions.
+pub const ROUNDING: f64 = 1e-9;
+
+/// A part of the beam with values of its own, a whole number of segments. Values that it does not give are those of `beam` and
 /// `bladders`. Coefficients that it does not give follow its modulus and sizes by the scaling laws of their section.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -15,6 +21,10 @@ pub struct Span {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub length_m: Option<f64>,
+    /// Number of its segments, which share its length equally; absent: segments as long as in all spans without this number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000000))]
+    pub segments: Option<usize>,
     /// Rows that have bladders here. Without bladders the section is full: its factors of mass and stiffness are 1 unless given.
     #[serde(default, skip_serializing_if = "SpanRows::is_both")]
     pub rows: SpanRows,
@@ -157,4 +167,82 @@ impl SpanBladders {
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }
+}
+
+/// Lengths of the spans of a beam and of their segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpanLengths {
+    /// Length of each span [m]: its own, or the rest of the beam.
+    pub lengths: Vec<f64>,
+    /// Number of segments of each span; none for a length that is not a whole number of segments, or if nothing is left for a span.
+    pub counts: Vec<Option<usize>>,
+    /// Length of the segments of spans that give no number of them, to which the coefficients of the case belong [m]. If all spans give
+    /// it, or without spans, the mean length.
+    pub pitch: f64,
+    /// Segments left for spans that give no number of them.
+    pub left: usize,
+}
+
+impl SpanLengths {
+    /// Lengths of a case with an allowed number of segments.
+    pub fn new(case: &Case) -> Self {
+        Self::resolve(&case.spans, case.beam.length_m, case.segments())
+    }
+
+    /// Lengths of the spans of a beam of this length [m] with an allowed number of segments.
+    pub fn resolve(spans: &[Span], total: f64, segments: usize) -> Self {
+        let lengths = lengths(spans, total);
+        let (counted, rest) = counted_and_rest(spans, total);
+        let left = segments.saturating_sub(counted);
+        let mixed = counted > 0 && spans.iter().any(|span| span.segments.is_none());
+        let pitch = match mixed {
+            true => rest / left as f64,
+            false => total / segments as f64,
+        };
+        let whole = |length: f64| {
+            let count = (length / pitch).round();
+            let fits = count >= 1.0 && count <= left as f64;
+            (fits && (length / pitch - count).abs() <= WHOLE * count).then_some(count as usize)
+        };
+        let count = |(span, length): (&Span, &f64)| match span.segments {
+            Some(count) => (*length > 0.0).then_some(count),
+            None => whole(*length),
+        };
+        let counts = spans.iter().zip(&lengths).map(count).collect();
+        Self {
+            lengths,
+            counts,
+            pitch,
+            left,
+        }
+    }
+
+    /// Length of the segments of a span [m]; that of the case if both differ by rounding.
+    pub fn pitch_of(&self, span: usize) -> f64 {
+        let own = self.counts[span].map(|count| self.lengths[span] / count as f64);
+        let own = own.filter(|own| (own - self.pitch).abs() > ROUNDING * self.pitch);
+        own.unwrap_or(self.pitch)
+    }
+}
+
+/// Length of each span of a beam of this length [m].
+fn lengths(spans: &[Span], total: f64) -> Vec<f64> {
+    let given: f64 = spans.iter().filter_map(|span| span.length_m).sum();
+    spans
+        .iter()
+        .map(|span| span.length_m.unwrap_or(total - given))
+        .collect()
+}
+
+/// Segments of the spans that give their number, and the length of the other spans [m], for a beam of this length [m].
+pub fn counted_and_rest(spans: &[Span], total: f64) -> (usize, f64) {
+    let counted = spans
+        .iter()
+        .filter_map(|span| span.segments)
+        .fold(0, usize::saturating_add);
+    let own = spans
+        .iter()
+        .zip(lengths(spans, total))
+        .filter(|(span, _)| span.segments.is_some());
+    (counted, total - own.map(|(_, length)| length).sum::<f64>())
 }

@@ -1,5 +1,6 @@
 //! Coefficients of a case whose section is given by its geometry.
 
+use serde::Deserialize;
 use serde_json::{Value, json};
 use serde_path_to_error::Segment;
 use slcbeam_section::error::Error;
@@ -9,6 +10,7 @@ use super::faults::{SetValue, Violations, is_below};
 use super::numbers::rounded;
 use super::origins::Origin;
 use super::presets::Preset;
+use super::schema::{Span, counted_and_rest};
 use super::{computed, parameter, sets};
 use crate::error::{Code, Violation};
 
@@ -364,18 +366,27 @@ fn values(case: &Value, section: &Section) -> std::result::Result<Value, Vec<Vio
 /// Pointer of the length of a cell.
 const PITCH: &str = "/section/pitch_m";
 
-/// Number of bladders in a row.
+/// Number of segments, of which those without a number of their own have this pitch [m].
 fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     let Some(length) = case.pointer("/beam/length_m").and_then(Value::as_f64) else {
         return Ok(1000);
     };
-    let count = (length / pitch).round().max(1.0);
+    // spans with a number of segments of their own have another pitch
+    let spans = case.get("spans").and_then(|spans| Vec::<Span>::deserialize(spans).ok());
+    let (counted, rest) = counted_and_rest(&spans.unwrap_or_default(), length);
+    let (own, count) = (counted as f64, (rest / pitch).round().max(1.0));
     let given = case.pointer("/bladders/per_row").and_then(Value::as_f64);
-    match given.unwrap_or(count) {
-        number if (number * pitch - length).abs() <= 1e-6 * length => Ok(count as u64),
+    match given.map_or(count, |given| given - own) {
+        number if (number * pitch - rest).abs() <= 1e-6 * length => Ok((own + count) as u64),
         number => Err(format!(
-            "{number} bladders with a pitch of {pitch} m need {} m, but the beam is {length} m long",
-            rounded(number * pitch)
+            "{number} segments with a pitch of {pitch} m need {} m, but the beam is {} m long{}",
+            rounded(number * pitch),
+            rounded(rest),
+            if counted > 0 {
+                " beside spans with a number of segments"
+            } else {
+                ""
+            }
         )),
     }
 }

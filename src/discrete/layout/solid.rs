@@ -91,7 +91,7 @@ impl LineLayout {
             Self { free, u, v: None }
         });
         for (k, line) in lines.iter_mut().enumerate().filter(|(k, _)| waves[*k]) {
-            let acceleration = model.section.mass_per_length * mesh.h * rates[k] * s.frequency;
+            let acceleration = model.section.mass_per_length * mesh.shortest * rates[k] * s.frequency;
             line.v = Some(build.nodes(["v1 [m/s]", "v3 [m/s]"][k], &line.free, rates[k], acceleration, true));
         }
         lines
@@ -120,7 +120,7 @@ impl SectionRotation {
         let moment = (s.transverse_force * model.length).max(1e-12 * model.length);
         let row = if swings { rate } else { moment };
         let differential = swings || section.bends_viscously();
-        let inertia = section.mass_per_length * section.gyration_radius_squared * mesh.h;
+        let inertia = section.mass_per_length * section.gyration_radius_squared * mesh.shortest;
         let mut cells = |what: &'static str, size: f64, row: f64, differential: bool| {
             build.block(|build| {
                 for cell in 0..mesh.cells {

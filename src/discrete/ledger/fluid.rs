@@ -101,14 +101,14 @@ pub fn rates<'a>(
     out: &mut [f64],
 ) -> impl Fn(&Workspace<f64>, usize) -> [f64; 2] + use<'a> {
     if let Some(wet) = &system.model.wet {
-        let ratio = wet.length_ratio(system.model.length);
         for j in 0..wet.per_row {
             let s = SegmentRates::new(system, wet, w, j);
-            let reciprocal = CouplingLaw::Reciprocal { length_ratio: ratio };
+            let length_ratio = wet.length_ratio_of(j, system.model.length);
+            let reciprocal = CouplingLaw::Reciprocal { length_ratio };
             let (stretch, curvature) = s.strain_rates(wet.strains_of(j));
             let (stretch_0, curvature_0) = s.strain_rates((&reciprocal, wet.areas_of(j)));
             let power = s.force * (stretch_0 - stretch) + s.moment * (curvature_0 - curvature);
-            add(out, EnergyRate::Reciprocity, system.mesh.segment_length * power);
+            add(out, EnergyRate::Reciprocity, system.mesh.segment_lengths[j] * power);
         }
     }
     move |w, node| {

@@ -34,7 +34,7 @@ pub fn compared(system: &System, now: &TimeData, w: CompleteState) -> [f64; 2] {
     for (node, near, next) in [(0, 0, 1), (mesh.nodes - 1, mesh.cells - 1, mesh.cells - 2)] {
         let end = &now.ends[usize::from(node > 0)];
         let outward = if node > 0 { 1.0 } else { -1.0 };
-        let length = mesh.node_length(node);
+        let length = mesh.node_lengths[node];
         if end.slope.is_some() && end.u[0].is_some() {
             squares[0] += (w.forces.moment[node] / system.model.length).powi(2);
         }

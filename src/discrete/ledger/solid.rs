@@ -112,7 +112,7 @@ fn bending(
     let mesh = &system.mesh;
     let curvature_rate = |w: &Workspace<f64>, node: usize| pressure_rate(w, node)[1];
     let last = mesh.nodes - 1;
-    let length = mesh.node_length(i);
+    let length = mesh.node_lengths[i];
     let published = system.model.published();
     let end = now.end(i);
     let stretches = |i: usize| {
@@ -159,7 +159,7 @@ fn bending(
         let (sign, cell) = if i == 0 { (1.0, 0) } else { (-1.0, last - 1) };
         let angle_rate = match e.slope {
             Some(slope) => slope.rate,
-            None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.h * kappa_rate,
+            None => w.shape.angle_rate[cell] + sign * 0.5 * mesh.lengths[cell] * kappa_rate,
         };
         let whole = moment + part(&forces.arc_moment);
         add(out, EnergyRate::Ends, sign * whole * angle_rate);
@@ -181,8 +181,8 @@ fn bending(
 
 /// Contributions of the cells: distributed moments, viscous forces, and the published rotary term.
 fn cells(system: &System, now: &TimeData, w: &Workspace<f64>, published: bool, out: &mut Rates) {
-    let (h, section) = (system.mesh.h, &system.model.section);
-    for c in 0..system.mesh.cells {
+    let section = &system.model.section;
+    for (c, &h) in system.mesh.lengths.iter().enumerate() {
         let rotary = system.sections.rotary[c];
         if system.has_moments {
             let couple = couple(system, now, w, c);
@@ -217,8 +217,7 @@ fn carried(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> 
     if system.layout.lines[1].v.is_some() {
         return w.motion.v[node].z;
     }
-    let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    now.carried(1, share).rate
+    now.carried(1, system.mesh.share(node)).rate
 }
 
 /// True if sections rotate finitely but have the rotary inertia of `[E27]`.
@@ -230,7 +229,7 @@ fn turned_across(system: &System) -> bool {
 /// Rate of rotation for rotary inertia: `φ_t`, without axial inertia `x'_t`.
 fn turning_rate(system: &System, w: &Workspace<f64>, c: usize) -> f64 {
     if turned_across(system) {
-        (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h
+        (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.lengths[c]
     } else {
         w.shape.angle_rate[c]
     }
@@ -242,7 +241,7 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
     let sheared = system.model.effects.has(Effect::Shear);
     let mut e = StoredEnergies::default();
     for i in 0..mesh.nodes {
-        let length = mesh.node_length(i);
+        let length = mesh.node_lengths[i];
         if system.layout.inertia {
             let along = carried(system, now, w, i);
             e.kinetic += 0.5 * system.masses[i] * (w.motion.v[i].x * w.motion.v[i].x + along * along);
@@ -260,29 +259,29 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
             e.rotary += rotary;
         }
     }
-    for c in 0..mesh.cells {
+    for (c, &h) in mesh.lengths.iter().enumerate() {
         if system.model.effects.has(Effect::AxialStretch) {
             e.axial += if mesh.fourth {
                 fourth_order::of_stretch(system, w, c)
             } else {
-                0.5 * mesh.h * w.forces.normal[c] * w.forces.normal[c] / system.sections.axial[c]
+                0.5 * h * w.forces.normal[c] * w.forces.normal[c] / system.sections.axial[c]
             };
         }
         if mesh.fourth && sheared {
             continue;
         }
         if let Some(shear) = w.shape.sections.shear.get(c) {
-            e.bending += 0.5 * mesh.h * system.sections.shear[c] * shear * shear;
+            e.bending += 0.5 * h * system.sections.shear[c] * shear * shear;
         }
         if system.model.effects.has(Effect::RotaryInertia) {
-            e.rotary += 0.5 * mesh.h * spin(system, w, c) * turning_rate(system, w, c);
+            e.rotary += 0.5 * h * spin(system, w, c) * turning_rate(system, w, c);
         }
     }
     if mesh.fourth && sheared {
-        e.bending += 0.5 * mesh.h * system.sections.shear[0] * fourth_order::squares(&w.shape.sections.shear);
+        e.bending += 0.5 * mesh.shortest * system.sections.shear[0] * fourth_order::squares(&w.shape.sections.shear);
         if system.model.effects.has(Effect::RotaryInertia) {
             let inertia = system.sections.rotary[0];
-            e.rotary += 0.5 * mesh.h * inertia * fourth_order::squares(&w.shape.angle_rate);
+            e.rotary += 0.5 * mesh.shortest * inertia * fourth_order::squares(&w.shape.angle_rate);
         }
     }
     e
@@ -337,7 +336,7 @@ pub fn momenta(system: &System, now: &TimeData, w: &Workspace<f64>) -> (Planar<f
     }
     if system.model.effects.has(Effect::RotaryInertia) {
         let arm = |c: usize| if turned_across(system) { w.shape.d3[c].z } else { 1.0 };
-        let cells = (0..mesh.cells).map(|c| mesh.h * arm(c) * spin(system, w, c));
+        let cells = (0..mesh.cells).map(|c| mesh.lengths[c] * arm(c) * spin(system, w, c));
         angular += cells.sum::<f64>();
     }
     (momentum, angular)

@@ -4,7 +4,7 @@ use super::Observable;
 use super::evaluate::StateView;
 use crate::case::schema::{Case, Probe as Written};
 use crate::case::spans;
-use crate::discrete::angle_unwrapping::{first_angle, tip_angle};
+use crate::discrete::angle_unwrapping::{first_angle, rotation, tip_angle};
 use crate::discrete::{BeamMesh, System};
 
 /// A place of the beam, on a mesh.
@@ -152,15 +152,13 @@ impl MeshProbe {
     }
 
     fn new(name: &str, at: f64, mesh: &BeamMesh) -> Self {
-        let place = at * mesh.cells as f64;
+        let place = mesh.place(at);
         let node = (place as usize).min(mesh.cells - 1);
-        let cell = ((place - 0.5).max(0.0) as usize).min(mesh.cells.saturating_sub(2));
-        let beyond = if mesh.cells > 1 { place - 0.5 - cell as f64 } else { 0.0 };
         Self {
             name: name.into(),
             at,
             node: (node, place - node as f64),
-            cell: (cell, beyond),
+            cell: mesh.between_midpoints(place),
             segment: node / mesh.cells_per_segment,
             surfaces: [0.0; 2],
             young_modulus: 0.0,
@@ -181,17 +179,17 @@ impl MeshProbe {
 
     /// Angle along the chain of midpoints, `φ_{c+1} = φ_c - h κ_{c+1}`, with the full turns of the tip's angle.
     fn angle(&self, look: &StateView) -> f64 {
-        let (kappa, h) = (&look.w.shape.kappa, look.system.mesh.h);
+        let (kappa, mesh) = (&look.w.shape.kappa, &look.system.mesh);
         let (node, share) = self.node;
         let turns = look.tip_angle() - tip_angle(look.system, look.now, &look.w);
-        // from the midpoint of the first cell: nodes passed, with half a cell at an end
-        let passed: f64 = kappa[1..=node].iter().sum();
+        // from the midpoint of the first cell to that of the cell
+        let passed = rotation(look.system, &look.w, node);
         let rest = match (node, share) {
             (0, share) if share < 0.5 => (share - 0.5) * kappa[0],
             (_, share) if share < 0.5 => (share - 0.5) * kappa[node],
             _ => (share - 0.5) * kappa[node + 1],
         };
-        first_angle(look.system, look.now, &look.w) - h * (passed + rest) + turns
+        first_angle(look.system, look.now, &look.w) - (passed + mesh.lengths[node] * rest) + turns
     }
 
     /// `λ - 1 + κ (±h_s/2 - z_r)`, κ relative to the rest curvature.

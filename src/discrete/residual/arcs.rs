@@ -55,7 +55,7 @@ pub fn strains<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
 #[inline]
 fn change<T: Scalar>(system: &System, shape: &BeamShape<T>, node: usize) -> Planar<T> {
     let line = &shape.sections.line;
-    (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.h / 24.0))
+    (line[node] - line[node - 1]).times(shape.kappa[node] * (system.mesh.shortest / 24.0))
 }
 
 /// Cells adjacent to an inner node, with its weight in each.
@@ -100,13 +100,13 @@ pub fn forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) 
     forces.arc_moment.fill(T::zero());
     for c in 0..mesh.cells {
         let (line, force) = (shape.sections.line[c], Planar::new(forces.shear[c], forces.normal[c]));
-        let both = line.dot(force) * (mesh.h * mesh.h / 24.0);
+        let both = line.dot(force) * (mesh.shortest * mesh.shortest / 24.0);
         for (node, share) in [c, c + 1].into_iter().zip(shares(system, now, c)) {
-            forces.arc_moment[node] += shape.kappa[node] * both * (share * mesh.h / mesh.node_length(node));
+            forces.arc_moment[node] += shape.kappa[node] * both * (share * mesh.shortest / mesh.node_lengths[node]);
         }
         forces.arc_section[c] = force.times(arc(system, now, &shape.kappa, c));
     }
-    let per_node = mesh.h / 24.0;
+    let per_node = mesh.shortest / 24.0;
     for node in 1..mesh.cells {
         let mut both = Planar::zero();
         for (cell, share) in beside(system, node) {
@@ -135,7 +135,7 @@ pub fn of_line<T: Scalar>(system: &System, shape: &BeamShape<T>, cell: usize) ->
 
 /// Rate of this relative excess [1/s].
 pub fn rate_of_line(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
-    let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.h;
+    let turned = |c: usize| (w.motion.v[c + 1].x - w.motion.v[c].x) / system.mesh.shortest;
     let of = |node: usize| {
         let share = line_share(system.mesh.cells, cell, node);
         if share == 0.0 {

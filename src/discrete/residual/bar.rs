@@ -13,8 +13,7 @@ use crate::numerics::Scalar;
 /// It equals [`super::solid`] with u1 = 0, and is exact without transverse loads and with equal upper and lower
 /// pressures.
 pub fn kinematics<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         let e = (w.motion.u[c + 1].z - w.motion.u[c].z) * inverse;
         w.shape.strain[c] = e;
         w.shape.stretch[c] = e + 1.0;
@@ -30,8 +29,7 @@ pub fn rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 
 /// Rate of stretch in any case.
 pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         w.shape.stretch_rate[c] = (w.motion.v[c + 1].z - w.motion.v[c].z) * inverse;
     }
 }

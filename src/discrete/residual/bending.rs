@@ -38,8 +38,9 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
         }
         moment[0] -= curvature[0];
         moment[last] -= curvature[system.mesh.segments - 1];
-        for (j, pair) in curvature.windows(2).enumerate() {
-            moment[(j + 1) * k] -= (pair[0] + pair[1]) * 0.5;
+        let borders = system.mesh.borders.iter();
+        for (j, (pair, [left, right])) in curvature.windows(2).zip(borders).enumerate() {
+            moment[(j + 1) * k] -= pair[0] * *left + pair[1] * *right;
         }
     }
     for (moment, rest) in moment.iter_mut().zip(&now.rest_curvature[0]) {
@@ -109,7 +110,6 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
 
 /// Shear forces, `[E12]`.
 pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
     let forces = &mut w.forces;
     let drops = forces.shear.iter_mut();
     for (drop, pair) in drops.zip(forces.moment.windows(2)) {
@@ -130,8 +130,9 @@ pub fn shears<T: Scalar>(system: &System, w: &mut Workspace<T>) {
             *drop += pair[0] - pair[1];
         }
     }
-    for (shear, per_stretch) in forces.shear.iter_mut().zip(&w.shape.per_stretch) {
-        *shear = *shear * (*per_stretch * inverse);
+    let inverse = &system.mesh.per_length;
+    for ((shear, per_stretch), inverse) in forces.shear.iter_mut().zip(&w.shape.per_stretch).zip(inverse) {
+        *shear = *shear * (*per_stretch * *inverse);
     }
 }
 
@@ -168,7 +169,8 @@ pub fn pressure_curvature<T: Scalar>(system: &System, w: &Workspace<T>, node: us
     if left == right {
         w.coupling.pressure_curvature[left]
     } else {
-        (w.coupling.pressure_curvature[left] + w.coupling.pressure_curvature[right]) * 0.5
+        let shares = system.mesh.borders[left];
+        w.coupling.pressure_curvature[left] * shares[0] + w.coupling.pressure_curvature[right] * shares[1]
     }
 }
 

@@ -57,12 +57,12 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     w.forces.offset_moment.fill(T::zero());
     for (c, d) in system.sections.offset.iter().enumerate() {
         for node in [c, c + 1] {
-            w.forces.offset_moment[node] += w.forces.normal[c] * (0.5 * mesh.h * d / mesh.node_length(node));
+            w.forces.offset_moment[node] += w.forces.normal[c] * (0.5 * mesh.lengths[c] * d / mesh.node_lengths[node]);
         }
         if system.model.section.axial_damping_time > 0.0 {
             for (node, weight) in viscous_weights(system, now, c) {
                 w.forces.viscous_moment[node] +=
-                    w.forces.viscous_normal[c] * (weight * mesh.h * d / mesh.node_length(node));
+                    w.forces.viscous_normal[c] * (weight * mesh.lengths[c] * d / mesh.node_lengths[node]);
             }
         }
     }

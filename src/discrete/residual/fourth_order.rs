@@ -115,7 +115,8 @@ pub fn bends_its_cells(system: &System) -> bool {
 #[inline]
 pub fn arc<T: Scalar>(system: &System, now: &TimeData, kappa: &[T], cell: usize) -> T {
     let [left, right] = shares(system, now, cell);
-    (kappa[cell].squared() * left + kappa[cell + 1].squared() * right) * (system.mesh.h * system.mesh.h / 48.0)
+    (kappa[cell].squared() * left + kappa[cell + 1].squared() * right)
+        * (system.mesh.shortest * system.mesh.shortest / 48.0)
 }
 
 /// Relative excess as in [`arc`] for small rotations, with or without shear, and its rate [1/s].
@@ -128,7 +129,7 @@ pub fn small_arc(system: &System, now: &TimeData, w: &Workspace<f64>, cell: usiz
     }
     let [left, right] = shares(system, now, cell);
     let of = |node: usize| 2.0 * w.shape.kappa[node] * w.shape.kappa_rate[node];
-    let rate = (left * of(cell) + right * of(cell + 1)) * (system.mesh.h * system.mesh.h / 48.0);
+    let rate = (left * of(cell) + right * of(cell + 1)) * (system.mesh.shortest * system.mesh.shortest / 48.0);
     [arc(system, now, &w.shape.kappa, cell), rate]
 }
 
@@ -153,12 +154,12 @@ pub fn arc_moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
     w.forces.arc_moment.fill(T::zero());
     for c in 0..mesh.cells {
-        let mut force = w.forces.normal[c] * (mesh.h * mesh.h / 24.0);
+        let mut force = w.forces.normal[c] * (mesh.shortest * mesh.shortest / 24.0);
         if finite {
             force = force * w.shape.stretch[c];
         }
         for (node, share) in [c, c + 1].into_iter().zip(shares(system, now, c)) {
-            let moment = w.shape.kappa[node] * force * (share * mesh.h / mesh.node_length(node));
+            let moment = w.shape.kappa[node] * force * (share * mesh.shortest / mesh.node_lengths[node]);
             w.forces.arc_moment[node] += moment;
         }
     }
@@ -185,7 +186,7 @@ pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspa
 
 /// Bending energy at a node [J].
 pub fn of_bending(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
-    0.5 * system.mesh.node_length(node) * w.forces.moment[node] * elastic_curvature(system, now, w, node)
+    0.5 * system.mesh.node_lengths[node] * w.forces.moment[node] * elastic_curvature(system, now, w, node)
 }
 
 /// Elastic stretch `e_c = λ_c - 1 - λ_p` of a cell.
@@ -201,14 +202,14 @@ pub fn elastic_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 
 
 /// Stretch energy in a cell [J].
 pub fn of_stretch(system: &System, w: &Workspace<f64>, cell: usize) -> f64 {
-    0.5 * system.mesh.h * w.forces.normal[cell] * elastic_stretch(system, w, cell)
+    0.5 * system.mesh.shortest * w.forces.normal[cell] * elastic_stretch(system, w, cell)
 }
 
 /// Error if a model does not allow fourth order.
 pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
     let what = if !mesh.fourth {
         return None;
-    } else if model.sections.iter().any(|section| *section != model.section) {
+    } else if !mesh.uniform || model.sections.iter().any(|section| *section != model.section) {
         "a beam with spans needs a mesh of second order"
     } else if model.section.offset != 0.0 {
         "a neutral axis beside the beam's line needs a mesh of second order"

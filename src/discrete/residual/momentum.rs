@@ -72,11 +72,12 @@ fn inner_momentum<T: Scalar, const AXIS: usize>(system: &System, now: &TimeData,
     let count = nodes.len();
     let r = &mut r[row..][..count];
     let (given, mass) = (&now.force[nodes.clone()], &system.masses[nodes.clone()]);
+    let lengths = &mesh.node_lengths[nodes.clone()];
     let (a, after) = (&w.motion.a[nodes.clone()], &w.forces.section[nodes.clone()]);
     let before = &w.forces.section[nodes.start - 1..][..count];
     let added = w.forces.formulation.get(nodes);
     for k in 0..count {
-        let mut f = T::constant(given[k][AXIS] * mesh.h);
+        let mut f = T::constant(given[k][AXIS] * lengths[k]);
         if let Some(added) = added {
             f += added[k][AXIS];
         }
@@ -96,7 +97,7 @@ pub fn outer_forces<T: Scalar>(
     node: usize,
     mut each: impl FnMut(Option<EnergyRate>, Planar<T>),
 ) {
-    let length = system.mesh.node_length(node);
+    let length = system.mesh.node_lengths[node];
     let mut given = Planar::constant(now.force[node] * length);
     if node == 0 || node == system.mesh.nodes - 1 {
         given += end_force(system, now, w, node);
@@ -186,7 +187,7 @@ pub fn end_tangent<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>,
         return Planar::constant(Planar::tangent(slope.value));
     }
     let cell = if at_tip { last - 1 } else { 0 };
-    let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.h;
+    let half = if at_tip { 0.5 } else { -0.5 } * system.mesh.lengths[cell];
     tangent_beyond(w, cell, node, half)
 }
 
@@ -223,7 +224,7 @@ fn end_angle<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node:
         return T::constant(slope.value);
     }
     let (cell, half) = if at_tip { (node - 1, 0.5) } else { (0, -0.5) };
-    angle_beyond(w, cell, node, half * system.mesh.h)
+    angle_beyond(w, cell, node, half * system.mesh.lengths[cell])
 }
 
 /// `[E15]` Forces of the published form in addition to the conservative one, at nodes:

@@ -21,14 +21,14 @@ pub fn forces<T: Scalar>(system: &System, w: &mut Workspace<T>) {
     };
     let mesh = &system.mesh;
     let k = mesh.cells_per_segment;
-    let per_area = 1.0 / wet.length_ratio(system.model.length);
     w.forces.nonlinear_moment.fill(T::zero());
     for j in 0..wet.per_row {
+        let per_area = 1.0 / wet.length_ratio_of(j, system.model.length);
         let slopes = law.at(state(system, wet, w, j));
-        w.coupling.nonlinear_energy[j] = slopes.energy * mesh.segment_length;
+        w.coupling.nonlinear_energy[j] = slopes.energy * mesh.segment_lengths[j];
         w.forces.nonlinear_normal[j * k..(j + 1) * k].fill(slopes.force);
         for i in 0..=k {
-            let share = mesh.moment_weight(i) * mesh.segment_length / mesh.node_length(j * k + i);
+            let share = mesh.moment_weight(i) * mesh.segment_lengths[j] / mesh.node_lengths[j * k + i];
             w.forces.nonlinear_moment[j * k + i] += slopes.moment * share;
         }
         for (bladder, by) in wet.pair(j).into_iter().zip(slopes.by_pressure) {

@@ -140,17 +140,17 @@ pub fn energy_and_loss(system: &System, now: &TimeData, w: &Workspace<f64>) -> [
             }
         }
     };
-    let of_curvature = |node: usize| mesh.node_length(node) * sections.bending[node];
+    let of_curvature = |node: usize| mesh.node_lengths[node] * sections.bending[node];
     let curvatures = [&relaxed.curvature[..], &relaxed.curvature_rate];
     add(&w.shape.kappa, &now.rest_curvature[0], curvatures, &of_curvature);
-    let of_stretch = |cell: usize| mesh.h * sections.axial[cell];
+    let of_stretch = |cell: usize| mesh.lengths[cell] * sections.axial[cell];
     add(
         &w.shape.strain,
         &[],
         [&relaxed.stretch, &relaxed.stretch_rate],
         &of_stretch,
     );
-    let of_shear = |cell: usize| mesh.h * sections.shear[cell];
+    let of_shear = |cell: usize| mesh.lengths[cell] * sections.shear[cell];
     add(
         &w.shape.sections.shear,
         &[],

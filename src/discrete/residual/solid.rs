@@ -17,7 +17,7 @@ use crate::numerics::{Planar, Scalar, wide};
 ///
 /// Only differences of angles appear, from cross and dot products, so that any number of full turns is admissible.
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
+    let inverse = &system.mesh.per_node_length;
     let last = system.mesh.cells;
     let shape = &mut w.shape;
     let strain = |_, _: &mut Sections<T>, e: Planar<T>, line: &CellLine<T>| {
@@ -25,22 +25,22 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
     };
     wide!(lines(system, &w.motion.u, shape, strain));
     let (tangent, kappa) = (&shape.tangent[..last], &mut shape.kappa);
-    wide!(curvatures(tangent, inverse, &mut kappa[1..last]));
+    wide!(curvatures(tangent, &inverse[1..last], &mut kappa[1..last]));
     if let Some(slope) = now.ends[0].slope {
         let given = Planar::constant(Planar::tangent(slope.value));
-        shape.kappa[0] = -given.angle_to(tangent[0]) * (2.0 * inverse);
+        shape.kappa[0] = -given.angle_to(tangent[0]) * inverse[0];
     }
     if let Some(slope) = now.ends[1].slope {
         let given = Planar::constant(Planar::tangent(slope.value));
-        shape.kappa[last] = -tangent[last - 1].angle_to(given) * (2.0 * inverse);
+        shape.kappa[last] = -tangent[last - 1].angle_to(given) * inverse[last];
     }
 }
 
 /// Curvature `κ` between cells.
 #[inline(always)]
-fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: f64, kappa: &mut [T]) {
-    for (kappa, pair) in kappa.iter_mut().zip(tangent.windows(2)) {
-        *kappa = -pair[0].angle_to(pair[1]) * inverse;
+fn curvatures<T: Scalar>(tangent: &[Planar<T>], inverse: &[f64], kappa: &mut [T]) {
+    for ((kappa, pair), inverse) in kappa.iter_mut().zip(tangent.windows(2)).zip(inverse) {
+        *kappa = -pair[0].angle_to(pair[1]) * *inverse;
     }
 }
 
@@ -53,14 +53,13 @@ pub fn lines<T: Scalar>(
     shape: &mut BeamShape<T>,
     mut strain: impl FnMut(usize, &mut Sections<T>, Planar<T>, &CellLine<T>) -> T,
 ) {
-    let inverse = 1.0 / system.mesh.h;
     let cells = system.mesh.cells;
-    let u = &u[..=cells];
+    let (u, inverse) = (&u[..=cells], &system.mesh.per_length[..cells]);
     let (d3, tangent) = (&mut shape.d3[..cells], &mut shape.tangent[..cells]);
     let (stretch, per_stretch) = (&mut shape.stretch[..cells], &mut shape.per_stretch[..cells]);
     let strains = &mut shape.strain[..cells];
     for c in 0..cells {
-        let e = (u[c + 1] - u[c]) * inverse;
+        let e = (u[c + 1] - u[c]) * inverse[c];
         let line = CellLine::new(Planar::new(e.x, e.z + 1.0));
         d3[c] = line.d3;
         stretch[c] = line.stretch;
@@ -120,13 +119,13 @@ fn line_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
         timoshenko::strain_rates(system, w);
         return;
     }
-    let inverse = 1.0 / system.mesh.h;
     let cells = system.mesh.cells;
+    let inverse = &system.mesh.per_length[..cells];
     let (v, shape) = (&w.motion.v[..=cells], &mut w.shape);
     let (tangent, per_stretch) = (&shape.tangent[..cells], &shape.per_stretch[..cells]);
     let (stretch_rate, angle_rate) = (&mut shape.stretch_rate[..cells], &mut shape.angle_rate[..cells]);
     for c in 0..cells {
-        let d3_t = (v[c + 1] - v[c]) * inverse;
+        let d3_t = (v[c + 1] - v[c]) * inverse[c];
         stretch_rate[c] = tangent[c].dot(d3_t);
         angle_rate[c] = tangent[c].cross(d3_t) * per_stretch[c];
     }
@@ -135,23 +134,23 @@ fn line_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
 /// Rotation rate `φ_t` of a cell's line [1/s].
 #[inline]
 pub fn angle_rate<T: Scalar>(system: &System, w: &Workspace<T>, c: usize) -> T {
-    let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * (1.0 / system.mesh.h);
+    let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * system.mesh.per_length[c];
     w.shape.tangent[c].cross(d3_t) * w.shape.per_stretch[c]
 }
 
 /// Curvature rate `κ_t` at nodes, from the rotation rates of cells and prescribed slopes.
 pub fn curvature_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
+    let inverse = &system.mesh.per_node_length;
     let last = system.mesh.nodes - 1;
     let turning = w.shape.angle_rate[..last].windows(2);
-    for (rate, pair) in w.shape.kappa_rate[1..last].iter_mut().zip(turning) {
-        *rate = (pair[0] - pair[1]) * inverse;
+    for ((rate, pair), inverse) in w.shape.kappa_rate[1..last].iter_mut().zip(turning).zip(&inverse[1..]) {
+        *rate = (pair[0] - pair[1]) * *inverse;
     }
     if let Some(slope) = now.ends[0].slope {
-        w.shape.kappa_rate[0] = (-w.shape.angle_rate[0] + slope.rate) * (2.0 * inverse);
+        w.shape.kappa_rate[0] = (-w.shape.angle_rate[0] + slope.rate) * inverse[0];
     }
     if let Some(slope) = now.ends[1].slope {
-        w.shape.kappa_rate[last] = (w.shape.angle_rate[last - 1] - slope.rate) * (2.0 * inverse);
+        w.shape.kappa_rate[last] = (w.shape.angle_rate[last - 1] - slope.rate) * inverse[last];
     }
 }
 
@@ -291,19 +290,19 @@ fn turned<T: Scalar>(tangent: &[Planar<T>], [normal, shear]: [&[T]; 2], force: &
 
 /// Adds the rotary inertia of sections in [`section_forces`].
 fn rotary_inertia<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
+    let inverse = &system.mesh.per_length;
     let cells = system.mesh.cells;
     let rotary = &system.sections.rotary[..cells];
     let (a, shape) = (&w.motion.a[..=cells], &w.shape);
     let (tangent, section) = (&shape.tangent[..cells], &mut w.forces.section[..cells]);
     if system.layout.lines[1].v.is_none() {
         for c in 0..cells {
-            section[c].x += (a[c + 1].x - a[c].x) * (inverse * rotary[c]);
+            section[c].x += (a[c + 1].x - a[c].x) * (inverse[c] * rotary[c]);
         }
         return;
     }
     // `across` is λ φ_tt + 2 λ_t φ_t: the published form uses all of it, the conservative form only φ_tt, divided by λ
-    let across = |c: usize| tangent[c].cross((a[c + 1] - a[c]) * inverse);
+    let across = |c: usize| tangent[c].cross((a[c + 1] - a[c]) * inverse[c]);
     if system.model.published() {
         for c in 0..cells {
             section[c] -= tangent[c].normal().times(across(c) * rotary[c]);

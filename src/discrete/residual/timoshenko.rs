@@ -49,25 +49,24 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
 }
 
 fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
+    let inverse = &system.mesh.per_node_length;
     let last = system.mesh.nodes - 1;
     let angle = &w.shape.sections.angle;
     for i in 1..last {
-        w.shape.kappa[i] = (angle[i - 1] - angle[i]) * inverse;
+        w.shape.kappa[i] = (angle[i - 1] - angle[i]) * inverse[i];
     }
     if let Some(slope) = now.ends[0].slope {
-        w.shape.kappa[0] = (-angle[0] + slope.value) * (2.0 * inverse);
+        w.shape.kappa[0] = (-angle[0] + slope.value) * inverse[0];
     }
     if let Some(slope) = now.ends[1].slope {
-        w.shape.kappa[last] = (angle[last - 1] + -slope.value) * (2.0 * inverse);
+        w.shape.kappa[last] = (angle[last - 1] + -slope.value) * inverse[last];
     }
 }
 
 /// Rates of stretch and shear: `ε_t = d3_t·e_t - γ θ_t`, `γ_t = d3_t·e_n + (1 + ε) θ_t`. Rates of angles are unknowns.
 pub fn strain_rates<T: Scalar>(system: &System, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         let d3_t = (w.motion.v[c + 1] - w.motion.v[c]) * inverse;
         let turning = w.shape.angle_rate[c];
         let sections = &mut w.shape.sections;
@@ -123,7 +122,6 @@ fn shears<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 
 /// Section forces in lab axes, and moments that rotate sections, [E63].
 fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let h = system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let finite = system.model.kinematics == Kinematics::FiniteRotation;
     for c in 0..system.mesh.cells {
@@ -153,10 +151,14 @@ fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
         if system.has_moments {
             turning += couple(system, now, w, c);
         }
-        w.forces.turning[c] = total_moment_drop(system, w, c) - turning * h;
+        w.forces.turning[c] = total_moment_drop(system, w, c) - turning * system.mesh.lengths[c];
     }
-    attached::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
-    bodies::turning(system, now, w, |couple, c, w| w.forces.turning[c] += couple * -h);
+    attached::turning(system, now, w, |couple, c, w| {
+        w.forces.turning[c] += couple * -system.mesh.lengths[c];
+    });
+    bodies::turning(system, now, w, |couple, c, w| {
+        w.forces.turning[c] += couple * -system.mesh.lengths[c];
+    });
 }
 
 impl<T: Scalar> Sections<T> {
@@ -173,7 +175,7 @@ impl<T: Scalar> Sections<T> {
 /// Balance of moments of each section.
 pub fn rows<T: Scalar>(system: &System, w: &Workspace<T>, r: &mut [T]) {
     let resists = system.model.effects.has(Effect::RotaryInertia);
-    let inertia = |c: usize| system.sections.rotary[c] * system.mesh.h;
+    let inertia = |c: usize| system.sections.rotary[c] * system.mesh.lengths[c];
     for (c, row) in system.layout.turning.moments().enumerate() {
         r[row] = -w.forces.turning[c];
         if resists {

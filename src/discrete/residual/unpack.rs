@@ -105,9 +105,8 @@ pub fn complete_velocities<T: Scalar>(system: &System, now: &TimeData, yp: &[T],
     if along.v.is_some() || !system.layout.inertia {
         return;
     }
-    let last = (system.mesh.nodes - 1) as f64;
     for (node, u, _) in along.unknowns() {
-        w.motion.v[node].z = yp[u] + now.carried(1, node as f64 / last).rate;
+        w.motion.v[node].z = yp[u] + now.carried(1, system.mesh.share(node)).rate;
     }
 }
 
@@ -142,9 +141,8 @@ fn move_nodes<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], mot
         wide!(lay(own, &l.lines, from, shifts));
         for (axis, frame) in frames.into_iter().enumerate() {
             if let Some(frame) = frame.filter(Frame::leans) {
-                let last = (own.len() - 1) as f64;
                 for (node, own) in own.iter_mut().enumerate() {
-                    own[axis] = own[axis] + given(frame.at(node as f64 / last));
+                    own[axis] = own[axis] + given(frame.at(system.mesh.share(node)));
                 }
             }
         }

@@ -19,10 +19,9 @@ use crate::numerics::{Planar, Scalar};
 /// from the potential ∫ (N²/2EA + M²/2EI): `N δe + M δκ = (g N φ - V) δu1' + N δu3' - (M δφ)'`. Compared with finite
 /// rotations it omits terms of order φ².
 pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let stretches = system.model.effects.has(Effect::AxialStretch);
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         let angle = (w.motion.u[c + 1].x - w.motion.u[c].x) * inverse;
         w.shape.d3[c].x = angle;
         if !stretches {
@@ -42,16 +41,16 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
 
 /// Curvature `κ` at nodes, from the angles of cells and prescribed slopes.
 fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
+    let inverse = &system.mesh.per_node_length;
     let last = system.mesh.nodes - 1;
     for i in 1..last {
-        w.shape.kappa[i] = (w.shape.d3[i - 1].x - w.shape.d3[i].x) * inverse;
+        w.shape.kappa[i] = (w.shape.d3[i - 1].x - w.shape.d3[i].x) * inverse[i];
     }
     if let Some(slope) = now.ends[0].slope {
-        w.shape.kappa[0] = (-w.shape.d3[0].x + slope.value) * (2.0 * inverse);
+        w.shape.kappa[0] = (-w.shape.d3[0].x + slope.value) * inverse[0];
     }
     if let Some(slope) = now.ends[1].slope {
-        w.shape.kappa[last] = (w.shape.d3[last - 1].x + -slope.value) * (2.0 * inverse);
+        w.shape.kappa[last] = (w.shape.d3[last - 1].x + -slope.value) * inverse[last];
     }
 }
 
@@ -64,13 +63,12 @@ pub fn rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
 
 /// Rates of strain in any case: `e_t = u3'_t + g φ φ_t`, `φ_t = u1'_t`.
 pub fn strain_rates<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let sheared = system.model.effects.has(Effect::Shear);
     if sheared {
         timoshenko::strain_rates(system, w);
     }
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         let turning = (w.motion.v[c + 1].x - w.motion.v[c].x) * inverse;
         if !sheared {
             w.shape.angle_rate[c] = turning;
@@ -102,7 +100,7 @@ pub fn foreshorten(
     stretch_rate: impl Fn(&Workspace<f64>, usize) -> f64,
     w: &mut Workspace<f64>,
 ) {
-    let (h, k, last) = (system.mesh.h, system.mesh.cells_per_segment, system.mesh.cells);
+    let (k, last) = (system.mesh.cells_per_segment, system.mesh.cells);
     let tension = system.model.kinematics == Kinematics::SmallRotation;
     let root_held = matches!(system.model.ends[0].axial, Translation::Displacement(_));
     let pressed = system.fluid.is_some() && system.model.effects.has(Effect::PressureToStretch);
@@ -114,6 +112,7 @@ pub fn foreshorten(
         } else {
             (last - 1 - step, last - 1 - step, -1.0)
         };
+        let h = system.mesh.lengths[cell];
         if pressed {
             u += outward * h * w.coupling.pressure_stretch[cell / k];
             v += outward * h * stretch_rate(w, cell / k);
@@ -133,9 +132,8 @@ pub fn foreshorten(
 
 /// Section forces in lab axes.
 pub fn section_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
-    let inverse = 1.0 / system.mesh.h;
     let tension = system.model.kinematics == Kinematics::SmallRotation;
-    for c in 0..system.mesh.cells {
+    for (c, &inverse) in system.mesh.per_length.iter().enumerate() {
         let normal = normal_force(system, w, c);
         w.forces.shear[c] = total_moment_drop(system, w, c) * inverse;
         let across = if tension {

@@ -2,7 +2,8 @@
 
 use crate::case::schema::Case;
 use crate::case::{Rotation, Translation};
-use crate::discrete::{System, shapes};
+use crate::discrete::System;
+use crate::discrete::shapes::{self, Cells};
 use crate::functions::profile::{Integrals, Profile};
 use crate::functions::signals::SmoothTime;
 use crate::model::Model;
@@ -162,7 +163,7 @@ fn of_lines(profile: &Profile, cells: usize) -> f64 {
         profile.value(a) * (1.0 - t) + profile.value(b) * t
     };
     let (mut lost, mut whole, mut largest) = (0.0_f64, 0.0_f64, 0.0_f64);
-    for (a, b) in (0..cells).map(|c| shapes::within(c, cells)) {
+    for (a, b) in Cells::equal(cells).ends() {
         for x in shapes::places(&integrals, a, b).into_iter().chain([a, b]) {
             let value = profile.value(x);
             lost = lost.max((value - line(a, b, x)).abs());
@@ -180,7 +181,8 @@ fn of_lines(profile: &Profile, cells: usize) -> f64 {
 /// 1 - (1 - ∫(v - w)²/∫v²)^(1/2) + |(Σ h_i w_i²)^(1/2) - (∫w²)^(1/2)|/(∫v²)^(1/2)
 /// ```
 fn of_squares(profile: &Profile, cells: usize) -> f64 {
-    let (w, means) = (shapes::nearest(profile, cells), shapes::at_nodes(profile, cells));
+    let equal = Cells::equal(cells);
+    let (w, means) = (shapes::nearest(profile, &equal), shapes::at_nodes(profile, &equal));
     let h = 1.0 / cells as f64;
     let length = |i: usize| if i == 0 || i == cells { 0.5 * h } else { h };
     let over_nodes = |of: &dyn Fn(usize) -> f64| (0..=cells).map(|i| length(i) * of(i)).sum::<f64>();

@@ -18,7 +18,8 @@ use crate::functions::profile::{Integrals, Profile};
 use crate::functions::signals::Signal;
 use crate::model::{DistributedLoad, Model, Storage};
 
-use super::{System, shapes};
+use super::System;
+use super::shapes::{self, Cells};
 use initial_values::InitialShape;
 pub use ports::JumpIntoBladder;
 use statics::Shape;
@@ -225,7 +226,7 @@ fn loads_along(case: &Case, model: &Model) -> Vec<Shape> {
 
 /// Relative error of a pressure by averaging over cells: that of its root mean square, or of its largest value, whichever is larger.
 fn of_means(profile: &Profile, cells: usize) -> (f64, &'static str) {
-    let means = shapes::in_cells(profile, cells);
+    let means = shapes::in_cells(profile, &Cells::equal(cells));
     let square = change(means.iter().map(|p| p * p).sum::<f64>() / cells as f64, profile);
     let exact = profile.size();
     let seen = means.iter().fold(0.0, |most: f64, p| most.max(p.abs()));

@@ -7,7 +7,7 @@ use crate::model::{DistributedLoad, Model};
 
 use super::load_distribution::{self, Part};
 use super::ratio;
-use crate::discrete::shapes;
+use crate::discrete::shapes::Cells;
 
 /// Number of parts of a cell in which its moments are evaluated.
 const PARTS: f64 = 8.0;
@@ -160,8 +160,7 @@ impl Shape {
 /// Divides cells at knots and evenly.
 fn divided(integrals: &[Integrals], cells: usize) -> Vec<Part> {
     let mut parts = vec![];
-    for cell in 0..cells {
-        let (a, b) = shapes::within(cell, cells);
+    for (cell, (a, b)) in Cells::equal(cells).ends().enumerate() {
         let half_waves = integrals.iter().map(|i| i.half_waves(b - a)).fold(0.0, f64::max);
         let even = (PARTS * (half_waves + 1.0)).min(MOST).ceil();
         let mut places: Vec<f64> = integrals.iter().flat_map(|i| i.knots_in(a, b)).copied().collect();

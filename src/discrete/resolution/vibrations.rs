@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, SQRT_2};
 use crate::case::relaxation;
 use crate::case::schema::Branch;
 use crate::discrete::euler_bernoulli_modes::{self, StraightMode};
-use crate::discrete::shapes;
+use crate::discrete::shapes::{self, Cells};
 use crate::functions::profile::Profile;
 use crate::model::Model;
 
@@ -57,7 +57,7 @@ impl Vibrations {
         } else {
             euler_bernoulli_modes::axial(&model.ends, MODES)
         };
-        let mut given = shapes::at_nodes(profile, CELLS);
+        let mut given = shapes::at_nodes(profile, &Cells::equal(CELLS));
         let largest = given.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         for rigid in euler_bernoulli_modes::rigid(&model.ends, bends) {
             let [part, square] = products(&given, rigid);

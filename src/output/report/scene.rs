@@ -33,8 +33,15 @@ pub fn to_json(case: &Case) -> Option<Value> {
     };
     let volume = |b: &Bladders| format!("{} ml", significant(b.length_m * b.height_m * b.width_m * 1e6, 3));
     let of_bladders: Option<Vec<[f64; 2]>> = heights.as_ref().map(|_| segments.iter().map(in_bladders).collect());
+    let widths = |one: &spans::SegmentValues| {
+        one.bladders
+            .as_ref()
+            .map_or([0.0; 2], |rows| rows.each_ref().map(|b| b.width_m))
+    };
+    let graded = heights.is_some();
     Some(json!({
         "length": beam.length_m,
+        "borders": graded.then(|| spans::segment_ends(case)),
         "height": height,
         "heights": heights,
         "line": beam.line_height(),
@@ -47,6 +54,7 @@ pub fn to_json(case: &Case) -> Option<Value> {
             "per_row": b.per_row,
             "present": (0..2 * b.per_row).map(spans::bladders(case)).collect::<Vec<_>>(),
             "heights": of_bladders,
+            "widths": graded.then(|| segments.iter().map(widths).collect::<Vec<_>>()),
             "length": b.length_m,
             "height": b.height_m,
             "width": b.width_m,

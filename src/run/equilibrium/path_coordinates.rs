@@ -61,12 +61,12 @@ impl PathCoordinates {
         let share = x[x.len() - 1];
         let (system, now) = statics.beam().instant(share);
         let l = &system.layout;
-        let h = system.mesh.h;
+        let mesh = &system.mesh;
         let parts: [fn(f64) -> f64; 2] = [f64::sin, f64::cos];
         for (axis, line) in l.lines.iter().enumerate() {
             let free = &line.free;
-            let rest = |node: usize| if axis == 1 { h * node as f64 } else { 0.0 };
-            let carried = |node: usize| now.carried(axis, node as f64 / cells as f64).value;
+            let rest = |node: usize| if axis == 1 { mesh.node_coordinate(node) } else { 0.0 };
+            let carried = |node: usize| now.carried(axis, mesh.share(node)).value;
             let mut u = Vec::with_capacity(self.nodes);
             let mut at = if free.contains(&0) { z[axis] } else { carried(0) };
             u.push(at);
@@ -80,7 +80,7 @@ impl PathCoordinates {
                 carried(cells) - u[cells]
             };
             for (node, unknown, _) in line.unknowns() {
-                let shared = missing * node as f64 / cells as f64;
+                let shared = missing * mesh.share(node);
                 x[unknown] = (u[node] + shared - carried(node)) / l.scales[unknown];
             }
         }
@@ -91,9 +91,8 @@ impl PathCoordinates {
     fn positions(&self, statics: &mut StaticBeam, x: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (system, now): (_, &TimeData) = statics.beam().instant(x[x.len() - 1]);
         let l = &system.layout;
-        let last = (self.nodes - 1) as f64;
         let [across, mut along] = [0, 1].map(|axis| {
-            let carried = |node: usize| now.carried(axis, node as f64 / last).value;
+            let carried = |node: usize| now.carried(axis, system.mesh.share(node)).value;
             let mut all: Vec<f64> = (0..self.nodes).map(carried).collect();
             for (node, unknown, _) in l.lines[axis].unknowns() {
                 all[node] += x[unknown] * l.scales[unknown];
@@ -101,7 +100,7 @@ impl PathCoordinates {
             all
         });
         for (node, z) in along.iter_mut().enumerate() {
-            *z += system.mesh.h * node as f64;
+            *z += system.mesh.node_coordinate(node);
         }
         (across, along)
     }

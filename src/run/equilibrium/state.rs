@@ -144,10 +144,9 @@ pub fn restate(from: &mut BeamDae, share: f64, y: &[f64], to: &System, now: &Tim
 
 fn displacements(w: &Workspace<f64>, to: &System, now: &TimeData, z: &mut [f64]) {
     let l = &to.layout;
-    let last = (to.mesh.nodes - 1) as f64;
     for (axis, line) in l.lines.iter().enumerate() {
         for (node, unknown, _) in line.unknowns() {
-            z[unknown] = w.motion.u[node][axis] - now.carried(axis, node as f64 / last).value;
+            z[unknown] = w.motion.u[node][axis] - now.carried(axis, to.mesh.share(node)).value;
         }
     }
 }

@@ -53,7 +53,7 @@ impl DryBendingModes {
     /// can move across. `state` are the scaled unknowns that are disturbed.
     pub fn new(system: &System, state: &[f64]) -> Self {
         let (mesh, free) = (&system.mesh, &system.layout.lines[0].free);
-        let (section, h, n) = (&system.model.section, system.mesh.h, free.len());
+        let (section, n) = (&system.model.section, free.len());
         let mut stiffness = DMatrix::<f64>::zeros(n, n);
         let mut bend = |terms: &[(usize, f64)], length: f64| {
             for (i, a) in terms.iter().filter(|(i, _)| free.contains(i)) {
@@ -62,14 +62,18 @@ impl DryBendingModes {
                 }
             }
         };
-        let per = 1.0 / (h * h);
         for i in 1..mesh.nodes - 1 {
-            bend(&[(i - 1, per), (i, -2.0 * per), (i + 1, per)], h);
+            let [left, right] = [i - 1, i].map(|cell| mesh.per_length[cell] * mesh.per_node_length[i]);
+            bend(
+                &[(i - 1, left), (i, -left - right), (i + 1, right)],
+                mesh.node_lengths[i],
+            );
         }
         for (end, inner, k) in [(0, 1, 0), (mesh.nodes - 1, mesh.nodes - 2, 1)] {
             // a held slope: within half a cell the angle changes to that of the next cell
             if matches!(system.model.ends[k].rotation, Rotation::Slope(_)) {
-                bend(&[(end, -2.0 * per), (inner, 2.0 * per)], 0.5 * h);
+                let per = mesh.per_length[end.min(inner)] * mesh.per_node_length[end];
+                bend(&[(end, -per), (inner, per)], mesh.node_lengths[end]);
             }
         }
         let masses = system.masses[free.clone()].to_vec();
@@ -106,7 +110,7 @@ impl DryBendingModes {
 
     /// Energies of a small disturbance of the scaled unknowns [J]: of every mode, of motion along the beam, of the fluid.
     fn energies(&self, system: &System, v: &[f64]) -> (Vec<f64>, f64, f64) {
-        let (l, s) = (&system.layout, &system.model.section);
+        let l = &system.layout;
         let across = &l.lines[0];
         let at = |k: usize| v[k] * l.scales[k];
         let modal = |first: usize, shape: &[f64]| -> f64 {
@@ -117,9 +121,8 @@ impl DryBendingModes {
             let rate = across.v.as_ref().map_or(0.0, |v| modal(v.start, shape));
             0.5 * ((w * modal(across.u.start, shape)).powi(2) + rate * rate)
         });
-        let h = system.mesh.h;
-        let [stretch, speed] = [self.stretches(system, v), self.speeds(system, v)];
-        let along = 0.5 * h * (s.axial_stiffness * squares(&stretch) + s.mass_per_length * squares(&speed));
+        let along = self.coordinates(system, EnergyPart::Along, v);
+        let along = 0.5 * squares(&along);
         let fluid = system
             .model
             .wet
@@ -150,12 +153,18 @@ impl DryBendingModes {
                 vec![w * modal(across.u.start), rate]
             }
             EnergyPart::Along => {
-                let h = system.mesh.h;
+                let mesh = &system.mesh;
                 let [stretches, speeds] = [self.stretches(system, v), self.speeds(system, v)];
-                let stretches = stretches.iter().map(|e| e * (s.axial_stiffness * h).sqrt());
-                stretches
-                    .chain(speeds.iter().map(|v| v * (s.mass_per_length * h).sqrt()))
-                    .collect()
+                let weighted = |(value, h): (&f64, &f64), by: f64| value * (by * h).sqrt();
+                let stretches = stretches
+                    .iter()
+                    .zip(&mesh.lengths)
+                    .map(|both| weighted(both, s.axial_stiffness));
+                let speeds = speeds
+                    .iter()
+                    .zip(&mesh.node_lengths)
+                    .map(|both| weighted(both, s.mass_per_length));
+                stretches.chain(speeds).collect()
             }
             EnergyPart::Fluid => vec![],
         }
@@ -167,11 +176,15 @@ impl DryBendingModes {
         match part {
             EnergyPart::Bending(mode) => self.frequencies[mode - 1],
             EnergyPart::Along => {
-                let s = &system.model.section;
+                let (s, mesh) = (&system.model.section, &system.mesh);
+                let weighted = |values: &[f64], lengths: &[f64]| -> f64 {
+                    values.iter().zip(lengths).map(|(value, h)| h * value * value).sum()
+                };
                 let (mut stretch, mut moved) = (0.0, 0.0);
                 for v in v {
-                    stretch += squares(&self.stretches(system, v));
-                    moved += squares(&self.along(&nodes(system, v, |line| Some(&line.u))));
+                    stretch += weighted(&self.stretches(system, v), &mesh.lengths);
+                    let along = self.along(&nodes(system, v, |line| Some(&line.u)));
+                    moved += weighted(&along, &mesh.node_lengths);
                 }
                 (s.axial_stiffness * stretch / (s.mass_per_length * moved).max(f64::MIN_POSITIVE)).sqrt()
             }
@@ -206,7 +219,9 @@ impl DryBendingModes {
         let u = nodes(system, v, |line| Some(&line.u));
         let cells = u.windows(2).zip(&self.tangents);
         let each = cells.map(|(u, t)| t[0] * (u[1][0] - u[0][0]) + t[1] * (u[1][1] - u[0][1]));
-        each.map(|e| e / system.mesh.h).collect()
+        each.zip(&system.mesh.per_length)
+            .map(|(e, inverse)| e * inverse)
+            .collect()
     }
 
     /// Speeds along the disturbed beam [m/s], one for each node.
@@ -230,7 +245,8 @@ fn tangents(system: &System, state: &[f64]) -> Vec<[f64; 2]> {
     let u = nodes(system, state, |line| Some(&line.u));
     let cells = u
         .windows(2)
-        .map(|u| [0, 1].map(|axis| (u[1][axis] - u[0][axis]) / system.mesh.h));
+        .zip(&system.mesh.per_length)
+        .map(|(u, inverse)| [0, 1].map(|axis| (u[1][axis] - u[0][axis]) * inverse));
     let each = cells.map(|[across, along]| match system.model.kinematics {
         Kinematics::Bar | Kinematics::Linear => [0.0, 1.0],
         Kinematics::SmallRotation => [across, 1.0],

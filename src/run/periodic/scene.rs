@@ -311,10 +311,9 @@ fn guess(system: &System, case: &Case, period: f64) -> Result<(Vec<f64>, Option<
     let (system, now) = dae.instant(0.0);
     let mut y = start::state(system, case, now);
     let l = &system.layout;
-    let last = (system.mesh.nodes - 1) as f64;
     for (axis, line) in l.lines.iter().enumerate() {
         for (node, u, v) in line.unknowns() {
-            y[u] += now.carried(axis, node as f64 / last).value / l.scales[u];
+            y[u] += now.carried(axis, system.mesh.share(node)).value / l.scales[u];
             if let Some(v) = v {
                 y[v] = 0.0;
             }

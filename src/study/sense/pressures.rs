@@ -194,7 +194,9 @@ fn of_probe(name: &str, case: &Case) -> Option<i64> {
         .into_iter()
         .find_map(|(end, row)| Some((name.strip_suffix(end)?, row)))?;
     let probe = case.probes.iter().find(|probe| probe.name == begin)?;
-    let segment = ((probe.at * per_row as f64) as usize).min(per_row - 1);
+    let ends = spans::segment_ends(case);
+    let beyond = ends.iter().filter(|end| **end <= probe.at * case.beam.length_m).count();
+    let segment = beyond.clamp(1, per_row) - 1;
     Some(row * (segment as i64 + 1))
 }
 

@@ -7,6 +7,7 @@ use super::estimate::ForwardModel;
 use super::in_time::interrupted;
 use crate::case::parameter::change;
 use crate::case::schema::{Case, Probe};
+use crate::case::spans;
 use crate::case::wiring::bladder_label;
 use crate::error::{Error, Result};
 use crate::functions::Signal;
@@ -38,10 +39,14 @@ pub fn probed(case: &Case) -> Result<(Case, Vec<String>)> {
         (1..=per_row).map(move |j| format!("{begin}-{j}_{end}"))
     });
     let names = names.into_iter().flatten().collect();
-    case.probes.extend((1..=per_row).map(|j| Probe {
+    let ends = spans::segment_ends(&case);
+    let middle = |j: usize| 0.5 * (ends[j - 1] + ends[j]) / case.beam.length_m;
+    let probes = (1..=per_row).map(|j| Probe {
         name: format!("{begin}-{j}"),
-        at: (j as f64 - 0.5) / per_row as f64,
-    }));
+        at: middle(j),
+    });
+    let probes: Vec<Probe> = probes.collect();
+    case.probes.extend(probes);
     Ok((case, names))
 }
 

@@ -1,6 +1,6 @@
 //! Positions of the bladders in the beam: two rows, with walls of equal thickness above, between and below them.
 
-use crate::case::Case;
+use crate::case::{Case, spans};
 
 /// Dimensions of the beam and of its cutouts.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,16 +27,18 @@ impl Cutout {
         let height = bladders.map_or(0.0, |b| b.height_m.min(half_height));
         let wall = (beam.height_m - 2.0 * height) / 3.0;
         let per_row = bladders.map_or(0, |b| b.per_row);
-        let segment = beam.length_m / per_row.max(1) as f64;
-        let half = 0.5 * bladders.map_or(0.0, |b| b.width_m.min(segment));
+        let ends = spans::segment_ends(case);
         Self {
             half_height,
             half_width: 0.5 * beam.width_m,
             half_across: 0.5 * bladders.map_or(0.0, |b| b.length_m.min(beam.width_m)),
             row: [0.5 * wall, 0.5 * wall + height],
-            windows: (0..per_row)
-                .map(|j| {
-                    let middle = (j as f64 + 0.5) * segment;
+            windows: ends
+                .windows(2)
+                .take(per_row)
+                .map(|ends| {
+                    let middle = 0.5 * (ends[0] + ends[1]);
+                    let half = 0.5 * bladders.map_or(0.0, |b| b.width_m.min(ends[1] - ends[0]));
                     [middle - half, middle + half]
                 })
                 .collect(),

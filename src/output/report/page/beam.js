@@ -55,10 +55,9 @@ function paintBeam(ctx, view, curve, scene, layout, pressure) {
   ctx.lineWidth = 1;
   ctx.stroke();
   if (layout.bladders.length) {
-    const [w] = layout.size;
-    const rim = w * view.scale > 6 ? css("--solid-line") : null;
+    const rim = layout.size[0] * view.scale > 6 ? css("--solid-line") : null;
     for (const b of layout.shown) {
-      const h = b.size[1];
+      const [w, h] = b.size;
       const [l, r] = [b.a - w / 2, b.a + w / 2];
       if (b.outline) outline(b.outline.map(([z, x]) => [b.a + z, b.e + x]));
       else outline([[l, b.e - h / 2], [b.a, b.e - h / 2], [r, b.e - h / 2], [r, b.e + h / 2], [b.a, b.e + h / 2], [l, b.e + h / 2]]);

@@ -66,8 +66,8 @@ function sceneDrawing(scene, layout, width, chosen) {
   const node = svg("svg", { class: "fig", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `Side view of the beam: ${scene.size}. ${layout.shown.length} bladders.` });
   const add = (...parts) => node.append(...parts);
   const parts = scene.heights || [scene.height];
-  const step = scene.length / parts.length;
-  const edge = (sign) => parts.flatMap((h, k) => [[k * step, (sign * h) / 2], [(k + 1) * step, (sign * h) / 2]]);
+  const borders = scene.borders || [0, scene.length];
+  const edge = (sign) => parts.flatMap((h, k) => [[borders[k], (sign * h) / 2], [borders[k + 1], (sign * h) / 2]]);
   const around = [...edge(1), ...edge(-1).reverse()].map(([a, e]) => `${X(a).toFixed(1)} ${Y(e).toFixed(1)}`);
   add(svg("path", { d: `M${around.join("L")}Z`, "stroke-linejoin": "round", style: `fill:${css("--solid")};stroke:${css("--solid-line")}` }));
   drawEnds(add, scene, X, Y, thick);
@@ -88,7 +88,7 @@ function sceneDrawing(scene, layout, width, chosen) {
   };
   node.mark = (k) => {
     const b = layout.bladders[k];
-    const [w, h] = [layout.size[0] * scale, layout.size[1] * scale * thicker];
+    const [w, h] = [b.size[0] * scale, b.size[1] * scale * thicker];
     node.append(svg("rect", { class: "chosen", x: X(b.a) - w / 2 - 2, y: Y(b.e) - h / 2 - 2, width: w + 4, height: h + 4, rx: 4, style: `fill:none;stroke:${css("--accent")};stroke-width:3;pointer-events:none` }));
   };
   if (chosen >= 0) node.mark(chosen);
@@ -96,9 +96,8 @@ function sceneDrawing(scene, layout, width, chosen) {
 }
 
 function drawBladders(add, layout, X, Y, scale, thicker) {
-  const w = layout.size[0] * scale;
   for (const b of layout.shown) {
-    const h = b.size[1] * scale * thicker;
+    const [w, h] = [b.size[0] * scale, b.size[1] * scale * thicker];
     const colour = wireColour(layout.colourOf(b.network));
     const style = `fill:${css("--card")};stroke:${colour};stroke-width:${w > 8 ? 1.5 : 0.6}`;
     if (b.outline) add(svg("path", { d: `M${b.outline.map(([z, x]) => `${X(b.a + z).toFixed(1)} ${Y(b.e + x).toFixed(1)}`).join("L")}Z`, style }));
@@ -108,13 +107,13 @@ function drawBladders(add, layout, X, Y, scale, thicker) {
 
 /** Numbers of bladders, over whatever crosses them. */
 function drawNumbers(add, layout, X, Y, scale, thicker) {
-  const w = layout.size[0] * scale;
-  if (w < 17) return;
-  const style = `font-size:${Math.min(11, w / 2.2)}px;paint-order:stroke;stroke:${css("--card")};stroke-width:3.5px;stroke-linejoin:round;pointer-events:none`;
-  for (const b of layout.shown) {
+  const shown = layout.shown.filter((b) => b.size[0] * scale >= 17);
+  const size = (b) => Math.min(11, (b.size[0] * scale) / 2.2);
+  const style = `paint-order:stroke;stroke:${css("--card")};stroke-width:3.5px;stroke-linejoin:round;pointer-events:none`;
+  for (const b of shown) {
     const h = b.size[1] * scale * thicker;
     const y = b.row > 0 ? Y(b.e) - h / 2 + Math.min(12, h * 0.42) : Y(b.e) + h / 2 - 3;
-    add(svg("text", { x: X(b.a), y, "text-anchor": "middle", style, text: String(b.label).replace("-", "−") }));
+    add(svg("text", { x: X(b.a), y, "text-anchor": "middle", style: `font-size:${size(b)}px;${style}`, text: String(b.label).replace("-", "−") }));
   }
 }
 

@@ -3,8 +3,8 @@
 /** Half the height of the beam at a place along it [m]. */
 function halfHeight(scene, a) {
   if (!scene.heights) return scene.height / 2;
-  const n = scene.heights.length;
-  return scene.heights[Math.min(Math.max(Math.floor((a / scene.length) * n), 0), n - 1)] / 2;
+  const beyond = scene.borders.findIndex((end) => end > a);
+  return scene.heights[beyond < 0 ? scene.heights.length - 1 : Math.max(beyond - 1, 0)] / 2;
 }
 
 /** Positions of bladders, with tubes, ports and turbines as lines between them. */
@@ -12,9 +12,11 @@ function layOut(scene) {
   const out = { bladders: [], shown: [], wires: [], marks: [] };
   if (!scene.bladders) return out;
   const { per_row: perRow, network } = scene.bladders;
-  const segment = scene.length / perRow;
+  const borders = scene.borders || Array.from({ length: perRow + 1 }, (_, j) => (j * scene.length) / perRow);
+  const segment = Math.max(...borders.slice(1).map((end, j) => end - borders[j]));
   const [wide, high] = [Math.min(scene.bladders.width, 0.92 * segment), Math.min(scene.bladders.height, 0.46 * scene.height)];
   out.segment = segment;
+  out.length = scene.length;
   out.size = [wide, high];
   // The outlines of a section, about the middles of their own heights.
   const rows = (scene.bladders.outlines || []).map((points) => {
@@ -26,11 +28,13 @@ function layOut(scene) {
   for (let b = 0; b < 2 * perRow; b++) {
     const row = b < perRow ? 1 : -1;
     const j = b % perRow;
-    const half = halfHeight(scene, (j + 0.5) * segment);
+    const middle = (borders[j] + borders[j + 1]) / 2;
+    const half = halfHeight(scene, middle);
+    const width = scene.bladders.widths ? Math.min(scene.bladders.widths[j][row > 0 ? 0 : 1], 0.92 * (borders[j + 1] - borders[j])) : wide;
     const both = scene.bladders.present[j] && scene.bladders.present[perRow + j];
-    const size = [wide, scene.bladders.heights ? Math.min(scene.bladders.heights[j][row > 0 ? 0 : 1], (both ? 0.92 : 1.84) * half) : high];
+    const size = [width, scene.bladders.heights ? Math.min(scene.bladders.heights[j][row > 0 ? 0 : 1], (both ? 0.92 : 1.84) * half) : high];
     const e = row * Math.min(0.5 * half, 0.96 * half - size[1] / 2);
-    out.bladders.push({ index: b, row, label: row * (j + 1), a: (j + 0.5) * segment, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
+    out.bladders.push({ index: b, row, label: row * (j + 1), a: middle, e, size, absent: !scene.bladders.present[b], ...rows[row > 0 ? 0 : 1], network: network[b], flipped: false });
   }
   out.shown = out.bladders.filter((b) => !b.absent);
   const sizes = new Map();
@@ -50,7 +54,7 @@ function layOut(scene) {
   const mouth = (b, outlet) => {
     const bladder = out.bladders[b];
     const side = outlet !== bladder.flipped ? 1 : -1;
-    return { a: bladder.a + side * 0.24 * out.size[0], e: bladder.e };
+    return { a: bladder.a + side * 0.24 * bladder.size[0], e: bladder.e };
   };
   const name = (b) => String(out.bladders[b].label).replace("-", "−");
   chains.forEach((chain, c) => {
@@ -123,12 +127,12 @@ function placeJunctions(out, names, tubes, turbines, mouth) {
     const met = [...tubes, ...turbines].flatMap((t) => [[t.from, t.to], [t.to, t.from]]).filter(([p]) => p.junction === key).map(([, q]) => q);
     const bladders = met.filter((q) => q.bladder !== undefined);
     const places = bladders.map((q) => mouth(q.bladder, q.outlet).a);
-    const a = places.length ? places.reduce((s, x) => s + x, 0) / places.length : 0.5 * out.segment * (out.bladders.length / 2);
+    const a = places.length ? places.reduce((s, x) => s + x, 0) / places.length : 0.5 * out.length;
     const first = bladders[0];
     nodes.set(key, { a, e: 0, colour: first ? out.colourOf(out.bladders[first.bladder].network) : -1 });
   }
   const placed = [...nodes.values()];
-  apart(placed.map((node) => node.a), 0.06 * out.segment * (out.bladders.length / 2), out.segment * (out.bladders.length / 2)).forEach((a, k) => (placed[k].a = a));
+  apart(placed.map((node) => node.a), 0.06 * out.length, out.length).forEach((a, k) => (placed[k].a = a));
   return nodes;
 }
 

@@ -1,0 +1,162 @@
+//! Spans with segments of their own length, [E83]: against equal segments, closed forms, balances and differences.
+
+use std::f64::consts::PI;
+
+use serde_json::{Value, json};
+use slcbeam::case::parameter::Parameter;
+use slcbeam::dae::BeamDae;
+use slcbeam::discrete::System;
+use slcbeam::run::equilibrium::{EquilibriumOptions, columns, differentiate, follow, system};
+use slcbeam::run::modes::{ModeOptions, modes};
+use slcbeam::run::record::Control;
+
+use crate::differences::worst_difference;
+use crate::spans::{deflection, dry, order, parse, pumped, run};
+
+/// Segments of 15, 5 and 12 mm: a rigid root, two rows of wide bladders, narrow bladders of one row.
+fn unequal() -> Value {
+    json!([
+        {"length_m": 0.015, "segments": 1, "rows": "none", "beam": {"young_modulus_pa": 2e7}},
+        {"length_m": 0.025, "segments": 5, "bladders": {"width_m": 0.004}},
+        {"segments": 4, "rows": "upper", "beam": {"density_kg_m3": 1200}}
+    ])
+}
+
+/// Goal: segments of equal length are the same beam, to the last bit, with and without their number.
+#[test]
+fn equal_segments_need_no_number() {
+    let chain: Vec<i32> = (1..=10).collect();
+    let stiff = json!({"young_modulus_pa": 3e6});
+    let spans = |segments: [Value; 2]| {
+        let [mut first, mut rest] = [json!({"length_m": 0.03, "beam": stiff}), json!({})];
+        for (span, segments) in [&mut first, &mut rest].into_iter().zip(segments) {
+            if !segments.is_null() {
+                span["segments"] = segments;
+            }
+        }
+        json!([first, rest])
+    };
+    let counted = run(&pumped(&chain, -9.81, &spans([json!(3), json!(7)])));
+    assert_eq!(
+        run(&pumped(&chain, -9.81, &spans([json!(null), json!(null)]))).0.rows,
+        counted.0.rows
+    );
+    assert_eq!(
+        run(&pumped(&chain, -9.81, &spans([json!(3), json!(null)]))).0.rows,
+        counted.0.rows
+    );
+}
+
+/// Goal: with unequal segments energy and volume close, and the Jacobian belongs to the residual in every formulation and kinematics.
+#[test]
+fn unequal_segments_conserve_energy() {
+    let chain: Vec<i32> = (7..=10).collect();
+    let case = pumped(&chain, 9.81, &unequal());
+    let balances = run(&case).1.balances;
+    assert!(balances.energy_residual_relative.abs() < 1e-5, "{balances:?}");
+    assert!(balances.volume_residual_relative.abs() < 1e-9, "{balances:?}");
+    let small = json!({"finite_rotation": "off"});
+    let linear = json!({"finite_rotation": "off", "axial_force_on_bending": "off"});
+    let drawn_in = json!({"finite_rotation": "off", "axial_stretch": "off"});
+    let variants = [
+        ("published", json!("full"), None),
+        ("conservative", json!("full"), None),
+        ("conservative", json!("full"), Some(50.0)),
+        ("conservative", small.clone(), None),
+        ("conservative", small, Some(50.0)),
+        ("conservative", linear, None),
+        ("conservative", drawn_in, None),
+    ];
+    for (formulation, effects, shear) in variants {
+        let mut case = case.clone();
+        case["formulation"] = json!(formulation);
+        case["effects"] = effects.clone();
+        if let Some(shear) = shear {
+            case["beam"]["shear_stiffness_n"] = json!(shear);
+        }
+        let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+        for seed in 1..3 {
+            let worst = worst_difference(&mut dae, seed, 0.1);
+            assert!(worst < 1e-6, "{formulation} {effects} {shear:?}: {worst:.1e}");
+        }
+    }
+}
+
+/// Goal: bladders of one row under one pressure turn the tip by `l_b aM p` each, however long their segments are.
+#[test]
+fn each_bladder_turns_the_tip_by_the_same_angle() {
+    let chain: Vec<i32> = (1..=10).collect();
+    let angle = |spans: Value| {
+        let mut case = pumped(&chain, 0.0, &spans);
+        // slopes without kink: linear
+        case["bladders"]["area_per_moment_m2_per_n_m"] = json!({"opening": 5e-6, "closing": 5e-6});
+        case["bladders"]["width_m"] = json!(0.004);
+        let case = parse(&case);
+        let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
+        let at = columns(&system(&case, 1.0).unwrap())
+            .iter()
+            .position(|c| c.name == "tip_angle");
+        path.last().row[at.unwrap()]
+    };
+    let written = json!([
+        {"length_m": 0.02, "segments": 4, "bladders": {"area_per_moment_m2_per_n_m": {"opening": 5e-6, "closing": 5e-6}}},
+        {"segments": 6, "bladders": {"area_per_moment_m2_per_n_m": {"opening": 5e-6, "closing": 5e-6}}}
+    ]);
+    let exact = 10.0 * 0.046 * 5e-6 * 20000.0;
+    for (name, found) in [("equal", angle(json!([]))), ("unequal", angle(written))] {
+        assert!((found.abs() / exact - 1.0).abs() < 1e-9, "{name}: {found} {exact}");
+    }
+}
+
+/// Goal: on cells of two lengths, static deflection, frequency, and the reaction of a spring between nodes converge with order two.
+#[test]
+fn unequal_cells_keep_the_order() {
+    let spans = |cells: usize| json!([{"length_m": 0.3, "segments": cells / 2}, {"segments": cells / 4}]);
+    let errors = [24, 48].map(|cells| deflection(&dry(3 * cells / 4, &spans(cells))) / (1e-3 / 3.0) - 1.0);
+    assert!(errors[1].abs() < 1.5e-3 && order(errors) > 1.9, "{errors:?}");
+    // a spring at 0.55 of the length: F (1 - R), δ(s) by superposition
+    let (at, stiffness) = (0.55_f64, 5.0);
+    let by_tip = |s: f64| s * s * (3.0 - s) / 6.0;
+    let reaction = 1e-3 * by_tip(at) / (1.0 / stiffness + at.powi(3) / 3.0);
+    let exact = 1e-3 / 3.0 - reaction * by_tip(at);
+    let errors = [24, 48].map(|cells| {
+        let mut case = dry(3 * cells / 4, &spans(cells));
+        case["attachments"] = json!([{"at": at, "stiffness_x_n_m": stiffness}]);
+        deflection(&case) / exact - 1.0
+    });
+    assert!(errors[1].abs() < 1.5e-3, "{errors:?}");
+    let plan = ModeOptions {
+        count: 4,
+        near_hz: 0.5,
+        limits: false,
+    };
+    let errors = [24, 48].map(|cells| {
+        let mut case = dry(3 * cells / 4, &spans(cells));
+        case["ends"]["tip"] = json!("free");
+        let found = modes(&parse(&case), &plan).unwrap();
+        let lowest = found
+            .modes
+            .iter()
+            .filter_map(|mode| mode.frequency_hz())
+            .reduce(f64::min);
+        lowest.unwrap() * 2.0 * PI / 3.516_015_268_67 - 1.0
+    });
+    assert!(errors[1].abs() < 3e-3 && order(errors) > 1.9, "{errors:?}");
+}
+
+/// Goal: the derivative by the length of a span is that of a difference.
+#[test]
+fn lengths_of_spans_have_derivatives() {
+    let spans = |length: f64| json!([{"length_m": length, "segments": 10}, {"segments": 20, "beam": {"young_modulus_pa": 3e8}}]);
+    let case = dry(30, &spans(0.4));
+    let (case, options) = (parse(&case), EquilibriumOptions::at(1.0));
+    let path = follow(&case, &options, &mut |_| Control::Continue).unwrap();
+    let length = Parameter::find(&case, "/spans/0/length_m").unwrap();
+    let found = differentiate(&case, &options, &path, &[length]).unwrap();
+    let differenced = (deflection(&dry(30, &spans(0.401))) - deflection(&dry(30, &spans(0.399)))) / 0.002;
+    let at = columns(&system(&case, 1.0).unwrap())
+        .iter()
+        .position(|c| c.name == "tip_u1");
+    let slope = found[0].row[at.unwrap()];
+    assert!((slope / differenced - 1.0).abs() < 1e-4, "{slope} {differenced}");
+}
