@@ -18,9 +18,11 @@ const UNIFORM: [&str; 5] = ["beam", "bladders", "fluid", "section", "tubes"];
 fn one_number(pointer: &str) -> String {
     let part = pointer.split('/').nth(1).unwrap_or_default();
     match UNIFORM.contains(&part) {
-        true => "expected one number: values that vary along the beam are in /spans, as {\"polynomial\": \
-                 {\"coefficients\": [0.02, -0.008]}} over a span; a load varies by its \"profile\""
-            .to_owned(),
+        true => {
+            "expected one number: values that vary along the beam are in /spans, as {\"linear\": [0.02, 0.012]} over a \
+                 span; a load varies by its \"profile\""
+                .to_owned()
+        }
         false => "expected one number, without brackets".to_owned(),
     }
 }

@@ -1,8 +1,8 @@
 //! Contact points with obstacles, on a mesh.
 
 use super::ledger::EnergyRate;
-use super::{BeamMesh, System, Workspace};
-use crate::model::ContactLaw;
+use super::{BeamMesh, MeshSections, System, Workspace};
+use crate::model::Model;
 use crate::model::contact::ContactForces;
 use crate::numerics::{Planar, Scalar};
 
@@ -25,17 +25,29 @@ pub struct ContactPoint {
     measure: f64,
     /// Position in the straight beam [m].
     coordinate: f64,
+    /// `r`, distance of the touching surface from the beam's line [m].
+    reach: f64,
 }
 
 impl ContactPoint {
     /// Contact points of a model, ordered by place.
-    pub fn all(contacts: &[ContactLaw], mesh: &BeamMesh) -> Vec<Self> {
+    pub fn all(model: &Model, sections: &MeshSections, mesh: &BeamMesh) -> Vec<Self> {
         let mut all = vec![];
-        for (number, contact) in contacts.iter().enumerate() {
+        for (number, contact) in model.contacts.iter().enumerate() {
             let mut push = |place: f64, measure: f64| {
                 let node = (place as usize).min(mesh.cells - 1);
                 let share = place - node as f64;
+                let reach = match contact.follows_section {
+                    // of the higher section beside a node the edge touches
+                    true if share == 0.0 || share == 1.0 => sections.farthest_fiber[place as usize],
+                    true => {
+                        let own = model.sections.get(node / mesh.cells_per_segment);
+                        own.unwrap_or(&model.section).farthest_fiber()
+                    }
+                    false => contact.reach,
+                };
                 all.push(Self {
+                    reach,
                     number,
                     node,
                     weights: [1.0 - share, share],
@@ -68,7 +80,7 @@ impl ContactPoint {
             elastic,
             damping,
             friction,
-        } = law.forces(self.place(&w.motion.u), self.between(&w.motion.v));
+        } = law.forces(self.place(&w.motion.u), self.between(&w.motion.v), self.reach);
         ContactForces {
             elastic: elastic * self.measure,
             damping: damping * self.measure,
@@ -79,7 +91,7 @@ impl ContactPoint {
     /// Penetration depth and its rate [m, m/s].
     pub fn depth(&self, system: &System, w: &Workspace<f64>) -> [f64; 2] {
         let law = &system.model.contacts[self.number];
-        let (depth, normal) = law.depth(self.place(&w.motion.u));
+        let (depth, normal) = law.depth(self.place(&w.motion.u), self.reach);
         [depth, -self.between(&w.motion.v).dot(normal)]
     }
 }
@@ -138,7 +150,7 @@ pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> ContactResult
     };
     for one in system.touching.iter().filter(|one| one.number == number) {
         let f = one.forces(system, w);
-        let (depth, normal) = law.depth(one.place(&w.motion.u));
+        let (depth, normal) = law.depth(one.place(&w.motion.u), one.reach);
         felt.normal += (f.elastic + f.damping).dot(normal);
         felt.friction += f.friction.dot(normal.normal());
         felt.depth = felt.depth.max(depth);
@@ -151,7 +163,7 @@ pub fn felt(system: &System, w: &Workspace<f64>, number: usize) -> ContactResult
 fn free_ways<'a>(system: &'a System, u: &'a [Planar<f64>]) -> impl Iterator<Item = (&'a ContactPoint, f64)> {
     system.touching.iter().filter_map(|one| {
         let law = &system.model.contacts[one.number];
-        let (depth, _) = law.depth(one.place(u));
+        let (depth, _) = law.depth(one.place(u), one.reach);
         Some((one, 0.25 * law.bend_radius()? - depth.min(0.0)))
     })
 }

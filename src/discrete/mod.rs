@@ -300,7 +300,7 @@ impl System {
         mesh.lump(&mut lengths);
         let (attached, masses) = MeshedAttachment::all(&model.attachments, &sections, &mesh, &lengths);
         let bodies = MeshedBody::all(&model.attachments, &model.ends, model.kinematics, &mesh);
-        let touching = ContactPoint::all(&model.contacts, &mesh);
+        let touching = ContactPoint::all(&model, &sections, &mesh);
         let damped = model.section.axial_damping_time > 0.0 || model.section.bending_damping_time > 0.0;
         let foundation = sampled_load::foundation(&model, &mesh);
         let nothing_attached =

@@ -1,7 +1,8 @@
 //! Stiffness and inertia of the beam's sections on a mesh.
 
 use super::BeamMesh;
-use crate::model::{Model, Section};
+use crate::model::surroundings::AmbientSection;
+use crate::model::{AmbientFluid, Model, Section};
 
 /// `[E83]` Sections along the beam. A cell has the section of its segment. At a node between two segments the moment is continuous, so that
 /// compliances add, with those of their bladders:
@@ -29,6 +30,8 @@ pub struct MeshSections {
     pub rotary: Vec<f64>,
     /// Mass per length of each node [kg/m].
     pub mass: Vec<f64>,
+    /// Ambient fluid at each node; empty without.
+    pub ambient: Vec<AmbientSection>,
     /// Mass per length of each node less that of the displaced ambient fluid [kg/m].
     pub weighing: Vec<f64>,
 }
@@ -71,6 +74,17 @@ impl MeshSections {
                 false => shares[0] * value(left) + shares[1] * value(right),
             })
         };
+        let ambient = |around: &AmbientFluid| -> Vec<AmbientSection> {
+            let of = |segment: usize| *around.segments.get(segment).unwrap_or(&around.section);
+            let node = |node: usize| {
+                let (left, right) = mesh.segments_of_node(node);
+                match mesh.borders.get(left).filter(|_| left != right) {
+                    Some(shares) => of(left).mean(of(right), *shares),
+                    None => of(left),
+                }
+            };
+            (0..mesh.nodes).map(node).collect()
+        };
         Self {
             axial: cells(|section| section.axial_stiffness),
             bending: nodes(&|[left, right], shares| match left == right {
@@ -85,6 +99,7 @@ impl MeshSections {
             },
             shear: cells(|section| section.shear_stiffness),
             rotary: cells(Section::rotary_inertia),
+            ambient: model.surroundings.iter().flat_map(ambient).collect(),
             mass: mean(|section| section.mass_per_length),
             weighing: mean(|section| section.weighing_per_length),
         }

@@ -42,7 +42,7 @@ pub fn spread(system: &System, [before, after]: [&TimeData; 2], w: &Workspace<f6
     let around = system.model.surroundings.as_ref();
     // the surrounding fluid couples both directions of a node, rotating sections couple nodes
     let coupled =
-        system.turns_with_its_line() || around.is_some_and(|s| s.added_mass > 0.0) || turned(system).is_some();
+        system.turns_with_its_line() || around.is_some_and(|s| s.section.added_mass > 0.0) || turned(system).is_some();
     if !l.inertia || !coupled || system.model.kinematics == Kinematics::Bar {
         return None;
     }
@@ -145,9 +145,9 @@ fn planar(v: Vector2<f64>) -> Planar<f64> {
 /// `m_a h_i n nᵀ` of a node, [E53].
 fn added(system: &System, w: &Workspace<f64>, node: usize) -> Matrix2<f64> {
     let added = system
-        .model
-        .surroundings
-        .as_ref()
+        .sections
+        .ambient
+        .get(node)
         .map_or(0.0, |around| around.added_mass);
     let n = vector(node_tangent(system, w, node).normal());
     system.lengths[node] * added * n * n.transpose()

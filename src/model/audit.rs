@@ -323,13 +323,13 @@ fn stream(model: &Model) -> Vec<String> {
         return vec![];
     };
     let mut all = vec![];
-    if !along.is_zero() && around.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
+    if !along.is_zero() && around.section.added_mass > 0.0 && model.effects.has(Effect::SolidInertia) {
         all.push(Code::PartOfStream.warning(
             "a stream along the beam: the model leaves out half of its first-order force on the moving beam. Growth, flutter and damping by the \
              stream are not reliable",
         ));
     }
-    if around.drag == 0.0 && !across.is_zero() {
+    if around.section.drag == 0.0 && !across.is_zero() {
         all.push(Code::PartOfStream.warning(
             "a stream across the beam without drag (/surroundings/drag_coefficient is 0): only its acceleration acts on the beam. Give a coefficient \
              (2 for a plate)",

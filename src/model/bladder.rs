@@ -30,6 +30,8 @@ pub struct AreaLaw {
     pub moment_width: f64,
     /// Width of the kink in N [N].
     pub force_width: f64,
+    /// `A_0`, cross-section at rest [m^2].
+    pub at_rest: f64,
 }
 
 impl AreaLaw {
@@ -49,6 +51,7 @@ impl AreaLaw {
             force_half_difference: half * (n.compression - n.tension),
             moment_width: bladders.kink_width * section.bending_stiffness / case.beam.length_m,
             force_width: bladders.kink_width * section.axial_stiffness,
+            at_rest: bladders.height_m * bladders.width_m,
         }
     }
 

@@ -19,8 +19,6 @@ const SHUT: f64 = 1e-3;
 /// approaches 0. The area therefore stays positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallClosing {
-    /// `A_0` [m^2].
-    at_rest: f64,
     /// `ε`.
     below: f64,
     /// `P` [Pa].
@@ -28,23 +26,22 @@ pub struct WallClosing {
 }
 
 impl WallClosing {
-    /// Contact law of a case's bladders with a cross-section at rest [m^2].
-    pub fn new(written: &Written, at_rest: f64) -> Self {
+    /// Contact law of a case's bladders.
+    pub fn new(written: &Written) -> Self {
         Self {
-            at_rest,
             below: written.below,
             stiffness: written.stiffness_pa,
         }
     }
 
-    /// Area below which walls touch [m^2].
-    pub fn touching(&self) -> f64 {
-        self.below * self.at_rest
+    /// Area of a bladder below which its walls touch [m^2].
+    pub fn touching(&self, law: &AreaLaw) -> f64 {
+        self.below * law.at_rest
     }
 
     /// `p_c` [Pa] and its derivative with respect to the area change [Pa/m^2].
-    pub fn at(&self, area: f64) -> (f64, f64) {
-        let x = 1.0 + area / self.at_rest;
+    pub fn at(&self, law: &AreaLaw, area: f64) -> (f64, f64) {
+        let x = 1.0 + area / law.at_rest;
         if x >= self.below {
             return (0.0, 0.0);
         }
@@ -52,22 +49,22 @@ impl WallClosing {
         let over = self.below / held - 1.0;
         let slope = -2.0 * self.stiffness * over * self.below / (held * held);
         let pressure = self.stiffness * over * over + slope * (x - held);
-        (pressure, slope / self.at_rest)
+        (pressure, slope / law.at_rest)
     }
 
     /// `p_c` at an area change [Pa].
     #[inline(never)] // so that its constants are not made where no walls meet
-    pub fn pressure<T: Scalar>(&self, area: T) -> T {
-        area.lift(|area| self.at(area))
+    pub fn pressure<T: Scalar>(&self, law: &AreaLaw, area: T) -> T {
+        area.lift(|area| self.at(law, area))
     }
 
     /// Contact energy of a cell per length [J/m].
-    pub fn energy(&self, area: f64) -> f64 {
-        let (x, e) = (1.0 + area / self.at_rest, self.below);
+    pub fn energy(&self, law: &AreaLaw, area: f64) -> f64 {
+        let (x, e) = (1.0 + area / law.at_rest, self.below);
         if x >= e {
             return 0.0;
         }
-        self.at_rest * self.stiffness * (e * e / x - x + 2.0 * e * (x / e).ln())
+        law.at_rest * self.stiffness * (e * e / x - x + 2.0 * e * (x / e).ln())
     }
 
     /// Area change at a fluid pressure; `imposed` is the part caused by bending and force.
@@ -75,11 +72,11 @@ impl WallClosing {
     pub fn swelling<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
         let a_p = law.per_pressure;
         pressure.lift_with(imposed, |pressure, imposed| {
-            let area = self.root(a_p * pressure + imposed, |area| {
-                let (contact, slope) = self.at(area);
+            let area = self.root(law, a_p * pressure + imposed, |area| {
+                let (contact, slope) = self.at(law, area);
                 (area - a_p * (pressure + contact) - imposed, 1.0 - a_p * slope)
             });
-            let stiffness = 1.0 / (1.0 - a_p * self.at(area).1);
+            let stiffness = 1.0 / (1.0 - a_p * self.at(law, area).1);
             (area, [a_p * stiffness, stiffness])
         })
     }
@@ -89,7 +86,7 @@ impl WallClosing {
     pub fn swelling_of<T: Scalar>(&self, law: &AreaLaw, fluid: &Compression, content: T, imposed: T) -> T {
         content.lift_with(imposed, |content, imposed| {
             let open = law.per_pressure * fluid.pressure(law, content, imposed) + imposed;
-            let area = self.root(open, |area| {
+            let area = self.root(law, open, |area| {
                 let (missing, [by_area, _]) = self.missing(law, fluid, area, imposed);
                 (missing - content, by_area)
             });
@@ -100,25 +97,25 @@ impl WallClosing {
 
     /// `r(p) (A_0 + a1) - A_0` and its derivatives with respect to area change and imposed area.
     pub fn missing(&self, law: &AreaLaw, fluid: &Compression, area: f64, imposed: f64) -> (f64, [f64; 2]) {
-        let (contact, slope) = self.at(area);
+        let (contact, slope) = self.at(law, area);
         let (density, by_pressure) = fluid.density((area - imposed) / law.per_pressure - contact);
-        let (all, soft) = (self.at_rest + area, 1.0 / law.per_pressure);
+        let (all, soft) = (law.at_rest + area, 1.0 / law.per_pressure);
         let by_pressure = by_pressure * all;
         (
-            density * all - self.at_rest,
+            density * all - law.at_rest,
             [density + by_pressure * (soft - slope), -by_pressure * soft],
         )
     }
 
     /// Root of an increasing function by Newton's iteration with bisection. `open` is the root where walls do not
     /// touch.
-    fn root(&self, open: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
-        let (mut low, mut high) = (-self.at_rest, self.at_rest * (self.below - 1.0));
+    fn root(&self, law: &AreaLaw, open: f64, f: impl Fn(f64) -> (f64, f64)) -> f64 {
+        let (mut low, mut high) = (-law.at_rest, law.at_rest * (self.below - 1.0));
         if open >= high {
             return open;
         }
         low = low.min(open);
-        let mut area = open.max(0.5 * (high - self.at_rest));
+        let mut area = open.max(0.5 * (high - law.at_rest));
         for _ in 0..100 {
             let (value, slope) = f(area);
             if value > 0.0 {
@@ -132,7 +129,7 @@ impl WallClosing {
             } else {
                 0.5 * (low + high)
             };
-            if (next - area).abs() <= 1e-15 * self.at_rest {
+            if (next - area).abs() <= 1e-15 * law.at_rest {
                 return next;
             }
             area = next;

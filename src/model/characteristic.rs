@@ -89,10 +89,10 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
             put("first_bending_damping_ratio", decay / omega.hypot(decay));
         }
         if let Some(around) = &model.surroundings {
-            put("added_mass_kg_m", around.added_mass);
+            put("added_mass_kg_m", around.section.added_mass);
             put(
                 "first_bending_frequency_in_fluid_hz",
-                dry / (1.0 + around.added_mass / m).sqrt(),
+                dry / (1.0 + around.section.added_mass / m).sqrt(),
             );
         }
     }
@@ -180,7 +180,7 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
             "bladder_fill",
             2.0 * bladders.per_row as f64 * bladders.width_m / (2.0 * l),
         );
-        let closing = wet.area[0].per_pressure * model.scales.pressure / wet.area_at_rest;
+        let closing = wet.area[0].per_pressure * model.scales.pressure / wet.area[0].at_rest;
         put("area_change_estimate", closing);
     }
     put("force_scale_n", model.scales.force);

@@ -28,8 +28,6 @@ const ALIKE: f64 = 1e-4;
 /// fluid has r = 1, c = a1.
 #[derive(Clone, Debug)]
 pub struct Compression {
-    /// `A_0`, cross-section of a bladder at rest [m^2].
-    area_at_rest: f64,
     /// `x`.
     gas: f64,
     /// `1/K` [1/Pa].
@@ -43,12 +41,11 @@ pub struct Compression {
 }
 
 impl Compression {
-    /// Compression of a fluid in bladders with a cross-section at rest [m^2]; none for incompressible fluid.
-    pub fn new(fluid: &Fluid, area_at_rest: f64) -> Option<Self> {
+    /// Compression of a fluid; none for incompressible fluid.
+    pub fn new(fluid: &Fluid) -> Option<Self> {
         let softness = fluid.bulk_modulus_pa.map_or(0.0, f64::recip);
         let gas = fluid.gas();
         (gas > 0.0 || softness > 0.0).then(|| Self {
-            area_at_rest,
             gas,
             softness,
             ambient: fluid.ambient_pressure(),
@@ -199,18 +196,17 @@ impl Compression {
     /// Pressure of a cell with content `content`, `[E54]`; `imposed` is the area caused by bending and force.
     #[inline]
     pub fn pressure<T: Scalar>(&self, law: &AreaLaw, content: T, imposed: T) -> T {
-        content.lift_with(imposed, |content, imposed| {
-            self.root(law.per_pressure, content, imposed)
-        })
+        content.lift_with(imposed, |content, imposed| self.root(law, content, imposed))
     }
 
     /// Solves `a_p p - (c - A) - (A_0 + c) (1/r - 1) = 0` for p by Newton's iteration; A is the imposed area. The
     /// function is concave and increasing. The initial guess is the root for isothermal gas of equal compressibility.
     /// Returns the root and its derivatives by c and A.
-    fn root(&self, a_p: f64, content: f64, imposed: f64) -> (f64, [f64; 2]) {
-        let amount = self.area_at_rest + content;
+    fn root(&self, law: &AreaLaw, content: f64, imposed: f64) -> (f64, [f64; 2]) {
+        let a_p = law.per_pressure;
+        let amount = law.at_rest + content;
         let softness = -self.expansion(0.0).1;
-        let (lacking, linear) = (content - imposed, a_p + (self.area_at_rest + imposed) * softness);
+        let (lacking, linear) = (content - imposed, a_p + (law.at_rest + imposed) * softness);
         let inside = linear * linear + 4.0 * a_p * softness * lacking;
         let begin = 2.0 * lacking / (linear + inside.max(0.0).sqrt());
         let found = match self.gas > 0.0 && amount <= 0.0 {
@@ -272,21 +268,21 @@ impl Compression {
 
     /// Content c of a cell at a pressure and an area change, `[E54]`.
     #[inline]
-    pub fn content<T: Scalar>(&self, p: T, area: T) -> T {
+    pub fn content<T: Scalar>(&self, law: &AreaLaw, p: T, area: T) -> T {
         let density = p.lift(|p| self.density(p));
-        density * (area + self.area_at_rest) - self.area_at_rest
+        density * (area + law.at_rest) - law.at_rest
     }
 
     /// Rate of a cell's content from the rates of its pressure and area.
-    pub fn content_rate(&self, [p, area]: [f64; 2], p_t: f64, area_t: f64) -> f64 {
+    pub fn content_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], p_t: f64, area_t: f64) -> f64 {
         let (density, slope) = self.density(p);
-        slope * (self.area_at_rest + area) * p_t + density * area_t
+        slope * (law.at_rest + area) * p_t + density * area_t
     }
 
     /// Rate of a cell's pressure from the rates of its content and of the imposed area.
     pub fn pressure_rate(&self, law: &AreaLaw, [p, area]: [f64; 2], content_t: f64, imposed_t: f64) -> f64 {
         let (density, slope) = self.density(p);
-        (content_t - density * imposed_t) / (slope * (self.area_at_rest + area) + density * law.per_pressure)
+        (content_t - density * imposed_t) / (slope * (law.at_rest + area) + density * law.per_pressure)
     }
 
     /// `[E56]` Energy of the fluid in a cell per length, relative to ambient pressure:
@@ -298,15 +294,15 @@ impl Compression {
     ///
     /// For isothermal gas, `E = V (P ln(P/P_0) - p)`, P the absolute pressure. Flow carries h; the loss along a link is
     /// the drop of h.
-    pub fn energy(&self, p: f64, area: f64) -> f64 {
-        (self.area_at_rest + area) * (self.density(p).0 * self.enthalpy(p) - p)
+    pub fn energy(&self, law: &AreaLaw, p: f64, area: f64) -> f64 {
+        (law.at_rest + area) * (self.density(p).0 * self.enthalpy(p) - p)
     }
 
-    /// Compliance added to `a_p` by compression at a pressure: `A_0 r'/r` [m^2/Pa].
-    pub fn compliance(&self, p: f64) -> f64 {
+    /// Compressibility `r'/r` at a pressure [1/Pa]; times `A_0` it adds to `a_p`.
+    pub fn compressibility(&self, p: f64) -> f64 {
         let lowest = if self.gas > 0.0 { -0.9 * self.ambient } else { p };
         let (density, slope) = self.density(p.max(lowest));
-        self.area_at_rest * slope / density
+        slope / density
     }
 }
 

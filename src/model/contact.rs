@@ -1,6 +1,7 @@
 //! Contact of the beam with fixed walls and circles.
 
 use crate::case::schema::{Case, Contact as Written};
+use crate::case::spans;
 use crate::numerics::{Planar, Scalar, ramp};
 
 /// Distance from the center below which the normal of a circle fades, in radii: no force depends on it, since `1 + 1e-16 = 1`.
@@ -49,8 +50,10 @@ pub struct ContactLaw {
     pub at: Option<f64>,
     /// Shape.
     pub face: ContactFace,
-    /// `r` [m].
+    /// `r`; if it follows the section, that of the highest section [m].
     pub reach: f64,
+    /// True if r is half the height of the section at each place.
+    pub follows_section: bool,
     /// `k` [Pa]; at one place [N/m].
     pub stiffness: f64,
     /// `d` [m].
@@ -77,7 +80,8 @@ pub struct ContactForces<T> {
 impl ContactLaw {
     /// Returns all contacts of a case.
     pub fn all(case: &Case) -> Vec<Self> {
-        let reach = 0.5 * case.beam.height_m;
+        let heights = spans::segments(case).into_iter().map(|values| values.beam.height_m);
+        let reach = 0.5 * heights.reduce(f64::max).unwrap_or(case.beam.height_m);
         case.contacts.iter().map(|written| Self::new(written, reach)).collect()
     }
 
@@ -103,6 +107,7 @@ impl ContactLaw {
             at: written.at,
             face,
             reach: written.reach_m.unwrap_or(reach),
+            follows_section: written.reach_m.is_none(),
             stiffness: written.stiffness_pa.or(written.stiffness_n_m).unwrap_or(0.0),
             smoothing: written.smoothing_m,
             damping: written.damping_s_m,
@@ -132,28 +137,29 @@ impl ContactLaw {
         self.damping > 0.0 || self.friction > 0.0
     }
 
-    /// Depth of the beam's surface behind the face for a point of the center line [m], negative in front of the face, and normal.
+    /// Depth of the beam's surface, `reach` [m] from its line, behind the face for a point of the line [m], negative in front of the face,
+    /// and normal.
     #[inline]
-    pub fn depth<T: Scalar>(&self, at: Planar<T>) -> (T, Planar<T>) {
+    pub fn depth<T: Scalar>(&self, at: Planar<T>, reach: f64) -> (T, Planar<T>) {
         match self.face {
             ContactFace::Wall { point, normal } => {
                 let normal = Planar::constant(normal);
-                ((Planar::constant(point) - at).dot(normal) + self.reach, normal)
+                ((Planar::constant(point) - at).dot(normal) + reach, normal)
             }
             ContactFace::Circle { center, radius, side } => {
                 let off = at - Planar::constant(center);
                 let core = CORE * radius;
                 let distance = (off.squared() + core * core).sqrt();
-                let depth = (distance - radius) * -side + self.reach;
+                let depth = (distance - radius) * -side + reach;
                 (depth, off.times(T::constant(side) / distance))
             }
         }
     }
 
-    /// Contact forces on a moving point.
+    /// Contact forces on a moving point of the line, `reach` [m] from the surface.
     #[inline]
-    pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>) -> ContactForces<T> {
-        let (depth, normal) = self.depth(at);
+    pub fn forces<T: Scalar>(&self, at: Planar<T>, velocity: Planar<T>, reach: f64) -> ContactForces<T> {
+        let (depth, normal) = self.depth(at, reach);
         let elastic = depth.lift(|g| ramp(g, self.smoothing)) * self.stiffness;
         let mut pressed = ContactForces {
             elastic: normal.times(elastic),
@@ -210,6 +216,7 @@ mod tests {
             normal: NORMAL,
         },
         reach: 0.0,
+        follows_section: false,
         stiffness: 1e5,
         smoothing: 1e-3,
         damping: 2.0,
@@ -237,14 +244,14 @@ mod tests {
         let face = NORMAL.normal();
         for depth in [-1.0, 0.0, 1e-5, 5e-4, 1e-3, 2e-3, 0.1] {
             let at = POINT - NORMAL * depth;
-            if law.depth(at).0 > depth + 1e-9 {
+            if law.depth(at, law.reach).0 > depth + 1e-9 {
                 assert!(depth < -0.1, "beyond the center of a room");
                 continue;
             }
-            assert!((law.depth(at).0 - depth).abs() < 1e-15);
+            assert!((law.depth(at, law.reach).0 - depth).abs() < 1e-15);
             for (inwards, along) in [(0.0, 0.0), (10.0, 1.0), (-0.1, -1.0), (-0.4, 1e-4), (-10.0, 5.0)] {
                 let velocity = NORMAL * -inwards + face * along;
-                let f = law.forces(at, velocity);
+                let f = law.forces(at, velocity, law.reach);
                 let whole = (f.elastic + f.damping).dot(NORMAL);
                 assert!(
                     whole >= -1e-12 && (depth > 0.0 || whole < 1e-20),
@@ -255,7 +262,7 @@ mod tests {
             }
             let h = 1e-7;
             let power = (law.energy(depth + h) - law.energy(depth - h)) / (2.0 * h);
-            let elastic = law.forces(at, Planar::default()).elastic.dot(NORMAL);
+            let elastic = law.forces(at, Planar::default(), law.reach).elastic.dot(NORMAL);
             assert!(
                 (power - elastic).abs() < 1e-3 * (1.0 + elastic),
                 "{depth}: {power} {elastic}"

@@ -242,7 +242,6 @@ impl Model {
         if let Some(wet) = &mut model.wet {
             let law = wet.segments[segment];
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
-            wet.area_at_rest = law.area_at_rest[0];
             // the length of a beam of such segments
             model.length = wet.bladder_length * wet.per_row as f64 / law.length_ratio;
             let there = wet.pair(segment).map(|bladder| wet.storage[bladder]);

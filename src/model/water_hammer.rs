@@ -117,7 +117,7 @@ struct Line<'a> {
 impl<'a> Line<'a> {
     fn new(case: &Case, model: &'a Model) -> Option<Self> {
         let (network, fluid) = (&model.wet.as_ref()?.network, case.fluid.as_ref()?);
-        let softness = Compression::new(fluid, 1.0).map_or(1.0 / WATER, |own| own.compliance(0.0));
+        let softness = Compression::new(fluid).map_or(1.0 / WATER, |own| own.compressibility(0.0));
         let stiff = |end: &TubeEnd| {
             let walls = end
                 .vessel

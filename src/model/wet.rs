@@ -19,8 +19,6 @@ pub struct SegmentLaw {
     pub coupling: CouplingLaw,
     /// `φ_b l_b` [1].
     pub length_ratio: f64,
-    /// Cross-sections of both bladders at rest [m^2].
-    pub area_at_rest: [f64; 2],
     /// Permeability of both bladders over that of [`ResolvedNetwork::bladder_mobility`].
     pub mobility_ratio: [f64; 2],
     /// Inertia along both bladders; none if omitted.
@@ -38,7 +36,6 @@ impl SegmentLaw {
             strains: area,
             coupling: CouplingLaw::new(&values.beam, rows[0]),
             length_ratio: rows[0].length_m * rows[0].per_row as f64 / values.beam.length_m,
-            area_at_rest: rows.map(|bladders| bladders.height_m * bladders.width_m),
             mobility_ratio: rows.map(|bladders| network::bladder_permeability(bladders) / usual),
             along: rows.map(along),
         }
@@ -52,8 +49,6 @@ pub struct Wet {
     pub per_row: usize,
     /// Length `l_b` of a bladder [m].
     pub bladder_length: f64,
-    /// Cross-section at rest `h_b w_b` [m^2].
-    pub area_at_rest: f64,
     /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
     pub area: [AreaLaw; 2],
     /// Contact between the walls of a bladder; none if omitted.
@@ -149,10 +144,7 @@ impl Wet {
 
     /// Cross-section of a bladder at rest [m^2].
     pub fn area_at_rest_of(&self, bladder: usize) -> f64 {
-        let (segment, row) = self.segment_and_row(bladder);
-        self.segments
-            .get(segment)
-            .map_or(self.area_at_rest, |law| law.area_at_rest[row])
+        self.area_of(bladder).at_rest
     }
 
     /// Permeability of a bladder over that of most.
@@ -170,7 +162,7 @@ impl Wet {
 
     /// Compliance of a bladder over that of most.
     pub fn compliance_ratio(&self, bladder: usize) -> f64 {
-        (self.compliance() + self.area_of(bladder).per_pressure - self.area[0].per_pressure) / self.compliance()
+        self.compliance_by(self.area_of(bladder), 0.0) / self.compliance()
     }
 
     /// Largest time of diffusion along a bladder over that of most bladders.
@@ -198,9 +190,13 @@ impl Wet {
 
     /// Area stored per pressure at a pressure [Pa], with compression. Gas stiffens with pressure.
     pub fn compliance_at(&self, pressure: f64) -> f64 {
+        self.compliance_by(&self.area[0], pressure)
+    }
+
+    fn compliance_by(&self, law: &AreaLaw, pressure: f64) -> f64 {
         match &self.compression {
-            None => self.area[0].per_pressure,
-            Some(compression) => self.area[0].per_pressure + compression.compliance(pressure),
+            None => law.per_pressure,
+            Some(compression) => law.per_pressure + law.at_rest * compression.compressibility(pressure),
         }
     }
 
@@ -209,7 +205,7 @@ impl Wet {
     pub fn content<T: Scalar>(&self, law: &AreaLaw, pressure: T, imposed: T) -> T {
         match &self.compression {
             None => self.swelling(law, pressure, imposed),
-            Some(compression) => compression.content(pressure, self.swelling(law, pressure, imposed)),
+            Some(compression) => compression.content(law, pressure, self.swelling(law, pressure, imposed)),
         }
     }
 
@@ -249,7 +245,6 @@ impl Wet {
             let compliance = network.usual_compliance(case.time.end_s);
             area.iter_mut().for_each(|law| law.per_pressure = compliance);
         }
-        let area_at_rest = bladders.height_m * bladders.width_m;
         let fluid = case.fluid.as_ref().filter(|_| effects.has(Effect::Compressibility));
         let (storage, lumped) = storage::of_bladders(case, &network, effects);
         let values = spans::segments(case);
@@ -262,13 +257,9 @@ impl Wet {
         Self {
             per_row: bladders.per_row,
             bladder_length: bladders.length_m,
-            area_at_rest,
             area,
-            closing: bladders
-                .closing
-                .as_ref()
-                .map(|written| WallClosing::new(written, area_at_rest)),
-            compression: fluid.and_then(|fluid| Compression::new(fluid, area_at_rest)),
+            closing: bladders.closing.as_ref().map(WallClosing::new),
+            compression: fluid.and_then(Compression::new),
             strains: area,
             coupling: CouplingLaw::new(&case.beam, bladders),
             segments,

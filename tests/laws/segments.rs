@@ -11,7 +11,7 @@ use slcbeam::run::modes::{ModeOptions, modes};
 use slcbeam::run::record::Control;
 
 use crate::differences::worst_difference;
-use crate::spans::{deflection, dry, order, parse, pumped, run};
+use crate::spans::{deflection, dry, order, parse, pumped, run, transfer};
 
 /// Segments of 15, 5 and 12 mm: a rigid root, two rows of wide bladders, narrow bladders of one row.
 fn unequal() -> Value {
@@ -159,4 +159,97 @@ fn lengths_of_spans_have_derivatives() {
         .position(|c| c.name == "tip_u1");
     let slope = found[0].row[at.unwrap()];
     assert!((slope / differenced - 1.0).abs() < 1e-4, "{slope} {differenced}");
+}
+
+/// Goal: gas in bladders of different sizes, also of unlike rows with touching walls, keeps energy and volume, and has its Jacobian.
+#[test]
+fn gas_fills_bladders_of_any_size() {
+    let chain: Vec<i32> = (1..=10).collect();
+    let spans = json!([{"length_m": 0.04, "bladders": {"width_m": 0.006}}, {"bladders": {"height_m": {"linear": [0.008, 0.005]}}}]);
+    let mut case = pumped(&chain, 9.81, &spans);
+    case["fluid"] = json!({"preset": "air"});
+    case["network"]["chains"][0]["ends"][0] =
+        json!({"pressure_pa": {"ramp": {"to": -8000, "duration_s": 0.05, "shape": "smooth"}}});
+    case["bladders"]["closing"] = json!({"below": 0.9, "stiffness_pa": 500.0});
+    case["bladders"]["lower"] = json!({"unlike": {"height_m": 0.006}});
+    let (memory, summary) = run(&case);
+    let balances = summary.balances;
+    assert!(balances.energy_residual_relative.abs() < 1e-5, "{balances:?}");
+    assert!(balances.volume_residual_relative.abs() < 1e-9, "{balances:?}");
+    let mut open = case.clone();
+    open["bladders"]["closing"] = json!(null);
+    let [with, without] = [memory, run(&open).0].map(|memory| *memory.column("tip_u1").unwrap().last().unwrap());
+    assert!((with / without - 1.0).abs() > 1e-3, "walls touch: {with} {without}");
+    let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+    for seed in 1..4 {
+        let worst = worst_difference(&mut dae, seed, 0.1);
+        assert!(worst < 1e-6, "{worst:.1e}");
+    }
+}
+
+/// Goal: in a fluid, a cantilever of two widths with one bending stiffness and one mass vibrates with the frequency of its equation: its
+/// outer half carries four times the added mass.
+#[test]
+fn fluid_moves_with_the_width_of_the_section() {
+    let added = |width: f64| 0.25 * PI * 1000.0 * width * width;
+    let mass = [1.0 + added(0.02), 1.0 + added(0.04)];
+    let determinant = |omega: f64| {
+        let k = mass.map(|m| (omega * omega * m).powf(0.25));
+        let (a, b) = (transfer(k[0], 1.0, 0.5), transfer(k[1], 1.0, 0.5));
+        let product = |i: usize, j: usize| (0..4).map(|n| b[i][n] * a[n][j]).sum::<f64>();
+        product(2, 2) * product(3, 3) - product(2, 3) * product(3, 2)
+    };
+    let (mut low, mut high) = (1.0, 4.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        match determinant(low) * determinant(middle) < 0.0 {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    let plan = ModeOptions {
+        count: 4,
+        near_hz: 0.5,
+        limits: false,
+    };
+    let errors = [20, 40].map(|cells| {
+        let spans = json!([{"length_m": 0.4, "segments": cells / 4}, {"length_m": 0.1, "segments": cells / 4},
+            {"segments": cells / 2, "beam": {"width_m": 0.04, "young_modulus_pa": 3e8, "density_kg_m3": 2.5e3}}]);
+        let mut case = dry(cells, &spans);
+        case["beam"]["width_m"] = json!(0.02);
+        case["beam"]["young_modulus_pa"] = json!(6e8);
+        case["beam"]["density_kg_m3"] = json!(5e3);
+        case["surroundings"] = json!({"density_kg_m3": 1000.0, "added_mass_coefficient": 1.0, "drag_coefficient": 0.0});
+        case["ends"]["tip"] = json!("free");
+        let found = modes(&parse(&case), &plan).unwrap();
+        let lowest = found
+            .modes
+            .iter()
+            .filter_map(|mode| mode.frequency_hz())
+            .reduce(f64::min);
+        lowest.unwrap() * 2.0 * PI / low - 1.0
+    });
+    assert!(errors[1].abs() < 5e-3 && order(errors) > 1.8, "{errors:?}");
+}
+
+/// Goal: a stream drags each part by its width, and energy closes; a tip 20 mm high touches a wall 2 mm before a beam 10 mm high does.
+#[test]
+fn walls_and_streams_meet_each_section() {
+    let spans = json!([{"length_m": 0.8}, {"segments": 8, "beam": {"height_m": 0.02, "width_m": 0.02}}]);
+    let mut case = dry(16, &spans);
+    case["ends"]["tip"] = json!({"free": {"force_x_n": {"ramp": {"to": -0.03, "duration_s": 0.5, "shape": "smooth"}}}});
+    case["contacts"] = json!([{"name": "floor", "point_m": [-0.012, 0.0], "normal": [1.0, 0.0],
+        "stiffness_pa": 1e5, "smoothing_m": 1e-5}]);
+    let tip = deflection(&case);
+    assert!((tip + 0.002).abs() < 5e-5, "{tip}");
+    case["surroundings"] =
+        json!({"density_kg_m3": 1.2, "drag_coefficient": 1.9, "added_mass_coefficient": 1.0, "stream_x_m_s": 3.0});
+    case["time"]["output_interval_s"] = json!(0.1);
+    case["solver"] = json!({"rtol": 1e-7});
+    case["companion"] = json!("off");
+    let balances = run(&case).1.balances;
+    assert!(balances.energy_residual_relative.abs() < 1e-5, "{balances:?}");
+    let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
+    let worst = worst_difference(&mut dae, 1, 0.1);
+    assert!(worst < 1e-6, "{worst:.1e}");
 }

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 use slcbeam::case::Case;
+use slcbeam::discrete::shapes::Cells;
 use slcbeam::discrete::{System, TimeData, shapes, start};
 use slcbeam::functions::SmoothTime;
 use slcbeam::functions::profile::{Integrals, Profile};
@@ -76,7 +77,7 @@ fn resultants(case: &Case) -> (f64, f64) {
     let system = System::new(case).unwrap();
     let shape = &system.loads[0].shape;
     (0..system.mesh.nodes).fold((0.0, 0.0), |(force, moment), i| {
-        let at_node = shape[i] * system.mesh.node_length(i);
+        let at_node = shape[i] * system.mesh.node_lengths[i];
         (force + at_node, moment + at_node * system.mesh.node_coordinate(i))
     })
 }
@@ -100,9 +101,11 @@ fn a_uniform_load_stays_exactly_what_it_was() {
         "1",
         r#"{"sum":[0.25,0.75]}"#,
         r#"{"polynomial":{"coefficients":[1,0]}}"#,
+        r#"{"linear":[1,1]}"#,
     ] {
         for cells in [1, 3, 40] {
-            let values = [shapes::at_nodes, shapes::in_cells, shapes::nearest].map(|on| on(&profile(text), cells));
+            let values = [shapes::at_nodes, shapes::in_cells, shapes::nearest]
+                .map(|on| on(&profile(text), &Cells::equal(cells)));
             assert!(values.iter().flatten().all(|value| *value == 1.0), "{text}");
         }
     }
@@ -122,6 +125,7 @@ pub fn profiles() -> impl Strategy<Value = Profile> {
         wave.clone().prop_map(|w| format!(r#"{{"cosine":{w}}}"#)),
         wave.prop_map(|w| format!(r#"{{"sine":{w}}}"#)),
         table,
+        prop::array::uniform2(-2.0..2.0).prop_map(|ends| format!(r#"{{"linear":{ends:?}}}"#)),
         prop::collection::vec(-2.0..2.0, 1..7).prop_map(|c| format!(r#"{{"polynomial":{{"coefficients":{c:?}}}}}"#)),
     ];
     let some = leaf.prop_recursive(3, 8, 3, |part| {
@@ -157,25 +161,40 @@ fn by_simpson(f: &Profile) -> [f64; 3] {
     sum
 }
 
+/// Cells of these lengths, in units of their sum.
+fn unequal(lengths: &[f64]) -> Cells {
+    let total: f64 = lengths.iter().sum();
+    let ends = lengths.iter().scan(0.0, |end, length| {
+        *end += length / total;
+        Some(*end)
+    });
+    Cells {
+        nodes: std::iter::once(0.0).chain(ends).collect(),
+        lengths: lengths.iter().map(|length| length / total).collect(),
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
 
     #[test]
-    fn random_loads_have_their_force_and_moment_on_every_mesh(f in profiles(), cells in 1..70_usize) {
+    fn random_loads_have_their_force_and_moment_on_every_mesh(f in profiles(), lengths in prop::collection::vec(0.2..5.0_f64, 1..70), equal: bool) {
         let [force, moment, size] = by_simpson(&f);
-        let h = 1.0 / cells as f64;
-        let nodes = shapes::at_nodes(&f, cells);
-        let length = |i: usize| if i == 0 || i == cells { 0.5 * h } else { h };
+        let cells = lengths.len();
+        let mesh = if equal { Cells::equal(cells) } else { unequal(&lengths) };
+        let nodes = shapes::at_nodes(&f, &mesh);
+        let h = |cell: usize| mesh.lengths.get(cell).copied().unwrap_or(0.0);
+        let length = |i: usize| 0.5 * (h(i) + i.checked_sub(1).map_or(0.0, h));
         let total: f64 = nodes.iter().enumerate().map(|(i, v)| v * length(i)).sum();
-        let turning: f64 = nodes.iter().enumerate().map(|(i, v)| v * length(i) * i as f64 * h).sum();
-        let couples: f64 = shapes::in_cells(&f, cells).iter().map(|v| v * h).sum();
-        let velocity = shapes::nearest(&f, cells);
+        let turning: f64 = nodes.iter().enumerate().map(|(i, v)| v * length(i) * mesh.nodes[i]).sum();
+        let couples: f64 = shapes::in_cells(&f, &mesh).iter().enumerate().map(|(c, v)| v * h(c)).sum();
+        let velocity = shapes::nearest(&f, &mesh);
         let momentum: f64 = velocity.iter().enumerate().map(|(i, v)| v * length(i)).sum();
         for (what, found, exact) in [("force", total, force), ("moment", turning, moment), ("couple", couples, force), ("momentum", momentum, force)] {
             prop_assert!((found - exact).abs() <= 1e-9 * size + 1e-300, "{what} on {cells} cells: {found}, exact {exact}, size {size}");
         }
         // meshes agree with each other to rounding errors, independent of the error of Simpson's rule
-        let one = shapes::at_nodes(&f, 1);
+        let one = shapes::at_nodes(&f, &Cells::equal(1));
         prop_assert!((total - 0.5 * (one[0] + one[1])).abs() <= 1e-13 * size.max(1e-300) * cells as f64);
         prop_assert!((turning - 0.5 * one[1]).abs() <= 1e-13 * size.max(1e-300) * cells as f64);
     }
@@ -221,15 +240,20 @@ fn straight_velocities_stay_straight_and_jumps_do_not_overshoot() {
     let step = profile(r#"{"table":{"positions":[0.4999,0.5001],"values":[0,1],"interpolation":"linear"}}"#);
     let mut errors = vec![];
     for cells in [1, 2, 10, 20, 40] {
-        for (i, v) in shapes::nearest(&line, cells).iter().enumerate() {
-            assert!((v - (0.3 - 2.0 * i as f64 / cells as f64)).abs() < 1e-13);
+        let lengths: Vec<f64> = (0..cells).map(|c| 1.0 + 2.0 * (c % 3) as f64).collect();
+        let (equal, unequal) = (Cells::equal(cells), unequal(&lengths));
+        for mesh in [&equal, &unequal] {
+            let nearest = shapes::nearest(&line, mesh);
+            for (place, v) in mesh.nodes.iter().zip(&nearest) {
+                assert!((v - (0.3 - 2.0 * place)).abs() < 1e-13);
+            }
         }
         assert!(
-            shapes::nearest(&step, cells)
+            shapes::nearest(&step, &unequal)
                 .iter()
                 .all(|v| (-1e-14..=1.0 + 1e-14).contains(v))
         );
-        let found = shapes::nearest(&curve, cells);
+        let found = shapes::nearest(&curve, &equal);
         let off = |i: usize| (found[i] - (i as f64 / cells as f64).powi(2)).abs();
         errors.push((0..=cells).map(off).fold(0.0, f64::max));
     }
@@ -254,7 +278,7 @@ fn a_start_has_its_momentum_on_every_mesh() {
         let l = &system.layout;
         let velocities = l.lines[0].unknowns().filter_map(|(node, _, v)| Some((node, v?)));
         let sum: f64 = velocities
-            .map(|(node, v)| y[v] * l.scales[v] * system.mesh.node_length(node))
+            .map(|(node, v)| y[v] * l.scales[v] * system.mesh.node_lengths[node])
             .sum();
         within("∫ v", sum, 0.1 * (0.01 + 1e-6), 1e-12);
     }

@@ -25,7 +25,10 @@ fn what_is_wrong_is_told() {
     for _ in 0..60 {
         let (f, cells) = (profiles(), 1..4_usize).new_tree(&mut runner).unwrap().current();
         let text = serde_json::to_string(&f).unwrap();
-        let amplitude = 0.5 / shapes::in_cells(&f, 50).iter().fold(1e-3, |m: f64, v| m.max(v.abs()));
+        let amplitude = 0.5
+            / shapes::in_cells(&f, &shapes::Cells::equal(50))
+                .iter()
+                .fold(1e-3, |m: f64, v| m.max(v.abs()));
         let scaled = format!(r#"{{"product":[{amplitude},{text}]}}"#);
         let case = pressed(&scaled, cells, &["/solver/rtol=1e-6"]);
         let coarse = run(&case);

@@ -3,7 +3,7 @@
 use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
-use crate::case::schema::{Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
+use crate::case::schema::{Beam, Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
@@ -90,7 +90,9 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
             }
         }
     }
-    if case.beam.line_height() != 0.0
+    let raised = |beam: &Beam| beam.line_height() != 0.0;
+    let in_spans = || spans::gives_axes(case) && spans::segments(case).iter().any(|one| raised(&one.beam));
+    if (raised(&case.beam) || in_spans())
         && let Some(k) = case.contacts.iter().position(|contact| contact.reach_m.is_none())
     {
         let what = "contact of a beam whose line is not at mid-height";
@@ -324,37 +326,9 @@ fn uniform_only(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(Code::Together, pointer, format!("{what} is not available with spans"));
         faults.push(fault.hint(hint));
     };
-    let sections = |span: &Span| span.beam.height_m.is_some() || span.beam.width_m.is_some();
-    if case.spans.iter().any(sections) {
-        let hint = "give all spans the height and width of the beam; grade young_modulus_pa and density_kg_m3";
-        if case.surroundings.is_some() {
-            refuse(
-                "/surroundings",
-                "an ambient fluid around sections of different sizes",
-                hint,
-            );
-        }
-        if !case.contacts.is_empty() {
-            refuse("/contacts", "contact of sections of different sizes", hint);
-        }
-    }
     let Some(bladders) = &case.bladders else { return };
     if bladders.strain_energy.is_some() {
         let hint = "remove the strain energy; the section is then linear";
         refuse("/bladders/strain_energy", "a section at finite strain", hint);
-    }
-    let sizes = |span: &Span| span.bladders.height_m.is_some() || span.bladders.width_m.is_some();
-    if case.spans.iter().any(sizes) {
-        let hint = "give all bladders the same height and width, and grade area_per_pressure_m2_per_pa";
-        if bladders.closing.is_some() {
-            refuse(
-                "/bladders/closing",
-                "contact of the walls of bladders of different sizes",
-                hint,
-            );
-        }
-        if case.fluid.as_ref().is_some_and(|fluid| fluid.is_compressible()) {
-            refuse("/fluid", "a compressible fluid in bladders of different sizes", hint);
-        }
     }
 }

@@ -63,7 +63,9 @@ impl NetworkUnknowns {
         let s = &model.scales;
         let stored = wet.compliance() * s.pressure;
         // the remaining cross-section of touching walls must be as accurate as pressures
-        let area_size = wet.closing.map_or(stored, |closing| stored.min(closing.touching()));
+        let area_size = wet
+            .closing
+            .map_or(stored, |closing| stored.min(closing.touching(&wet.area[0])));
         let area = build.block(|build| {
             for &bladder in &fluid.flowing {
                 for cell in 0..fluid.cells_per_bladder {

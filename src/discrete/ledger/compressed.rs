@@ -14,7 +14,7 @@ fn law_of(wet: &Wet, bladder: usize) -> &AreaLaw {
 /// Rates of a cell's pressure [Pa/s], of the pressure on its walls, and of its area [m^2/s], from the rate of its content.
 fn rates(wet: &Wet, law: &AreaLaw, w: &Workspace<f64>, cell: usize, stored: f64, imposed: f64) -> [f64; 3] {
     let closing = wet.closing.as_ref();
-    let contact = |area: f64, rate: f64| closing.map_or(0.0, |closing| closing.at(area).1 * rate);
+    let contact = |area: f64, rate: f64| closing.map_or(0.0, |closing| closing.at(law, area).1 * rate);
     match (&wet.compression, closing) {
         (Some(compression), None) => {
             let state = [w.fluid.pressure[cell], w.fluid.swelling[cell]];
@@ -25,7 +25,7 @@ fn rates(wet: &Wet, law: &AreaLaw, w: &Workspace<f64>, cell: usize, stored: f64,
             let area = w.fluid.area_changes()[cell];
             let rate = match (compression, closing) {
                 (Some(compression), Some(closing)) => {
-                    let held = area - law.per_pressure * (w.fluid.pressure[cell] + closing.at(area).0);
+                    let held = area - law.per_pressure * (w.fluid.pressure[cell] + closing.at(law, area).0);
                     let (_, [by_area, by_imposed]) = closing.missing(law, compression, area, held);
                     (stored - by_imposed * imposed) / by_area
                 }
@@ -49,11 +49,11 @@ pub fn shared_rates(
 ) -> [f64; 2] {
     let a_p = law.per_pressure;
     let area = w.fluid.area_changes()[cell];
-    let slope = wet.closing.as_ref().map_or(0.0, |closing| closing.at(area).1);
+    let slope = wet.closing.as_ref().map_or(0.0, |closing| closing.at(law, area).1);
     let rate = (a_p * pressure + imposed) / (1.0 - a_p * slope);
     let stored = match &wet.compression {
         None => rate,
-        Some(compression) => compression.content_rate([w.fluid.pressure[cell], area], pressure, rate),
+        Some(compression) => compression.content_rate(law, [w.fluid.pressure[cell], area], pressure, rate),
     };
     [pressure + slope * rate, stored]
 }
@@ -147,6 +147,10 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let Some(compression) = &wet.compression else {
         return 0.0;
     };
-    let cells = w.fluid.pressure.iter().zip(&w.fluid.swelling);
-    cells.map(|(&p, &area)| compression.energy(p, area)).sum::<f64>() * fluid.ds
+    let cells = w.fluid.pressure.iter().zip(&w.fluid.swelling).enumerate();
+    let law = |cell: usize| law_of(wet, cell / fluid.cells_per_bladder);
+    cells
+        .map(|(cell, (&p, &area))| compression.energy(law(cell), p, area))
+        .sum::<f64>()
+        * fluid.ds
 }

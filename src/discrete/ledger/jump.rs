@@ -104,7 +104,7 @@ pub fn strokes(
 /// Impulse and work of a node that moves with the frame.
 fn carried(system: &System, sides: [&TimeData; 2], node: usize) -> (f64, f64) {
     let mass = system.masses[node];
-    let share = node as f64 / (system.mesh.nodes - 1) as f64;
+    let share = system.mesh.share(node);
     let [from, to] = sides.map(|now| now.carried(1, share).rate);
     (mass * (to - from), 0.5 * mass * (to * to - from * from))
 }

@@ -16,17 +16,17 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     for j in 0..wet.per_row {
         for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
             let cells = fluid.cells_of(bladder);
+            let law = wet.area_of(bladder);
             let (mut squares, mut closed) = (0.0, 0.0);
             for cell in cells.clone() {
                 let mut in_walls = w.fluid.pressure[cell];
                 if let Some(closing) = &wet.closing {
                     let area = w.fluid.area_changes()[cell];
-                    in_walls += closing.at(area).0;
-                    closed += closing.energy(area);
+                    in_walls += closing.at(law, area).0;
+                    closed += closing.energy(law, area);
                 }
                 squares += in_walls * in_walls;
             }
-            let law = wet.area_of(bladder);
             let mixed = w.coupling.mean_force[j] * law.force_slope(w.coupling.mean_force[j])
                 + w.coupling.mean_moment[j] * law.moment_slope(w.coupling.mean_moment[j], row);
             let in_walls = 0.5 * law.per_pressure * squares + closed;

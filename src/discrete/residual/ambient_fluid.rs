@@ -4,7 +4,8 @@ use super::solid::angle_rate;
 use crate::case::schema::Effect;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::{AmbientFluid, Kinematics};
+use crate::model::Kinematics;
+use crate::model::surroundings::AmbientSection;
 use crate::numerics::{Planar, Scalar};
 
 /// Passes the forces of the surroundings on a node of the given length to `each`, with the balance entry of their work;
@@ -29,25 +30,25 @@ pub fn forces<T: Scalar>(
         let drag = quadratic_drag(system, now, w, node, section.quadratic_drag, Planar::default());
         each(Some(EnergyRate::Damping), drag * length);
     }
-    let Some(around) = &system.model.surroundings else {
+    let (Some(around), Some(here)) = (&system.model.surroundings, system.sections.ambient.get(node)) else {
         return;
     };
     let streams = around.stream.is_some();
-    if around.drag > 0.0 {
+    if here.drag > 0.0 {
         let account = if streams {
             EnergyRate::Loads
         } else {
             EnergyRate::Damping
         };
-        let drag = quadratic_drag(system, now, w, node, around.drag, now.stream);
+        let drag = quadratic_drag(system, now, w, node, here.drag, now.stream);
         each(Some(account), drag * length);
     }
-    if around.added_mass > 0.0 && system.layout.inertia {
+    if here.added_mass > 0.0 && system.layout.inertia {
         let account = streams.then_some(EnergyRate::Loads);
-        each(account, inertia(system, now, w, node) * (-length * around.added_mass));
+        each(account, inertia(system, now, w, node) * (-length * here.added_mass));
     }
     if streams && system.layout.inertia {
-        each(Some(EnergyRate::Loads), swept(system, around, now, w, node) * length);
+        each(Some(EnergyRate::Loads), swept(system, here, now, w, node) * length);
     }
 }
 
@@ -105,7 +106,7 @@ fn inertia<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: u
 /// ```
 fn swept<T: Scalar>(
     system: &System,
-    around: &AmbientFluid,
+    around: &AmbientSection,
     now: &TimeData,
     w: &Workspace<T>,
     node: usize,
@@ -122,9 +123,9 @@ pub fn kinetic(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize)
         .surroundings
         .as_ref()
         .filter(|around| around.stream.is_none());
-    around.filter(|_| system.layout.inertia).map_or(0.0, |around| {
+    around.filter(|_| system.layout.inertia).map_or(0.0, |_| {
         let across = felt_velocity(system, now, w, node).dot(node_tangent(system, w, node).normal());
-        0.5 * around.added_mass * across * across
+        0.5 * system.sections.ambient[node].added_mass * across * across
     })
 }
 
@@ -155,6 +156,5 @@ fn felt_velocity<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, n
     if system.model.effects.has(Effect::AxialStretch) {
         return own;
     }
-    let share = node as f64 / (system.mesh.nodes - 1) as f64;
-    Planar::new(own.x, T::constant(now.carried(1, share).rate))
+    Planar::new(own.x, T::constant(now.carried(1, system.mesh.share(node)).rate))
 }

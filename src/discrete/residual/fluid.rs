@@ -41,7 +41,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                     let mut sum = T::zero();
                     for cell in cells {
                         let p = law.pressure(w.fluid.area[cell], imposed);
-                        w.fluid.pressure[cell] = pressed(wet, p, w.fluid.area[cell]);
+                        w.fluid.pressure[cell] = pressed(wet, law, p, w.fluid.area[cell]);
                         sum += p;
                     }
                     sum * share
@@ -49,7 +49,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                 Storage::Kept => {
                     let area = w.fluid.area[cells.start];
                     let p = law.pressure(area, imposed);
-                    w.fluid.pressure[cells].fill(pressed(wet, p, area));
+                    w.fluid.pressure[cells].fill(pressed(wet, law, p, area));
                     p
                 }
                 Storage::Shared(lumped) => {
@@ -57,7 +57,7 @@ pub fn pressures<T: Scalar>(system: &System, w: &mut Workspace<T>) {
                     let area = wet.swelling(law, p, imposed);
                     w.fluid.area[cells.clone()].fill(area);
                     w.fluid.pressure[cells].fill(p);
-                    straining(wet, p, area)
+                    straining(wet, law, p, area)
                 }
                 Storage::Absent => T::zero(),
             };
@@ -94,8 +94,8 @@ fn compressed<T: Scalar>(
         Storage::Shared(lumped) => {
             let p = own.lumped[lumped];
             let area = wet.swelling(law, p, imposed);
-            own.area[cells.clone()].fill(compression.content(p, area));
-            (p, straining(wet, p, area), area)
+            own.area[cells.clone()].fill(compression.content(law, p, area));
+            (p, straining(wet, law, p, area), area)
         }
         Storage::Absent => return T::zero(),
     };
@@ -115,26 +115,26 @@ fn of_content<T: Scalar>(wet: &Wet, law: &AreaLaw, compression: &Compression, co
         Some(closing) => {
             let area = closing.swelling_of(law, compression, content, imposed);
             let in_walls = law.pressure(area, imposed);
-            (in_walls - closing.pressure(area), in_walls, area)
+            (in_walls - closing.pressure(law, area), in_walls, area)
         }
     }
 }
 
 /// Pressure on the walls of a cell from that of its fluid: the inverse of [`pressed`].
 #[inline]
-fn straining<T: Scalar>(wet: &Wet, fluid: T, area: T) -> T {
+fn straining<T: Scalar>(wet: &Wet, law: &AreaLaw, fluid: T, area: T) -> T {
     match &wet.closing {
         None => fluid,
-        Some(closing) => fluid + closing.pressure(area),
+        Some(closing) => fluid + closing.pressure(law, area),
     }
 }
 
 /// Pressure of the fluid in a cell from that on its walls.
 #[inline]
-fn pressed<T: Scalar>(wet: &Wet, in_walls: T, area: T) -> T {
+fn pressed<T: Scalar>(wet: &Wet, law: &AreaLaw, in_walls: T, area: T) -> T {
     match &wet.closing {
         None => in_walls,
-        Some(closing) => in_walls - closing.pressure(area),
+        Some(closing) => in_walls - closing.pressure(law, area),
     }
 }
 

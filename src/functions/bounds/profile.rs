@@ -7,7 +7,7 @@ use super::interval::{Bounded, Interval, JetSpan};
 use super::search::{self, IntervalSearch, overflows, sizes};
 use super::variation::Variation;
 use crate::functions::jet::Jet;
-use crate::functions::profile::Profile;
+use crate::functions::profile::{Profile, line};
 
 impl Profile {
     /// Range of the values between two places in [0, 1].
@@ -65,6 +65,7 @@ impl Bounded for Profile {
             Self::Constant(value) => JetSpan::at(Jet::constant(*value)),
             Self::Cosine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad + FRAC_PI_2, from, to),
             Self::Sine(w) => wave(w.amplitude, TAU * w.waves, w.phase_rad, from, to),
+            Self::Linear(ends) => line(ends).span(from, to),
             Self::Polynomial(polynomial) => polynomial.span(from, to),
             Self::Table(table) => table.curve.span(from, to),
             Self::Sum(terms) => JetSpan::sum(terms.iter().map(|term| term.span(from, to))),
@@ -74,7 +75,7 @@ impl Bounded for Profile {
 
     fn is_elementary(&self) -> bool {
         match self {
-            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Table(_) => true,
+            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Linear(_) | Self::Table(_) => true,
             Self::Polynomial(polynomial) => polynomial.coefficients.len() < 3,
             Self::Sum(parts) | Self::Product(parts) => matches!(parts.as_slice(), [one] if one.is_elementary()),
         }

@@ -131,6 +131,7 @@ impl Profile {
             Self::Cosine(wave) | Self::Sine(wave) => {
                 (wave.amplitude == 0.0 || wave.waves == 0.0).then(|| self.value(0.0))
             }
+            Self::Linear([root, tip]) => (root == tip).then_some(*root),
             Self::Polynomial(Polynomial { coefficients }) => {
                 coefficients.iter().skip(1).all(|c| *c == 0.0).then(|| self.value(0.0))
             }
@@ -143,7 +144,7 @@ impl Profile {
     /// Appends the places where the profile is not smooth.
     fn add_knots(&self, knots: &mut Vec<f64>) {
         match self {
-            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Polynomial(_) => {}
+            Self::Constant(_) | Self::Cosine(_) | Self::Sine(_) | Self::Linear(_) | Self::Polynomial(_) => {}
             Self::Table(table) => knots.extend(&table.positions),
             Self::Sum(parts) | Self::Product(parts) => parts.iter().for_each(|part| part.add_knots(knots)),
         }
@@ -155,6 +156,7 @@ impl Profile {
         match self {
             Self::Constant(_) => (0, 0.0),
             Self::Cosine(Wave { waves, .. }) | Self::Sine(Wave { waves, .. }) => (0, TAU * waves.abs()),
+            Self::Linear(_) => (1, 0.0),
             Self::Polynomial(Polynomial { coefficients }) => (coefficients.len().saturating_sub(1), 0.0),
             Self::Table(table) => match table.interpolation {
                 Interpolation::Linear => (1, 0.0),

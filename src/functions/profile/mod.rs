@@ -24,6 +24,8 @@ pub enum Profile {
     Cosine(Wave),
     /// `amplitude sin(2 pi waves x + phase)`.
     Sine(Wave),
+    /// Values at x = 0 and 1, linear between them.
+    Linear([f64; 2]),
     /// A polynomial in x.
     Polynomial(Polynomial),
     /// A curve through points.
@@ -42,6 +44,8 @@ enum NamedProfile {
     Cosine(Wave),
     /// `amplitude sin(2 pi waves x + phase)`.
     Sine(Wave),
+    /// Values at x = 0 and 1, linear between them.
+    Linear([f64; 2]),
     /// `c0 + c1 x + c2 x^2 + ...`
     Polynomial(Polynomial),
     /// A curve through points, constant beyond its ends.
@@ -142,7 +146,7 @@ impl PlaceTable {
 }
 
 number_or_object!(Profile, NamedProfile, "a number or a named profile such as {\"cosine\": {...}}", {
-    Cosine = "cosine", Sine = "sine", Polynomial = "polynomial", Table = "table", Sum = "sum", Product = "product",
+    Cosine = "cosine", Sine = "sine", Linear = "linear", Polynomial = "polynomial", Table = "table", Sum = "sum", Product = "product",
 });
 
 impl Profile {
@@ -176,11 +180,19 @@ impl Profile {
             Self::Constant(value) => Jet::constant(*value),
             Self::Cosine(wave) => wave.cosine(x),
             Self::Sine(wave) => wave.sine(x),
+            Self::Linear(ends) => line(ends).jet(x),
             Self::Polynomial(polynomial) => polynomial.jet(x),
             Self::Table(table) => table.curve.at(x),
             Self::Sum(terms) => terms.iter().fold(Jet::default(), |sum, term| sum + term.jet(x)),
             Self::Product(factors) => factors.iter().fold(Jet::constant(1.0), |product, f| product * f.jet(x)),
         }
+    }
+}
+
+/// Polynomial with these values at 0 and 1.
+pub(super) fn line([root, tip]: &[f64; 2]) -> Polynomial {
+    Polynomial {
+        coefficients: vec![*root, tip - root],
     }
 }
 

@@ -32,6 +32,7 @@ impl Waves {
             Profile::Constant(value) => real(vec![*value]),
             Profile::Cosine(cosine) => wave(cosine, 0.0),
             Profile::Sine(sine) => wave(sine, 0.5 * PI),
+            Profile::Linear([root, tip]) => real(shifted(&[*root, tip - root], p, length)),
             Profile::Polynomial(Polynomial { coefficients }) => real(shifted(coefficients, p, length)),
             Profile::Table(table) => {
                 // The cubic of the piece, from its derivatives in the middle.

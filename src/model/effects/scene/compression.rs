@@ -18,9 +18,11 @@ impl EffectScene<'_> {
     fn compression_in_bladders(&self, wet: &Wet) -> f64 {
         // also where the full model omits compression
         let fluid = self.case.fluid.as_ref();
-        let compression = fluid.and_then(|fluid| Compression::new(fluid, wet.area_at_rest));
-        let stored = compression.map_or(0.0, |compression| compression.compliance(-self.scales.pressure));
-        let share = stored / wet.area[0].per_pressure;
+        let compression = fluid.and_then(Compression::new);
+        let softness = compression.map_or(0.0, |compression| compression.compressibility(-self.scales.pressure));
+        let bladders = (0..wet.storage.len()).filter(|bladder| wet.has(*bladder));
+        let largest = bladders.map(|bladder| wet.area_of(bladder).at_rest / wet.area_of(bladder).per_pressure);
+        let share = softness * largest.fold(0.0, f64::max);
         let [bent, stretched] = self.stiffness_of_fluid(wet);
         share * (1.0 + self.at_once(bent * self.bending + stretched * self.axial) * self.case.time.end_s)
     }
@@ -30,10 +32,10 @@ impl EffectScene<'_> {
     /// fluid's storage to that of its walls counts at any frequency.
     fn compression_where_tubes_end(&self, wet: &Wet) -> f64 {
         let fluid = self.case.fluid.as_ref();
-        let Some(compression) = fluid.and_then(|fluid| Compression::new(fluid, 1.0)) else {
+        let Some(compression) = fluid.and_then(Compression::new) else {
             return 0.0;
         };
-        let softness = compression.compliance(-self.scales.pressure);
+        let softness = compression.compressibility(-self.scales.pressure);
         let ends = wet.network.tube_ends().into_iter();
         ends.map(|end| {
             let walls = end.vessel.map_or(0.0, |law| self.stiffest(&law));
