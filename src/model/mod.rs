@@ -215,6 +215,12 @@ impl Model {
         }
     }
 
+    /// Section of a segment.
+    #[inline]
+    pub fn section_of(&self, segment: usize) -> &Section {
+        self.sections.get(segment).unwrap_or(&self.section)
+    }
+
     /// True if a segment has a bladder.
     fn has_bladders(&self, segment: usize) -> bool {
         let wet = self.wet.as_ref().filter(|wet| wet.per_row > 0);
@@ -242,6 +248,7 @@ impl Model {
         if let Some(wet) = &mut model.wet {
             let law = wet.segments[segment];
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
+            wet.per_other_pressure = law.per_other_pressure;
             wet.area_at_rest = law.area_at_rest[0];
             let there = wet.pair(segment).map(|bladder| wet.storage[bladder]);
             for (row, storage) in wet.storage.chunks_mut(wet.per_row).zip(there) {

@@ -3,10 +3,13 @@
 use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
-use crate::case::schema::{Case, Formulation, Span, SpanRows};
+use crate::case::schema::{Bladders, Case, Formulation, Span, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
+
+/// Key of the area per pressure of the other row.
+const OTHER_PRESSURE: &str = "area_per_other_pressure_m2_per_pa";
 
 /// Tolerance for rounding errors of decimal fractions.
 const WITHIN: f64 = 1e-9;
@@ -28,6 +31,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let fault = Violation::new(Code::Together, format!("/spans/{k}/bladders"), what);
             faults.push(fault.hint("give \"rows\", or remove \"bladders\" from the span"));
         }
+        if span.rows != SpanRows::Both && span.bladders.area_per_other_pressure_m2_per_pa.is_some() {
+            let pointer = format!("/spans/{k}/bladders/{OTHER_PRESSURE}");
+            let what = "the span has an area per pressure of the other row, but not both rows";
+            faults
+                .push(Violation::new(Code::Together, pointer, what).hint("remove it: its bladders have no other row"));
+        }
         if span.beam.shear_stiffness_n.is_some() && case.beam.shear_stiffness_n.is_none() {
             let pointer = format!("/spans/{k}/beam/shear_stiffness_n");
             let fault = Violation::new(Code::Together, pointer, "shear in one span of a beam without shear");
@@ -45,9 +54,29 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
     if faults.is_empty() {
         values(case, faults);
     }
+    let energy = |bladders: &Bladders| bladders.strain_energy.is_some();
+    if faults.is_empty()
+        && case.bladders.as_ref().is_some_and(energy)
+        && let Some(span) = spans::first_of_other_section(case)
+    {
+        let what = "the span has bladders in another section than that of /bladders/strain_energy";
+        let fault = Violation::new(Code::Together, format!("/spans/{span}"), what);
+        let allowed = "the section, the bladders and the rows of the case, or \"rows\": \"none\"";
+        faults.push(
+            fault
+                .allowed(allowed)
+                .hint("or remove the strain energy; the section is then linear"),
+        );
+    }
     if faults.is_empty() {
         let all = spans::segments(case);
         for ((span, _), values) in spans::places(case).into_iter().zip(&all) {
+            if let (Some([upper, lower]), [true, true]) = (&values.bladders, values.rows)
+                && let Some(fault) = coefficients::not_passive(upper, lower, &format!("/spans/{span}"))
+            {
+                faults.push(fault);
+                break;
+            }
             let rows = values.present().collect::<Vec<_>>();
             if let Some(what) = bladders::too_large(&values.beam, rows.into_iter(), spans::segment_length(case)) {
                 let fault = Violation::new(Code::Geometry, format!("/spans/{span}"), what);
@@ -119,11 +148,8 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
     if case.beam.viscoelasticity.is_some() {
         refuse("/beam/viscoelasticity", "a relaxing material", same);
     }
-    if case
-        .bladders
-        .as_ref()
-        .is_some_and(|bladders| bladders.strain_energy.is_some())
-    {
+    let energy = |bladders: &Bladders| bladders.strain_energy.is_some() && spans::has_eccentric_bladders(case);
+    if case.bladders.as_ref().is_some_and(energy) {
         refuse("/bladders/strain_energy", "a section at finite strain", same);
     }
     if case.segments().saturating_mul(case.mesh.cells_per_segment) < 2 {
@@ -260,7 +286,8 @@ fn lengths(case: &Case, faults: &mut Violations) {
 /// Checks that every value is positive in the middle of every segment.
 fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
     let places = spans::places(case);
-    for (part, key, profile) in span.given().filter(|(_, key, _)| !key.contains("axis")) {
+    let signed = |key: &str| key.contains("axis") || key == OTHER_PRESSURE;
+    for (part, key, profile) in span.given().filter(|(_, key, _)| !signed(key)) {
         let here = places.iter().filter(|(span, _)| *span == k);
         let values = here.map(|(_, x)| profile.value(*x));
         if let Some(value) = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0) {
@@ -292,10 +319,6 @@ fn uniform_only(case: &Case, faults: &mut Violations) {
         }
     }
     let Some(bladders) = &case.bladders else { return };
-    if bladders.strain_energy.is_some() {
-        let hint = "remove the strain energy; the section is then linear";
-        refuse("/bladders/strain_energy", "a section at finite strain", hint);
-    }
     let sizes = |span: &Span| span.bladders.height_m.is_some() || span.bladders.width_m.is_some();
     if case.spans.iter().any(sizes) {
         let hint = "give all bladders the same height and width, and grade area_per_pressure_m2_per_pa";
