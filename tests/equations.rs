@@ -279,6 +279,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/laws/eccentric.rs",
         "force_and_moment_are_coupled_by_the_offset",
     ),
+    (
+        "[E90]",
+        "tests/laws/other_pressure.rs",
+        "closed_volumes_have_the_pressures_of_their_compliance",
+    ),
 ];
 
 #[test]

@@ -3,7 +3,6 @@
 
 use serde_json::Value;
 
-use super::computed;
 use super::numbers::digits;
 use super::origins::Origin;
 use super::own_cell::OwnCell;
@@ -41,11 +40,7 @@ pub fn warnings(case: &Case) -> Vec<String> {
     }
     let warnings = groups.iter().filter_map(|laws| warning(case, &resolved, laws));
     let in_spans = in_spans(case);
-    warnings
-        .chain(in_spans)
-        .chain(plane_cell(case))
-        .chain(cross_term(case))
-        .collect()
+    warnings.chain(in_spans).chain(plane_cell(case)).collect()
 }
 
 /// Warning about coefficients that follow the sizes of a span to another shape of section.
@@ -131,30 +126,6 @@ fn belongs(resolved: &Value, law: &Law) -> bool {
     let value = resolved.pointer(law.pointer);
     let full = resolved.get("bladders").is_none() && value.and_then(Value::as_f64) == Some(1.0);
     value.is_some() && !full
-}
-
-/// Ratio of a row's area per pressure in the other row to that per its own pressure, above which the model omits too much.
-const CROSS: f64 = 0.02;
-
-fn cross_term(case: &Case) -> Option<String> {
-    let pointer = "/bladders/area_per_pressure_m2_per_pa";
-    let computed = matches!(case.origins.get(pointer), Some(Origin::Section { .. }));
-    let section = case.section.as_ref().filter(|_| computed)?;
-    let numbers = computed::coefficients(section).ok()?.numbers;
-    let [own, other] = [
-        numbers.area_per_pressure_m2_per_pa,
-        numbers.area_per_other_pressure_m2_per_pa,
-    ];
-    let ratio = (other / own).abs();
-    (ratio > CROSS).then(|| {
-        Code::PlaneCell.warning(format!(
-            "The model leaves out the area of one row per pressure in the other: {other:.3e} m^2/Pa, {:.1} % of area_per_pressure_m2_per_pa (limit {:.0} \
-             %). Where both rows are under pressure, areas, and pressures of closed bladders, are off by up to this share of the larger pressure. \
-             Use larger fillets, or move the bladders away from the mid-plane, to make it smaller.",
-            100.0 * ratio,
-            100.0 * CROSS
-        ))
-    })
 }
 
 /// Relative reduction of areas per moment by the ends of bladders, divided by size over length of a bladder. Measured with sections of the

@@ -70,13 +70,14 @@ impl PartialEq for Origins {
 }
 
 /// Coefficients of the section that the program takes as given, although they follow from dimensions and material.
-const COEFFICIENTS: [&str; 13] = [
+const COEFFICIENTS: [&str; 14] = [
     "/beam/axial_stiffness_factor",
     "/beam/bending_stiffness_factor",
     "/beam/shear_stiffness_n",
     "/beam/mass_factor",
     "/bladders/permeability_m4",
     "/bladders/area_per_pressure_m2_per_pa",
+    "/bladders/area_per_other_pressure_m2_per_pa",
     "/bladders/area_per_moment_m2_per_n_m/opening",
     "/bladders/area_per_moment_m2_per_n_m/closing",
     "/bladders/area_per_force_m2_per_n/tension",

@@ -174,10 +174,10 @@ fn ratio(_: &Sizes) -> Option<f64> {
 ///
 /// ```text
 /// f_e, f_i, f_m ~ 1        z_n ~ h_s        kGA, P_k ~ E w_s h_s        ψ' ~ l_b h_b w_b/(w_s h_s²)     ζ' ~ l_b h_b w_b/(w_s h_s)
-/// a_p ~ h_b w_b/E          aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
+/// a_p, a_x ~ h_b w_b/E     aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
 /// q1b ~ h_b³ w_b³/(h_b² + w_b²)                        q1c ~ r_c⁴
 /// ```
-pub(super) const LAWS: [Law; 24] = [
+pub(super) const LAWS: [Law; 25] = [
     law("/beam/axial_stiffness_factor", ratio, Sizes::whole),
     law("/beam/bending_stiffness_factor", ratio, Sizes::whole),
     law("/beam/neutral_axis_m", |s| Some(s.section[0]), Sizes::whole),
@@ -189,6 +189,11 @@ pub(super) const LAWS: [Law; 24] = [
     law("/beam/mass_factor", ratio, Sizes::massive),
     law(
         "/bladders/area_per_pressure_m2_per_pa",
+        Sizes::area_per_pressure,
+        Sizes::cell,
+    ),
+    law(
+        "/bladders/area_per_other_pressure_m2_per_pa",
         Sizes::area_per_pressure,
         Sizes::cell,
     ),

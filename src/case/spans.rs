@@ -109,18 +109,7 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
     if (mirrored && case.spans.is_empty()) || !countable(case) {
         return vec![];
     }
-    let mut beam = json!(case.beam);
-    let pitch = SpanLengths::new(case).pitch;
-    if case.spans.iter().any(|span| span.segments.is_some()) {
-        beam["length_m"] = (pitch * case.segments() as f64).into();
-    }
-    if case.beam.neutral_axis_m != 0.0 {
-        // the line stays where it is if the neutral axis of a span is elsewhere
-        beam["reference_axis_m"] = case.beam.line_height().into();
-    }
-    let part = |bladders: Option<&Bladders>| json!({"beam": beam, "bladders": bladders, "fluid": case.fluid, "tubes": case.tubes});
-    let lower = lower_bladders(case);
-    let whole = [case.bladders.as_ref(), lower.as_ref()].map(part);
+    let (whole, pitch) = (both_rows(case), SpanLengths::new(case).pitch);
     if case.spans.is_empty() {
         return vec![values(case, &whole, &Span::default(), 0.5, None); case.segments()];
     }
@@ -142,6 +131,34 @@ pub fn segments(case: &Case) -> Vec<SegmentValues> {
     }
 }
 
+/// A case in JSON with the bladders of the upper row and of the lower one.
+fn both_rows(case: &Case) -> [Value; 2] {
+    let mut beam = json!(case.beam);
+    if case.spans.iter().any(|span| span.segments.is_some()) {
+        beam["length_m"] = (SpanLengths::new(case).pitch * case.segments() as f64).into();
+    }
+    if case.beam.neutral_axis_m != 0.0 {
+        // the line stays where it is if the neutral axis of a span is elsewhere
+        beam["reference_axis_m"] = case.beam.line_height().into();
+    }
+    let part = |bladders: Option<&Bladders>| json!({"beam": beam, "bladders": bladders, "fluid": case.fluid, "tubes": case.tubes});
+    let lower = lower_bladders(case);
+    [case.bladders.as_ref(), lower.as_ref()].map(part)
+}
+
+/// First span that has bladders, but not the elastic section, the bladders and the rows of the case.
+pub fn first_of_other_section(case: &Case) -> Option<usize> {
+    let mut usual = values(case, &both_rows(case), &Span::default(), 0.5, None);
+    let unlike = |one: &SegmentValues| {
+        // mass does not strain the section
+        usual.beam.density_kg_m3 = one.beam.density_kg_m3;
+        usual.beam.mass_factor = one.beam.mass_factor;
+        one.present().next().is_some() && *one != usual
+    };
+    let first = segments(case).iter().position(unlike)?;
+    Some(places(case).get(first)?.0)
+}
+
 /// True if the beam or a span gives the height of an axis; otherwise all are at mid-height.
 pub fn gives_axes(case: &Case) -> bool {
     let in_span = |span: &Span| span.beam.neutral_axis_m.is_some() || span.beam.reference_axis_m.is_some();
@@ -151,10 +168,20 @@ pub fn gives_axes(case: &Case) -> bool {
 
 /// True if the neutral axis is beside the beam's line somewhere.
 pub fn is_eccentric(case: &Case) -> bool {
+    any_off_line(case, |_| true)
+}
+
+/// True if the neutral axis is beside the beam's line where the beam has bladders.
+pub fn has_eccentric_bladders(case: &Case) -> bool {
+    any_off_line(case, |one| one.present().next().is_some())
+}
+
+/// True if the neutral axis is beside the beam's line in a segment; a uniform beam counts as one.
+fn any_off_line(case: &Case, segment: impl Fn(&SegmentValues) -> bool) -> bool {
     let off = |beam: &Beam| beam.neutral_axis_m != beam.line_height();
     match case.spans.is_empty() {
         true => off(&case.beam),
-        false => gives_axes(case) && segments(case).iter().any(|one| off(&one.beam)),
+        false => gives_axes(case) && segments(case).iter().any(|one| segment(one) && off(&one.beam)),
     }
 }
 

@@ -53,7 +53,7 @@ impl MeshSections {
 
     /// Sections of a model on a mesh.
     pub fn new(model: &Model, mesh: &BeamMesh) -> Self {
-        let of = |segment: usize| model.sections.get(segment).unwrap_or(&model.section);
+        let of = |segment: usize| model.section_of(segment);
         let cells = |value: fn(&Section) -> f64| -> Vec<f64> {
             (0..mesh.cells)
                 .map(|cell| value(of(cell / mesh.cells_per_segment)))

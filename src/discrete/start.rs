@@ -121,12 +121,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
             let [moment, force] = [&l.coupling.mean_moment, &l.coupling.mean_force]
                 .map(|means| means.clone().nth(j).map_or(0.0, |unknown| y[unknown]));
             for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
-                let excess = l
-                    .coupling
-                    .nonlinear_area
-                    .clone()
-                    .nth(bladder)
-                    .map_or(0.0, |unknown| y[unknown]);
+                let excess = l.coupling.excess_of(bladder).map_or(0.0, |unknown| y[unknown]);
                 let law = wet.area_of(bladder);
                 let imposed = law.of_moment(moment, row) + law.of_force(force) + excess;
                 if let Ok(slot) = fluid.flowing.binary_search(&bladder) {
@@ -142,7 +137,7 @@ fn fill_bladders(system: &System, case: &Case, now: &TimeData, y: &mut [f64], w:
         // The residual of a mean is its error.
         let own = &l.coupling;
         let means = own.mean_moment.clone().chain(own.mean_force.clone());
-        let means = means.chain(own.nonlinear_area.clone());
+        let means = means.chain(own.excess_area.clone());
         let worst = means
             .clone()
             .map(|i| (residual[i] / l.scales[i]).abs())

@@ -149,11 +149,11 @@ pub struct CouplingVariables<T> {
     pub pressure_stretch: Vec<T>,
     /// `alpha_p`.
     pub pressure_curvature: Vec<T>,
-    /// Area changes of bladders by the section's energy at finite strain, as unknowns [m^2]; empty without it.
+    /// Area changes of bladders by finite strain and by the pressure of the other bladder, as unknowns [m^2]; empty without them.
     pub excess_area: Vec<T>,
     /// Rates of these area changes [m^2/s], for the balances.
     pub excess_area_rate: Vec<T>,
-    /// These area changes computed from strains and pressures [m^2].
+    /// Area changes of bladders by the section's energy at finite strain [m^2].
     pub nonlinear_area: Vec<T>,
     /// Integral of the section's energy at finite strain over each segment [J].
     pub nonlinear_energy: Vec<T>,
@@ -295,13 +295,13 @@ impl<T: Scalar> Workspace<T> {
         let fluid = system.fluid.as_ref();
         let (cells, bladders) = fluid.map_or((0, 0), |f| (f.cells, f.bladders));
         let (junctions, bridges) = fluid.map_or((0, 0), |f| (f.junctions.len(), f.bridges.len()));
-        let accumulators = fluid.map_or(0, |f| f.accumulators.len());
-        let links = fluid.map_or(0, |f| f.links.len());
+        let (accumulators, links) = fluid.map_or((0, 0), |f| (f.accumulators.len(), f.links.len()));
         let components = system.model.wet.as_ref().map_or(0, |w| w.network.components);
         let lumped = fluid.map_or(0, |f| f.volume_at_start.len());
         let wet = system.model.wet.as_ref();
         let compressed = usize::from(wet.is_some_and(|wet| wet.compression.is_some()));
         let nonlinear = usize::from(system.model.strain_energy().is_some());
+        let excess = usize::from(!system.layout.coupling.excess_area.is_empty());
         let viscous = usize::from(system.mesh.fourth && system.damped) * sheared;
         // Constant values are set here.
         let kept = fluid.map_or(&[][..], |f| &f.area_at_start);
@@ -365,8 +365,8 @@ impl<T: Scalar> Workspace<T> {
                 mean_force_rate: zeros(s),
                 pressure_stretch: zeros(s),
                 pressure_curvature: zeros(s),
-                excess_area: zeros(nonlinear * bladders),
-                excess_area_rate: zeros(nonlinear * bladders),
+                excess_area: zeros(excess * bladders),
+                excess_area_rate: zeros(excess * bladders),
                 nonlinear_area: zeros(nonlinear * bladders),
                 nonlinear_energy: zeros(nonlinear * s),
             },

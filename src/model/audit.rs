@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::bladder::over_compliance;
 use super::convexity::convexity;
 pub use super::convexity::{convex_up_to, refusals};
-use super::{CouplingLaw, Model, Wet, water_hammer};
+use super::{CouplingLaw, Model, ROWS, Wet, water_hammer};
 use crate::case::numbers::digits;
 use crate::case::schema::Effect;
 use crate::case::schema::{Case, Coupling as Choice};
@@ -33,7 +34,7 @@ pub struct AuditFinding {
 ///
 /// ```text
 /// l_b am E/ψ' = 1, l_b an E/ζ' = 1                                       energy is conserved
-/// EA φ_b l_b Σ aN+²/a_p < 1,  EI φ_b l_b Σ aM²/a_p < 1                   passive, sums over the rows
+/// EA φ_b l_b aN+·C⁻¹aN+ < 1,  EI φ_b l_b R aM·C⁻¹R aM < 1                passive, C = [a_p a_x; a_x a_p] of the rows
 /// 1 - 2 EI φ_b ψ' am/(E a_p) > 0,  1 - 2 EA φ_b ζ' aN+/(E a_p) > 0       published law solvable
 /// d_M ≥ EI φ_b l_b dm p_max/(1 - 2 EI φ_b l_b am²/a_p)                   kinked potential convex
 /// ```
@@ -98,19 +99,22 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
     found
 }
 
-/// `Σ aN+²/a_p` and `Σ aM²/a_p` over the rows; the moment closes one row and opens the other.
+/// `aN+ · C⁻¹ aN+` and `R aM · C⁻¹ R aM`, C the areas per pressure of both rows; the moment closes one row and opens the other.
 fn sealed_stiffening(case: &Case, wet: &Wet) -> (f64, f64) {
     let rows = [case.bladders.clone(), spans::lower_bladders(case)];
-    let there = rows.iter().flatten().zip(wet.rows()).filter(|(_, there)| *there);
-    let (mut along, mut across) = (0.0, [0.0; 2]);
-    for (k, (row, _)) in there.enumerate() {
+    let (mut own, mut along, mut across) = ([1.0; 2], [0.0; 2], [[0.0; 2]; 2]);
+    for (k, (row, there)) in rows.iter().zip(wet.rows()).enumerate() {
+        let Some(row) = row.as_ref().filter(|_| there) else {
+            continue;
+        };
         let (m, n) = (&row.area_per_moment_m2_per_n_m, &row.area_per_force_m2_per_n);
-        let ap = row.area_per_pressure_m2_per_pa;
-        along += n.compression.powi(2) / ap;
-        across[k % 2] += m.closing.powi(2) / ap;
-        across[(k + 1) % 2] += m.opening.powi(2) / ap;
+        own[k] = row.area_per_pressure_m2_per_pa;
+        along[k] = n.compression;
+        across[k][k] = ROWS[k] * m.closing;
+        across[1 - k][k] = ROWS[k] * m.opening;
     }
-    (along, across[0].max(across[1]))
+    let stiffening = |slopes| over_compliance(own, wet.per_other_pressure, slopes);
+    (stiffening(along), stiffening(across[0]).max(stiffening(across[1])))
 }
 
 /// One finding of each name: the first that is not good, or the first.

@@ -98,6 +98,12 @@ impl AreaLaw {
     }
 }
 
+/// `x · C⁻¹ x` for the areas per pressure of both rows, `C = [a_p,u a_x; a_x a_p,d]`.
+pub fn over_compliance(own: [f64; 2], other: f64, x: [f64; 2]) -> f64 {
+    let [upper, lower] = own;
+    (lower * x[0] * x[0] - 2.0 * other * x[0] * x[1] + upper * x[1] * x[1]) / (upper * lower - other * other)
+}
+
 /// `σ(X) = √(X² + d²) - d`.
 #[inline]
 pub fn kink<T: Scalar>(x: T, width: f64) -> T {

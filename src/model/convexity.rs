@@ -1,7 +1,8 @@
 //! Convexity of the kinked potential of bladders.
 
 use super::audit::AuditFinding;
-use super::{AreaLaw, CouplingLaw, Model, Wet};
+use super::bladder::over_compliance;
+use super::{AreaLaw, CouplingLaw, Model, ROWS, Wet};
 use crate::case::schema::{Bladders, Case, Coupling as Choice, Effect};
 use crate::error::numbers::{quantity, significant};
 use crate::error::{Code, Violation};
@@ -25,20 +26,26 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
             .filter(|(_, there)| *there)
             .map(|(law, _)| law)
     };
-    let limit = |stiffness: f64, of: fn(&AreaLaw) -> [f64; 3]| {
+    let own = wet.area.map(|law| law.per_pressure);
+    let limit = |stiffness: f64, of: fn(&AreaLaw) -> [f64; 3], signs: [f64; 2]| {
         let scale = stiffness * length_ratio;
-        let stiffening: f64 = laws().map(|law| scale * of(law)[2].powi(2) / law.per_pressure).sum();
+        let slopes = [0, 1].map(|row| f64::from(there[row]) * signs[row] * of(&wet.area[row])[2]);
+        let stiffening = scale * over_compliance(own, wet.per_other_pressure, slopes);
         let limits = laws().map(of).filter(|[_, half_difference, _]| *half_difference > 0.0);
         let limits = limits.map(|[width, half_difference, _]| width / (scale * half_difference) * (1.0 - stiffening));
         limits.fold(f64::INFINITY, f64::min)
     };
     (
-        limit(model.section.bending_stiffness, |law| {
-            [law.moment_width, law.moment_half_difference, law.moment_mean]
-        }),
-        limit(model.section.axial_stiffness, |law| {
-            [law.force_width, law.force_half_difference, law.force_mean]
-        }),
+        limit(
+            model.section.bending_stiffness,
+            |law| [law.moment_width, law.moment_half_difference, law.moment_mean],
+            ROWS,
+        ),
+        limit(
+            model.section.axial_stiffness,
+            |law| [law.force_width, law.force_half_difference, law.force_mean],
+            [1.0; 2],
+        ),
     )
 }
 

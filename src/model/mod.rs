@@ -215,6 +215,12 @@ impl Model {
         }
     }
 
+    /// Section of a segment.
+    #[inline]
+    pub fn section_of(&self, segment: usize) -> &Section {
+        self.sections.get(segment).unwrap_or(&self.section)
+    }
+
     /// True if a segment has a bladder.
     fn has_bladders(&self, segment: usize) -> bool {
         let wet = self.wet.as_ref().filter(|wet| wet.per_row > 0);
@@ -244,6 +250,7 @@ impl Model {
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);
             // the length of a beam of such segments
             model.length = wet.bladder_length * wet.per_row as f64 / law.length_ratio;
+            wet.per_other_pressure = law.per_other_pressure;
             let there = wet.pair(segment).map(|bladder| wet.storage[bladder]);
             for (row, storage) in wet.storage.chunks_mut(wet.per_row).zip(there) {
                 row.fill(storage);

@@ -24,7 +24,7 @@ const FAR: f64 = 1e6;
 /// of its compliance, so the work per length of each alone is half its square. With `r = φ_b l_b`:
 ///
 /// ```text
-/// M/√EI ... N/√EA ... p √(r a_p)         L = 1 + [0 C; D 0]
+/// M/√EI ... N/√EA ... p √(r a_p)         L = 1 + [0 C; D X]     X = a_x/√(a_p,u a_p,d) off the diagonal
 /// C = [√EI ∂α_p/∂p; √EA ∂λ_p/∂p]/√(r a_p)       D = √(r/a_p) [√EI (R A_M)', √EA A_N']
 /// passive: least eigenvalue of (L + Lᵀ)/2 > 0      reciprocal: L = Lᵀ      defect |L - Lᵀ|/|L + Lᵀ - 2|
 /// ```
@@ -59,6 +59,7 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
         l[(1, 2 + k)] = ea * wet.coupling.stretch(&wet.strains, force, upper, lower) / fluid[k];
         l[(2 + k, 0)] = ei * law.moment_slope(moment, row) * there[k] * ratio / fluid[k];
         l[(2 + k, 1)] = ea * law.force_slope(force) * there[k] * ratio / fluid[k];
+        l[(2 + k, 3 - k)] = wet.pressure_correlation();
     }
     let symmetric = (l + l.transpose()) * 0.5;
     let eigen = SymmetricEigen::new(symmetric);

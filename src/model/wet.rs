@@ -13,6 +13,8 @@ use crate::numerics::Scalar;
 pub struct SegmentLaw {
     /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
     pub area: [AreaLaw; 2],
+    /// `a_x`: area of each bladder per pressure of the other one [m^2/Pa]; zero unless both exist.
+    pub per_other_pressure: f64,
     /// Slopes by which pressure strains the beam; those of omitted effects are zero.
     pub strains: [AreaLaw; 2],
     /// Strains caused by pressure.
@@ -33,6 +35,10 @@ impl SegmentLaw {
         let along = |bladders| case.fluid.as_ref().and_then(|fluid| AlongBladder::new(bladders, fluid));
         Self {
             area,
+            per_other_pressure: match values.rows {
+                [true, true] => rows[0].area_per_other_pressure_m2_per_pa,
+                _ => 0.0,
+            },
             strains: area,
             coupling: CouplingLaw::new(&values.beam, rows[0]),
             length_ratio: rows[0].length_m * rows[0].per_row as f64 / values.beam.length_m,
@@ -51,6 +57,8 @@ pub struct Wet {
     pub bladder_length: f64,
     /// Area changes of the cells of an upper and of a lower bladder; slopes of omitted effects are zero.
     pub area: [AreaLaw; 2],
+    /// `a_x`: area of a bladder per pressure of the other one of its segment [m^2/Pa].
+    pub per_other_pressure: f64,
     /// Contact between the walls of a bladder; none if omitted.
     pub closing: Option<WallClosing>,
     /// Compression of the fluid; none for incompressible fluid.
@@ -172,6 +180,34 @@ impl Wet {
         ratios.reduce(f64::max).unwrap_or(1.0)
     }
 
+    /// `a_x` of a segment [m^2/Pa].
+    #[inline]
+    pub fn per_other_pressure_of(&self, segment: usize) -> f64 {
+        self.segments
+            .get(segment)
+            .map_or(self.per_other_pressure, |law| law.per_other_pressure)
+    }
+
+    /// `a_x/√(a_p,u a_p,d)`, between -1 and 1.
+    pub fn pressure_correlation(&self) -> f64 {
+        let [upper, lower] = self.area.map(|law| law.per_pressure);
+        self.per_other_pressure / (upper * lower).sqrt()
+    }
+
+    /// Energy of a segment beyond its quadratic part; none without bladders there.
+    #[inline]
+    pub fn strain_energy_of(&self, segment: usize) -> Option<&StrainPotential> {
+        let law = self.strain_energy.as_ref();
+        law.filter(|_| self.pair(segment).into_iter().any(|bladder| self.has(bladder)))
+    }
+
+    /// True if the area of a bladder has a part by the section's energy at finite strain, or by the pressure of the other bladder.
+    pub fn has_excess(&self, bladder: usize) -> bool {
+        let segment = self.segment_and_row(bladder).0;
+        let excess = self.strain_energy.is_some() || self.per_other_pressure_of(segment) != 0.0;
+        excess && self.has(bladder)
+    }
+
     /// Makes the areas of all bladders unknowns.
     pub fn flow_everywhere(&mut self) {
         let there = self.storage.iter_mut().filter(|storage| **storage != Storage::Absent);
@@ -258,6 +294,7 @@ impl Wet {
             per_row: bladders.per_row,
             bladder_length: bladders.length_m,
             area,
+            per_other_pressure: bladders.area_per_other_pressure_m2_per_pa,
             closing: bladders.closing.as_ref().map(WallClosing::new),
             compression: fluid.and_then(Compression::new),
             strains: area,

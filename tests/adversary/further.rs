@@ -54,6 +54,12 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
     if r.one_in(4) {
         unlike_halves(r, b, case);
     }
+    if wet && r.one_in(4) {
+        let own = case["bladders"]["area_per_pressure_m2_per_pa"]
+            .as_f64()
+            .expect("an area");
+        case["bladders"]["area_per_other_pressure_m2_per_pa"] = short(own * r.between(-0.4, 0.4));
+    }
 }
 
 /// A neutral axis beside mid-height, with the beam's line there or at mid-height, and a softer lower row.

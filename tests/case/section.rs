@@ -57,6 +57,34 @@ fn a_case_takes_its_numbers_from_its_section() {
     assert_eq!(preset.beam, case.beam);
 }
 
+/// Goal: the area per pressure of the other row is that of the cell if it exceeds the accepted error of coefficients, as behind a thin wall, also in
+/// a case that `slcbeam coefficients` writes; else it is absent, as for the shipped section.
+#[test]
+fn a_case_takes_a_cross_term_that_matters() {
+    let of = |sets: &[&str]| {
+        let case = read(sets).unwrap();
+        let bladders = case.bladders.as_ref().unwrap();
+        let ratio = bladders.area_per_other_pressure_m2_per_pa / bladders.area_per_pressure_m2_per_pa;
+        (ratio, case.origins.get("/bladders/area_per_other_pressure_m2_per_pa"))
+    };
+    assert_eq!(of(&[]), (0.0, None));
+    let thin = json!({"center_m": 0.003, "shape": {"rounded_rectangle": {"along_m": 0.006, "high_m": 0.005, "fillet_m": 0.0015}}});
+    let upper = format!("/section/bladders/upper={thin}");
+    let (ratio, origin) = of(&[&upper, "/section/three_d=false"]);
+    assert!((-0.4..-0.1).contains(&ratio), "{ratio}");
+    assert_eq!(origin, Some(Origin::Section { three_d: false }));
+    let mut section: Value = serde_json::from_str(CASE).unwrap();
+    section["section"]["bladders"]["upper"] = thin;
+    section["section"]["three_d"] = json!(false);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("own.json");
+    let written = coefficients(&["--case", path.to_str().unwrap()], &section["section"]);
+    assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+    let own = case::load(&path, &[]).unwrap().bladders.unwrap();
+    let again = own.area_per_other_pressure_m2_per_pa / own.area_per_pressure_m2_per_pa;
+    assert!((again / ratio - 1.0).abs() < 1e-9, "{again} {ratio}");
+}
+
 /// Goal: the case of a result keeps its section beside the numbers: it reads back as the same case with the same origins; `--set` of the
 /// section or the length changes it as the case that it came from; a number that is not the section's stays, and says so.
 #[test]

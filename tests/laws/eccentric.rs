@@ -30,7 +30,7 @@ fn pressed(beam: &Value, bladders: &Value, extra: &Value) -> Value {
     case
 }
 
-fn merge(into: &mut Value, from: &Value) {
+pub fn merge(into: &mut Value, from: &Value) {
     for (key, value) in from.as_object().unwrap() {
         match into.get_mut(key).filter(|old| old.is_object() && value.is_object()) {
             Some(old) => merge(old, value),
@@ -39,12 +39,18 @@ fn merge(into: &mut Value, from: &Value) {
     }
 }
 
-/// Tip deflection, extension and angle of the equilibrium.
-fn tip(value: &Value) -> [f64; 3] {
+/// Quantities of the equilibrium by their names.
+pub fn at_rest<const N: usize>(value: &Value, names: [&str; N]) -> [f64; N] {
     let case = parse(value);
     let path = follow(&case, &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
+    assert!(path.fault.is_none(), "{:?}", path.fault);
     let all = columns(&system(&case, 1.0).unwrap());
-    ["tip_u1", "tip_u3", "tip_angle"].map(|name| path.last().row[all.iter().position(|c| c.name == name).unwrap()])
+    names.map(|name| path.last().row[all.iter().position(|c| c.name == name).unwrap()])
+}
+
+/// Tip deflection, extension and angle of the equilibrium.
+fn tip(value: &Value) -> [f64; 3] {
+    at_rest(value, ["tip_u1", "tip_u3", "tip_angle"])
 }
 
 fn dry(beam: &Value, ends: &Value, cells: usize) -> Value {
@@ -297,7 +303,6 @@ fn a_beam_strains_as_the_cell_of_its_section() {
         {
             let strain = |i: usize| (0..4).map(|j| c[i][j] * by[j]).sum::<f64>();
             let [_, u3, angle] = case(end.clone(), [by[2], by[3]], Some(0.0));
-            // the plane cell leaves out the opening of one row by the other's pressure
             for (found, expected) in [(u3, length * strain(0)), (angle, -length * strain(1))] {
                 assert!(
                     (found / expected - 1.0).abs() < 2e-4,

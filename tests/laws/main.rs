@@ -16,6 +16,7 @@ mod jacobian;
 mod kinematics;
 mod network;
 mod nonlinear;
+mod other_pressure;
 mod pump_curves;
 mod reactions;
 mod rotating_frame;

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 use slcbeam::case::{self, Case};
-use slcbeam::model::{Model, audit};
 use slcbeam::run::dynamics;
 use slcbeam::run::equilibrium::{EquilibriumOptions, follow};
 use slcbeam::run::record::{Control, Memory};
@@ -128,26 +127,4 @@ fn a_junction_below_vacuum_is_told() {
     let summary = run(&sucked(port, json!(["j"]), Some(tube), json!({})));
     let warning = told(&summary.warnings, "W040").expect("a warning");
     assert!(warning.contains("in junction \"j\" at t = "), "{warning}");
-}
-
-/// Beginning of the warning about a cross term.
-const CROSS_TERM: &str = "W022 The model leaves out the area";
-
-/// Goal: the size of a section's cross term is reported if walls between the rows are thin, but not for the shipped section.
-#[test]
-fn a_cross_term_that_is_left_out_is_told() {
-    let told_of = |sets: &[String]| {
-        let case = case::load("cases/section-actuator.json".as_ref(), sets).unwrap();
-        let model = Model::new(&case).unwrap();
-        audit::warnings(&case, &model, &std::collections::BTreeMap::new())
-    };
-    assert_eq!(told(&told_of(&[]), CROSS_TERM), None);
-    let near =
-        r#"{"center_m": 0.0034, "shape": {"rounded_rectangle": {"along_m": 5e-3, "high_m": 5e-3, "fillet_m": 1e-3}}}"#;
-    let warnings = told_of(&[
-        format!("/section/bladders/upper={near}"),
-        "/section/three_d=false".into(),
-    ]);
-    let warning = told(&warnings, CROSS_TERM).expect("a warning");
-    assert!(warning.contains("% of area_per_pressure_m2_per_pa"), "{warning}");
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{finest, paper, with_shapes};
 use slcbeam_section::finite::{Drive, FiniteCell, Law, SectionState, cavity};
-use slcbeam_section::input::{Row, Section};
+use slcbeam_section::input::{Row, Section, Shape};
 use slcbeam_section::level::Level;
 
 const LAWS: [Law; 4] = [
@@ -254,4 +254,54 @@ fn a_cavitys_volume_is_that_of_its_outline() {
     };
     let whole: f64 = (0..4).map(part).sum();
     assert!((whole - 6.0 * (1.0 + g0 + g1 * 5.0)).abs() < 1e-13);
+}
+
+/// A section whose rows are rectangular pockets beside a wall of this thickness [m].
+fn pockets(wall: f64, heights: [f64; 2]) -> Section {
+    let pocket = |height: f64, sign: f64| {
+        let shape = Shape::RoundedRectangle {
+            along_m: 0.006,
+            high_m: height,
+            fillet_m: 0.2 * wall,
+        };
+        Some((sign * 0.5 * (wall + height), shape))
+    };
+    let mut section = with_shapes(0.45, pocket(heights[0], 1.0), pocket(heights[1], -1.0));
+    section.bladders.length_m = section.width_m;
+    section
+}
+
+/// Source: Maxwell. Goal: pressure in either of two unlike rows changes the area of the other alike, by finite elements under both loads, as the
+/// linear cell has it.
+#[test]
+fn pressure_in_one_row_acts_on_the_other_reciprocally() {
+    let (cell, level) = cells(&pockets(0.001, [0.005, 0.003]), Law::SaintVenantKirchhoff, 1);
+    let slope = |pressures: [f64; 2], row: usize| {
+        let area = |sign: f64| {
+            let found = cell.equilibrium(Drive::Load([0.0; 2]), pressures.map(|p| sign * p));
+            found.unwrap().areas_m2[row]
+        };
+        (area(1.0) - area(-1.0)) / 200.0
+    };
+    let [lower, upper] = [slope([100.0, 0.0], 1), slope([0.0, 100.0], 0)];
+    println!("{lower:e} {upper:e}");
+    assert!((lower / upper - 1.0).abs() < 1e-4 && lower < 0.0, "{lower:e} {upper:e}");
+    let linear = level.compliance[2][3] * 0.01 / 0.05;
+    assert!((lower / linear - 1.0).abs() < 1e-4, "{lower:e} {linear:e}");
+}
+
+/// Source: a clamped strip under pressure bulges by `(1 - ν²) L⁵/(60 E t³)`. Goal: the wall between two pockets does so into the other one,
+/// the closer the thinner it is; shear and the give of its clamps go with t/L.
+#[test]
+fn a_thin_wall_between_the_rows_bulges_as_a_plate() {
+    let off = [0.0006, 0.0003].map(|wall| {
+        let section = pockets(wall, [0.004; 2]);
+        let (_, level) = cells(&section, Law::NeoHookean, 2);
+        let per_cell = section.bladders.length_m / section.pitch_m;
+        let plate =
+            (1.0 - 0.45_f64.powi(2)) * 0.006_f64.powi(5) / (60.0 * section.material.young_modulus_pa * wall.powi(3));
+        -level.compliance[2][3] / per_cell / plate - 1.0
+    });
+    println!("{off:?}");
+    assert!(off[1] > 0.0 && off[1] < 0.2 && off[1] < 0.6 * off[0], "{off:?}");
 }

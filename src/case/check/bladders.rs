@@ -23,6 +23,7 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             fits(case, bladders, faults);
             slopes(bladders, faults);
             lower_row(case, bladders, faults);
+            coefficients::other_pressure(case, bladders, faults);
             if let Some(energy) = &bladders.strain_energy {
                 strain_energy(case, bladders, energy, faults);
             }

@@ -4,7 +4,9 @@ use std::f64::consts::PI;
 
 use crate::case::faults::Violations;
 use crate::case::numbers::{digits, plain};
-use crate::case::schema::{Case, Coupling};
+use crate::case::schema::{Bladders, Case, Coupling, LowerRow};
+use crate::case::spans;
+use crate::error::numbers::significant;
 use crate::error::{Code, Violation};
 
 /// Largest accepted ratio of a coefficient to its estimate. Thin walls make bladders some hundred times softer than a block of their size.
@@ -94,4 +96,35 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let circle = (area * area / (8.0 * PI), &SIZES[..]);
         look("/bladders/permeability_m4", permeability, circle, "m^4", duct);
     }
+}
+
+/// Checks the area per pressure of the other row.
+pub(super) fn other_pressure(case: &Case, bladders: &Bladders, faults: &mut Violations) {
+    let at = "/bladders/area_per_other_pressure_m2_per_pa";
+    if bladders.lower == LowerRow::None && bladders.area_per_other_pressure_m2_per_pa != 0.0 {
+        let what = "an area per pressure of the other row, in a beam with one row";
+        faults.push(Violation::new(Code::Together, at, what).hint("remove it, or /bladders/lower"));
+    } else if let Some(lower) = spans::lower_bladders(case)
+        && let Some(fault) = not_passive(bladders, &lower, at)
+    {
+        faults.push_beside(&["/bladders/area_per_pressure_m2_per_pa"], fault);
+    }
+}
+
+/// Fault at a pointer if pressures in both rows release energy: `a_x² >= a_p,u a_p,d`.
+pub(super) fn not_passive(upper: &Bladders, lower: &Bladders, at: &str) -> Option<Violation> {
+    let cross = upper.area_per_other_pressure_m2_per_pa;
+    let own = [upper, lower].map(|row| row.area_per_pressure_m2_per_pa);
+    let most = (own[0] * own[1]).sqrt();
+    (cross != 0.0 && cross.abs() >= most).then(|| {
+        let what = format!(
+            "the area per pressure of the other row is {} m^2/Pa, that per own pressure {} m^2/Pa. Pressures in both rows release energy",
+            significant(cross, 3),
+            significant(most, 3)
+        );
+        let fault = Violation::new(Code::Slopes, at, what);
+        fault
+            .allowed(format!("below {} m^2/Pa in size", significant(most, 3)))
+            .hint("a wall between two bladders opens one by less than the other closes")
+    })
 }

@@ -3,10 +3,13 @@
 use super::{bladders, coefficients, plausible, strength};
 use crate::case::faults::Violations;
 use crate::case::numbers::rounded as plain;
-use crate::case::schema::{Beam, Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
+use crate::case::schema::{Beam, Bladders, Case, Formulation, ROUNDING, Span, SpanLengths, SpanRows};
 use crate::case::spans;
 use crate::error::numbers::{counted, significant};
 use crate::error::{Code, Violation};
+
+/// Key of the area per pressure of the other row.
+const OTHER_PRESSURE: &str = "area_per_other_pressure_m2_per_pa";
 
 pub(super) fn check(case: &Case, faults: &mut Violations) {
     // a number of segments that is not allowed is reported by the schema
@@ -25,6 +28,12 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
             let fault = Violation::new(Code::Together, format!("/spans/{k}/bladders"), what);
             faults.push(fault.hint("give \"rows\", or remove \"bladders\" from the span"));
         }
+        if span.rows != SpanRows::Both && span.bladders.area_per_other_pressure_m2_per_pa.is_some() {
+            let pointer = format!("/spans/{k}/bladders/{OTHER_PRESSURE}");
+            let what = "the span has an area per pressure of the other row, but not both rows";
+            faults
+                .push(Violation::new(Code::Together, pointer, what).hint("remove it: its bladders have no other row"));
+        }
         if span.beam.shear_stiffness_n.is_some() && case.beam.shear_stiffness_n.is_none() {
             let pointer = format!("/spans/{k}/beam/shear_stiffness_n");
             let fault = Violation::new(Code::Together, pointer, "shear in one span of a beam without shear");
@@ -37,14 +46,33 @@ pub(super) fn check(case: &Case, faults: &mut Violations) {
         let fault = Violation::new(Code::Together, "/spans", "no span has bladders");
         faults.push(fault.hint("give \"rows\" of a span, or null for /bladders, /fluid and /network: a dry beam"));
     }
-    uniform_only(case, faults);
     near_borders(case, faults);
     if faults.is_empty() {
         values(case, faults);
     }
+    let energy = |bladders: &Bladders| bladders.strain_energy.is_some();
+    if faults.is_empty()
+        && case.bladders.as_ref().is_some_and(energy)
+        && let Some(span) = spans::first_of_other_section(case)
+    {
+        let what = "the span has bladders in another section than that of /bladders/strain_energy";
+        let fault = Violation::new(Code::Together, format!("/spans/{span}"), what);
+        let allowed = "the section, the bladders and the rows of the case, or \"rows\": \"none\"";
+        faults.push(
+            fault
+                .allowed(allowed)
+                .hint("or remove the strain energy; the section is then linear"),
+        );
+    }
     if faults.is_empty() {
         let (all, lengths) = (spans::segments(case), spans::segment_lengths(case));
         for ((span, _), (values, length)) in spans::places(case).into_iter().zip(all.iter().zip(lengths)) {
+            if let (Some([upper, lower]), [true, true]) = (&values.bladders, values.rows)
+                && let Some(fault) = coefficients::not_passive(upper, lower, &format!("/spans/{span}"))
+            {
+                faults.push(fault);
+                break;
+            }
             let rows = values.present().collect::<Vec<_>>();
             if let Some(what) = bladders::too_large(&values.beam, rows.into_iter(), length) {
                 let fault = Violation::new(Code::Geometry, format!("/spans/{span}"), what);
@@ -118,11 +146,8 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
     if case.beam.viscoelasticity.is_some() {
         refuse("/beam/viscoelasticity", "a relaxing material", same);
     }
-    if case
-        .bladders
-        .as_ref()
-        .is_some_and(|bladders| bladders.strain_energy.is_some())
-    {
+    let energy = |bladders: &Bladders| bladders.strain_energy.is_some() && spans::has_eccentric_bladders(case);
+    if case.bladders.as_ref().is_some_and(energy) {
         refuse("/bladders/strain_energy", "a section at finite strain", same);
     }
     if case.segments().saturating_mul(case.mesh.cells_per_segment) < 2 {
@@ -309,7 +334,8 @@ fn counts(case: &Case, all: &SpanLengths, number: &str, segments: usize, faults:
 /// Checks that every value is positive in the middle of every segment.
 fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
     let places = spans::places(case);
-    for (part, key, profile) in span.given().filter(|(_, key, _)| !key.contains("axis")) {
+    let signed = |key: &str| key.contains("axis") || key == OTHER_PRESSURE;
+    for (part, key, profile) in span.given().filter(|(_, key, _)| !signed(key)) {
         let here = places.iter().filter(|(span, _)| *span == k);
         let values = here.map(|(_, x)| profile.value(*x));
         if let Some(value) = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0) {
@@ -317,18 +343,5 @@ fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
             let fault = Violation::new(Code::Range, format!("/spans/{k}/{part}/{key}"), what);
             faults.push(fault.allowed("numbers above 0 throughout the span"));
         }
-    }
-}
-
-/// Rejects settings of which the equations are those of uniform beams.
-fn uniform_only(case: &Case, faults: &mut Violations) {
-    let mut refuse = |pointer: &str, what: &str, hint: &str| {
-        let fault = Violation::new(Code::Together, pointer, format!("{what} is not available with spans"));
-        faults.push(fault.hint(hint));
-    };
-    let Some(bladders) = &case.bladders else { return };
-    if bladders.strain_energy.is_some() {
-        let hint = "remove the strain energy; the section is then linear";
-        refuse("/bladders/strain_energy", "a section at finite strain", hint);
     }
 }

@@ -119,6 +119,10 @@ pub struct Bladders {
     /// `a_p` in `a1 = a_p p + R A_M(M) + A_N(N)`, (A.15): area per pressure [m^2/Pa].
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub area_per_pressure_m2_per_pa: f64,
+    /// `a_x` in `a1_R = a_p p_R + a_x p_(-R) + ..`: area of a bladder per pressure of the other bladder of its segment [m^2/Pa]; negative
+    /// if pressure in one row closes the other.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub area_per_other_pressure_m2_per_pa: f64,
     /// `aM-` (opening) and `aM+` (closing) in `A_M(M)`: area per bending moment [m^2/(N m)].
     pub area_per_moment_m2_per_n_m: AreaPerMoment,
     /// `aN-` (tension) and `aN+` (compression) in `A_N(N)`: area per normal force [m^2/N].
@@ -151,6 +155,7 @@ pub static NO_BLADDERS: Bladders = Bladders {
     permeability_m4: None,
     cross_section: None,
     area_per_pressure_m2_per_pa: 1.0,
+    area_per_other_pressure_m2_per_pa: 0.0,
     area_per_moment_m2_per_n_m: AreaPerMoment {
         opening: 0.0,
         closing: 0.0,
@@ -358,6 +363,10 @@ fn yes() -> bool {
 
 fn is_yes(value: &bool) -> bool {
     *value
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn default_kink_width() -> f64 {

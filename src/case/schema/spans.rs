@@ -145,6 +145,9 @@ pub struct SpanBladders {
     /// `a_p`: area per pressure [m^2/Pa].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_pressure_m2_per_pa: Option<Profile>,
+    /// `a_x`: area per pressure of the other bladder of the segment [m^2/Pa]; only where both rows have bladders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub area_per_other_pressure_m2_per_pa: Option<Profile>,
     /// Area per bending moment [m^2/(N m)].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area_per_moment_m2_per_n_m: Option<AreaPerMoment>,
@@ -160,6 +163,10 @@ impl SpanBladders {
             ("height_m", &self.height_m),
             ("width_m", &self.width_m),
             ("area_per_pressure_m2_per_pa", &self.area_per_pressure_m2_per_pa),
+            (
+                "area_per_other_pressure_m2_per_pa",
+                &self.area_per_other_pressure_m2_per_pa,
+            ),
         ])
     }
 

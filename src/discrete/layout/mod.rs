@@ -50,7 +50,7 @@ enum Name {
     Relaxed(&'static str, usize, usize),
     Segment(&'static str, usize),
     Area(usize, usize),
-    NonlinearArea(usize),
+    ExcessArea(usize),
     Junction(usize),
     Accumulator(usize),
     Stored(usize),
@@ -110,7 +110,7 @@ impl Layout {
 
     /// True if all bladders have equal contents in two states; false if a network has one common pressure.
     pub fn unfilled(&self, one: &[f64], other: &[f64]) -> bool {
-        let areas = self.network.area.clone().chain(self.coupling.nonlinear_area.clone());
+        let areas = self.network.area.clone().chain(self.coupling.excess_area.clone());
         self.network.lumped_pressure.is_empty() && areas.into_iter().all(|k| one[k] == other[k])
     }
 
@@ -150,7 +150,10 @@ impl Layout {
             Name::Relaxed(what, branch, place) => format!("{what} {place} in branch {} of relaxation", branch + 1),
             Name::Segment(what, segment) => format!("{what} of segment {}", segment + 1),
             Name::Area(b, cell) => format!("area change [m^2] of bladder {}, cell {}", bladder(b), cell + 1),
-            Name::NonlinearArea(b) => format!("nonlinear area change [m^2] of bladder {}", bladder(b)),
+            Name::ExcessArea(b) => format!(
+                "area change [m^2] by finite strain and other pressure of bladder {}",
+                bladder(b)
+            ),
             Name::Junction(j) => format!("pressure [Pa] of junction {}", j + 1),
             Name::Accumulator(k) => format!("volume [m^3] in accumulator {}", k + 1),
             Name::Stored(j) => format!("fluid [m^3] in tubes at junction {}", j + 1),

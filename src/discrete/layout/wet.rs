@@ -17,8 +17,10 @@ pub struct CouplingUnknowns {
     pub mean_moment: Range<usize>,
     /// Mean forces `Nbar_j`.
     pub mean_force: Range<usize>,
-    /// Area changes of bladders by the section's energy at finite strain.
-    pub nonlinear_area: Range<usize>,
+    /// Area changes of bladders by the section's energy at finite strain, and by the pressure of the other bladder.
+    pub excess_area: Range<usize>,
+    /// The bladders of these unknowns.
+    pub excess_bladders: Vec<usize>,
 }
 
 /// Unknowns of the fluid.
@@ -45,16 +47,29 @@ pub struct NetworkUnknowns {
 impl CouplingUnknowns {
     pub(super) fn new(model: &Model, wet: &Wet, mesh: &BeamMesh, build: &mut Builder) -> Self {
         let segments = |takes: bool| if takes { mesh.segments } else { 0 };
+        let excess_bladders: Vec<usize> = (0..2 * wet.per_row).filter(|b| wet.has_excess(*b)).collect();
         Self {
             mean_moment: build.segments("mean moment [N m]", segments(wet.takes_moments), model.scales.moment),
             mean_force: build.segments("mean normal force [N]", segments(wet.takes_forces), model.scales.force),
-            nonlinear_area: build.block(|build| {
+            excess_area: build.block(|build| {
                 let scale = wet.area[0].per_pressure * model.scales.pressure;
-                for bladder in (0..2 * wet.per_row).filter(|_| wet.strain_energy.is_some()) {
-                    build.push(Name::NonlinearArea(bladder), scale, scale, false);
+                for &bladder in &excess_bladders {
+                    build.push(Name::ExcessArea(bladder), scale, scale, false);
                 }
             }),
+            excess_bladders,
         }
+    }
+
+    /// Unknown excess of the area of a bladder.
+    pub fn excess_of(&self, bladder: usize) -> Option<usize> {
+        let place = self.excess_bladders.binary_search(&bladder).ok()?;
+        Some(self.excess_area.start + place)
+    }
+
+    /// Bladders with an unknown excess of area, each with the unknown.
+    pub fn excess(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.excess_bladders.iter().copied().zip(self.excess_area.clone())
     }
 }
 

@@ -40,8 +40,9 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
             look_along(wet, link, now, w, k);
         }
     }
-    let excess = &system.layout.coupling.nonlinear_area;
-    w.coupling.excess_area_rate.copy_from_slice(&yp[excess.clone()]);
+    for (bladder, unknown) in system.layout.coupling.excess() {
+        w.coupling.excess_area_rate[bladder] = yp[unknown];
+    }
     for (k, lumped) in wet.lumped.iter().enumerate() {
         w.fluid.lumped_rate[k] = match (&lumped.kind, system.layout.network.lumped_pressure[k]) {
             (LumpedKind::Port(port), _) => now.port_pressure_rate[*port],
@@ -59,7 +60,7 @@ pub fn complete(system: &System, now: &TimeData, yp: &[f64], w: &mut Workspace<f
     surplus(system, now, w);
 }
 
-/// Rate of a bladder's area by moment, force and finite strain.
+/// Rate of a bladder's area by moment, force, finite strain and the pressure of the other bladder.
 pub(super) fn imposed_rate(wet: &Wet, w: &Workspace<f64>, bladder: usize) -> f64 {
     let (j, row) = wet.place(bladder);
     let law = wet.area_of(bladder);

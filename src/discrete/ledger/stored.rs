@@ -6,7 +6,7 @@ use crate::model::ROWS;
 /// Energy stored in the bladders, including touching walls, [E71], for both couplings; p is the pressure on the walls:
 ///
 /// ```text
-/// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ]
+/// l_b Σ_{j,R} [ mean_k(a_p p_k²/2) + pbar (Nbar A_N'(Nbar) + Mbar (R A_M)'(Mbar)) ] + l_b Σ_j a_x pbar_u pbar_d
 /// ```
 pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) else {
@@ -14,6 +14,8 @@ pub fn energy(system: &System, w: &Workspace<f64>) -> f64 {
     };
     let mut sum = 0.0;
     for j in 0..wet.per_row {
+        let [upper, lower] = wet.pair(j).map(|bladder| w.fluid.mean_pressure[bladder]);
+        sum += wet.per_other_pressure_of(j) * upper * lower;
         for (bladder, row) in wet.pair(j).into_iter().zip(ROWS) {
             let cells = fluid.cells_of(bladder);
             let law = wet.area_of(bladder);

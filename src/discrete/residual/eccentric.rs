@@ -30,7 +30,10 @@ pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         let force = (w.shape.strain[end.cell] - pressure_stretch(system, w, end.cell)) * axial
             + (w.shape.kappa[end.beside] * 0.5 - T::constant(mean_rest(now, 0, end.cell))) * (axial * end.offset);
         let free = pressure_curvature(system, w, end.node) + T::constant(now.rest_curvature(end.node));
-        let moment = free * bending + T::constant(end.moment) - force * end.offset;
+        let mut moment = free * bending + T::constant(end.moment) - force * end.offset;
+        if let Some(nonlinear) = w.forces.nonlinear_moment.get(end.node) {
+            moment -= *nonlinear;
+        }
         w.shape.kappa[end.node] = moment * (1.0 / end.compliant(system));
     }
 }

@@ -51,7 +51,9 @@ pub fn unpack<T: Scalar>(system: &System, now: &TimeData, y: &[T], yp: &[T], w: 
     if let (Some(wet), Some(fluid)) = (&system.model.wet, &system.fluid) {
         copy(&mut w.coupling.mean_moment, y, &l.coupling.mean_moment);
         copy(&mut w.coupling.mean_force, y, &l.coupling.mean_force);
-        copy(&mut w.coupling.excess_area, y, &l.coupling.nonlinear_area);
+        for (bladder, unknown) in l.coupling.excess() {
+            w.coupling.excess_area[bladder] = y[unknown];
+        }
         for (mean, &given) in w.coupling.mean_force.iter_mut().zip(&now.statics.mean) {
             *mean = T::constant(given);
         }

@@ -5,7 +5,7 @@ use crate::discrete::extrema::MonitoredValues;
 use crate::discrete::fluid_mesh::{MeshFlow, MeshLink};
 use crate::discrete::ledger;
 use crate::discrete::quantities::{Observable, ObservableRow, StateView, probes, stations};
-use crate::discrete::residual::relaxation;
+use crate::discrete::residual::{nonlinear, relaxation};
 use crate::discrete::{System, TimeData, Workspace, injected_volume};
 use crate::run::range::Limits;
 use crate::run::record::HistoryColumn;
@@ -162,8 +162,8 @@ fn fluid(w: &Workspace<f64>, to: &System, z: &mut [f64]) {
     if wet.takes_forces {
         z[means.mean_force.clone()].copy_from_slice(&w.coupling.mean_force);
     }
-    if wet.strain_energy.is_some() {
-        z[means.nonlinear_area.clone()].copy_from_slice(&w.coupling.nonlinear_area);
+    for (bladder, unknown) in means.excess() {
+        z[unknown] = nonlinear::excess_area(wet, w, bladder);
     }
     let cells = w.fluid.area.len().checked_div(2 * wet.per_row).unwrap_or(1);
     // as many cells as before, or one for all cells of a bladder

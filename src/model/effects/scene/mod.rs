@@ -13,7 +13,7 @@ use std::cell::OnceCell;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::case::schema::Case;
-use crate::case::{ResolvedEnd, Rotation, Translation};
+use crate::case::{ResolvedEnd, Rotation, Translation, spans};
 use crate::functions::Signal;
 use crate::model::characteristic::first_wave_number;
 use crate::model::network::NetworkNode;
@@ -305,7 +305,8 @@ impl<'a> EffectScene<'a> {
 
     /// Smallest and largest area stored per pressure at the scene's pressures [m^2/Pa].
     pub(super) fn compliances(&self, wet: &Wet) -> [f64; 2] {
-        [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure))
+        let bulging = wet.pressure_correlation().abs();
+        [1.0, -1.0].map(|sign| wet.compliance_at(sign * self.scales.pressure) * (1.0 - sign * bulging))
     }
 
     /// A frequency of the beam with its instantaneous stiffness if the solid relaxes [1/s].
@@ -338,7 +339,11 @@ impl<'a> EffectScene<'a> {
     pub fn strain_energy(&self) -> f64 {
         let law = self.wet.and_then(|wet| Some((wet, wet.strain_energy.as_ref()?)));
         let Some((wet, law)) = law else { return 0.0 };
-        let (ea, ei) = (self.section.axial_stiffness, self.section.bending_stiffness);
+        // sections without bladders have no such energy
+        let sections = Section::of_segments(self.case, &spans::segments(self.case));
+        let own = (0..wet.per_row).find(|j| wet.strain_energy_of(*j).is_some());
+        let own = own.and_then(|j| sections.get(j)).unwrap_or(self.section);
+        let (ea, ei) = (own.axial_stiffness, own.bending_stiffness);
         let sudden = 1.0 + self.inertia_ratio(self.bending).min(2.0);
         let pressure = self.scales.pressure * sudden;
         let stored = wet.length_ratio(self.case.beam.length_m) * wet.area[0].per_pressure;
