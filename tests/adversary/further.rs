@@ -104,7 +104,7 @@ fn rotating_frame(r: &mut Random, b: &Beam, case: &mut Value) {
     }
 }
 
-/// Two or three spans of other materials.
+/// Two or three spans of other materials, some of them tapered or with segments of their own length.
 fn spans(r: &mut Random, b: &Beam, case: &mut Value) {
     let count = |at: &str| case.pointer(at).and_then(Value::as_u64);
     let segments = count("/bladders/per_row").or(count("/mesh/segments")).unwrap_or(10);
@@ -115,6 +115,9 @@ fn spans(r: &mut Random, b: &Beam, case: &mut Value) {
     let span = |r: &mut Random, length: Option<u64>| {
         let modulus = case["beam"]["young_modulus_pa"].as_f64().expect("a modulus") * r.log(0.2, 20.0);
         let mut one = json!({"beam": {"young_modulus_pa": short(modulus)}});
+        if r.one_in(3) {
+            one["beam"]["height_m"] = json!({"linear": [b.height, b.height * r.between(1.0, 1.4)]});
+        }
         if let Some(length) = length {
             one["length_m"] = json!(length as f64 * pitch);
         }
@@ -124,6 +127,23 @@ fn spans(r: &mut Random, b: &Beam, case: &mut Value) {
     let mut all = vec![span(r, Some(first)), span(r, None)];
     if r.one_in(2) {
         all.push(span(r, Some(1)));
+    }
+    if r.one_in(3) {
+        let own = pitch * r.between(0.7, 1.3);
+        let rest = (b.length - first as f64 * own) / (segments - first) as f64;
+        let last = all.len() - 1;
+        all[0]["length_m"] = json!(first as f64 * own);
+        all[0]["segments"] = json!(first);
+        if last == 2 {
+            all[last]["length_m"] = json!(rest);
+            all[last]["segments"] = json!(1);
+        }
+        if let Some(width) = case.pointer("/bladders/width_m").and_then(Value::as_f64) {
+            all[0]["bladders"] = json!({"width_m": short(width.min(0.9 * own))});
+            for one in &mut all[1..] {
+                one["bladders"] = json!({"width_m": short(width.min(0.9 * rest))});
+            }
+        }
     }
     case["spans"] = json!(all);
 }
