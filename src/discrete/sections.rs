@@ -1,7 +1,7 @@
 //! Stiffness and inertia of the beam's sections on a mesh.
 
 use super::BeamMesh;
-use crate::model::{Model, Section};
+use crate::model::{Model, NodeBending, Section};
 
 /// `[E83]` Sections along the beam. A cell has the section of its segment. At a node between two segments the moment is continuous, so that
 /// compliances add, with those of their bladders:
@@ -17,6 +17,8 @@ pub struct MeshSections {
     pub axial: Vec<f64>,
     /// `EI` of each node [N m^2].
     pub bending: Vec<f64>,
+    /// Moment-curvature laws of the nodes, [E91]; empty if all are linear.
+    pub laws: Vec<NodeBending>,
     /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
     pub farthest_fiber: Vec<f64>,
     /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
@@ -73,6 +75,14 @@ impl MeshSections {
                 true => left.bending_stiffness,
                 false => 2.0 / (1.0 / left.bending_stiffness + 1.0 / right.bending_stiffness),
             }),
+            laws: match &model.bending[..] {
+                [] => vec![],
+                laws => (0..mesh.nodes)
+                    .map(|node| mesh.segments_of_node(node))
+                    .map(|(left, right)| [left, right].map(|segment| laws.get(segment).unwrap_or(&laws[0])))
+                    .map(|[left, right]| NodeBending::new(left, right))
+                    .collect(),
+            },
             bending_of_cells: cells(|section| section.bending_stiffness),
             farthest_fiber: nodes(&|left, right| left.farthest_fiber().max(right.farthest_fiber())),
             offset: match cells(|section| section.offset) {

@@ -33,7 +33,7 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
         limits.fold(f64::INFINITY, f64::min)
     };
     (
-        limit(model.section.bending_stiffness, |law| {
+        limit(model.section.steepest_bending, |law| {
             [law.moment_width, law.moment_half_difference, law.moment_mean]
         }),
         limit(model.section.axial_stiffness, |law| {
