@@ -177,9 +177,19 @@ fn ratio(_: &Sizes) -> Option<f64> {
 /// a_p, a_x ~ h_b w_b/E     aN ~ h_b w_b/(E w_s h_s)    aM ~ h_b w_b/(E w_s h_s²)
 /// q1b ~ h_b³ w_b³/(h_b² + w_b²)                        q1c ~ r_c⁴
 /// ```
-pub(super) const LAWS: [Law; 25] = [
+pub(super) const LAWS: [Law; 27] = [
     law("/beam/axial_stiffness_factor", ratio, Sizes::whole),
     law("/beam/bending_stiffness_factor", ratio, Sizes::whole),
+    law(
+        "/beam/moment_curvature/curvature_1_m",
+        |s| Some(s.section[0].recip()),
+        Sizes::whole,
+    ),
+    law(
+        "/beam/moment_curvature/moment_n_m",
+        |s| Some(s.modulus * s.section[0].powi(2) * s.section[1]),
+        Sizes::whole,
+    ),
     law("/beam/neutral_axis_m", |s| Some(s.section[0]), Sizes::whole),
     law(
         "/beam/shear_stiffness_n",

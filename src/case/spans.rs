@@ -240,6 +240,12 @@ fn change(case: &mut Value, numbers: &[(String, f64)]) {
     CoefficientSizes::default().change(case, &numbers);
 }
 
+/// True if the beam or a span has a moment-curvature law.
+pub fn bends_nonlinearly(case: &Case) -> bool {
+    let mut spans = case.spans.iter().map(|span| &span.beam.moment_curvature);
+    case.beam.moment_curvature.is_some() || spans.any(Option::is_some)
+}
+
 /// Least Young's modulus of the solid [Pa].
 pub fn softest_modulus(case: &Case) -> f64 {
     let moduli = segments(case).into_iter().map(|values| values.beam.young_modulus_pa);
@@ -289,6 +295,9 @@ fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64, length: Option<f
         false => [here(&whole[0]), here(&whole[1])],
     };
     let mut beam: Beam = serde_json::from_value(upper["beam"].take()).unwrap_or_else(|_| case.beam.clone());
+    if let Some(law) = &span.beam.moment_curvature {
+        beam.moment_curvature = Some(law.clone());
+    }
     let row = |here: &mut Value| -> Option<Bladders> {
         serde_json::from_value(here["bladders"].take()).unwrap_or_else(|_| case.bladders.clone())
     };
@@ -300,6 +309,7 @@ fn values(case: &Case, whole: &[Value; 2], span: &Span, x: f64, length: Option<f
         let own = |profile: &Option<_>, full: f64, value: f64| if profile.is_some() { value } else { full };
         beam.axial_stiffness_factor = own(&span.beam.axial_stiffness_factor, 1.0, beam.axial_stiffness_factor);
         beam.bending_stiffness_factor = own(&span.beam.bending_stiffness_factor, 1.0, beam.bending_stiffness_factor);
+        beam.moment_curvature.clone_from(&span.beam.moment_curvature);
         beam.neutral_axis_m = own(&span.beam.neutral_axis_m, 0.0, beam.neutral_axis_m);
         beam.mass_factor = beam.mass_factor.filter(|_| span.beam.mass_factor.is_some());
         if span.beam.shear_stiffness_n.is_none() {

@@ -6,6 +6,7 @@ use super::angle_unwrapping::tip_angle;
 use super::quantities::evaluate;
 use super::workspace::Motion;
 use super::{CompleteState, FluidMesh, System, TimeData, Workspace, contact_points, crossing, ledger};
+use crate::discrete::residual::bending::{elastic_curvature, relative_stiffness};
 use crate::discrete::residual::solid::node_stretch;
 use crate::discrete::residual::{nonlinear, relaxation};
 use crate::model::{Kinematics, Wet};
@@ -42,6 +43,9 @@ pub struct MonitoredValues {
     pub deflection: f64,
     /// Largest displacement of a node relative to the root [m].
     pub moved: f64,
+    /// Largest elastic curvature over the end of the node's moment-curvature table, and its node.
+    #[serde(default)]
+    pub bent: (f64, usize),
 }
 
 /// Names of the values in a [`MonitoredValues`].
@@ -126,6 +130,7 @@ impl MonitoredValues {
         g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);
         (g.thinnest, g.thinnest_at) = evaluate::thinnest(system, now, w);
         g.crossing = crossing::first(system, w);
+        g.bent = bent(system, now, w);
         g.fluid(system, now, w);
         g
     }
@@ -237,6 +242,13 @@ fn moved(w: &Workspace<f64>) -> (f64, f64) {
     (across, squared.sqrt())
 }
 
+/// Largest elastic curvature over the end of the node's moment-curvature table, and its node.
+fn bent(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f64, usize) {
+    let laws = system.sections.laws.iter().enumerate();
+    let shares = laws.map(|(node, law)| (law.share(elastic_curvature(system, now, w, node)), node));
+    shares.fold((0.0, 0), |most, one| if one.0 > most.0 { one } else { most })
+}
+
 /// Rate of the tip's angle [rad/s], from its last cell and half a cell of the end's curvature.
 fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
     let last = system.mesh.nodes - 1;
@@ -247,7 +259,9 @@ fn tip_angle_rate(system: &System, now: &TimeData, w: &Workspace<f64>) -> f64 {
         Some(_) => w.shape.kappa_rate[last],
         None => {
             let given = now.ends[1].moment.rate / system.sections.bending[last];
-            relaxation::curvature_rate(system, now, w, last, given + now.rest_curvature_rate(last), 1.0)
+            let bent = relative_stiffness(system, now, w, last);
+            let alpha_rate = given + bent * now.rest_curvature_rate(last);
+            relaxation::curvature_rate(system, now, w, last, alpha_rate, bent)
         }
     };
     w.shape.angle_rate[last - 1] - 0.5 * system.mesh.lengths[last - 1] * curvature_rate

@@ -1,6 +1,7 @@
 //! Initial angles of sections that shear: their moments balance in the given shape of the beam.
 
 use super::angle_unwrapping::nearest;
+use super::residual::bending::relative_stiffness;
 use super::{System, TimeData, Workspace, residual};
 use crate::case::Rotation;
 use crate::model::Kinematics;
@@ -49,7 +50,7 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
     let rates = vec![0.0; y.len()];
     for _ in 0..CORRECTIONS {
         residual::evaluate(system, now, &at_rest, &rates, w);
-        let corrections = corrections(system, &w.forces.turning);
+        let corrections = corrections(system, now, w);
         let largest = corrections.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
         for (unknown, correction) in own.angle.clone().zip(corrections) {
             at_rest[unknown] += correction;
@@ -66,10 +67,14 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
 /// Angles by which moments [N m] rotate the sections of a fixed beam line, for small strains: solves
 /// `h kGA δ_c + EI/h (2 δ_c - δ_{c-1} - δ_{c+1})` by Thomas' algorithm. On a fourth-order mesh, whose short waves are up to 5/3 as stiff,
 /// stiffnesses are increased by 4/3.
-fn corrections(system: &System, moments: &[f64]) -> Vec<f64> {
+fn corrections(system: &System, now: &TimeData, w: &Workspace<f64>) -> Vec<f64> {
+    let moments = &w.forces.turning;
     let (sections, mesh) = (&system.sections, &system.mesh);
     let stiffer = if system.mesh.fourth { 4.0 / 3.0 } else { 1.0 };
-    let bends = |node: usize| stiffer * sections.bending[node] * mesh.per_node_length[node];
+    let bends = |node: usize| {
+        let bending = relative_stiffness(system, now, w, node) * sections.bending[node];
+        stiffer * bending * mesh.per_node_length[node]
+    };
     let mut above = Vec::with_capacity(moments.len());
     let mut values: Vec<f64> = Vec::with_capacity(moments.len());
     for (c, moment) in moments.iter().enumerate() {

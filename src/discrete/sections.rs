@@ -2,7 +2,7 @@
 
 use super::BeamMesh;
 use crate::model::surroundings::AmbientSection;
-use crate::model::{AmbientFluid, Model, Section};
+use crate::model::{AmbientFluid, Model, NodeBending, Section};
 
 /// `[E83]` Sections along the beam. A cell has the section of its segment. At a node between two segments the moment is continuous, so that
 /// compliances add, with those of their bladders:
@@ -18,6 +18,8 @@ pub struct MeshSections {
     pub axial: Vec<f64>,
     /// `EI` of each node [N m^2].
     pub bending: Vec<f64>,
+    /// Moment-curvature laws of the nodes, [E91]; empty if all are linear.
+    pub laws: Vec<NodeBending>,
     /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
     pub farthest_fiber: Vec<f64>,
     /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
@@ -91,6 +93,18 @@ impl MeshSections {
                 true => left.bending_stiffness,
                 false => 1.0 / (shares[0] / left.bending_stiffness + shares[1] / right.bending_stiffness),
             }),
+            laws: match &model.bending[..] {
+                [] => vec![],
+                laws => {
+                    let law = |segment: usize| laws.get(segment).unwrap_or(&laws[0]);
+                    let node = |node: usize| {
+                        let (left, right) = mesh.segments_of_node(node);
+                        let shares = mesh.borders.get(left).filter(|_| left != right);
+                        NodeBending::new(law(left), law(right), *shares.unwrap_or(&[0.5; 2]))
+                    };
+                    (0..mesh.nodes).map(node).collect()
+                }
+            },
             bending_of_cells: cells(|section| section.bending_stiffness),
             farthest_fiber: nodes(&|[left, right], _| left.farthest_fiber().max(right.farthest_fiber())),
             offset: match cells(|section| section.offset) {

@@ -131,7 +131,7 @@ pub fn highest_frequency(system: &System) -> f64 {
     let stiffer = stiffer(system);
     let bending = match system.layout.turning.rate {
         Some(_) => s.stiffening.sqrt() * shearing(system),
-        None => stiffer[0] * 4.0 / (h * h) * (s.stiffening * s.bending_stiffness / s.mass_per_length).sqrt(),
+        None => stiffer[0] * 4.0 / (h * h) * (s.stiffening * s.steepest_bending / s.mass_per_length).sqrt(),
     };
     let axial = stiffer[1] * 2.0 / h * (s.stiffening * s.axial_stiffness / s.mass_per_length).sqrt();
     let carried = [bending, axial].into_iter().zip(system.layout.waves());
@@ -148,6 +148,6 @@ fn shearing(system: &System) -> f64 {
     let (m, rotary) = (s.mass_per_length, s.mass_per_length * s.gyration_radius_squared);
     let per = 4.0 / (h * h);
     let [bending, shear] = stiffer(system).map(|more| more * more);
-    (shear * per * s.shear_stiffness / m + s.shear_stiffness / rotary + bending * per * s.bending_stiffness / rotary)
+    (shear * per * s.shear_stiffness / m + s.shear_stiffness / rotary + bending * per * s.steepest_bending / rotary)
         .sqrt()
 }

@@ -48,7 +48,7 @@ pub fn coupling(case: &Case, model: &Model) -> Vec<AuditFinding> {
     }
     let (m, n) = (&bladders.area_per_moment_m2_per_n_m, &bladders.area_per_force_m2_per_n);
     let (am, an) = (0.5 * (m.opening + m.closing), 0.5 * (n.tension + n.compression));
-    let (ea, ei) = (model.section.axial_stiffness, model.section.bending_stiffness);
+    let (ea, ei) = (model.section.axial_stiffness, model.section.steepest_bending);
     let ratio = wet.bladder_length * bladders.per_row as f64 / model.length;
     let ap = bladders.area_per_pressure_m2_per_pa;
     let mut found = Vec::new();
@@ -173,7 +173,7 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
     else {
         return;
     };
-    let (ea, ei) = (model.section.axial_stiffness, model.section.bending_stiffness);
+    let (ea, ei) = (model.section.axial_stiffness, model.section.steepest_bending);
     for (name, value) in [
         (
             "1 - 2 EI phi_b psi' am/(E a_p)",

@@ -1,5 +1,6 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
+use super::MomentCurvature;
 use super::surroundings::displaced;
 use crate::case::schema::{Beam, Bladders, Case, Viscoelasticity};
 use crate::case::spans::{self, SegmentValues};
@@ -19,8 +20,10 @@ pub struct Section {
     pub line_height: f64,
     /// `EA = E h_s w_s f_e` [N] (A.37).
     pub axial_stiffness: f64,
-    /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38).
+    /// `EI = E (w_s h_s^3/12) f_i` [N m^2] (A.38); of a moment-curvature law its slope at zero.
     pub bending_stiffness: f64,
+    /// Largest slope of the moment over curvature [N m^2].
+    pub steepest_bending: f64,
     /// `kGA` [N]; infinite without shear.
     pub shear_stiffness: f64,
     /// `y11 = (rho_s/m) (w_s h_s^3/12) f_i` [m^2].
@@ -102,6 +105,7 @@ impl Section {
             line_height: mean(&|one| one.line_height),
             axial_stiffness: 1.0 / mean(&|one| 1.0 / one.axial_stiffness),
             bending_stiffness: 1.0 / mean(&|one| 1.0 / one.bending_stiffness),
+            steepest_bending: of.iter().map(|one| one.steepest_bending).fold(0.0, f64::max),
             shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
             weighing_per_length: mean(&|one| one.weighing_per_length),
             gyration_radius_squared: mean(&Self::rotary_inertia) / mass,
@@ -128,7 +132,8 @@ impl Section {
         let mass_per_length = beam.density_kg_m3 * beam.width_m * beam.height_m * mass_factor;
         let relaxing = beam.viscoelasticity.as_ref().and_then(Viscoelasticity::branches);
         let ratios = relaxing.iter().flatten().map(|branch| branch.modulus_ratio);
-        let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_stiffness_factor;
+        let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_factor();
+        let law = beam.moment_curvature.as_ref().and_then(MomentCurvature::new);
         Self {
             mass_factor,
             mass_per_length,
@@ -137,6 +142,7 @@ impl Section {
             line_height: beam.line_height(),
             axial_stiffness: beam.young_modulus_pa * beam.height_m * beam.width_m * beam.axial_stiffness_factor,
             bending_stiffness: beam.young_modulus_pa * second_moment,
+            steepest_bending: law.map_or(beam.young_modulus_pa * second_moment, |law| law.steepest()),
             shear_stiffness: beam.shear_stiffness_n.unwrap_or(f64::INFINITY),
             weighing_per_length: mass_per_length - displaced(case.surroundings.as_ref(), beam),
             gyration_radius_squared: beam.density_kg_m3 / mass_per_length * second_moment,

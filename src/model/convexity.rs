@@ -37,7 +37,7 @@ pub fn convex_up_to(model: &Model, wet: &Wet) -> (f64, f64) {
     };
     (
         limit(
-            model.section.bending_stiffness,
+            model.section.steepest_bending,
             |law| [law.moment_width, law.moment_half_difference, law.moment_mean],
             ROWS,
         ),

@@ -18,6 +18,7 @@ pub mod effects;
 pub mod kinematics;
 pub mod loads;
 pub mod mapping;
+pub mod moment_curvature;
 pub mod network;
 pub mod parametric_growth;
 pub mod passivity;
@@ -31,6 +32,8 @@ pub mod surroundings;
 mod vessels;
 pub mod water_hammer;
 mod wet;
+
+use std::sync::Arc;
 
 use crate::case::ResolvedEnd;
 use crate::case::schema::Effect;
@@ -49,6 +52,7 @@ pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
 pub use loads::{DistributedLoad, FrameRotation};
+pub use moment_curvature::{MomentCurvature, NodeBending};
 pub use network::{AlongBladder, ResolvedNetwork};
 pub use scales::Scales;
 pub use signals::each_signal;
@@ -64,6 +68,8 @@ pub struct Model {
     pub section: Section,
     /// Sections of the segments of a beam with spans; empty for a uniform beam.
     pub sections: Vec<Section>,
+    /// Moment-curvature laws of the segments, of a uniform beam one; empty if all are linear.
+    pub bending: Vec<Arc<MomentCurvature>>,
     /// Length `l_s` [m].
     pub length: f64,
     /// Form of the momentum balance.
@@ -189,9 +195,11 @@ impl Model {
             wet.reduce(&effects);
         }
         let kinematics = Kinematics::from_effects(&effects);
+        let segments = spans::segments(case);
         Self {
             section,
-            sections: Section::of_segments(case, &spans::segments(case)),
+            sections: Section::of_segments(case, &segments),
+            bending: MomentCurvature::of_segments(case, &segments),
             length: case.beam.length_m,
             formulation: case.formulation,
             kinematics,
@@ -245,6 +253,9 @@ impl Model {
         let mut model = self.clone();
         model.section = self.sections[segment];
         model.sections.clear();
+        if let Some(law) = self.bending.get(segment) {
+            model.bending = vec![law.clone()];
+        }
         if let Some(wet) = &mut model.wet {
             let law = wet.segments[segment];
             (wet.area, wet.strains, wet.coupling) = (law.area, law.strains, law.coupling);

@@ -46,7 +46,7 @@ fn at(model: &Model, wet: &Wet, moment_sign: f64, force_sign: f64) -> Passivity 
     let moment = moment_sign * FAR * laws[0].moment_width.max(f64::MIN_POSITIVE.sqrt());
     let force = force_sign * FAR * laws[0].force_width.max(f64::MIN_POSITIVE.sqrt());
     let (ei, ea) = (
-        model.section.bending_stiffness.sqrt(),
+        model.section.steepest_bending.sqrt(),
         model.section.axial_stiffness.sqrt(),
     );
     let ratio = wet.per_row as f64 / model.length * wet.bladder_length;

@@ -1,4 +1,5 @@
-//! Unphysical states that the equations permit: a beam that crosses itself, a liquid below its vapor pressure.
+//! States that the equations permit but no data or physics supports: a beam that crosses itself or is bent beyond its table, a liquid
+//! below its vapor pressure.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +9,9 @@ use crate::discrete::System;
 use crate::discrete::extrema::{MonitoredQuantity, MonitoredValues};
 use crate::error::Code;
 use crate::error::numbers::quantity;
+
+/// Largest elastic curvature over the end of its table, with a margin for rounding errors.
+const BENT: f64 = 1.0 + 1e-6;
 
 /// Part of the length within which a place is that of an end.
 const AT_AN_END: f64 = 1e-3;
@@ -38,6 +42,10 @@ pub struct UnphysicalRecord {
     lowest: [f64; 2],
     /// True if the lowest pressure is in a bladder, and the index of the bladder, junction or port.
     place: (bool, usize),
+    /// Largest elastic curvature beyond the table of a moment-curvature law, over the end of the table; its node, its instant or load
+    /// factor, and that of the first.
+    #[serde(default)]
+    bent: Option<(f64, usize, [f64; 2])>,
 }
 
 impl Unphysical {
@@ -100,7 +108,15 @@ impl Unphysical {
                 at(first)
             ))
         });
-        crossing.into_iter().chain(boiled).collect()
+        let bent = met.bent.map(|(most, node, [when, first])| {
+            Code::BeyondRange.warning(format!(
+                "The beam is bent beyond its moment-curvature table: {most:.3} of the last curvature at {}, node {node} (beyond it from {} on). \
+                 The moment continues straight there, without data. Extend the table, or reduce the load.",
+                at(when),
+                at(first)
+            ))
+        });
+        crossing.into_iter().chain(bent).chain(boiled).collect()
     }
 }
 
@@ -109,6 +125,11 @@ impl UnphysicalRecord {
     pub fn take(&mut self, of: &Unphysical, glance: &MonitoredValues, when: f64) {
         if self.crossing.is_none() {
             self.crossing = glance.crossing.map(|places| (places, when));
+        }
+        let (bent, node) = glance.bent;
+        if bent > self.bent.map_or(BENT, |most| most.0) {
+            let first = self.bent.map_or(when, |(.., [_, first])| first);
+            self.bent = Some((bent, node, [when, first]));
         }
         let Some(limit) = of.boils_below else { return };
         let in_cells = glance.value_and_rate(MonitoredQuantity::Low)[0];

@@ -14,6 +14,7 @@ mod foundation;
 mod jacobian;
 #[path = "../common/kinematics.rs"]
 mod kinematics;
+mod moment_curvature;
 mod network;
 mod nonlinear;
 mod other_pressure;

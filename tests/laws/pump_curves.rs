@@ -15,7 +15,7 @@ use slcbeam::run::record::Memory;
 use crate::network::{G, MU, RHO, at_rest, elastic, last, near, parse, run, still, tanks, tube};
 
 /// Monotone cubics in Hermite's form, with the slopes of Fritsch and Butland, and straight continuations.
-fn pchip(x: &[f64], y: &[f64], q: f64) -> f64 {
+pub fn pchip(x: &[f64], y: &[f64], q: f64) -> f64 {
     let n = x.len();
     let h: Vec<f64> = x.windows(2).map(|w| w[1] - w[0]).collect();
     let s: Vec<f64> = y.windows(2).zip(&h).map(|(w, h)| (w[1] - w[0]) / h).collect();

@@ -8,6 +8,7 @@ mod ends;
 mod fluid;
 pub mod functions;
 mod junctions;
+mod moment_curvature;
 pub mod network;
 mod plausible;
 mod probes;
@@ -44,6 +45,7 @@ const RULES: &[(Rule, &[&str])] = &[
     (contacts::check, &[]),
     (probes::check, &[]),
     (relaxation::check, &["beam"]),
+    (moment_curvature::check, &["beam", "bladders", "spans"]),
     (rotating_frame::check, &["beam", "loads", "surroundings"]),
     (probes::step, &["step_response", "time"]),
     (functions::check, &["time"]),

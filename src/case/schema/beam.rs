@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Viscoelasticity, is_zero, one};
+use crate::functions::{Interpolation, PiecewiseCurve};
 
 /// The elastic beam; stiffness of the honeycomb through two correction factors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,6 +33,9 @@ pub struct Beam {
     #[serde(default = "one")]
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub bending_stiffness_factor: f64,
+    /// Moment over curvature, instead of `EI` and `bending_stiffness_factor`; absent: linear.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_curvature: Option<MomentCurvature>,
     /// `z_n`: height of the neutral axis above mid-height; stiffness and areas of bladders are those about it [m].
     #[serde(default, skip_serializing_if = "is_zero")]
     pub neutral_axis_m: f64,
@@ -60,6 +64,50 @@ impl Beam {
     /// Height `z_r` of the beam's line above mid-height [m].
     pub fn line_height(&self) -> f64 {
         self.reference_axis_m.unwrap_or(self.neutral_axis_m)
+    }
+
+    /// `f_i`: that of the slope of the moment-curvature law at zero, or the given one.
+    pub fn bending_factor(&self) -> f64 {
+        let full = self.young_modulus_pa * self.width_m * self.height_m.powi(3) / 12.0;
+        let law = self.moment_curvature.as_ref().and_then(MomentCurvature::curve);
+        law.map_or(self.bending_stiffness_factor, |curve| curve.at(0.0).rate / full)
+    }
+}
+
+/// Elastic moment of a section over its curvature: monotone cubics through the points, straight beyond them with the slope between the
+/// last two.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MomentCurvature {
+    /// Curvatures, ascending, with 0 [1/m]. From 0 on: the law is odd.
+    #[schemars(length(min = 2, max = 10000))]
+    pub curvature_1_m: Vec<f64>,
+    /// Moment at each curvature, ascending, 0 at 0 [N m].
+    #[schemars(length(min = 2, max = 10000))]
+    pub moment_n_m: Vec<f64>,
+}
+
+impl MomentCurvature {
+    /// Curve through the points, those of the other sign and one beyond each end; none if these are not a curve.
+    pub fn curve(&self) -> Option<PiecewiseCurve> {
+        let points = self.curvature_1_m.iter().copied().zip(self.moment_n_m.iter().copied());
+        let mut points: Vec<(f64, f64)> = points.collect();
+        if points.first().is_some_and(|first| first.0 == 0.0) {
+            let mirrored = points
+                .iter()
+                .skip(1)
+                .rev()
+                .map(|(curvature, moment)| (-curvature, -moment));
+            points = mirrored.chain(points.iter().copied()).collect();
+        }
+        let beyond = |end: &(f64, f64), inner: &(f64, f64)| (2.0 * end.0 - inner.0, 2.0 * end.1 - inner.1);
+        let (Some([first, second]), Some([inner, last])) = (points.first_chunk(), points.last_chunk()) else {
+            return None;
+        };
+        let [before, after] = [beyond(first, second), beyond(last, inner)];
+        let all = [before].into_iter().chain(points).chain([after]);
+        let (curvatures, moments): (Vec<f64>, Vec<f64>) = all.unzip();
+        PiecewiseCurve::through(&curvatures, &moments, Interpolation::Monotone)
     }
 }
 

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AreaPerForce, AreaPerMoment, Case, given};
+use super::{AreaPerForce, AreaPerMoment, Case, MomentCurvature, given};
 use crate::functions::profile::Profile;
 
 /// Relative deviation of a span's length from whole segments that counts as rounding.
@@ -73,7 +73,7 @@ impl SpanRows {
     }
 }
 
-/// Values of the solid in a span, as in `beam`. Each is a number, or a function of the place within the span from 0 to 1, which is
+/// Values of the solid in a span, as in `beam`. Each but the law of the moment is a number, or a function of the place within the span from 0 to 1, which is
 /// evaluated in the middle of each segment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -96,6 +96,9 @@ pub struct SpanBeam {
     /// `f_i`: bending stiffness over that of the full section.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bending_stiffness_factor: Option<Profile>,
+    /// Moment over curvature; absent: that of the beam, which follows the modulus and sizes of the span.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub moment_curvature: Option<MomentCurvature>,
     /// `z_n`: height of the neutral axis above mid-height [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub neutral_axis_m: Option<Profile>,
@@ -128,7 +131,7 @@ impl SpanBeam {
     }
 
     fn is_empty(&self) -> bool {
-        self.given().next().is_none()
+        *self == Self::default()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{EnergyRate, Rates, StoredEnergies, add};
 use crate::case::schema::Effect;
+use crate::discrete::residual::bending::{elastic_curvature, relative_stiffness};
 use crate::discrete::residual::momentum::outer_forces;
 use crate::discrete::residual::solid::{couple, node_stretch};
 use crate::discrete::residual::{eccentric, fourth_order, relaxation};
@@ -133,7 +134,8 @@ fn bending(
             eccentric::end_rate(system, now, w, i, pressure_rate(w, i)).unwrap_or(0.0)
         }
         Some(e) if e.slope.is_none() => {
-            let free_rate = curvature_rate(w, i) + now.rest_curvature_rate(i);
+            let bent = relative_stiffness(system, now, w, i);
+            let free_rate = bent * (curvature_rate(w, i) + now.rest_curvature_rate(i));
             let mut elastic_rate = e.moment.rate / system.sections.bending[i];
             if mesh.fourth {
                 let beside = fourth_order::neighbour(system, i);
@@ -146,7 +148,7 @@ fn bending(
                 elastic_rate = (2.0 * elastic_rate + alpha_rate - free_rate) / 3.0;
             }
             let alpha_rate = elastic_rate + free_rate - w.shape.kappa[i] * stretch_rate;
-            relaxation::curvature_rate(system, now, w, i, alpha_rate, stretch)
+            relaxation::curvature_rate(system, now, w, i, alpha_rate, bent * stretch)
         }
         _ => w.shape.kappa_rate[i],
     };
@@ -248,6 +250,8 @@ pub fn energies(system: &System, now: &TimeData, w: &Workspace<f64>) -> StoredEn
         }
         e.bending += if mesh.fourth {
             fourth_order::of_bending(system, now, w, i)
+        } else if let Some(law) = system.sections.laws.get(i) {
+            length * law.at(elastic_curvature(system, now, w, i)).energy
         } else {
             0.5 * length * w.forces.moment[i] * w.forces.moment[i] / system.sections.bending[i]
         };

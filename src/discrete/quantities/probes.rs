@@ -128,10 +128,13 @@ pub fn values<'a>(look: &'a StateView) -> impl Iterator<Item = f64> + 'a {
 
 fn entries(system: &System) -> impl Iterator<Item = (&MeshProbe, Entry)> {
     let wet = system.has_bladders();
+    // a moment-curvature law does not determine the stress of fibres
+    let linear = system.sections.laws.is_empty();
     let of = move |probe| {
         TABLE
             .into_iter()
             .filter(move |entry| wet || !entry.3)
+            .filter(move |entry| linear || !entry.0.starts_with("stress"))
             .map(move |e| (probe, e))
     };
     system.probes.iter().flat_map(of)

@@ -46,8 +46,14 @@ pub fn moments<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>)
     for (moment, rest) in moment.iter_mut().zip(&now.rest_curvature[0]) {
         *moment -= T::constant(*rest);
     }
-    for (moment, ei) in moment.iter_mut().zip(ei) {
-        *moment = *moment * *ei;
+    if system.sections.laws.is_empty() {
+        for (moment, ei) in moment.iter_mut().zip(ei) {
+            *moment = *moment * *ei;
+        }
+    } else {
+        for (moment, law) in moment.iter_mut().zip(&system.sections.laws) {
+            *moment = law.moment(*moment);
+        }
     }
     if system.sections.offset.is_empty() {
         for node in [0, last] {
@@ -96,6 +102,15 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
         elastic -= *nonlinear;
     }
     w.forces.moment[node] = elastic;
+    if let Some(law) = system.sections.laws.get(node) {
+        let (more, parallel) = relaxation::at_bent_end(system, now, w, node, free_curvature);
+        let bent = law.inverse(elastic + more, parallel);
+        w.shape.kappa[node] = free_curvature + bent;
+        if parallel > 0.0 {
+            w.forces.moment[node] = law.moment(bent);
+        }
+        return;
+    }
     let mut alpha = free_curvature + elastic / T::constant(ei);
     if system.mesh.fourth {
         alpha = free_curvature + (elastic * (2.0 / ei) + fourth_order::beside(system, w, node)) * (1.0 / 3.0);
@@ -106,6 +121,21 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
         w.shape.kappa[node] = relaxation::curvature(system, now, w, node, alpha, stretch);
         w.forces.moment[node] = (w.shape.kappa[node] * stretch - free_curvature) * ei;
     }
+}
+
+/// Elastic curvature `e = κ - α_p - κ_0` of a node; not in the published form.
+#[inline]
+pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
+    w.shape.kappa[node] - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
+}
+
+/// Slope of the moment over curvature of a node, over its EI: 1 for a linear law.
+#[inline]
+pub fn relative_stiffness(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
+    let law = system.sections.laws.get(node);
+    law.map_or(1.0, |law| {
+        law.at(elastic_curvature(system, now, w, node)).stiffness / system.sections.bending[node]
+    })
 }
 
 /// Shear forces, `[E12]`.

@@ -1,6 +1,6 @@
 //! Sections whose neutral axis is beside the beam's line.
 
-use super::bending::pressure_curvature;
+use super::bending::{pressure_curvature, relative_stiffness};
 use crate::case::schema::Effect;
 use crate::discrete::{System, TimeData, Workspace};
 use crate::numerics::Scalar;
@@ -30,11 +30,17 @@ pub fn end_curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Worksp
         let force = (w.shape.strain[end.cell] - pressure_stretch(system, w, end.cell)) * axial
             + (w.shape.kappa[end.beside] * 0.5 - T::constant(mean_rest(now, 0, end.cell))) * (axial * end.offset);
         let free = pressure_curvature(system, w, end.node) + T::constant(now.rest_curvature(end.node));
+        if let Some(law) = system.sections.laws.get(end.node) {
+            let parallel = 0.5 * axial * end.offset * end.offset;
+            let moment = T::constant(end.moment) - force * end.offset - free * parallel;
+            w.shape.kappa[end.node] = law.inverse(moment, parallel) + free;
+            continue;
+        }
         let mut moment = free * bending + T::constant(end.moment) - force * end.offset;
         if let Some(nonlinear) = w.forces.nonlinear_moment.get(end.node) {
             moment -= *nonlinear;
         }
-        w.shape.kappa[end.node] = moment * (1.0 / end.compliant(system));
+        w.shape.kappa[end.node] = moment * (1.0 / end.compliant(bending, axial));
     }
 }
 
@@ -81,10 +87,11 @@ pub fn end_rate(
 ) -> Option<f64> {
     let end = ends(system, now).find(|end| end.node == node && !system.sections.offset.is_empty())?;
     let [bending, axial] = end.stiffness(system);
+    let bending = bending * relative_stiffness(system, now, w, node);
     let force = axial * (w.shape.stretch_rate[end.cell] - by_pressure[0])
         + axial * end.offset * (0.5 * w.shape.kappa_rate[end.beside] - mean_rest(now, 1, end.cell));
     let moment = end.moment_rate + bending * (by_pressure[1] + now.rest_curvature_rate(node)) - end.offset * force;
-    Some(moment / end.compliant(system))
+    Some(moment / end.compliant(bending, axial))
 }
 
 /// An end with a given moment.
@@ -107,8 +114,7 @@ impl GivenMoment {
     }
 
     /// `EI + EA d²/2`.
-    fn compliant(&self, system: &System) -> f64 {
-        let [bending, axial] = self.stiffness(system);
+    fn compliant(&self, bending: f64, axial: f64) -> f64 {
         bending + 0.5 * axial * self.offset * self.offset
     }
 }

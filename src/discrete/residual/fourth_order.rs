@@ -215,6 +215,8 @@ pub fn refusal(model: &Model, mesh: &BeamMesh) -> Option<Violation> {
         "a neutral axis beside the beam's line needs a mesh of second order"
     } else if !model.relaxation.is_empty() {
         "a viscoelastic solid needs a mesh of second order"
+    } else if !model.bending.is_empty() {
+        "a moment-curvature law needs a mesh of second order"
     } else if model.strain_energy().is_some() {
         "a section at finite strain needs a mesh of second order"
     } else if model

@@ -99,6 +99,17 @@ pub fn curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, n
     (alpha + remembered) / (stretch + ratios)
 }
 
+/// Sum to which a given moment belongs at an end with a moment-curvature law, `f(e) + EI Σ g_k e = M + EI Σ g_k (κ_k + κ_0 - α_free)`:
+/// what its right side adds to M, and `EI Σ g_k`.
+pub fn at_bent_end<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize, free: T) -> (T, f64) {
+    if w.relaxed.curvature.is_empty() {
+        return (T::zero(), 0.0);
+    }
+    let ei = system.sections.bending[node];
+    let (remembered, ratios) = remembered(system, &w.relaxed.curvature, now.rest_curvature(node), node);
+    ((remembered - free * ratios) * ei, ei * ratios)
+}
+
 /// Rate of this curvature.
 pub fn curvature_rate(
     system: &System,
@@ -180,7 +191,13 @@ pub fn settle(system: &System, now: &TimeData, w: &Workspace<f64>, y: &mut [f64]
             } else {
                 1.0
             };
-            curvature += relaxing / (system.sections.bending[node] * stretch);
+            curvature += match system.sections.laws.get(node) {
+                Some(law) => {
+                    let moment = w.forces.moment[node];
+                    law.inverse(moment + relaxing, 0.0) - law.inverse(moment, 0.0)
+                }
+                None => relaxing / (system.sections.bending[node] * stretch),
+            };
         }
         y[unknown] = curvature - now.rest_curvature(node);
     }

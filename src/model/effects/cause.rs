@@ -150,6 +150,8 @@ pub enum Keeps {
     RestCurvature,
     /// Relaxation of the solid, which the scene's numbers exclude.
     Viscoelasticity,
+    /// Moment-curvature law, which the scene's numbers exclude.
+    MomentCurvature,
     /// The section is nonlinear at the scene's loads.
     FiniteStrain,
 }
@@ -246,6 +248,7 @@ impl Display for Keeps {
             Self::Surroundings => "no bound is known for ambient fluid",
             Self::RestCurvature => "no bound is known for a rest curvature",
             Self::Viscoelasticity => "no bound is known for a viscoelastic solid",
+            Self::MomentCurvature => "no bound is known for a moment-curvature law",
             Self::MakesPressure => "it generates the pressure",
         })
     }

@@ -7,6 +7,7 @@ use super::{Decision, EffectScene, EffectSet};
 use crate::case::schema::{
     Case, Choice, Coupling, Effect, EffectChoices, Effects, Fluid, FluidKind, Formulation, Load,
 };
+use crate::case::spans;
 use crate::error::{Code, Violation};
 use crate::model::ResolvedNetwork;
 
@@ -259,6 +260,7 @@ impl<'a> Chooser<'a> {
             _ if !self.case.contacts.is_empty() && by_motion(effect) => kept(Keeps::Contacts),
             _ if self.case.loads.iter().any(Load::is_rest) && by_motion(effect) => kept(Keeps::RestCurvature),
             _ if self.case.beam.viscoelasticity.is_some() && by_motion(effect) => kept(Keeps::Viscoelasticity),
+            _ if spans::bends_nonlinearly(self.case) && by_motion(effect) => kept(Keeps::MomentCurvature),
             _ if self.case.surroundings.is_some() && by_motion(effect) => kept(Keeps::Surroundings),
             _ if needs(Effect::NonlinearSection).contains(&effect) && scene.strain_energy() >= self.tolerance => {
                 kept(Keeps::FiniteStrain)

@@ -117,11 +117,9 @@ impl Basis {
     /// Amplitudes of this load.
     fn amplitudes(self, case: &Case) -> Vec<Amplitude> {
         let length = case.beam.length_m;
-        let stiffness = case.beam.young_modulus_pa
-            * case.beam.width_m
-            * case.beam.height_m.powi(3)
-            * case.beam.bending_stiffness_factor
-            / 12.0;
+        let stiffness =
+            case.beam.young_modulus_pa * case.beam.width_m * case.beam.height_m.powi(3) * case.beam.bending_factor()
+                / 12.0;
         let (force, moment, spread) = (
             stiffness / length.powi(2),
             stiffness / length,
