@@ -177,7 +177,7 @@ fn gas_fills_bladders_of_any_size() {
     assert!(balances.energy_residual_relative.abs() < 1e-5, "{balances:?}");
     assert!(balances.volume_residual_relative.abs() < 1e-9, "{balances:?}");
     let mut open = case.clone();
-    open["bladders"]["closing"] = json!(null);
+    open["bladders"].as_object_mut().unwrap().remove("closing");
     let [with, without] = [memory, run(&open).0].map(|memory| *memory.column("tip_u1").unwrap().last().unwrap());
     assert!((with / without - 1.0).abs() > 1e-3, "walls touch: {with} {without}");
     let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
