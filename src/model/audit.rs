@@ -174,14 +174,16 @@ fn solvability(model: &Model, wet: &Wet, ap: f64, am: f64, compression: f64, fou
         return;
     };
     let (ea, ei) = (model.section.axial_stiffness, model.section.steepest_bending);
+    // rows are pressed against each other by moments, alike by forces
+    let cross = wet.per_other_pressure;
     for (name, value) in [
         (
             "1 - 2 EI phi_b psi' am/(E a_p)",
-            1.0 - 2.0 * ei * curvature_per_pressure * am / ap,
+            1.0 - 2.0 * ei * curvature_per_pressure * am / (ap - cross),
         ),
         (
             "1 - 2 EA phi_b zeta' aN+/(E a_p)",
-            1.0 - 2.0 * ea * stretch_per_pressure * compression / ap,
+            1.0 - 2.0 * ea * stretch_per_pressure * compression / (ap + cross),
         ),
     ] {
         found.push(AuditFinding {
