@@ -279,6 +279,11 @@ const INDEX: &[(&str, &str, &str)] = &[
         "tests/laws/eccentric.rs",
         "force_and_moment_are_coupled_by_the_offset",
     ),
+    (
+        "[E91]",
+        "tests/laws/moment_curvature.rs",
+        "a_moment_bends_a_cantilever_to_an_arc",
+    ),
 ];
 
 #[test]
