@@ -1,6 +1,6 @@
 //! The cross-section of the beam: mass, stiffness, rotary inertia, damping.
 
-use super::MomentCurvature;
+use super::BendingLaw;
 use super::surroundings::displaced;
 use crate::case::schema::{Beam, Bladders, Case, Viscoelasticity};
 use crate::case::spans::{self, SegmentValues};
@@ -133,7 +133,7 @@ impl Section {
         let relaxing = beam.viscoelasticity.as_ref().and_then(Viscoelasticity::branches);
         let ratios = relaxing.iter().flatten().map(|branch| branch.modulus_ratio);
         let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_factor();
-        let law = beam.moment_curvature.as_ref().and_then(MomentCurvature::new);
+        let law = beam.moment_curvature.as_ref().and_then(BendingLaw::new);
         Self {
             mass_factor,
             mass_per_length,

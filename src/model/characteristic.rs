@@ -185,8 +185,9 @@ pub fn numbers_with(case: &Case, model: &Model, mathieu: Option<&MathieuTongue>)
     }
     put("force_scale_n", model.scales.force);
     put("largest_strain_estimate", {
-        let bending = model.scales.moment / ei * model.section.half_height;
-        model.scales.force / ea + bending
+        let laws = model.bending.iter().map(|law| law.curvature(model.scales.moment));
+        let curvature = laws.reduce(f64::max).unwrap_or(model.scales.moment / ei);
+        model.scales.force / ea + curvature * model.section.half_height
     });
     all
 }

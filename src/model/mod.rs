@@ -52,7 +52,7 @@ pub use coupling::CouplingLaw;
 pub use effects::{Decision, EffectScene, EffectSet};
 pub use kinematics::Kinematics;
 pub use loads::{DistributedLoad, FrameRotation};
-pub use moment_curvature::{MomentCurvature, NodeBending};
+pub use moment_curvature::{BendingLaw, NodeBending};
 pub use network::{AlongBladder, ResolvedNetwork};
 pub use scales::Scales;
 pub use signals::each_signal;
@@ -69,7 +69,7 @@ pub struct Model {
     /// Sections of the segments of a beam with spans; empty for a uniform beam.
     pub sections: Vec<Section>,
     /// Moment-curvature laws of the segments, of a uniform beam one; empty if all are linear.
-    pub bending: Vec<Arc<MomentCurvature>>,
+    pub bending: Vec<Arc<BendingLaw>>,
     /// Length `l_s` [m].
     pub length: f64,
     /// Form of the momentum balance.
@@ -199,7 +199,7 @@ impl Model {
         Self {
             section,
             sections: Section::of_segments(case, &segments),
-            bending: MomentCurvature::of_segments(case, &segments),
+            bending: BendingLaw::of_segments(case, &segments),
             length: case.beam.length_m,
             formulation: case.formulation,
             kinematics,

@@ -20,7 +20,7 @@ const ITERATIONS: usize = 100;
 /// At an end with a given moment M, `e = f⁻¹(M)`, with branches of [E58] the root of `f(e) + EI Σ g_k (e + α_p - κ_k) = M`. At a node
 /// between two segments the moment is continuous: `M = f_left(x) = f_right(2 e - x)`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MomentCurvature {
+pub struct BendingLaw {
     /// Pieces of positive and of negative curvatures, by their magnitude, ascending.
     sides: [Vec<Piece>; 2],
     /// Largest curvatures of the table of both signs, by their magnitude [1/m]; infinite for a linear law.
@@ -61,7 +61,7 @@ impl Piece {
     }
 }
 
-impl MomentCurvature {
+impl BendingLaw {
     /// Law of a checked table.
     pub fn new(table: &schema::MomentCurvature) -> Option<Self> {
         let curve = table.curve()?;
@@ -150,6 +150,11 @@ impl MomentCurvature {
         }
     }
 
+    /// Curvature by a moment [1/m].
+    pub fn curvature(&self, moment: f64) -> f64 {
+        self.inverse(moment, 0.0).0
+    }
+
     /// Largest slope [N m^2].
     pub fn steepest(&self) -> f64 {
         let slopes = self.sides.iter().flat_map(|pieces| {
@@ -194,14 +199,14 @@ impl MomentCurvature {
 /// Law of a node: that of its segment, or of the halves of two segments in series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeBending {
-    left: Arc<MomentCurvature>,
+    left: Arc<BendingLaw>,
     /// Law on the other side, with the shares of both sides in the length of the node.
-    right: Option<(Arc<MomentCurvature>, [f64; 2])>,
+    right: Option<(Arc<BendingLaw>, [f64; 2])>,
 }
 
 impl NodeBending {
     /// Law between two segments with these shares in the length of the node.
-    pub fn new(left: &Arc<MomentCurvature>, right: &Arc<MomentCurvature>, shares: [f64; 2]) -> Self {
+    pub fn new(left: &Arc<BendingLaw>, right: &Arc<BendingLaw>, shares: [f64; 2]) -> Self {
         Self {
             left: left.clone(),
             right: (left != right).then(|| (right.clone(), shares)),
@@ -252,7 +257,7 @@ impl NodeBending {
     }
 
     /// Curvatures of both sides, with one moment.
-    fn halves(&self, right: &MomentCurvature, [here, there]: [f64; 2], curvature: f64) -> [f64; 2] {
+    fn halves(&self, right: &BendingLaw, [here, there]: [f64; 2], curvature: f64) -> [f64; 2] {
         let whole = curvature.abs();
         let other = |x: f64| ((whole - here * x) / there).max(0.0);
         let own = root(0.0, whole / here, |x| {

@@ -44,7 +44,7 @@ pub struct UnphysicalRecord {
     place: (bool, usize),
     /// Largest elastic curvature beyond the table of a moment-curvature law, over the end of the table; its node, its instant or load
     /// factor, and that of the first.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     bent: Option<(f64, usize, [f64; 2])>,
 }
 

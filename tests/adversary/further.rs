@@ -60,6 +60,37 @@ pub fn add(r: &mut Random, b: &Beam, case: &mut Value, wet: bool) {
             .expect("an area");
         case["bladders"]["area_per_other_pressure_m2_per_pa"] = short(own * r.between(-0.4, 0.4));
     }
+    if r.one_in(4) {
+        moment_curvature(r, b, case);
+    }
+}
+
+/// A law that softens or stiffens up to a few times, of the same slope at zero; odd or not.
+fn moment_curvature(r: &mut Random, b: &Beam, case: &mut Value) {
+    let size = r.log(0.03, 1.0) / b.length;
+    let side = |r: &mut Random, sign: f64| {
+        let (mut curvature, mut moment) = (0.0, 0.0);
+        let mut slope = b.ei;
+        let point = |_| {
+            let step = size * r.log(0.5, 2.0);
+            curvature += step;
+            moment += slope * step;
+            slope = b.ei * r.log(0.2, 4.0);
+            [sign * curvature, sign * moment]
+        };
+        (0..4).map(point).collect::<Vec<_>>()
+    };
+    let mut points = vec![[0.0; 2]];
+    points.extend(side(r, 1.0));
+    if r.one_in(2) {
+        let mut below = side(r, -1.0);
+        below.reverse();
+        points.splice(0..0, below);
+    }
+    let [curvature, moment] = [0, 1].map(|k| points.iter().map(|point| short(point[k])).collect::<Vec<_>>());
+    case.as_object_mut().expect("a case").remove("formulation");
+    case["beam"]["bending_stiffness_factor"] = json!(1);
+    case["beam"]["moment_curvature"] = json!({"curvature_1_m": curvature, "moment_n_m": moment});
 }
 
 /// A neutral axis beside mid-height, with the beam's line there or at mid-height, and a softer lower row.

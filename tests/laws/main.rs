@@ -15,6 +15,7 @@ mod jacobian;
 #[path = "../common/kinematics.rs"]
 mod kinematics;
 mod moment_curvature;
+mod moment_tables;
 mod network;
 mod nonlinear;
 mod other_pressure;

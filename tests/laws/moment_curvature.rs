@@ -3,31 +3,26 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use slcbeam::case::parameter::Parameter;
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
-use slcbeam::error::Error;
-use slcbeam::model::MomentCurvature;
-use slcbeam::run::equilibrium::{EquilibriumOptions, follow};
 use slcbeam::run::modes::{ModeOptions, modes};
-use slcbeam::run::record::Control;
 
 use crate::differences::worst_difference;
 use crate::foundation::{at_rest, order, unit};
 use crate::pump_curves::pchip;
-use crate::spans::{column, faults, largest, parse, run};
+use crate::spans::{column, largest, parse, run};
 
 /// Curvatures and moments of a law with a plateau.
-const PLATEAU: ([f64; 5], [f64; 5]) = ([0.0, 0.5, 1.0, 3.0, 4.0], [0.0, 0.5, 0.8, 0.9, 1.4]);
+pub const PLATEAU: ([f64; 5], [f64; 5]) = ([0.0, 0.5, 1.0, 3.0, 4.0], [0.0, 0.5, 0.8, 0.9, 1.4]);
 /// A law with different signs.
-const UNLIKE: ([f64; 5], [f64; 5]) = ([-3.0, -1.0, 0.0, 1.0, 2.0], [-2.0, -0.9, 0.0, 1.2, 3.0]);
+pub const UNLIKE: ([f64; 5], [f64; 5]) = ([-3.0, -1.0, 0.0, 1.0, 2.0], [-2.0, -0.9, 0.0, 1.2, 3.0]);
 
-fn table((curvature, moment): ([f64; 5], [f64; 5])) -> Value {
+pub fn table((curvature, moment): ([f64; 5], [f64; 5])) -> Value {
     json!({"curvature_1_m": curvature, "moment_n_m": moment})
 }
 
 /// Moment of a table by Hermite's form: with points of the other sign and one beyond each end.
-fn moment((curvatures, moments): ([f64; 5], [f64; 5]), at: f64) -> f64 {
+pub fn moment((curvatures, moments): ([f64; 5], [f64; 5]), at: f64) -> f64 {
     let mut all: Vec<[f64; 2]> = curvatures.into_iter().zip(moments).map(|(x, y)| [x, y]).collect();
     if curvatures[0] == 0.0 {
         let mirrored: Vec<[f64; 2]> = all[1..].iter().rev().map(|point| point.map(|value| -value)).collect();
@@ -55,8 +50,8 @@ fn bisect(function: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// A cantilever of unit stiffness with a law and values at its tip.
-fn cantilever(cells: usize, law: &Value, tip: &Value, more: &Value) -> Value {
-    let mut case = unit(cells, &json!({"root": "clamped", "tip": {"free": tip}}), more);
+pub fn cantilever(cells: usize, law: &Value, tip: &Value) -> Value {
+    let mut case = unit(cells, &json!({"root": "clamped", "tip": {"free": tip}}), &json!({}));
     case["beam"]["moment_curvature"] = law.clone();
     // a thin section has small strains where it is much curved
     for (key, value) in [
@@ -77,7 +72,7 @@ fn cantilever(cells: usize, law: &Value, tip: &Value, more: &Value) -> Value {
 fn a_straight_law_is_the_linear_beam() {
     let line = json!({"curvature_1_m": [0, 0.3], "moment_n_m": [0, 0.3]});
     for shear in [json!({}), json!({"shear_stiffness_n": 50.0})] {
-        let mut lawful = cantilever(12, &line, &json!({"force_x_n": 0.7, "moment_n_m": -0.4}), &json!({}));
+        let mut lawful = cantilever(12, &line, &json!({"force_x_n": 0.7, "moment_n_m": -0.4}));
         lawful["beam"]["axial_stiffness_factor"] = json!(1e-3);
         lawful["beam"]
             .as_object_mut()
@@ -103,16 +98,13 @@ fn a_moment_bends_a_cantilever_to_an_arc() {
     for (law, moments) in [(PLATEAU, [0.3, 0.85, -1.2, 2.0]), (UNLIKE, [0.8, -1.7, -0.3, -3.0])] {
         for given in moments {
             let curvature = bisect(|x| moment(law, x) - given);
-            let angle = at_rest(
-                &cantilever(8, &table(law), &json!({"moment_n_m": given}), &json!({})),
-                "tip_angle",
-            );
+            let angle = at_rest(&cantilever(8, &table(law), &json!({"moment_n_m": given})), "tip_angle");
             assert!(
                 (angle + curvature).abs() < 1e-8 * curvature.abs(),
                 "{given}: {angle} for {curvature}"
             );
             let errors = [16, 32].map(|cells| {
-                let case = cantilever(cells, &table(law), &json!({"moment_n_m": given}), &json!({}));
+                let case = cantilever(cells, &table(law), &json!({"moment_n_m": given}));
                 at_rest(&case, "tip_u1") + (1.0 - curvature.cos()) / curvature
             });
             assert!(
@@ -165,7 +157,7 @@ fn a_force_bends_a_cubic_law_as_its_elastica() {
     let moments: Vec<f64> = curvatures.iter().map(|x| x + x * x * x).collect();
     let law = json!({"curvature_1_m": curvatures, "moment_n_m": moments});
     let force = 4.0;
-    let case = |cells: usize| cantilever(cells, &law, &json!({"force_x_n": force}), &json!({}));
+    let case = |cells: usize| cantilever(cells, &law, &json!({"force_x_n": force}));
     let exact = elastica(force, 1.2e8);
     for (name, exact) in ["tip_u1", "tip_u3", "tip_angle"].into_iter().zip(exact) {
         let [coarse, fine] = [40, 80].map(|cells| at_rest(&case(cells), name));
@@ -193,7 +185,7 @@ fn energy_closes() {
     for (k, variant) in variants.into_iter().enumerate() {
         for root in ["clamped", "pinned"] {
             let tip = json!({"force_x_n": sine(0.3, 1.0), "moment_n_m": sine(1.2, 1.7)});
-            let mut case = cantilever(10, &table([PLATEAU, UNLIKE][k % 2]), &tip, &json!({}));
+            let mut case = cantilever(10, &table([PLATEAU, UNLIKE][k % 2]), &tip);
             case["ends"]["root"] = json!(root);
             case["loads"] = json!([{"rest_curvature_1_m": {"signal": sine(0.4, 1.3)}}]);
             for (key, value) in variant.as_object().unwrap() {
@@ -256,9 +248,14 @@ fn pressure_curves_beside_the_law() {
             "{given}: {more} for {expected}"
         );
     }
-    let one = run(&pressed(&json!({"loads": [{"gravity": {"x_m_s2": 9.81}}]})));
-    let relative = one.1.balances.energy_residual_relative;
-    assert!(relative.abs() < 1e-6, "energy {relative:.1e}");
+    let moment = json!({"sine": {"amplitude": 0.3, "frequency_hz": 6, "ramp_cycles": 1}});
+    let published = json!({"published": {"slope_per_pressure_rad": 0.2, "length_per_pressure_m": 0.004}});
+    for coupling in [json!("reciprocal"), json!("reciprocal_kinked"), published] {
+        let mut case = pressed(&json!({"ends": {"root": "clamped", "tip": {"free": {"moment_n_m": moment}}}}));
+        case["bladders"] = json!({"coupling": coupling, "kink_width": 0.1});
+        let relative = run(&case).1.balances.energy_residual_relative;
+        assert!(relative.abs() < 1e-6, "{coupling}: energy {relative:.1e}");
+    }
 }
 
 /// Goal: the Jacobian belongs to the residual, with bladders, moments at ends, shear, relaxation, spans and a neutral axis beside the line.
@@ -297,7 +294,7 @@ fn the_jacobian_belongs_to_the_residual() {
 #[test]
 fn spans_bend_by_their_own_laws() {
     let given = 0.85;
-    let mut case = cantilever(12, &table(PLATEAU), &json!({"moment_n_m": given}), &json!({}));
+    let mut case = cantilever(12, &table(PLATEAU), &json!({"moment_n_m": given}));
     case["spans"] = json!([{"length_m": 0.25}, {"length_m": 0.25, "beam": {"moment_curvature": table(UNLIKE)}},
         {"length_m": 0.25, "beam": {"height_m": 1.6e-3}}, {"beam": {"height_m": 2.5e-3, "young_modulus_pa": 2e11}}]);
     let scaled = |height: f64, modulus: f64| {
@@ -323,7 +320,7 @@ fn spans_bend_by_their_own_laws() {
 #[test]
 fn frequencies_are_those_of_the_slope() {
     for rest in [0.7, -2.0, 3.5] {
-        let mut case = cantilever(40, &table(PLATEAU), &json!({}), &json!({}));
+        let mut case = cantilever(40, &table(PLATEAU), &json!({}));
         case["ends"] = json!({"root": "clamped", "tip": {"conditions": {"u1_m": 0, "slope_rad": 0, "force_z_n": 0}}});
         case["loads"] = json!([{"rest_curvature_1_m": {"signal": rest}}]);
         let slope = (moment(PLATEAU, rest + 1e-6) - moment(PLATEAU, rest - 1e-6)) / 2e-6;
@@ -340,104 +337,5 @@ fn frequencies_are_those_of_the_slope() {
             (frequency / expected - 1.0).abs() < 5e-3,
             "{rest}: {frequency} for {expected}"
         );
-    }
-}
-
-/// Goal: the energy is the integral of the moment, and the inverse is that of the law, at both sides, within and beyond the table.
-#[test]
-fn the_energy_is_the_integral_of_the_moment() {
-    for table_of in [PLATEAU, UNLIKE] {
-        let (curvature, moments) = table_of;
-        let written = serde_json::from_value(json!({"curvature_1_m": curvature, "moment_n_m": moments})).unwrap();
-        let law = MomentCurvature::new(&written).unwrap();
-        for sign in [1.0, -1.0] {
-            let (mut before, mut energy) = (0.0, 0.0);
-            for k in 1..=600 {
-                let x = sign * 0.01 * f64::from(k);
-                // Gauss's two points are exact for the cubics between points
-                let (middle, half) = (0.5 * (x + before), 0.5 * (x - before));
-                let gauss = [-1.0, 1.0].map(|side| moment(table_of, middle + side * half / 3.0_f64.sqrt()));
-                energy += half * (gauss[0] + gauss[1]);
-                let at = law.at(x);
-                assert!((at.moment - moment(table_of, x)).abs() < 1e-13, "{x}");
-                assert!((at.energy - energy).abs() < 1e-12, "{x}: {} for {energy}", at.energy);
-                let slope = (moment(table_of, x + 1e-6) - moment(table_of, x - 1e-6)) / 2e-6;
-                assert!((at.stiffness - slope).abs() < 1e-5, "{x}");
-                assert!(at.stiffness > 0.0 && at.stiffness <= law.steepest() * (1.0 + 1e-15));
-                before = x;
-            }
-        }
-    }
-}
-
-/// Goal: a point of the table is a number of the case like others; the table follows the modulus of the beam.
-#[test]
-fn a_point_of_the_table_is_a_number_of_the_case() {
-    let case = parse(&cantilever(4, &table(PLATEAU), &json!({}), &json!({})));
-    let point = Parameter::find(&case, "/beam/moment_curvature/moment_n_m/3").unwrap();
-    let law = |case: &slcbeam::case::Case| case.beam.moment_curvature.clone().unwrap();
-    assert_eq!(law(&point.changed(&case, 0.91).unwrap()).moment_n_m[3], 0.91);
-    let modulus = Parameter::find(&case, "/beam/young_modulus_pa").unwrap();
-    let stiffer = law(&modulus.changed(&case, 2e11).unwrap());
-    assert_eq!(stiffer.moment_n_m, PLATEAU.1.map(|moment| 2.0 * moment));
-    assert_eq!(stiffer.curvature_1_m, PLATEAU.0);
-}
-
-/// Goal: a state beyond the table is reported with its place, in runs and at rest.
-#[test]
-fn a_state_beyond_the_table_is_reported() {
-    let mut case = cantilever(8, &table(PLATEAU), &json!({"moment_n_m": 1.9}), &json!({}));
-    let path = follow(&parse(&case), &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
-    let said = path.warnings().join("\n");
-    assert!(
-        said.contains("beyond its moment-curvature table: 1.250 of the last curvature"),
-        "{said}"
-    );
-    case["ends"]["tip"]["free"]["moment_n_m"] = json!({"ramp": {"to": 1.9, "start_s": 0, "duration_s": 0.3}});
-    let said = run(&case).1.warnings.join("\n");
-    assert!(said.contains("beyond its moment-curvature table"), "{said}");
-    case["ends"]["tip"]["free"]["moment_n_m"] = json!(0.2);
-    let path = follow(&parse(&case), &EquilibriumOptions::at(1.0), &mut |_| Control::Continue).unwrap();
-    assert!(!path.warnings().join("\n").contains("table"));
-}
-
-/// Goal: tables that are no increasing curve through zero, and settings that need a linear section, are rejected with the remedy.
-#[test]
-fn mistakes_are_named() {
-    let with = |curvature: Value, moment: Value| {
-        let law = json!({"curvature_1_m": curvature, "moment_n_m": moment});
-        faults(&cantilever(4, &law, &json!({}), &json!({})))
-    };
-    for (curvature, moment, words) in [
-        (json!([0, 1, 2]), json!([0, 1]), "3 curvatures for 2 moments"),
-        (json!([0, 2, 1]), json!([0, 1, 2]), "ascending curvatures"),
-        (json!([0, 1, 2]), json!([0, 1, 0.5]), "snap-through"),
-        (json!([0, 1, 2]), json!([0, 1, 1]), "rising moments"),
-        (json!([0, 1, 2]), json!([0.1, 1, 2]), "rest_curvature_1_m"),
-        (json!([1, 2]), json!([1, 2]), "no curvature 0"),
-        (json!([-1, 0]), json!([-1, 0]), "no curvature 0"),
-        (json!([0, 1]), json!([0, 1e9]), "N mm"),
-    ] {
-        let said = with(curvature, moment);
-        assert!(said.contains(words), "{words}: {said}");
-    }
-    let mut twice = cantilever(4, &table(PLATEAU), &json!({}), &json!({}));
-    twice["beam"]["bending_stiffness_factor"] = json!(0.6);
-    assert!(faults(&twice).contains("slope of the law at zero"));
-    let mut span = cantilever(4, &table(PLATEAU), &json!({}), &json!({}));
-    span["spans"] = json!([{"beam": {"bending_stiffness_factor": 0.6}}]);
-    assert!(faults(&span).contains("slope of the law at zero"));
-    let mut published = cantilever(4, &table(PLATEAU), &json!({}), &json!({}));
-    published["formulation"] = json!("published");
-    assert!(faults(&published).contains("the published form with a moment-curvature law"));
-    let mut fourth = cantilever(8, &table(PLATEAU), &json!({}), &json!({}));
-    fourth["mesh"]["order"] = json!(4);
-    match System::new(&parse(&fourth)) {
-        Err(Error::Case(fault)) => assert!(
-            fault.violations[0]
-                .what
-                .contains("a moment-curvature law needs a mesh of second order")
-        ),
-        other => panic!("{:?}", other.map(|_| ())),
     }
 }
