@@ -94,6 +94,8 @@ impl Section {
             each.map(|(one, length)| value(one) * length).sum::<f64>() / total
         };
         let mass = mean(&|one| one.mass_per_length);
+        let steepening = of.iter().map(|one| one.steepest_bending / one.bending_stiffness);
+        let steepening = steepening.fold(1.0, f64::max);
         Some(Self {
             mass_factor: mean(&|one| one.mass_factor),
             mass_per_length: mass,
@@ -105,7 +107,7 @@ impl Section {
             line_height: mean(&|one| one.line_height),
             axial_stiffness: 1.0 / mean(&|one| 1.0 / one.axial_stiffness),
             bending_stiffness: 1.0 / mean(&|one| 1.0 / one.bending_stiffness),
-            steepest_bending: of.iter().map(|one| one.steepest_bending).fold(0.0, f64::max),
+            steepest_bending: steepening / mean(&|one| 1.0 / one.bending_stiffness),
             shear_stiffness: 1.0 / mean(&|one| 1.0 / one.shear_stiffness),
             weighing_per_length: mean(&|one| one.weighing_per_length),
             gyration_radius_squared: mean(&Self::rotary_inertia) / mass,
