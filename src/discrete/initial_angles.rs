@@ -8,6 +8,8 @@ use crate::model::Kinematics;
 
 /// Maximum number of corrections; the contraction rate is the ratio of normal forces to kGA.
 const CORRECTIONS: usize = 40;
+/// Growth of the corrections that ends the iteration.
+const GROWN: f64 = 10.0;
 /// Convergence limit of the corrections [rad].
 const NOTHING: f64 = 1e-15;
 
@@ -37,7 +39,8 @@ pub fn across(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<
     }
 }
 
-/// Rotates sections until their moments balance at rest, so that the start does not excite vibrations of sections alone.
+/// Rotates sections until their moments balance at rest, so that the start does not excite vibrations of sections alone. Where the
+/// corrections grow, because normal forces exceed kGA, sections remain perpendicular to the beam's line.
 pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace<f64>) {
     let own = &system.layout.turning;
     if own.angle.is_empty() {
@@ -48,6 +51,7 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
         at_rest[velocity] = 0.0;
     }
     let rates = vec![0.0; y.len()];
+    let mut least = f64::INFINITY;
     for _ in 0..CORRECTIONS {
         residual::evaluate(system, now, &at_rest, &rates, w);
         let corrections = corrections(system, now, w);
@@ -55,13 +59,15 @@ pub fn balance(system: &System, now: &TimeData, y: &mut [f64], w: &mut Workspace
         for (unknown, correction) in own.angle.clone().zip(corrections) {
             at_rest[unknown] += correction;
         }
-        if largest.is_nan() || largest < NOTHING {
+        if largest.is_nan() || largest > GROWN * least {
+            return;
+        }
+        if largest < NOTHING {
             break;
         }
+        least = least.min(largest);
     }
-    if at_rest[own.angle.clone()].iter().all(|angle| angle.is_finite()) {
-        y[own.angle.clone()].copy_from_slice(&at_rest[own.angle.clone()]);
-    }
+    y[own.angle.clone()].copy_from_slice(&at_rest[own.angle.clone()]);
 }
 
 /// Angles by which moments [N m] rotate the sections of a fixed beam line, for small strains: solves

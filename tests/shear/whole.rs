@@ -271,3 +271,28 @@ fn it_is_chosen_and_refused() {
         ["/effects/shear: shear is on, but no shear_stiffness_n is given"]
     );
 }
+
+/// Goal: a start that stretches the line far more than it shears, so that its normal forces exceed kGA, begins with sections across the line
+/// and keeps its energy.
+#[test]
+fn a_stretched_start_keeps_its_sections() {
+    let mut case = block(
+        50.0,
+        &json!({"start": {"u1_m": {"polynomial": {"coefficients": [0, 0, 0.05]}}}, "time": {"end_s": 2e-4, "output_interval_s": 1e-4}}),
+    );
+    for (key, value) in [
+        ("length_m", 1.0),
+        ("height_m", 0.01),
+        ("width_m", 0.01),
+        ("young_modulus_pa", 1.2e9),
+    ] {
+        case["beam"][key] = json!(value);
+    }
+    case["solver"]["rtol"] = json!(1e-7);
+    let (memory, summary) = finished(&case);
+    // sections across the line are bent by u1'' = 0.1/m
+    let bending = 0.5 * 1.0 * 0.1_f64.powi(2);
+    let first = memory.column("bending_energy").unwrap()[0];
+    assert!((first / bending - 1.0).abs() < 0.1, "{first} {bending}");
+    close("a stretched start", &summary, 1e-4);
+}
