@@ -169,8 +169,8 @@ fn gas_fills_bladders_of_any_size() {
     let mut case = pumped(&chain, 9.81, &spans);
     case["fluid"] = json!({"preset": "air"});
     case["network"]["chains"][0]["ends"][0] =
-        json!({"pressure_pa": {"ramp": {"to": -8000, "duration_s": 0.05, "shape": "smooth"}}});
-    case["bladders"]["closing"] = json!({"below": 0.9, "stiffness_pa": 500.0});
+        json!({"pressure_pa": {"ramp": {"to": -60000, "duration_s": 0.05, "shape": "smooth"}}});
+    case["bladders"]["closing"] = json!({"below": 0.9, "stiffness_pa": 50000.0});
     case["bladders"]["lower"] = json!({"unlike": {"height_m": 0.006}});
     let (memory, summary) = run(&case);
     let balances = summary.balances;
