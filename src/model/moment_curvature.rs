@@ -18,7 +18,7 @@ const ITERATIONS: usize = 100;
 /// ```
 ///
 /// At an end with a given moment M, `e = f⁻¹(M)`, with branches of [E58] the root of `f(e) + EI Σ g_k (e + α_p - κ_k) = M`. At a node
-/// between two segments the moment is continuous: `M = f_left(x) = f_right(2 e - x)`.
+/// between two segments the moment is continuous: `M = f_l(x) = f_r((e - s_l x)/s_r)`, with the shares s of [E83].
 #[derive(Clone, Debug, PartialEq)]
 pub struct BendingLaw {
     /// Pieces of positive and of negative curvatures, by their magnitude, ascending.
