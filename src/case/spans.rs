@@ -137,7 +137,7 @@ fn both_rows(case: &Case) -> [Value; 2] {
     if case.spans.iter().any(|span| span.segments.is_some()) {
         beam["length_m"] = (SpanLengths::new(case).pitch * case.segments() as f64).into();
     }
-    if case.beam.neutral_axis_m != 0.0 {
+    if gives_axes(case) {
         // the line stays where it is if the neutral axis of a span is elsewhere
         beam["reference_axis_m"] = case.beam.line_height().into();
     }

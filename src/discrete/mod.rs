@@ -37,6 +37,7 @@ use crate::error::{Code, Result, Violation};
 use crate::functions::Signal;
 use crate::model::loads::LoadKind;
 use crate::model::{Model, Storage, audit};
+use crate::numerics::Scalar;
 
 pub use attached::MeshedAttachment;
 pub use bodies::MeshedBody;
@@ -113,6 +114,23 @@ impl System {
     /// True if the fluid fills bladders; false also for a network that only its ports bound.
     pub fn has_bladders(&self) -> bool {
         self.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0)
+    }
+
+    /// Mean pressure of the fluid in each bladder, which touching walls exceed by their own pressure [Pa].
+    pub fn pressures_of_fluid<'a, T: Scalar>(&'a self, w: &'a Workspace<T>) -> impl Iterator<Item = T> + 'a {
+        let closing = self.model.wet.as_ref().is_some_and(|wet| wet.closing.is_some());
+        let cells = self.fluid.as_ref().filter(|_| closing);
+        w.fluid
+            .mean_pressure
+            .iter()
+            .enumerate()
+            .map(move |(bladder, in_walls)| {
+                let Some(fluid) = cells else { return *in_walls };
+                let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
+                let mut sum = T::zero();
+                cells.iter().for_each(|pressure| sum += *pressure);
+                sum * (1.0 / cells.len() as f64)
+            })
     }
 
     /// Discretizes another model of a checked case; bladders keep their volume at the start of the case.

@@ -116,7 +116,7 @@ fn time(wet: &Wet, component: &Component, t: f64) -> Option<f64> {
         .iter()
         .map(|bladder| wet.compliance_ratio(*bladder).sqrt())
         .collect();
-    if !wet.segments.is_empty() {
+    if ratios.iter().any(|ratio| *ratio != 1.0) {
         for (i, j) in (0..nb).flat_map(|i| (0..nb).map(move |j| (i, j))) {
             reduced[(i, j)] /= ratios[i] * ratios[j];
         }

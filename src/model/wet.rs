@@ -168,9 +168,10 @@ impl Wet {
         own.map_or(self.network.along_bladders.as_ref(), |law| law.along[row].as_ref())
     }
 
-    /// Compliance of a bladder over that of most.
+    /// Largest compliance of a bladder, against that of the other one of its segment, over that of most.
     pub fn compliance_ratio(&self, bladder: usize) -> f64 {
-        self.compliance_by(self.area_of(bladder), 0.0) / self.compliance()
+        let cross = self.per_other_pressure_of(self.place(bladder).0).abs();
+        (self.compliance_by(self.area_of(bladder), 0.0) + cross) / self.compliance()
     }
 
     /// Largest time of diffusion along a bladder over that of most bladders.

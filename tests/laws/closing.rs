@@ -63,6 +63,7 @@ fn walls_hold_what_suction_leaves() {
             );
             case["bladders"]["area_per_moment_m2_per_n_m"] = json!({"opening": 0, "closing": 0});
             case["bladders"]["area_per_force_m2_per_n"] = json!({"tension": 0, "compression": 0});
+            case["probes"] = json!([{"name": "middle", "at": 0.55}]);
             let (mut low, mut high) = (1e-9, 1.0);
             for _ in 0..200 {
                 let x = 0.5 * (low + high);
@@ -76,13 +77,18 @@ fn walls_hold_what_suction_leaves() {
             let path = equilibrium::follow(&case, &EquilibriumOptions::at(0.1), &mut |_| Control::Continue).unwrap();
             assert!(path.fault.is_none(), "{:?}", path.fault);
             let columns = equilibrium::columns(&equilibrium::system(&case, 0.1).unwrap());
-            let place = columns
-                .iter()
-                .position(|column| column.name == "least_opening")
-                .unwrap();
-            let found = path.last().row[place];
+            let value = |name: &str| {
+                let place = columns.iter().position(|column| column.name == name);
+                path.last().row[place.unwrap_or_else(|| panic!("no column {name}"))]
+            };
+            let found = value("least_opening");
             println!("{suction}: {found} {low}");
             assert!((found / low - 1.0).abs() < 1e-9, "{found} {low}");
+            // pressures are those of the fluid, not those of the walls
+            for name in ["bladder__6_pressure", "middle_pressure_lower"] {
+                let pressure = value(name);
+                assert!((pressure / -suction - 1.0).abs() < 1e-9, "{name} {pressure}");
+            }
         }
     }
 }

@@ -49,7 +49,7 @@ pub fn at_rest<const N: usize>(value: &Value, names: [&str; N]) -> [f64; N] {
 }
 
 /// Tip deflection, extension and angle of the equilibrium.
-fn tip(value: &Value) -> [f64; 3] {
+pub fn tip(value: &Value) -> [f64; 3] {
     at_rest(value, ["tip_u1", "tip_u3", "tip_angle"])
 }
 

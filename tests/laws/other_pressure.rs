@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
-use slcbeam::model::{Model, passivity};
+use slcbeam::model::{Model, passivity, relaxation_times};
 use slcbeam::run::modes::{ModeOptions, modes};
 use slcbeam_section::cell::Cell;
 use slcbeam_section::coefficients::Options;
@@ -255,6 +255,31 @@ fn a_beam_with_a_thin_wall_bends_as_its_cell() {
         assert!(
             (found[1] - exact[1]).abs() < close * pressure && exact[1] > 0.05 * pressure,
             "{found:?} {exact:?}"
+        );
+    }
+}
+
+/// Goal: the time constant that is printed covers the slowest exchange between both bladders of a segment, against each other.
+#[test]
+fn the_slowest_time_covers_bladders_against_each_other() {
+    for cross in [-0.9, 0.5] {
+        let case = json!({
+            "name": "pair", "preset": "matia-gat-beam", "fluid": {"viscosity_pa_s": 0.05}, "beam": {"length_m": 0.1},
+            "bladders": {"per_row": 1, "coupling": "reciprocal", "area_per_pressure_m2_per_pa": OWN, KEY: cross * OWN},
+            "network": {"tubes": [{"from": {"bladder": 1, "end": "outlet"}, "to": {"bladder": -1, "end": "inlet"}}]},
+            "ends": {"root": "clamped", "tip": "free"}, "time": {"end_s": 0.1}
+        });
+        let alone = |cross: f64| {
+            let mut case = case.clone();
+            case["bladders"][KEY] = json!(cross);
+            let case = parse(&case);
+            let model = Model::new(&case).unwrap();
+            relaxation_times::times(model.wet.as_ref().unwrap())[0].unwrap()
+        };
+        let (own, uncoupled) = (alone(cross * OWN), alone(0.0));
+        assert!(
+            (own / uncoupled - (1.0 + cross.abs())).abs() < 1e-9,
+            "{cross}: {own} {uncoupled}"
         );
     }
 }

@@ -11,6 +11,7 @@ use slcbeam::run::modes::{ModeOptions, modes};
 use slcbeam::run::record::Control;
 
 use crate::differences::worst_difference;
+use crate::eccentric::{merge, tip};
 use crate::spans::{deflection, dry, order, parse, pumped, run, transfer};
 
 /// Segments of 15, 5 and 12 mm: a rigid root, two rows of wide bladders, narrow bladders of one row.
@@ -252,4 +253,31 @@ fn walls_and_streams_meet_each_section() {
     let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
     let worst = worst_difference(&mut dae, 1, 0.1);
     assert!(worst < 1e-6, "{worst:.1e}");
+}
+
+/// Source: the axial force bends the half whose neutral axis is e above the line, which the case leaves at mid-height: `φ = F e l/2EI`.
+/// Goal: the same with the line given and without, also with the axis of the case at a rounding error.
+#[test]
+fn the_axis_of_a_span_is_above_that_of_the_case() {
+    let angle = |beam: &Value| {
+        let mut case = json!({
+            "name": "axis", "beam": {"length_m": 0.1, "height_m": 0.002, "width_m": 0.015, "young_modulus_pa": 7e8, "density_kg_m3": 2700},
+            "ends": {"root": "clamped", "tip": {"free": {"force_z_n": 0.01}}},
+            "spans": [{"length_m": 0.05}, {"beam": {"neutral_axis_m": 0.0005}}],
+            "mesh": {"segments": 20}, "time": {"end_s": 0.1, "output_interval_s": 0.001}
+        });
+        merge(&mut case["beam"], beam);
+        tip(&case)[2]
+    };
+    let exact = 0.01 * 0.0005 * 0.05 / (7e8 * 0.015 * 0.002_f64.powi(3) / 12.0);
+    let given = angle(&json!({"reference_axis_m": 0}));
+    assert!((given.abs() / exact - 1.0).abs() < 1e-2, "{given} {exact}");
+    for beam in [
+        json!({}),
+        json!({"neutral_axis_m": 0}),
+        json!({"neutral_axis_m": 1e-12}),
+    ] {
+        let found = angle(&beam);
+        assert!((found / given - 1.0).abs() < 1e-6, "{beam}: {found} {given}");
+    }
 }

@@ -139,6 +139,7 @@ fn balances_of_loaded_beams_close() {
         ("ecoflex-actuator", 0.3),
         ("tapered-finger", 0.3),
         ("pneunet", 0.3),
+        ("jointed-finger", 0.3),
         ("fibre-bender", 0.5),
         ("middle-third", 0.3),
         ("two-materials", 1.5),

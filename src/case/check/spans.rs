@@ -134,8 +134,7 @@ pub(super) fn axes(case: &Case, faults: &mut Violations) {
         let what = format!("{what} with a neutral axis that is not at the beam's line");
         faults.push(Violation::new(Code::Together, pointer, what).hint(hint));
     };
-    let same =
-        "remove reference_axis_m, and give all spans one neutral_axis_m: the beam's line is then at the neutral axis";
+    let same = "give neutral_axis_m in /beam instead of in spans, without reference_axis_m: the beam's line is then at the neutral axis";
     if case.formulation == Formulation::Published {
         refuse(
             "/formulation",

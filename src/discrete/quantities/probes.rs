@@ -220,7 +220,9 @@ impl MeshProbe {
 
     fn pressure(&self, look: &StateView, row: usize) -> f64 {
         let wet = look.system.model.wet.as_ref();
-        wet.map_or(0.0, |wet| look.w.fluid.mean_pressure[wet.pair(self.segment)[row]])
+        let bladder = wet.map(|wet| wet.pair(self.segment)[row]);
+        let pressure = bladder.and_then(|bladder| look.system.pressures_of_fluid(&look.w).nth(bladder));
+        pressure.unwrap_or(0.0)
     }
 }
 

@@ -199,7 +199,7 @@ fn network_values(look: &StateView, integrals: Option<&[f64]>, put: &mut impl Fn
         }
     }
     if integrals.is_none() {
-        look.w.fluid.mean_pressure.iter().for_each(|&pressure| put(pressure));
+        look.system.pressures_of_fluid(&look.w).for_each(put);
     }
 }
 

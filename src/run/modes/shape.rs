@@ -64,7 +64,7 @@ impl<'a> Shapes<'a> {
         ModeShape {
             u1: complex(&mut w.motion.u.iter().map(|u| u.x)),
             u3: complex(&mut w.motion.u.iter().map(|u| u.z)),
-            pressure: complex(&mut w.fluid.mean_pressure.iter().copied()),
+            pressure: complex(&mut system.pressures_of_fluid(w)),
         }
         .normalised(system.model.length)
     }
