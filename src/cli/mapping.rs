@@ -18,6 +18,10 @@ pub fn mapping(asked: &MappingArguments) -> Result<ExitCode> {
     let Some(wet) = model.wet.as_ref().filter(|wet| wet.per_row > 0) else {
         return Err(Error::Usage("the case has no bladders: there is nothing to map".into()));
     };
+    if !case.spans.is_empty() {
+        let what = "the tables map equal segments with two rows of bladders: they are not available with /spans";
+        return Err(Error::Usage(what.into()));
+    }
     let map = network_coordinate(&case, wet);
     if asked.json {
         let rows = |rows: Vec<(f64, f64, i64)>, names: [&str; 2]| -> Value {

@@ -124,7 +124,7 @@ impl MonitoredValues {
         g.strained = node;
         g.moving[MonitoredQuantity::Strain as usize] = [
             strain,
-            strain_rate(now, node, last, system.sections.farthest_fiber[node], w),
+            strain_rate(now, node, last, system.sections.fiber_of_curvature[node], w),
         ];
         g.moving[MonitoredQuantity::Outermost as usize] = nonlinear::outermost(system, w);
         g.moving[MonitoredQuantity::Depth as usize] = contact_points::deepest(system, w);

@@ -22,6 +22,9 @@ pub struct MeshSections {
     pub laws: Vec<NodeBending>,
     /// Distance of the farthest fiber from the beam's line at each node, the larger one between two segments [m].
     pub farthest_fiber: Vec<f64>,
+    /// Largest strain over curvature at each node [m]: the distance of the farthest fiber, between two segments that of the side that
+    /// bends more, times its share of the curvature.
+    pub fiber_of_curvature: Vec<f64>,
     /// `d` of each cell, [E89] [m]; empty if all neutral axes are at the beam's line.
     pub offset: Vec<f64>,
     /// `EI` of each cell [N m^2].
@@ -107,6 +110,14 @@ impl MeshSections {
             },
             bending_of_cells: cells(|section| section.bending_stiffness),
             farthest_fiber: nodes(&|[left, right], _| left.farthest_fiber().max(right.farthest_fiber())),
+            fiber_of_curvature: nodes(&|[left, right], shares| {
+                if left == right {
+                    return left.farthest_fiber();
+                }
+                let compliance = shares[0] / left.bending_stiffness + shares[1] / right.bending_stiffness;
+                let of = |side: &Section| side.farthest_fiber() / (side.bending_stiffness * compliance);
+                of(left).max(of(right))
+            }),
             offset: match cells(|section| section.offset) {
                 all if all.iter().all(|d| *d == 0.0) => vec![],
                 all => all,

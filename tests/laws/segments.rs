@@ -12,7 +12,7 @@ use slcbeam::run::record::Control;
 
 use crate::differences::worst_difference;
 use crate::eccentric::{merge, tip};
-use crate::spans::{deflection, dry, order, parse, pumped, run, transfer};
+use crate::spans::{deflection, dry, faults, order, parse, pumped, run, transfer};
 
 /// Segments of 15, 5 and 12 mm: a rigid root, two rows of wide bladders, narrow bladders of one row.
 fn unequal() -> Value {
@@ -280,4 +280,43 @@ fn the_axis_of_a_span_is_above_that_of_the_case() {
         let found = angle(&beam);
         assert!((found / given - 1.0).abs() < 1e-6, "{beam}: {found} {given}");
     }
+}
+
+/// Goal: a thin hinge beside thick parts is strained as its own section, not as the thicker one with the mean curvature: a run to a strain of
+/// 0.3 ends, where a strain of 1 stops it.
+#[test]
+fn a_hinge_is_strained_as_its_own_section() {
+    let stiffness = 1e6 * 0.02 * 0.002_f64.powi(3) / 12.0;
+    let case = json!({
+        "name": "hinge", "beam": {"length_m": 0.1, "height_m": 0.02, "width_m": 0.02, "young_modulus_pa": 1e6, "density_kg_m3": 1000},
+        "spans": [{"length_m": 0.004, "segments": 2, "beam": {"height_m": 0.002}}, {"length_m": 0.004, "segments": 2}, {"segments": 2}],
+        "ends": {"root": "clamped", "tip": {"free": {"moment_n_m": {"ramp": {"to": -300.0 * stiffness, "duration_s": 1.0}}}}},
+        "mesh": {"segments": 6, "cells_per_segment": 8}, "time": {"end_s": 1.0, "output_interval_s": 0.1},
+        "effects": {"solid_inertia": "off"}, "companion": "off"
+    });
+    // 4 mm at 300/m, and 96 mm at a thousandth of it
+    let angle = *run(&case).0.column("tip_angle").unwrap().last().unwrap();
+    assert!((angle.abs() / 1.2288 - 1.0).abs() < 1e-3, "{angle}");
+}
+
+/// Goal: spans that all give their segments keep the coefficients of the first with bladders; a section of another pitch is refused.
+#[test]
+fn coefficients_belong_to_the_first_bladders() {
+    let spans = json!([{"length_m": 0.02, "segments": 1, "rows": "none"}, {"length_m": 0.08, "segments": 8}]);
+    let chain: Vec<i32> = (2..=9).collect();
+    let mut case = pumped(&chain, 0.0, &spans);
+    case["bladders"]["per_row"] = json!(9);
+    let values = slcbeam::case::spans::segments(&parse(&case));
+    assert!(
+        (values[1].beam.length_m - 0.09).abs() < 1e-15,
+        "{}",
+        values[1].beam.length_m
+    );
+    assert_eq!(
+        values[1].bladders.as_ref().unwrap()[0],
+        *parse(&case).bladders.as_ref().unwrap()
+    );
+    case["spans"][1]["beam"] = json!({"height_m": {"linear": [0.0216, -0.001]}});
+    let text = faults(&case);
+    assert!(text.contains("numbers above 0 throughout the span"), "{text}");
 }

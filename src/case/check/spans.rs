@@ -337,7 +337,12 @@ fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
     for (part, key, profile) in span.given().filter(|(_, key, _)| !signed(key)) {
         let here = places.iter().filter(|(span, _)| *span == k);
         let values = here.map(|(_, x)| profile.value(*x));
-        if let Some(value) = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0) {
+        let ends = [0.0, 1.0]
+            .map(|x| profile.value(x))
+            .into_iter()
+            .filter(|value| *value < 0.0);
+        let faulty = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0);
+        if let Some(value) = faulty.or_else(|| ends.into_iter().next()) {
             let what = format!("the value is {} in this span", significant(value, 3));
             let fault = Violation::new(Code::Range, format!("/spans/{k}/{part}/{key}"), what);
             faults.push(fault.allowed("numbers above 0 throughout the span"));

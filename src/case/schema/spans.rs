@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AreaPerForce, AreaPerMoment, Case, MomentCurvature, given};
+use crate::case::numbers::rounded;
 use crate::functions::profile::Profile;
 
 /// Relative deviation of a span's length from whole segments that counts as rounding.
@@ -186,8 +187,8 @@ pub struct SpanLengths {
     pub lengths: Vec<f64>,
     /// Number of segments of each span; none for a length that is not a whole number of segments, or if nothing is left for a span.
     pub counts: Vec<Option<usize>>,
-    /// Length of the segments of spans that give no number of them, to which the coefficients of the case belong [m]. If all spans give
-    /// it, or without spans, the mean length.
+    /// Length of the segments to which the coefficients of the case belong [m]: those of spans that give no number of them; if all spans
+    /// give it, those of the first span with bladders.
     pub pitch: f64,
     /// Segments left for spans that give no number of them.
     pub left: usize,
@@ -205,9 +206,15 @@ impl SpanLengths {
         let (counted, rest) = counted_and_rest(spans, total);
         let left = segments.saturating_sub(counted);
         let mixed = counted > 0 && spans.iter().any(|span| span.segments.is_none());
-        let pitch = match mixed {
-            true => rest / left as f64,
-            false => total / segments as f64,
+        let with_bladders = spans.iter().position(|span| span.rows != SpanRows::None).unwrap_or(0);
+        let first = spans
+            .get(with_bladders)
+            .and_then(|span| Some(lengths[with_bladders] / span.segments? as f64));
+        let equal = total / segments as f64;
+        let pitch = match first {
+            _ if mixed => rest / left as f64,
+            Some(first) if (first - equal).abs() > ROUNDING * equal => first,
+            _ => equal,
         };
         let whole = |length: f64| {
             let count = (length / pitch).round();
@@ -235,6 +242,38 @@ impl SpanLengths {
     }
 }
 
+/// Number of segments of a beam of this length [m], of which those without a number of their own have this pitch [m]; `given` is the number
+/// that the case gives.
+///
+/// # Errors
+/// Explains lengths that do not fit.
+pub fn segments_of_pitch(spans: &[Span], length: f64, given: Option<f64>, pitch: f64) -> Result<u64, String> {
+    let (counted, rest) = counted_and_rest(spans, length);
+    if counted > 0 && spans.iter().all(|span| span.segments.is_some()) {
+        let own = SpanLengths::resolve(spans, length, counted).pitch;
+        return match (own - pitch).abs() <= WHOLE * pitch {
+            true => Ok(counted as u64),
+            false => Err(format!(
+                "the segments of the first span with bladders are {} m long, but the pitch of the section is {pitch} m",
+                rounded(own)
+            )),
+        };
+    }
+    let (own, count) = (counted as f64, (rest / pitch).round().max(1.0));
+    match given.map_or(count, |given| given - own) {
+        number if (number * pitch - rest).abs() <= WHOLE * length => Ok((own + count) as u64),
+        number => Err(format!(
+            "{number} segments with a pitch of {pitch} m need {} m, but the beam is {} m long{}",
+            rounded(number * pitch),
+            rounded(rest),
+            match counted {
+                0 => "",
+                _ => " beside spans with a number of segments",
+            }
+        )),
+    }
+}
+
 /// Length of each span of a beam of this length [m].
 fn lengths(spans: &[Span], total: f64) -> Vec<f64> {
     let given: f64 = spans.iter().filter_map(|span| span.length_m).sum();
@@ -245,7 +284,7 @@ fn lengths(spans: &[Span], total: f64) -> Vec<f64> {
 }
 
 /// Segments of the spans that give their number, and the length of the other spans [m], for a beam of this length [m].
-pub fn counted_and_rest(spans: &[Span], total: f64) -> (usize, f64) {
+fn counted_and_rest(spans: &[Span], total: f64) -> (usize, f64) {
     let counted = spans
         .iter()
         .filter_map(|span| span.segments)

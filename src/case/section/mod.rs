@@ -7,10 +7,9 @@ use slcbeam_section::error::Error;
 use slcbeam_section::input::Section;
 
 use super::faults::{SetValue, Violations, is_below};
-use super::numbers::rounded;
 use super::origins::Origin;
 use super::presets::Preset;
-use super::schema::{Span, counted_and_rest};
+use super::schema::{Span, segments_of_pitch};
 use super::{computed, parameter, sets};
 use crate::error::{Code, Violation};
 
@@ -379,22 +378,7 @@ fn per_row(case: &Value, pitch: f64) -> std::result::Result<u64, String> {
     let Some(length) = case.pointer("/beam/length_m").and_then(Value::as_f64) else {
         return Ok(1000);
     };
-    // spans with a number of segments of their own have another pitch
     let spans = case.get("spans").and_then(|spans| Vec::<Span>::deserialize(spans).ok());
-    let (counted, rest) = counted_and_rest(&spans.unwrap_or_default(), length);
-    let (own, count) = (counted as f64, (rest / pitch).round().max(1.0));
     let given = case.pointer("/bladders/per_row").and_then(Value::as_f64);
-    match given.map_or(count, |given| given - own) {
-        number if (number * pitch - rest).abs() <= 1e-6 * length => Ok((own + count) as u64),
-        number => Err(format!(
-            "{number} segments with a pitch of {pitch} m need {} m, but the beam is {} m long{}",
-            rounded(number * pitch),
-            rounded(rest),
-            if counted > 0 {
-                " beside spans with a number of segments"
-            } else {
-                ""
-            }
-        )),
-    }
+    segments_of_pitch(&spans.unwrap_or_default(), length, given, pitch)
 }

@@ -187,7 +187,7 @@ pub fn largest_strain(system: &System, now: &TimeData, w: &Workspace<f64>) -> (f
         .map(|i| {
             (
                 (node_stretch(w, i, last) - 1.0).abs()
-                    + (w.curvature()[i] - now.rest_curvature(i)).abs() * system.sections.farthest_fiber[i],
+                    + (w.curvature()[i] - now.rest_curvature(i)).abs() * system.sections.fiber_of_curvature[i],
                 i,
             )
         })
