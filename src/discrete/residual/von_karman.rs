@@ -43,8 +43,9 @@ pub fn kinematics<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<
 fn curvatures<T: Scalar>(system: &System, now: &TimeData, w: &mut Workspace<T>) {
     let inverse = &system.mesh.per_node_length;
     let last = system.mesh.nodes - 1;
-    for i in 1..last {
-        w.shape.kappa[i] = (w.shape.d3[i - 1].x - w.shape.d3[i].x) * inverse[i];
+    let turning = w.shape.d3.windows(2).zip(&inverse[1..]);
+    for (kappa, (pair, inverse)) in w.shape.kappa[1..last].iter_mut().zip(turning) {
+        *kappa = (pair[0].x - pair[1].x) * *inverse;
     }
     if let Some(slope) = now.ends[0].slope {
         w.shape.kappa[0] = (-w.shape.d3[0].x + slope.value) * inverse[0];
