@@ -2,12 +2,23 @@
 //!
 //! Goal: the exact derivatives used by Newton's method belong to the residual that is solved.
 
+use std::fmt::Display;
+
 use crate::differences::worst_difference;
-use slcbeam::case;
 use slcbeam::case::schema::Load;
+use slcbeam::case::{self, Case};
 use slcbeam::dae::BeamDae;
 use slcbeam::discrete::System;
 use slcbeam::error::Error;
+
+/// Checks the Jacobian of a case at three random states.
+pub fn agrees(case: &Case, what: impl Display) {
+    let mut dae = BeamDae::new(System::new(case).unwrap());
+    for seed in 1..4 {
+        let worst = worst_difference(&mut dae, seed, 0.1);
+        assert!(worst < 1e-6, "{what}: {worst:.1e}");
+    }
+}
 
 #[test]
 fn jacobian_agrees_with_coloured_differences_on_every_case() {

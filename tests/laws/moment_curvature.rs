@@ -3,12 +3,10 @@
 use std::f64::consts::PI;
 
 use serde_json::{Value, json};
-use slcbeam::dae::BeamDae;
-use slcbeam::discrete::System;
 use slcbeam::run::modes::{ModeOptions, modes};
 
-use crate::differences::worst_difference;
 use crate::foundation::{at_rest, order, unit};
+use crate::jacobian::agrees;
 use crate::pump_curves::pchip;
 use crate::spans::{column, largest, parse, run};
 
@@ -280,11 +278,7 @@ fn the_jacobian_belongs_to_the_residual() {
             for (key, value) in beam.as_object().unwrap() {
                 case["beam"][key] = value.clone();
             }
-            let mut dae = BeamDae::new(System::new(&parse(&case)).unwrap());
-            for seed in 1..4 {
-                let worst = worst_difference(&mut dae, seed, 0.1);
-                assert!(worst < 1e-6, "{effects} {beam}: {worst:.1e}");
-            }
+            agrees(&parse(&case), format_args!("{effects} {beam}"));
         }
     }
 }
