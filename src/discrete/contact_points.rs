@@ -40,10 +40,7 @@ impl ContactPoint {
                 let reach = match contact.follows_section {
                     // of the higher section beside a node the edge touches
                     true if share == 0.0 || share == 1.0 => sections.farthest_fiber[place as usize],
-                    true => {
-                        let own = model.sections.get(node / mesh.cells_per_segment);
-                        own.unwrap_or(&model.section).farthest_fiber()
-                    }
+                    true => model.section_of(node / mesh.cells_per_segment).farthest_fiber(),
                     false => contact.reach,
                 };
                 all.push(Self {

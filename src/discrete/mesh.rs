@@ -146,9 +146,12 @@ impl BeamMesh {
         (left, right)
     }
 
-    /// Nodes at the ends of a segment.
-    pub fn ends_of_segment(&self, segment: usize) -> [usize; 2] {
-        [segment, segment + 1].map(|segment| segment * self.cells_per_segment)
+    /// Segments on both sides of a node, with their shares in its length.
+    #[inline]
+    pub fn sides_of_node(&self, node: usize) -> ([usize; 2], [f64; 2]) {
+        let (left, right) = self.segments_of_node(node);
+        let shares = self.borders.get(left).filter(|_| left != right);
+        ([left, right], *shares.unwrap_or(&[0.5; 2]))
     }
 
     /// Material coordinate of a node [m].
@@ -193,15 +196,11 @@ impl BeamMesh {
     pub fn between_midpoints(&self, place: f64) -> (usize, f64) {
         let last = self.cells.saturating_sub(2);
         let cell = ((place - 0.5).max(0.0) as usize).min(last);
-        if self.cells == 1 || self.uniform {
-            return (
-                cell,
-                if self.cells == 1 {
-                    0.0
-                } else {
-                    place - 0.5 - cell as f64
-                },
-            );
+        if self.cells == 1 {
+            return (cell, 0.0);
+        }
+        if self.uniform {
+            return (cell, place - 0.5 - cell as f64);
         }
         let [here, next] = [cell, cell + 1].map(|cell| self.cell_coordinate(cell));
         (cell, (self.coordinate(place) - here) / (next - here))

@@ -116,21 +116,21 @@ impl System {
         self.fluid.as_ref().is_some_and(|fluid| fluid.bladders > 0)
     }
 
-    /// Mean pressure of the fluid in each bladder, which touching walls exceed by their own pressure [Pa].
+    /// Mean pressure of the fluid in each bladder [Pa].
     pub fn pressures_of_fluid<'a, T: Scalar>(&'a self, w: &'a Workspace<T>) -> impl Iterator<Item = T> + 'a {
+        (0..w.fluid.mean_pressure.len()).map(|bladder| self.pressure_of_fluid(w, bladder))
+    }
+
+    /// Mean pressure of the fluid in a bladder, which touching walls exceed by their own pressure [Pa].
+    pub fn pressure_of_fluid<T: Scalar>(&self, w: &Workspace<T>, bladder: usize) -> T {
         let closing = self.model.wet.as_ref().is_some_and(|wet| wet.closing.is_some());
-        let cells = self.fluid.as_ref().filter(|_| closing);
-        w.fluid
-            .mean_pressure
-            .iter()
-            .enumerate()
-            .map(move |(bladder, in_walls)| {
-                let Some(fluid) = cells else { return *in_walls };
-                let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
-                let mut sum = T::zero();
-                cells.iter().for_each(|pressure| sum += *pressure);
-                sum * (1.0 / cells.len() as f64)
-            })
+        let Some(fluid) = self.fluid.as_ref().filter(|_| closing) else {
+            return w.fluid.mean_pressure[bladder];
+        };
+        let cells = &w.fluid.pressure[fluid.cells_of(bladder)];
+        let mut sum = T::zero();
+        cells.iter().for_each(|pressure| sum += *pressure);
+        sum * (1.0 / cells.len() as f64)
     }
 
     /// Discretizes another model of a checked case; bladders keep their volume at the start of the case.

@@ -65,13 +65,8 @@ impl MeshSections {
                 .collect()
         };
         let nodes = |mean: &dyn Fn([&Section; 2], [f64; 2]) -> f64| -> Vec<f64> {
-            let beside = |node| {
-                let (left, right) = mesh.segments_of_node(node);
-                let shares = mesh.borders.get(left).filter(|_| left != right);
-                ([of(left), of(right)], *shares.unwrap_or(&[0.5; 2]))
-            };
-            let each = (0..mesh.nodes).map(beside);
-            each.map(|(sections, shares)| mean(sections, shares)).collect()
+            let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
+            each.map(|(sides, shares)| mean(sides.map(of), shares)).collect()
         };
         let mean = |value: fn(&Section) -> f64| {
             nodes(&|[left, right], shares| match left == right {
@@ -81,14 +76,9 @@ impl MeshSections {
         };
         let ambient = |around: &AmbientFluid| -> Vec<AmbientSection> {
             let of = |segment: usize| *around.segments.get(segment).unwrap_or(&around.section);
-            let node = |node: usize| {
-                let (left, right) = mesh.segments_of_node(node);
-                match mesh.borders.get(left).filter(|_| left != right) {
-                    Some(shares) => of(left).mean(of(right), *shares),
-                    None => of(left),
-                }
-            };
-            (0..mesh.nodes).map(node).collect()
+            let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
+            each.map(|([left, right], shares)| of(left).mean(of(right), shares))
+                .collect()
         };
         Self {
             axial: cells(|section| section.axial_stiffness),
@@ -100,12 +90,9 @@ impl MeshSections {
                 [] => vec![],
                 laws => {
                     let law = |segment: usize| laws.get(segment).unwrap_or(&laws[0]);
-                    let node = |node: usize| {
-                        let (left, right) = mesh.segments_of_node(node);
-                        let shares = mesh.borders.get(left).filter(|_| left != right);
-                        NodeBending::new(law(left), law(right), *shares.unwrap_or(&[0.5; 2]))
-                    };
-                    (0..mesh.nodes).map(node).collect()
+                    let each = (0..mesh.nodes).map(|node| mesh.sides_of_node(node));
+                    each.map(|([left, right], shares)| NodeBending::new(law(left), law(right), shares))
+                        .collect()
                 }
             },
             bending_of_cells: cells(|section| section.bending_stiffness),

@@ -134,7 +134,7 @@ impl Section {
         let mass_per_length = beam.density_kg_m3 * beam.width_m * beam.height_m * mass_factor;
         let relaxing = beam.viscoelasticity.as_ref().and_then(Viscoelasticity::branches);
         let ratios = relaxing.iter().flatten().map(|branch| branch.modulus_ratio);
-        let second_moment = beam.width_m * beam.height_m.powi(3) / 12.0 * beam.bending_factor();
+        let second_moment = beam.second_moment();
         let law = beam.moment_curvature.as_ref().and_then(BendingLaw::new);
         Self {
             mass_factor,

@@ -1,7 +1,7 @@
 //! Contact of the beam with fixed walls and circles.
 
 use crate::case::schema::{Case, Contact as Written};
-use crate::case::spans;
+use crate::case::spans::SegmentValues;
 use crate::numerics::{Planar, Scalar, ramp};
 
 /// Distance from the center below which the normal of a circle fades, in radii: no force depends on it, since `1 + 1e-16 = 1`.
@@ -78,9 +78,9 @@ pub struct ContactForces<T> {
 }
 
 impl ContactLaw {
-    /// Returns all contacts of a case.
-    pub fn all(case: &Case) -> Vec<Self> {
-        let heights = spans::segments(case).into_iter().map(|values| values.beam.height_m);
+    /// Returns all contacts of a case with the values of its segments.
+    pub fn all(case: &Case, segments: &[SegmentValues]) -> Vec<Self> {
+        let heights = segments.iter().map(|values| values.beam.height_m);
         let reach = 0.5 * heights.reduce(f64::max).unwrap_or(case.beam.height_m);
         case.contacts.iter().map(|written| Self::new(written, reach)).collect()
     }

@@ -211,7 +211,7 @@ impl Model {
                 .foundation
                 .as_ref()
                 .map_or([None, None], |one| one.stiffness().map(|(_, profile)| profile.cloned())),
-            contacts: ContactLaw::all(case),
+            contacts: ContactLaw::all(case, &segments),
             relaxation: (case.beam.viscoelasticity.as_ref())
                 .and_then(Viscoelasticity::branches)
                 .unwrap_or_default(),

@@ -131,8 +131,7 @@ impl BendingLaw {
             let same = k > 0 && beams[k - 1] == *beam;
             let law = || {
                 let table = beam.moment_curvature.as_ref().and_then(Self::new);
-                let full = beam.young_modulus_pa * beam.width_m * beam.height_m.powi(3) / 12.0;
-                Arc::new(table.unwrap_or_else(|| Self::linear(full * beam.bending_stiffness_factor)))
+                Arc::new(table.unwrap_or_else(|| Self::linear(beam.young_modulus_pa * beam.second_moment())))
             };
             laws.push(if same { laws[k - 1].clone() } else { law() });
         }

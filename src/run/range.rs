@@ -126,7 +126,7 @@ impl Limits {
             bending.min(stretch)
         });
         let room = |j: usize, wet: &Wet| {
-            let section = system.model.sections.get(j).unwrap_or(&system.model.section);
+            let section = system.model.section_of(j);
             let there = || {
                 wet.pair(j)
                     .into_iter()

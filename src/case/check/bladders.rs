@@ -140,7 +140,9 @@ pub(super) fn too_large<'a>(
             beam.width_m,
         ),
     ];
-    let large = sizes.into_iter().find(|(_, size, _, room)| *size > room * (1.0 + 1e-9));
+    let large = sizes
+        .into_iter()
+        .find(|(_, size, _, room)| *size > room * (1.0 + ROUNDING));
     large.map(|(what, size, of, room)| format!("{what} is {} m in this span, {of} {} m", rounded(size), rounded(room)))
 }
 
@@ -154,8 +156,7 @@ fn fits(case: &Case, bladders: &Bladders, faults: &mut Violations) {
         faults.push_beside(beside, fault);
     };
     let segment = longest_segment(case);
-    // Tolerance for rounding errors of decimal fractions.
-    let exceeds = |size: f64, room: f64| size > room * (1.0 + 1e-9);
+    let exceeds = |size: f64, room: f64| size > room * (1.0 + ROUNDING);
     if exceeds(bladders.width_m, segment) {
         let what = format!(
             "no room along the beam for {} of width {} m",

@@ -276,8 +276,8 @@ fn lengths(case: &Case, faults: &mut Violations) {
 
 /// Checks the numbers of segments of spans whose lengths fill the beam.
 fn counts(case: &Case, all: &SpanLengths, number: &str, segments: usize, faults: &mut Violations) {
-    let counted_spans = || case.spans.iter().filter_map(|span| span.segments);
-    let given = counted_spans().fold(0, usize::saturating_add);
+    let given = case.spans.iter().filter_map(|span| span.segments);
+    let given = given.fold(0, usize::saturating_add);
     let others = case.spans.iter().filter(|span| span.segments.is_none()).count();
     if (others == 0 && given != segments) || (others > 0 && given.saturating_add(others) > segments) {
         let what = match others {
@@ -330,19 +330,21 @@ fn counts(case: &Case, all: &SpanLengths, number: &str, segments: usize, faults:
     }
 }
 
-/// Checks that every value is positive in the middle of every segment.
+/// Checks that every value is positive in the middle of every segment, and not negative at the ends of the span.
 fn positive(case: &Case, k: usize, span: &Span, faults: &mut Violations) {
     let places = spans::places(case);
     let signed = |key: &str| key.contains("axis") || key == OTHER_PRESSURE;
     for (part, key, profile) in span.given().filter(|(_, key, _)| !signed(key)) {
         let here = places.iter().filter(|(span, _)| *span == k);
-        let values = here.map(|(_, x)| profile.value(*x));
-        let ends = [0.0, 1.0]
-            .map(|x| profile.value(x))
-            .into_iter()
-            .filter(|value| *value < 0.0);
-        let faulty = values.chain([profile.value(0.5)]).find(|v| !v.is_normal() || *v <= 0.0);
-        if let Some(value) = faulty.or_else(|| ends.into_iter().next()) {
+        let mut values = here.map(|(_, x)| profile.value(*x)).chain([profile.value(0.5)]);
+        let inside = values.find(|value| !value.is_normal() || *value <= 0.0);
+        let at_end = || {
+            [0.0, 1.0]
+                .map(|x| profile.value(x))
+                .into_iter()
+                .find(|value| *value < 0.0)
+        };
+        if let Some(value) = inside.or_else(at_end) {
             let what = format!("the value is {} in this span", significant(value, 3));
             let fault = Violation::new(Code::Range, format!("/spans/{k}/{part}/{key}"), what);
             faults.push(fault.allowed("numbers above 0 throughout the span"));

@@ -87,7 +87,7 @@ impl Bounds {
         let beam = &case.beam;
         let area = beam.height_m * beam.width_m;
         let ea = beam.young_modulus_pa * area * beam.axial_stiffness_factor;
-        let ei = beam.young_modulus_pa * area * beam.height_m.powi(2) / 12.0 * beam.bending_factor();
+        let ei = beam.young_modulus_pa * beam.second_moment();
         let mass = beam.density_kg_m3 * area * beam.length_m * beam.mass_factor.unwrap_or(1.0);
         let (force, moment) = (MOST * ea, 2.0 * MOST * ei / beam.height_m);
         let strain = "the load that strains the beam by 1000 %";

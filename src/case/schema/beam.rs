@@ -66,9 +66,19 @@ impl Beam {
         self.reference_axis_m.unwrap_or(self.neutral_axis_m)
     }
 
+    /// `w_s h_s^3/12` [m^4].
+    fn full_second_moment(&self) -> f64 {
+        self.width_m * self.height_m.powi(3) / 12.0
+    }
+
+    /// `(w_s h_s^3/12) f_i` [m^4].
+    pub fn second_moment(&self) -> f64 {
+        self.full_second_moment() * self.bending_factor()
+    }
+
     /// `f_i`: that of the slope of the moment-curvature law at zero, or the given one.
     pub fn bending_factor(&self) -> f64 {
-        let full = self.young_modulus_pa * self.width_m * self.height_m.powi(3) / 12.0;
+        let full = self.young_modulus_pa * self.full_second_moment();
         let law = self.moment_curvature.as_ref().and_then(MomentCurvature::curve);
         law.map_or(self.bending_stiffness_factor, |curve| curve.at(0.0).rate / full)
     }

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::is_zero;
 use crate::case::fluids::{NamedFluid, ROOM_C};
 
 /// Standard atmosphere [Pa].
@@ -363,10 +364,6 @@ fn yes() -> bool {
 
 fn is_yes(value: &bool) -> bool {
     *value
-}
-
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 fn default_kink_width() -> f64 {

@@ -74,8 +74,8 @@ impl SpanRows {
     }
 }
 
-/// Values of the solid in a span, as in `beam`. Each but the law of the moment is a number, or a function of the place within the span from 0 to 1, which is
-/// evaluated in the middle of each segment.
+/// Values of the solid in a span, as in `beam`. Each but the law of the moment is a number, or a function of the place within the span from
+/// 0 to 1, which is evaluated in the middle of each segment.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SpanBeam {

@@ -220,9 +220,9 @@ impl MeshProbe {
 
     fn pressure(&self, look: &StateView, row: usize) -> f64 {
         let wet = look.system.model.wet.as_ref();
-        let bladder = wet.map(|wet| wet.pair(self.segment)[row]);
-        let pressure = bladder.and_then(|bladder| look.system.pressures_of_fluid(&look.w).nth(bladder));
-        pressure.unwrap_or(0.0)
+        wet.map_or(0.0, |wet| {
+            look.system.pressure_of_fluid(&look.w, wet.pair(self.segment)[row])
+        })
     }
 }
 

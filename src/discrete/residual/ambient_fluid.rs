@@ -4,8 +4,8 @@ use super::solid::angle_rate;
 use crate::case::schema::Effect;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace};
-use crate::model::Kinematics;
 use crate::model::surroundings::AmbientSection;
+use crate::model::{AmbientFluid, Kinematics};
 use crate::numerics::{Planar, Scalar};
 
 /// Passes the forces of the surroundings on a node of the given length to `each`, with the balance entry of their work;
@@ -118,15 +118,12 @@ fn swept<T: Scalar>(
 
 /// Energy `m_a (v·e_n)²/2` per length of the fluid that moves transversely with a node.
 pub fn kinetic(system: &System, now: &TimeData, w: &Workspace<f64>, node: usize) -> f64 {
-    let around = system
-        .model
-        .surroundings
-        .as_ref()
-        .filter(|around| around.stream.is_none());
-    around.filter(|_| system.layout.inertia).map_or(0.0, |_| {
-        let across = felt_velocity(system, now, w, node).dot(node_tangent(system, w, node).normal());
-        0.5 * system.sections.ambient[node].added_mass * across * across
-    })
+    let still = |around: &AmbientFluid| around.stream.is_none() && system.layout.inertia;
+    if !system.model.surroundings.as_ref().is_some_and(still) {
+        return 0.0;
+    }
+    let across = felt_velocity(system, now, w, node).dot(node_tangent(system, w, node).normal());
+    0.5 * system.sections.ambient[node].added_mass * across * across
 }
 
 /// Rate of the angle of [`node_tangent`] [1/s].

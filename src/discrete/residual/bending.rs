@@ -123,10 +123,14 @@ fn given_moment<T: Scalar>(system: &System, now: &TimeData, node: usize, w: &mut
     }
 }
 
-/// Elastic curvature `e = κ - α_p - κ_0` of a node; not in the published form.
+/// Elastic curvature `e_i = α_i - α_p - κ_0` of a node.
 #[inline]
 pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
-    w.shape.kappa[node] - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
+    let mut alpha = w.shape.kappa[node];
+    if system.model.published() {
+        alpha = alpha * node_stretch(w, node, system.mesh.nodes - 1);
+    }
+    alpha - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
 }
 
 /// Slope of the moment over curvature of a node, over its EI: 1 for a linear law.

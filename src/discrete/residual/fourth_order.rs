@@ -1,8 +1,7 @@
 //! Beam with a discretization error of fourth order.
 
 use super::arcs;
-use super::bending::pressure_curvature;
-use super::solid::node_stretch;
+use super::bending::elastic_curvature;
 use crate::case::schema::Effect;
 use crate::discrete::{BeamMesh, System, TimeData, Workspace};
 use crate::error::{Code, Violation};
@@ -173,15 +172,6 @@ pub fn beside<T: Scalar>(system: &System, w: &Workspace<T>, node: usize) -> T {
 /// Index of the node beside an end.
 pub fn neighbour(system: &System, node: usize) -> usize {
     if node == 0 { 1 } else { system.mesh.nodes - 2 }
-}
-
-/// Elastic curvature `e_i = α_i - α_p - κ_0` of a node.
-pub fn elastic_curvature<T: Scalar>(system: &System, now: &TimeData, w: &Workspace<T>, node: usize) -> T {
-    let mut alpha = w.shape.kappa[node];
-    if system.model.published() {
-        alpha = alpha * node_stretch(w, node, system.mesh.nodes - 1);
-    }
-    alpha - pressure_curvature(system, w, node) - T::constant(now.rest_curvature(node))
 }
 
 /// Bending energy at a node [J].

@@ -1,6 +1,7 @@
 //! Momentum balance of nodes, and the forces on them.
 
-use super::{ambient_fluid, fourth_order, rotating_frame};
+use super::bending::elastic_curvature;
+use super::{ambient_fluid, rotating_frame};
 use crate::discrete::attached::at_node;
 use crate::discrete::ledger::EnergyRate;
 use crate::discrete::{System, TimeData, Workspace, bodies, contact_points};
@@ -249,7 +250,7 @@ pub fn published_forces<T: Scalar>(system: &System, now: &TimeData, w: &mut Work
     }
     add_means(&forces.shear, &mut added, |at_node| &mut at_node.z);
     if system.mesh.fourth {
-        let excess = |i: usize| w.shape.kappa[i] - fourth_order::elastic_curvature(system, now, w, i);
+        let excess = |i: usize| w.shape.kappa[i] - elastic_curvature(system, now, w, i);
         wide!(turn_excess(system, &w.shape.tangent, excess, &mut added));
     } else {
         let ei = &system.sections.bending[..added.len()];

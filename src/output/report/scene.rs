@@ -66,7 +66,7 @@ pub fn to_json(case: &Case) -> Option<Value> {
         "wiring": case.bladders.as_ref().and(wiring(case)),
         "ends": [end(&case.ends.root.resolve(), case.ends.root.form().0, end_s), end(&case.ends.tip.resolve(), case.ends.tip.form().0, end_s)],
         "loads": case.loads.iter().map(|l| load(l, end_s)).collect::<Vec<_>>(),
-        "obstacles": ContactLaw::all(case).iter().map(obstacle).collect::<Vec<_>>(),
+        "obstacles": ContactLaw::all(case, &segments).iter().map(obstacle).collect::<Vec<_>>(),
     }))
 }
 
